@@ -1,0 +1,214 @@
+//! Finite elements from text: a cell, nodal shape functions, a quadrature rule and groups of springs.
+
+mod catalogue;
+mod cell;
+mod constant;
+mod definition;
+mod proof;
+mod quadrature;
+mod tabulation;
+
+pub use catalogue::{SHIPPED, Shipped};
+pub use cell::{Cell, Side};
+pub use definition::{FormatEntry, Formats, SpringKind};
+pub use quadrature::Quadrature;
+pub use tabulation::{ShapeFunctions, Tabulation};
+
+use crate::error::{Error, Result};
+use crate::file;
+use crate::symbolic::{Polynomial, Scope};
+use definition::Definition;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// An element that has been proved consistent.
+#[derive(Debug)]
+pub struct Element {
+    pub name: String,
+    pub title: String,
+    /// Where the shape functions are published.
+    pub source: Option<String>,
+    pub cell: Cell,
+    pub coordinates: Vec<String>,
+    /// Reference positions, `[nodes × dimension]`.
+    pub positions: Vec<f64>,
+    pub functions: ShapeFunctions,
+    /// At the points of the element's own quadrature rule.
+    pub tabulation: Tabulation,
+    pub springs: Vec<SpringGroup>,
+    pub formats: Formats,
+    /// The order of nodes that turns the element inside out, if it has one.
+    pub reflection: Option<Vec<usize>>,
+    sides: OnceLock<Vec<SideTable>>,
+}
+
+/// Springs that are equivalent under the cell's symmetry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpringGroup {
+    pub name: String,
+    pub kind: SpringKind,
+    /// Node pairs of length springs; empty where the whole cell is measured.
+    pub pairs: Vec<[usize; 2]>,
+    pub optional: bool,
+}
+
+/// A side of the element: its nodes, and the shape functions along it.
+#[derive(Debug, Clone)]
+pub struct SideTable {
+    /// Element nodes that lie on the side.
+    pub nodes: Vec<usize>,
+    /// Values of those nodes' shape functions, and their derivatives along the side.
+    pub tabulation: Tabulation,
+}
+
+impl Element {
+    /// The shipped element of that name, or the element in the file of that path.
+    ///
+    /// # Errors
+    /// There is no such element, or its file is wrong.
+    pub fn load(name_or_path: &str) -> Result<Element> {
+        if name_or_path.ends_with(".toml") {
+            let path = Path::new(name_or_path);
+            return Element::parse(&file::read_text(path)?).map_err(|e| e.in_file(path));
+        }
+        match SHIPPED.iter().find(|s| s.name == name_or_path) {
+            Some(shipped) => shipped.load(),
+            None => {
+                let names: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
+                let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
+                Err(Error::expected("element", expected, format!("\"{name_or_path}\"")))
+            }
+        }
+    }
+
+    /// Parses and proves the text of an element file.
+    ///
+    /// # Errors
+    /// Names the key, what was expected and what was found.
+    pub fn parse(text: &str) -> Result<Element> {
+        let definition: Definition = file::parse_toml(text)?;
+        let dimension = definition.cell.dimension();
+        proof::coordinates(&definition)?;
+        let mut scope = Scope::new(&definition.coordinates);
+        for (name, value) in &definition.definitions {
+            let text = value.as_str().ok_or_else(|| {
+                Error::expected(format!("let.{name}"), "an expression in quotes", value.type_str())
+            })?;
+            scope.define(name, text).map_err(|e| e.under(format!("let.{name}")))?;
+        }
+        let mut values = Vec::new();
+        for (a, node) in definition.nodes.iter().enumerate() {
+            values.push(scope.expression(&node.shape).map_err(|e| e.under(format!("nodes[{a}].shape")))?);
+        }
+        proof::nodal(&definition, &values)?;
+        let rule = proof::quadrature(&definition)?;
+        let springs = proof::springs(&definition)?;
+        proof::formats(&definition)?;
+
+        let functions = ShapeFunctions::new(values, dimension);
+        let tabulation = Tabulation::new(&functions, &rule);
+        proof::finite(&tabulation)?;
+        let positions: Vec<f64> = definition.nodes.iter().flat_map(|n| n.at.iter().map(|c| c.value())).collect();
+        Ok(Element {
+            reflection: reflection(&positions, dimension),
+            name: definition.name,
+            title: definition.title,
+            source: definition.source,
+            cell: definition.cell,
+            coordinates: definition.coordinates,
+            positions,
+            functions,
+            tabulation,
+            springs,
+            formats: definition.formats,
+            sides: OnceLock::new(),
+        })
+    }
+
+    pub fn dimension(&self) -> usize {
+        self.cell.dimension()
+    }
+
+    pub fn nodes(&self) -> usize {
+        self.functions.values.len()
+    }
+
+    /// One table per side of the cell, in the cell's order, exact for a traction that is constant on flat sides.
+    pub fn sides(&self) -> &[SideTable] {
+        self.sides.get_or_init(|| self.cell.sides().iter().map(|side| self.side_table(side)).collect())
+    }
+
+    fn side_table(&self, side: &Side) -> SideTable {
+        let d = self.dimension();
+        let (origin, tangents) = side.embedding(self.cell);
+        let on_side = |a: &usize| off_plane(&self.positions[a * d..(a + 1) * d], &origin, &tangents) < 1e-9;
+        let nodes: Vec<usize> = (0..self.nodes()).filter(on_side).collect();
+        let local = Quadrature::of_degree(side.cell, 2 * self.degree());
+        let points = local
+            .points
+            .chunks_exact(d - 1)
+            .flat_map(|s| (0..d).map(|l| origin[l] + s.iter().zip(&tangents).map(|(s, t)| s * t[l]).sum::<f64>()).collect::<Vec<_>>())
+            .collect();
+        let rule = Quadrature { dimension: d, points, weights: local.weights };
+        let functions = ShapeFunctions {
+            values: nodes.iter().map(|&a| self.functions.values[a].clone()).collect(),
+            gradients: nodes.iter().map(|&a| self.functions.gradients[a].clone()).collect(),
+        };
+        SideTable { nodes, tabulation: Tabulation::new(&functions, &rule).along(&tangents) }
+    }
+
+    /// The largest degree of a shape function; for one that is no polynomial, the number of nodes stands in.
+    fn degree(&self) -> usize {
+        let degree = |n| Polynomial::expand(n, self.dimension()).map_or(self.nodes(), |p| p.degree() as usize);
+        self.functions.values.iter().map(degree).max().unwrap_or(1)
+    }
+
+    /// The groups that a fit uses: the named ones, or all that are not optional.
+    ///
+    /// # Errors
+    /// A name is no group of this element.
+    pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
+        let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
+        if let Some(unknown) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
+            let known: Vec<_> = self.springs.iter().map(|g| format!("\"{}\"", g.name)).collect();
+            let expected = format!("groups of {}: {}", self.name, known.join(", "));
+            return Err(Error::expected("springs", expected, format!("\"{unknown}\"")));
+        }
+        Ok(self.springs.iter().filter(|g| names.contains(&g.name)).collect())
+    }
+}
+
+impl Shipped {
+    /// # Errors
+    /// The file is wrong, which the tests over all shipped files exclude.
+    pub fn load(&self) -> Result<Element> {
+        Element::parse(self.text).map_err(|e| e.in_file(&PathBuf::from(format!("elements/{}.toml", self.name))))
+    }
+}
+
+/// Distance of `x` from the line or plane `origin + span(tangents)`.
+fn off_plane(x: &[f64], origin: &[f64], tangents: &[Vec<f64>]) -> f64 {
+    let r: Vec<f64> = x.iter().zip(origin).map(|(a, b)| a - b).collect();
+    match tangents {
+        [t] => (r[0] * t[1] - r[1] * t[0]).abs(),
+        [s, t] => {
+            let normal = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];
+            normal.iter().zip(&r).map(|(n, r)| n * r).sum::<f64>().abs()
+        }
+        _ => f64::INFINITY,
+    }
+}
+
+/// Swapping the first two reference coordinates maps every cell onto itself and turns it inside out.
+fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
+    let nodes: Vec<&[f64]> = positions.chunks_exact(dimension).collect();
+    if dimension < 2 {
+        return None;
+    }
+    let image = |at: &[f64]| {
+        let mut swapped = at.to_vec();
+        swapped.swap(0, 1);
+        nodes.iter().position(|other| other.iter().zip(&swapped).all(|(a, b)| (a - b).abs() < 1e-9))
+    };
+    nodes.iter().map(|at| image(at)).collect()
+}

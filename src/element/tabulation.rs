@@ -1,0 +1,65 @@
+//! Shape functions and their gradients as numbers, at the points of a quadrature rule.
+
+use super::quadrature::Quadrature;
+use crate::symbolic::Expr;
+
+/// What the numerical code knows of an element: `N_a(ξ_q)`, `∂N_a/∂ξ_k(ξ_q)`, `w_q`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tabulation {
+    pub nodes: usize,
+    pub dimension: usize,
+    /// `[points]`.
+    pub weights: Vec<f64>,
+    /// `[points × nodes]`.
+    pub values: Vec<f64>,
+    /// `[points × nodes × dimension]`, with respect to the reference coordinates.
+    pub gradients: Vec<f64>,
+}
+
+impl Tabulation {
+    pub fn new(functions: &ShapeFunctions, rule: &Quadrature) -> Tabulation {
+        let mut table = Tabulation {
+            nodes: functions.values.len(),
+            dimension: rule.dimension,
+            weights: rule.weights.clone(),
+            values: Vec::new(),
+            gradients: Vec::new(),
+        };
+        for point in rule.points.chunks_exact(rule.dimension) {
+            table.values.extend(functions.values.iter().map(|n| n.evaluate(point)));
+            table.gradients.extend(functions.gradients.iter().flatten().map(|dn| dn.evaluate(point)));
+        }
+        table
+    }
+
+    /// The same table with every tangent direction of a side in place of the cell's own coordinates:
+    /// `∂N_a/∂s_k = Σ_l ∂N_a/∂ξ_l tangent_k,l`.
+    pub fn along(self, tangents: &[Vec<f64>]) -> Tabulation {
+        let gradients = self
+            .gradients
+            .chunks_exact(self.dimension)
+            .flat_map(|g| tangents.iter().map(move |t| g.iter().zip(t).map(|(a, b)| a * b).sum()))
+            .collect();
+        Tabulation { gradients, dimension: tangents.len(), ..self }
+    }
+
+    pub fn points(&self) -> usize {
+        self.weights.len()
+    }
+}
+
+/// Shape functions and their symbolic gradients.
+#[derive(Debug, Clone)]
+pub struct ShapeFunctions {
+    /// `[nodes]`.
+    pub values: Vec<Expr>,
+    /// `[nodes][dimension]`.
+    pub gradients: Vec<Vec<Expr>>,
+}
+
+impl ShapeFunctions {
+    pub fn new(values: Vec<Expr>, dimension: usize) -> ShapeFunctions {
+        let gradients = values.iter().map(|n| (0..dimension).map(|k| n.derivative(k)).collect()).collect();
+        ShapeFunctions { values, gradients }
+    }
+}

@@ -1,0 +1,69 @@
+//! Files on disk: read with an error that names them, written whole or not at all.
+
+use crate::error::{Error, Result};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+/// The file's bytes.
+///
+/// # Errors
+/// The file is missing or unreadable.
+pub fn read(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).map_err(|e| Error::new(format!("cannot be read: {e}")).in_file(path))
+}
+
+/// The file's text.
+///
+/// # Errors
+/// The file is missing, unreadable or not UTF-8.
+pub fn read_text(path: &Path) -> Result<String> {
+    String::from_utf8(read(path)?).map_err(|_| Error::new("expected UTF-8 text, found other bytes").in_file(path))
+}
+
+/// Creates `path` with `content`, or replaces it; a failure leaves what was there before.
+///
+/// # Errors
+/// The folder is missing or read-only, or the disk is full.
+pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
+    let name = path.file_name().ok_or_else(|| Error::new("expected the name of a file to write").in_file(path))?;
+    let partial = path.with_file_name(format!(".{}.{}.partial", name.to_string_lossy(), std::process::id()));
+    let written = fs::File::create(&partial).and_then(|mut file| {
+        file.write_all(content)?;
+        file.sync_all()?;
+        fs::rename(&partial, path)
+    });
+    written.map_err(|e| {
+        let _ = fs::remove_file(&partial);
+        Error::new(format!("cannot be written: {e}")).in_file(path)
+    })
+}
+
+/// Creates the folder and those above it.
+///
+/// # Errors
+/// A file stands in the way, or the folder above is read-only.
+pub fn create_folder(path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|e| Error::new(format!("the folder cannot be created: {e}")).in_file(path))
+}
+
+/// Reads TOML into a structure; what is wrong is named by key and line.
+///
+/// # Errors
+/// The text is not TOML, or a key is unknown, missing or of the wrong type.
+pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
+    let line = |span: Option<std::ops::Range<usize>>| span.map(|s| text[..s.start].matches('\n').count() + 1);
+    let place = |error: Error, at: Option<usize>| at.into_iter().fold(error, Error::on_line);
+    let deserializer = toml::Deserializer::parse(text)
+        .map_err(|e| place(Error::new(format!("expected TOML: {}", one_line(e.message()))), line(e.span())))?;
+    serde_path_to_error::deserialize(deserializer).map_err(|e| {
+        let key = e.path().to_string();
+        let problem = one_line(e.inner().message());
+        let error = if key == "." { Error::new(problem) } else { Error::at(key, problem) };
+        place(error, line(e.inner().span()))
+    })
+}
+
+fn one_line(message: &str) -> String {
+    message.replace('`', "\"").split_whitespace().collect::<Vec<_>>().join(" ")
+}

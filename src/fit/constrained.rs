@@ -1,0 +1,79 @@
+//! `min ½ kᵀ M k − bᵀ k` over `k ≥ 0`: block principal pivoting, checked by its optimality conditions, with a conic
+//! solver behind it for what pivoting cannot settle.
+
+use super::normal::{Normal, Rank};
+use clarabel::algebra::{CscMatrix, MatrixMathMut};
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+
+/// Optimality conditions hold to this fraction of the largest |b|, in the scaling with a unit diagonal.
+const OPTIMALITY: f64 = 1e-10;
+
+/// Solves by block principal pivoting (Júdice and Pires 1994; Kim and Park 2011): guess which constants are positive,
+/// solve for them, exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. Where `M` is singular or the exchange does not
+/// end, the interior-point solver decides.
+pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
+    let m = normal.size();
+    let scale: Vec<f64> = (0..m).map(|s| 1.0 / normal.gram[s * m + s].sqrt()).collect();
+    let mut scaled = normal.clone();
+    for s in 0..m {
+        scaled.rhs[s] *= scale[s];
+        for t in 0..m {
+            scaled.gram[s * m + t] *= scale[s] * scale[t];
+        }
+    }
+    let (mut k, rank) = match pivot(&scaled) {
+        Some(k) => (k, Rank::Full),
+        None => (interior_point(&scaled).unwrap_or_else(|| vec![0.0; m]), Rank::Deficient),
+    };
+    k.iter_mut().zip(&scale).for_each(|(k, s)| *k *= s);
+    (k, rank)
+}
+
+fn pivot(normal: &Normal) -> Option<Vec<f64>> {
+    let m = normal.size();
+    let tolerance = OPTIMALITY * normal.rhs.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    let mut positive = vec![true; m];
+    let (mut fewest, mut patience) = (m + 1, 3);
+    for _ in 0..100 + 10 * m {
+        let set: Vec<usize> = (0..m).filter(|&s| positive[s]).collect();
+        let mut free = normal.restricted(&set);
+        if free.solve() == Rank::Deficient {
+            return None;
+        }
+        let mut k = vec![0.0; m];
+        set.iter().zip(&free.rhs).for_each(|(&s, &value)| k[s] = value);
+        let slope = normal.gradient(&k);
+        let wrong: Vec<usize> =
+            (0..m).filter(|&s| if positive[s] { k[s] < 0.0 } else { slope[s] < -tolerance }).collect();
+        if wrong.is_empty() {
+            return Some(k);
+        }
+        // Exchange all while that helps; then only the last, which cannot cycle (Murty 1974).
+        if wrong.len() < fewest {
+            (fewest, patience) = (wrong.len(), 3);
+        } else if patience > 0 {
+            patience -= 1;
+        }
+        let exchanged = if patience > 0 || wrong.len() < fewest { &wrong[..] } else { &wrong[wrong.len() - 1..] };
+        exchanged.iter().for_each(|&s| positive[s] = !positive[s]);
+    }
+    None
+}
+
+/// The same problem by Clarabel's interior-point method; `None` if it reports no solution.
+pub fn interior_point(normal: &Normal) -> Option<Vec<f64>> {
+    let m = normal.size();
+    let upper: Vec<(usize, usize)> = (0..m).flat_map(|t| (0..=t).map(move |s| (s, t))).collect();
+    let rows = upper.iter().map(|st| st.0).collect();
+    let columns = upper.iter().map(|st| st.1).collect();
+    let values = upper.iter().map(|&(s, t)| normal.gram[s * m + t]).collect();
+    let p = CscMatrix::new_from_triplets(m, m, rows, columns, values);
+    let q: Vec<f64> = normal.rhs.iter().map(|b| -b).collect();
+    let mut minus = CscMatrix::identity(m);
+    minus.negate();
+    let settings = DefaultSettings { verbose: false, tol_gap_rel: 1e-12, tol_feas: 1e-12, ..Default::default() };
+    let mut solver = DefaultSolver::new(&p, &q, &minus, &vec![0.0; m], &[NonnegativeConeT(m)], settings).ok()?;
+    solver.solve();
+    let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+    solved.then(|| solver.solution.x.iter().map(|k| k.max(0.0)).collect())
+}

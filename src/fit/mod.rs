@@ -1,0 +1,131 @@
+//! Spring constants from the stiffness of each element.
+
+mod constrained;
+mod frobenius;
+mod modes;
+mod normal;
+mod objective;
+mod residual;
+
+pub use normal::Rank;
+pub use objective::Objective;
+pub use residual::{ElementErrors, Spread, element_errors};
+
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::material::Moduli;
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+use normal::Normal;
+
+/// How the constants of each element are chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fit {
+    pub objective: Objective,
+    /// One constant per group instead of one per spring.
+    pub tied: bool,
+    /// No constant below zero.
+    pub nonnegative: bool,
+}
+
+impl Fit {
+    pub fn new(objective: Objective) -> Fit {
+        Fit { objective, tied: false, nonnegative: false }
+    }
+}
+
+/// The constants of all cells of one element type.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellFits {
+    pub springs: Springs,
+    /// `[cells × springs]`, N/m; that of an area or volume spring N/m³ or N/m⁵.
+    pub constants: Vec<f64>,
+    /// Cells whose normal equations were singular, see [`Rank::Deficient`].
+    pub deficient: usize,
+}
+
+/// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+///
+/// `progress` is told the number of cells done, now and then.
+///
+/// # Errors
+/// A cell is reversed, tangled or flat; the error names it, counted from 1.
+pub fn fit_cells(
+    element: &Element,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    moduli: Moduli,
+    fit: &Fit,
+    progress: &mut dyn FnMut(usize),
+) -> Result<CellFits> {
+    let cells = connectivity.len() / element.nodes();
+    let mut fits =
+        CellFits { springs: springs.clone(), constants: Vec::with_capacity(cells * springs.len()), deficient: 0 };
+    if springs.is_empty() {
+        return Ok(fits);
+    }
+    let mut normal = Normal::default();
+    each_cell(element, points, connectivity, |cell, x, geometry| {
+        fit.objective.normal_equations(springs, x, geometry, moduli, &mut normal);
+        if solve(fit, springs, &mut normal, &mut fits.constants) == Rank::Deficient {
+            fits.deficient += 1;
+        }
+        if cell % 1024 == 1023 {
+            progress(cell + 1);
+        }
+    })?;
+    progress(cells);
+    Ok(fits)
+}
+
+/// The constants of a single element with nodes at `x`, `[nodes × dimension]`, m; `[springs]`.
+///
+/// # Errors
+/// The element is reversed, tangled or flat.
+pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
+    let connectivity: Vec<usize> = (0..element.nodes()).collect();
+    Ok(fit_cells(element, springs, x, &connectivity, moduli, fit, &mut |_| {})?.constants)
+}
+
+/// Appends the solution to `constants`.
+fn solve(fit: &Fit, springs: &Springs, normal: &mut Normal, constants: &mut Vec<f64>) -> Rank {
+    let mut tied = fit.tied.then(|| normal.tied(&springs.groups, springs.names.len()));
+    let equations = tied.as_mut().unwrap_or(normal);
+    let (solution, rank);
+    let k: &[f64] = if fit.nonnegative {
+        (solution, rank) = constrained::solve_nonnegative(equations);
+        &solution
+    } else {
+        rank = equations.solve();
+        &equations.rhs
+    };
+    if fit.tied {
+        constants.extend(springs.groups.iter().map(|&group| k[group]));
+    } else {
+        constants.extend_from_slice(k);
+    }
+    rank
+}
+
+/// Calls `visit(cell, x, geometry)` for every cell.
+fn each_cell(
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    mut visit: impl FnMut(usize, &[f64], &Geometry),
+) -> Result<()> {
+    let d = element.dimension();
+    let mut geometry = Geometry::new(&element.tabulation);
+    let mut x = vec![0.0; element.nodes() * d];
+    for (cell, nodes) in connectivity.chunks_exact(element.nodes()).enumerate() {
+        for (x, &node) in x.chunks_exact_mut(d).zip(nodes) {
+            x.copy_from_slice(&points[node * d..(node + 1) * d]);
+        }
+        geometry
+            .set(&element.tabulation, &x)
+            .map_err(|fault| Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string()))?;
+        visit(cell, &x, &geometry);
+    }
+    Ok(())
+}

@@ -1,0 +1,70 @@
+//! How far the springs of an element are from its stiffness.
+
+use super::{CellFits, each_cell};
+use crate::element::Element;
+use crate::error::Result;
+use crate::material::Moduli;
+use nalgebra::{DMatrix, DVectorView};
+
+/// Mean and largest over the elements.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Spread {
+    pub mean: f64,
+    pub max: f64,
+}
+
+/// `‖R − K‖/‖R‖` per element.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ElementErrors {
+    /// In the Frobenius norm, `[cells]`.
+    pub frobenius: Vec<f64>,
+    /// In the induced 2-norm, `[cells]`.
+    pub spectral: Vec<f64>,
+}
+
+impl ElementErrors {
+    pub fn extend(&mut self, other: ElementErrors) {
+        self.frobenius.extend(other.frobenius);
+        self.spectral.extend(other.spectral);
+    }
+}
+
+impl Spread {
+    pub fn of(values: &[f64]) -> Spread {
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        Spread { mean, max: values.iter().copied().fold(0.0, f64::max) }
+    }
+}
+
+/// The relative errors of every cell, with R and `K = Σ k_s g_s g_sᵀ` formed.
+///
+/// # Errors
+/// A cell is reversed, tangled or flat.
+pub fn element_errors(
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    moduli: Moduli,
+    fits: &CellFits,
+) -> Result<ElementErrors> {
+    let size = element.nodes() * element.dimension();
+    let m = fits.springs.len();
+    let mut errors = ElementErrors::default();
+    let mut g = Vec::new();
+    each_cell(element, points, connectivity, |cell, x, geometry| {
+        let r = geometry.stiffness(moduli);
+        let mut difference = r.clone();
+        fits.springs.gradients(x, geometry, &mut g);
+        for (g, k) in g.chunks_exact(size).zip(&fits.constants[cell * m..]) {
+            let g = DVectorView::from_slice(g, size);
+            difference.ger(-k, &g, &g, 1.0);
+        }
+        errors.frobenius.push(difference.norm() / r.norm());
+        errors.spectral.push(spectral_norm(difference) / spectral_norm(r));
+    })?;
+    Ok(errors)
+}
+
+fn spectral_norm(symmetric: DMatrix<f64>) -> f64 {
+    symmetric.symmetric_eigenvalues().amax()
+}

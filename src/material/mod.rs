@@ -1,0 +1,110 @@
+//! Isotropic linear elasticity.
+
+use crate::error::{Error, Result};
+
+/// How a plane body relates to the solid it stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum State {
+    /// Three dimensions.
+    Solid,
+    /// No stress through the thickness (m).
+    PlaneStress { thickness: f64 },
+    /// No strain through the thickness (m).
+    PlaneStrain { thickness: f64 },
+}
+
+/// An isotropic material that has been proved physical.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    young: f64,
+    poisson: f64,
+    state: State,
+}
+
+/// The two constants of `σ = λ tr(ε) I + 2μ ε`, in Pa; in two dimensions multiplied by the thickness, in N/m.
+///
+/// In plane stress λ is `Eν/(1−ν²) = 2λμ/(λ+2μ)`, the one that leaves no stress through the thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moduli {
+    pub lambda: f64,
+    pub mu: f64,
+}
+
+impl Material {
+    /// A material with Young's modulus `young` (Pa) and Poisson's ratio `poisson`.
+    ///
+    /// # Errors
+    /// `E ≤ 0`, `ν ≤ −1`, `ν ≥ 1/2` (plane stress: `ν > 1/2`), thickness not positive, or a value that is not finite.
+    pub fn new(young: f64, poisson: f64, state: State) -> Result<Material> {
+        let positive = |key: &str, value: f64, unit: &str| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(Error::expected(key, format!("a positive number of {unit}"), value))
+            }
+        };
+        positive("young", young, "Pa")?;
+        let in_range = match state {
+            State::PlaneStress { .. } => poisson > -1.0 && poisson <= 0.5,
+            _ => poisson > -1.0 && poisson < 0.5,
+        };
+        if !in_range {
+            return Err(Error::expected("poisson", "a ratio above -1 and below 0.5", poisson));
+        }
+        if let State::PlaneStress { thickness } | State::PlaneStrain { thickness } = state {
+            positive("thickness", thickness, "m")?;
+        }
+        Ok(Material { young, poisson, state })
+    }
+
+    pub fn young(&self) -> f64 {
+        self.young
+    }
+
+    pub fn poisson(&self) -> f64 {
+        self.poisson
+    }
+
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// The thickness in m; 1 for a solid.
+    pub fn thickness(&self) -> f64 {
+        match self.state {
+            State::Solid => 1.0,
+            State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
+        }
+    }
+
+    pub fn moduli(&self) -> Moduli {
+        let (e, nu, t) = (self.young, self.poisson, self.thickness());
+        let lambda = match self.state {
+            State::PlaneStress { .. } => e * nu / ((1.0 + nu) * (1.0 - nu)),
+            _ => e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        };
+        Moduli { lambda: t * lambda, mu: t * e / (2.0 * (1.0 + nu)) }
+    }
+}
+
+/// A pressure such as `10e3`, `10kPa` or `"0.2 MPa"`, in Pa.
+///
+/// # Errors
+/// It is not a number followed by nothing, Pa, kPa, MPa or GPa.
+pub fn parse_pressure(text: &str) -> Result<f64> {
+    let trimmed = text.trim();
+    let digits = trimmed.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    // In "10e3" the last letter belongs to the number; in "10kPa" all letters are the unit.
+    let (number, unit) = if trimmed.parse::<f64>().is_ok() { (trimmed, "") } else { (digits, &trimmed[digits.len()..]) };
+    let factor = match unit {
+        "" | "Pa" => Some(1.0),
+        "kPa" => Some(1e3),
+        "MPa" => Some(1e6),
+        "GPa" => Some(1e9),
+        _ => None,
+    };
+    match (number.trim().parse::<f64>(), factor) {
+        (Ok(value), Some(factor)) => Ok(value * factor),
+        _ => Err(Error::new(format!("expected a pressure such as 10000, 10kPa or 0.01MPa, found \"{text}\""))),
+    }
+}

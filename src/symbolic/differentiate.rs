@@ -1,0 +1,36 @@
+use super::{Expr, Function};
+use num_rational::BigRational;
+use num_traits::One;
+
+impl Expr {
+    /// `∂self/∂variable`, exact.
+    pub fn derivative(&self, variable: usize) -> Expr {
+        match self {
+            Expr::Number(_) => Expr::integer(0),
+            Expr::Variable(v) => Expr::integer((*v == variable) as i64),
+            Expr::Sum(terms) => Expr::sum(terms.iter().map(|t| t.derivative(variable))),
+            Expr::Product(factors) => Expr::sum((0..factors.len()).map(|i| {
+                let others = factors.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, f)| f.clone());
+                Expr::product(std::iter::once(factors[i].derivative(variable)).chain(others))
+            })),
+            Expr::Power(base, p) => {
+                let inner = base.derivative(variable);
+                let outer = Expr::power((**base).clone(), p - BigRational::one());
+                Expr::product([Expr::Number(p.clone()), outer, inner])
+            }
+            Expr::Call(function, argument) => {
+                let x = (**argument).clone();
+                let inner = x.derivative(variable);
+                let outer = match function {
+                    Function::Exp => self.clone(),
+                    Function::Ln => Expr::power(x, -BigRational::one()),
+                    Function::Sin => Expr::call(Function::Cos, x),
+                    Function::Cos => Expr::call(Function::Sin, x).negated(),
+                    Function::Tan => Expr::sum([Expr::integer(1), Expr::power(self.clone(), BigRational::from_integer(2.into()))]),
+                    Function::Abs => Expr::product([x.clone(), Expr::power(self.clone(), -BigRational::one())]),
+                };
+                Expr::product([outer, inner])
+            }
+        }
+    }
+}

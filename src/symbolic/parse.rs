@@ -1,0 +1,322 @@
+//! Text into expressions. evalexpr builds the operator tree; a lexer in front of it rejects what evalexpr would
+//! misread (`a b`, `a**b`, `+a`, `//`), gives positions, and keeps every literal exact by handing evalexpr a name for it.
+//!
+//! `-x^2` is `-(x^2)`. A power of a power and a sign inside a term need parentheses: `(a^b)^c`, `a*(-b)`.
+
+use super::predicate::{Comparison, Predicate};
+use super::{Expr, Function};
+use crate::error::{Error, Result};
+use evalexpr::{Node, Operator};
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::{One, Pow, Zero};
+
+const LONGEST_TEXT: usize = 10_000;
+const DEEPEST_NESTING: usize = 100;
+const LARGEST_DECIMAL_EXPONENT: i32 = 400;
+
+/// The names an expression may use: variables by position, and named sub-expressions.
+#[derive(Debug, Clone, Default)]
+pub struct Scope {
+    variables: Vec<String>,
+    definitions: Vec<(String, Expr)>,
+}
+
+impl Scope {
+    pub fn new<S: AsRef<str>>(variables: &[S]) -> Scope {
+        Scope { variables: variables.iter().map(|v| v.as_ref().to_string()).collect(), definitions: Vec::new() }
+    }
+
+    /// Lets `name` stand for `text` in whatever is parsed later.
+    ///
+    /// # Errors
+    /// `text` does not parse, or `name` is taken or not a name.
+    pub fn define(&mut self, name: &str, text: &str) -> Result<()> {
+        let taken = self.variables.iter().chain(self.definitions.iter().map(|(n, _)| n)).any(|n| n == name);
+        let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if taken || !is_name || function(name).is_some() {
+            return Err(Error::new(format!("expected a new name of letters, digits and _, found \"{name}\"")));
+        }
+        let expr = self.expression(text)?;
+        self.definitions.push((name.to_string(), expr));
+        Ok(())
+    }
+
+    /// Parses a real-valued expression.
+    ///
+    /// # Errors
+    /// With the column, what was expected there and what was found.
+    pub fn expression(&self, text: &str) -> Result<Expr> {
+        match self.parse(text)? {
+            Parsed::Real(expr) => Ok(expr),
+            Parsed::Condition(_) => Err(Error::new(format!("expected a number, found the condition \"{text}\""))),
+        }
+    }
+
+    /// Parses a condition: comparisons joined by `&&`, `||`, `!`.
+    ///
+    /// # Errors
+    /// With the column, what was expected there and what was found.
+    pub fn predicate(&self, text: &str) -> Result<Predicate> {
+        match self.parse(text)? {
+            Parsed::Condition(predicate) => Ok(predicate),
+            Parsed::Real(_) => Err(Error::new(format!("expected a condition such as \"z < 0.1\", found \"{text}\""))),
+        }
+    }
+
+    fn parse(&self, text: &str) -> Result<Parsed> {
+        let lexed = lex(text).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))?;
+        let tree = evalexpr::build_operator_tree(&lexed.rewritten)
+            .map_err(|e| Error::new(format!("\"{}\" is not an expression: {e}", shortened(text))))?;
+        self.walk(&tree, &lexed.literals)
+            .map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))
+    }
+
+    fn walk(&self, node: &Node, literals: &[BigRational]) -> Result<Parsed> {
+        let children = node.children();
+        let child = |i: usize| match children.get(i) {
+            Some(c) => self.walk(c, literals),
+            None => Err(Error::new("expected one more operand")),
+        };
+        let real = |i: usize| child(i)?.real();
+        let condition = |i: usize| child(i)?.condition();
+        let compare = |c| Ok(Parsed::Condition(Predicate::Compare(c, real(0)?, real(1)?)));
+        let parsed = match node.operator() {
+            Operator::RootNode => return child(0),
+            Operator::Add => Expr::sum([real(0)?, real(1)?]),
+            Operator::Sub => Expr::sum([real(0)?, real(1)?.negated()]),
+            Operator::Neg => real(0)?.negated(),
+            Operator::Mul => Expr::product([real(0)?, real(1)?]),
+            Operator::Div => {
+                let divisor = real(1)?;
+                if divisor.as_number().is_some_and(Zero::is_zero) {
+                    return Err(Error::new("division by zero"));
+                }
+                Expr::product([real(0)?, Expr::power(divisor, -BigRational::one())])
+            }
+            Operator::Exp => {
+                if matches!(children.first().map(Node::operator), Some(Operator::Exp)) {
+                    return Err(Error::new("expected parentheses in a power of a power"));
+                }
+                match (real(0)?, real(1)?) {
+                    (base, Expr::Number(n)) => Expr::power(base, n),
+                    (base, n) => Expr::call(Function::Exp, Expr::product([n, Expr::call(Function::Ln, base)])),
+                }
+            }
+            Operator::VariableIdentifierRead { identifier } => self.name(identifier, literals)?,
+            Operator::FunctionIdentifier { identifier } => {
+                let argument = real(0)?;
+                match function(identifier) {
+                    Some(Called::Sqrt) => Expr::power(argument, BigRational::new(1.into(), 2.into())),
+                    Some(Called::Function(f)) => Expr::call(f, argument),
+                    None => return Err(Error::new(unknown_function(identifier))),
+                }
+            }
+            Operator::Lt => return compare(Comparison::Less),
+            Operator::Leq => return compare(Comparison::LessOrEqual),
+            Operator::Gt => return compare(Comparison::Greater),
+            Operator::Geq => return compare(Comparison::GreaterOrEqual),
+            Operator::Eq => return compare(Comparison::Equal),
+            Operator::Neq => return compare(Comparison::NotEqual),
+            Operator::And => {
+                return Ok(Parsed::Condition(Predicate::And(condition(0)?.into(), condition(1)?.into())));
+            }
+            Operator::Or => return Ok(Parsed::Condition(Predicate::Or(condition(0)?.into(), condition(1)?.into()))),
+            Operator::Not => return Ok(Parsed::Condition(Predicate::Not(condition(0)?.into()))),
+            other => return Err(Error::new(format!("the operator {other} is not known here"))),
+        };
+        Ok(Parsed::Real(parsed))
+    }
+
+    fn name(&self, name: &str, literals: &[BigRational]) -> Result<Expr> {
+        if let Some(literal) = name.strip_prefix('#').and_then(|i| literals.get(i.parse::<usize>().ok()?)) {
+            return Ok(Expr::Number(literal.clone()));
+        }
+        if let Some(v) = self.variables.iter().position(|v| v == name) {
+            return Ok(Expr::Variable(v));
+        }
+        if let Some((_, expr)) = self.definitions.iter().find(|(n, _)| n == name) {
+            return Ok(expr.clone());
+        }
+        let mut known: Vec<&str> = self.variables.iter().map(String::as_str).collect();
+        known.extend(self.definitions.iter().map(|(n, _)| n.as_str()));
+        Err(Error::new(match known.as_slice() {
+            [] => format!("expected a constant, found the name \"{name}\""),
+            _ => format!("expected one of {}, found the name \"{name}\"", known.join(", ")),
+        }))
+    }
+}
+
+enum Parsed {
+    Real(Expr),
+    Condition(Predicate),
+}
+
+impl Parsed {
+    fn real(self) -> Result<Expr> {
+        match self {
+            Parsed::Real(expr) => Ok(expr),
+            Parsed::Condition(_) => Err(Error::new("expected a number, found a condition")),
+        }
+    }
+
+    fn condition(self) -> Result<Predicate> {
+        match self {
+            Parsed::Condition(predicate) => Ok(predicate),
+            Parsed::Real(_) => Err(Error::new("expected a condition, found a number")),
+        }
+    }
+}
+
+enum Called {
+    Sqrt,
+    Function(Function),
+}
+
+fn function(name: &str) -> Option<Called> {
+    if name == "sqrt" {
+        return Some(Called::Sqrt);
+    }
+    Function::ALL.iter().find(|(n, _)| *n == name).map(|(_, f)| Called::Function(*f))
+}
+
+fn unknown_function(name: &str) -> String {
+    let names: Vec<_> = Function::ALL.iter().map(|(n, _)| *n).collect();
+    format!("expected an operator, or a function of sqrt, {}, found \"{name}(\"", names.join(", "))
+}
+
+fn shortened(text: &str) -> String {
+    if text.chars().count() <= 60 { text.to_string() } else { text.chars().take(57).chain("...".chars()).collect() }
+}
+
+/// The text with each literal replaced by `#index`, and the literals.
+struct Lexed {
+    rewritten: String,
+    literals: Vec<BigRational>,
+}
+
+/// Splits into numbers, names, operators and parentheses, and makes sure that operands and operators alternate.
+fn lex(text: &str) -> Result<Lexed> {
+    if text.len() > LONGEST_TEXT {
+        return Err(Error::new(format!("expected at most {LONGEST_TEXT} characters, found {}", text.len())));
+    }
+    let chars: Vec<char> = text.chars().collect();
+    let mut lexed = Lexed { rewritten: String::with_capacity(2 * text.len()), literals: Vec::new() };
+    let (mut at, mut open, mut operand_next, mut sign_allowed) = (0, 0usize, true, true);
+    let fault = |at: usize, expected: &str| {
+        let found = chars.get(at).map_or("the end".to_string(), |c| format!("'{c}'"));
+        Err(Error::new(format!("column {}: expected {expected}, found {found}", at + 1)))
+    };
+    while at < chars.len() {
+        let c = chars[at];
+        let start = at;
+        if c.is_whitespace() {
+            at += 1;
+            continue;
+        }
+        if operand_next {
+            match c {
+                '(' => {
+                    open += 1;
+                    if open > DEEPEST_NESTING {
+                        return fault(at, &format!("at most {DEEPEST_NESTING} open parentheses"));
+                    }
+                    (at, sign_allowed) = (at + 1, true);
+                }
+                '-' if sign_allowed => (at, sign_allowed) = (at + 1, false),
+                '-' => return fault(at, "parentheses around a negative term"),
+                '!' if sign_allowed && chars.get(at + 1) != Some(&'=') => at += 1,
+                _ if c.is_ascii_digit() || c == '.' => {
+                    at = end_of_number(&chars, at);
+                    let literal: String = chars[start..at].iter().collect();
+                    let Some(value) = decimal(&literal) else { return fault(start, "a decimal number") };
+                    lexed.rewritten += &format!("#{}", lexed.literals.len());
+                    lexed.literals.push(value);
+                    operand_next = false;
+                    continue;
+                }
+                _ if c.is_ascii_alphabetic() || c == '_' => {
+                    while at < chars.len() && (chars[at].is_ascii_alphanumeric() || chars[at] == '_') {
+                        at += 1;
+                    }
+                    let name: String = chars[start..at].iter().collect();
+                    let called = chars[at..].iter().find(|c| !c.is_whitespace()) == Some(&'(');
+                    match (called, function(&name).is_some()) {
+                        (true, false) => return Err(Error::new(unknown_function(&name))),
+                        (false, true) => return fault(at, &format!("'(' after {name}")),
+                        _ => {}
+                    }
+                    operand_next = called;
+                    sign_allowed = true;
+                }
+                _ => return fault(at, "a number, a name or '('"),
+            }
+        } else {
+            match c {
+                ')' if open > 0 => (at, open) = (at + 1, open - 1),
+                ')' => return fault(at, "an operator or the end"),
+                '+' | '-' | '*' | '/' | '^' => (at, operand_next, sign_allowed) = (at + 1, true, false),
+                '<' | '>' | '=' | '!' | '&' | '|' => {
+                    let pair: String = chars[at..chars.len().min(at + 2)].iter().collect();
+                    at += match pair.as_str() {
+                        "<=" | ">=" | "==" | "!=" | "&&" | "||" => 2,
+                        _ if c == '<' || c == '>' => 1,
+                        _ => return fault(at, "one of <, <=, >, >=, ==, !=, &&, ||"),
+                    };
+                    (operand_next, sign_allowed) = (true, true);
+                }
+                _ => return fault(at, "an operator"),
+            }
+        }
+        lexed.rewritten.extend(&chars[start..at]);
+        lexed.rewritten.push(' ');
+    }
+    if operand_next {
+        return fault(chars.len(), "a number, a name or '('");
+    }
+    if open > 0 {
+        return fault(chars.len(), "')'");
+    }
+    Ok(lexed)
+}
+
+fn end_of_number(chars: &[char], start: usize) -> usize {
+    let digits = |mut at: usize| {
+        while at < chars.len() && (chars[at].is_ascii_digit() || chars[at] == '.') {
+            at += 1;
+        }
+        at
+    };
+    let at = digits(start);
+    if !matches!(chars.get(at), Some('e' | 'E')) {
+        return at;
+    }
+    let signed = at + 1 + matches!(chars.get(at + 1), Some('+' | '-')) as usize;
+    let end = digits(signed);
+    if end > signed { end } else { at }
+}
+
+/// An exact rational from `12`, `0.1`, `2.5e-3`; `None` if it is not a decimal number of moderate size.
+fn decimal(literal: &str) -> Option<BigRational> {
+    let (mantissa, exponent) = match literal.find(['e', 'E']) {
+        Some(e) => (&literal[..e], literal[e + 1..].parse::<i32>().ok()?),
+        None => (literal, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    if whole.len() + fraction.len() == 0 || fraction.contains('.') || exponent.abs() > LARGEST_DECIMAL_EXPONENT {
+        return None;
+    }
+    let digits: BigInt = format!("{whole}{fraction}").parse().ok()?;
+    let scale = exponent - i32::try_from(fraction.len()).ok()?;
+    Some(BigRational::from_integer(digits) * Pow::pow(BigRational::from_integer(10.into()), scale))
+}
+
+/// The rational value of a constant expression such as `1/3` or `-0.25`.
+///
+/// # Errors
+/// The text does not parse or has no rational value.
+pub fn parse_rational(text: &str) -> Result<BigRational> {
+    let expr = Scope::default().expression(text)?;
+    expr.value(&[]).ok_or_else(|| Error::new(format!("expected a rational number, found \"{text}\"")))
+}
