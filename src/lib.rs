@@ -3,6 +3,13 @@ pub mod error;
 mod file;
 pub mod fit;
 pub mod material;
+pub mod mesh;
+pub mod model;
+pub mod report;
+pub mod solve;
 pub mod springs;
 pub mod stiffness;
+pub mod study;
 pub mod symbolic;
+
+pub use file::write_whole;

@@ -1,1 +1,213 @@
-fn main(){}
+//! The command line: parses, calls the library, prints, and sets the exit code.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use springfit::error::{Error, Result};
+use springfit::fit::{Fit, Objective};
+use springfit::material::parse_pressure;
+use springfit::mesh::{Mesh, MeshSource, vtk};
+use springfit::study::{NamedFit, Plane, Scene, fit_mesh, load_elements, material_for, run, stages};
+use springfit::{model, report, study};
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Mass-spring models that answer like finite elements.
+#[derive(Parser)]
+#[command(version, about)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Fit, solve and compare a scene
+    Run(RunArguments),
+    /// Fit the springs of a mesh, without a scene
+    Fit(FitArguments),
+}
+
+#[derive(Args)]
+struct RunArguments {
+    /// The scene file
+    scene: PathBuf,
+    /// Where the report goes [default: out/NAME of the scene]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Say which stages will run and which are left out, and stop
+    #[arg(long)]
+    explain: bool,
+}
+
+#[derive(Args)]
+struct FitArguments {
+    /// The mesh: .msh, .vtu or .vtk
+    mesh: PathBuf,
+    /// Young's modulus, such as 10kPa
+    #[arg(long)]
+    young: String,
+    /// Poisson's ratio
+    #[arg(long, allow_negative_numbers = true)]
+    poisson: f64,
+    /// frobenius, offdiag or modal
+    #[arg(long, default_value = "frobenius")]
+    objective: String,
+    /// Scale of the modes beyond constant strain (modal only)
+    #[arg(long)]
+    higher: Option<f64>,
+    /// Spring groups to use, separated by commas [default: all that are not optional]
+    #[arg(long, value_delimiter = ',')]
+    springs: Option<Vec<String>>,
+    /// One constant per group
+    #[arg(long)]
+    tied: bool,
+    /// No constant below zero
+    #[arg(long)]
+    nonnegative: bool,
+    /// Plane mesh: stress or strain [default: stress]
+    #[arg(long)]
+    plane: Option<PlaneArgument>,
+    /// Plane mesh: thickness in m [default: 1]
+    #[arg(long)]
+    thickness: Option<f64>,
+    /// In kg/m³; gives the points masses
+    #[arg(long)]
+    density: Option<f64>,
+    /// Mesh units to metres
+    #[arg(long, default_value_t = 1.0)]
+    scale: f64,
+    /// An element file to look in before the shipped ones; may be repeated
+    #[arg(long)]
+    element: Vec<PathBuf>,
+    /// Where the springs go: .vtu, .json or .csv
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PlaneArgument {
+    Stress,
+    Strain,
+}
+
+fn main() -> ExitCode {
+    let command = CommandLine::parse().command;
+    let result = match command {
+        Command::Run(arguments) => run_scene(&arguments),
+        Command::Fit(arguments) => fit(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run_scene(arguments: &RunArguments) -> Result<()> {
+    let scene = Scene::load(&arguments.scene)?;
+    if arguments.explain {
+        let lines = stages(&scene).into_iter().map(|(stage, left_out)| match left_out {
+            None => format!("run       {stage}\n"),
+            Some(why) => format!("left out  {stage}: {why}\n"),
+        });
+        return print(&lines.collect::<String>());
+    }
+    let mut bar = Bar::new();
+    let outcome = run(&scene, &mut |stage, done, total| bar.show(stage, done, total))?;
+    bar.clear();
+    print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
+    for note in report::notes(&outcome) {
+        eprintln!("note: {note}");
+    }
+    let stem = arguments.scene.file_stem().unwrap_or_default();
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
+    for path in report::write_outputs(&outcome, &scene.output, &folder)? {
+        print(&format!("written: {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+fn fit(arguments: &FitArguments) -> Result<()> {
+    let ending = arguments.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    if !["vtu", "json", "csv"].contains(&ending) {
+        return Err(Error::expected("--output", "a file ending in .vtu, .json or .csv", arguments.output.display()));
+    }
+    let young = parse_pressure(&arguments.young).map_err(|e| e.under("--young"))?;
+    let objective = Objective::named(&arguments.objective, arguments.higher).map_err(|e| e.under("--objective"))?;
+    if !(arguments.scale > 0.0 && arguments.scale.is_finite()) {
+        return Err(Error::expected("--scale", "a positive number of metres per mesh unit", arguments.scale));
+    }
+    if let Some(density) = arguments.density.filter(|d| !(*d > 0.0 && d.is_finite())) {
+        return Err(Error::expected("--density", "a positive number of kg/m³", density));
+    }
+    let own = load_elements(&arguments.element, Path::new(""))?;
+    let source = MeshSource::read(&arguments.mesh)?;
+    let mesh = Mesh::resolve(&source, &own, arguments.scale).map_err(|e| e.in_file(&arguments.mesh))?;
+    let plane = arguments.plane.map(|p| match p {
+        PlaneArgument::Stress => Plane::Stress,
+        PlaneArgument::Strain => Plane::Strain,
+    });
+    let material = material_for(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)?;
+    let fit = Fit { objective, tied: arguments.tied, nonnegative: arguments.nonnegative };
+    let mut bar = Bar::new();
+    let named = NamedFit::new(fit, arguments.springs.clone());
+    let outcome = fit_mesh(&mesh, material, &named, &mut |stage, done, total| bar.show(stage, done, total))?;
+    bar.clear();
+    let masses = arguments.density.map(|density| model::masses(&mesh, density, material.thickness()));
+    match ending {
+        "vtu" => vtk::write(&arguments.output, &report::network_grid(&mesh, masses.as_deref(), &outcome, &[]))?,
+        "json" => write(&arguments.output, &report::network_json(&mesh, masses.as_deref(), &outcome.network))?,
+        _ => write(&arguments.output, &report::network_csv(&outcome.network))?,
+    }
+    let outcome = study::Outcome::of_fit(arguments.mesh.display().to_string(), mesh, material, masses, outcome);
+    print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
+    print(&format!("written: {}\n", arguments.output.display()))
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    springfit::write_whole(path, text.as_bytes())
+}
+
+/// Prints to standard output; a reader who has gone away, as `head` does, ends the program quietly.
+fn print(text: &str) -> Result<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Ok(()) => Ok(()),
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(e) => Err(Error::new(format!("standard output cannot be written: {e}"))),
+    }
+}
+
+/// A progress bar that appears on a terminal once work has taken a second.
+struct Bar {
+    start: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Bar {
+    fn new() -> Bar {
+        Bar { start: Instant::now(), bar: None }
+    }
+
+    fn show(&mut self, stage: &str, done: usize, total: usize) {
+        if self.bar.is_none() && std::io::stderr().is_terminal() && self.start.elapsed() > Duration::from_secs(1) {
+            let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}");
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+            self.bar = Some(style.into_iter().fold(bar, ProgressBar::with_style));
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+            bar.set_message(stage.to_string());
+        }
+    }
+
+    fn clear(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}

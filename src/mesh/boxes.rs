@@ -1,0 +1,142 @@
+//! Rectangles and bricks filled with one element.
+
+use super::{CellBlock, CellIndex, Group, Mesh, sorted};
+use crate::element::{Cell, Element};
+use crate::error::{Error, Result};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+const MOST_CELLS: usize = 50_000_000;
+
+/// A box of `cells` equal cells per direction, `size` m long, with its least corner at `origin` m.
+///
+/// A simplex divides each square or cube into d! simplices along its main diagonal (Kuhn 1960). The groups are
+/// `xmin`, `xmax`, `ymin`, … for the faces and `body` for the cells.
+#[derive(Debug, Clone)]
+pub struct BoxMesh {
+    pub element: Arc<Element>,
+    pub size: Vec<f64>,
+    pub cells: Vec<usize>,
+    pub origin: Vec<f64>,
+}
+
+impl BoxMesh {
+    /// # Errors
+    /// A list has not one entry per dimension, or a size or a number of cells is not positive.
+    pub fn build(&self) -> Result<Mesh> {
+        let d = self.element.dimension();
+        self.check(d)?;
+        let parts = parts(self.element.cell);
+        let mut mesh = Mesh {
+            dimension: d,
+            points: Vec::new(),
+            blocks: Vec::new(),
+            groups: BTreeMap::new(),
+            reversed: 0,
+            unused_points: 0,
+        };
+        let mut connectivity = Vec::new();
+        // Points of neighbouring cells meet; their place is told in 2⁻²⁰ of a cell.
+        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+        for cube in 0..self.cells.iter().product() {
+            let mut rest = cube;
+            let corner: Vec<usize> = self.cells.iter().map(|n| { let i = rest % n; rest /= n; i }).collect();
+            for (part, at) in parts.iter().flat_map(|part| self.element.positions.chunks_exact(d).map(move |at| (part, at))) {
+                let unit = part.place(at);
+                let place: Vec<f64> = corner.iter().zip(&unit).map(|(c, u)| *c as f64 + u).collect();
+                let key = place.iter().map(|p| (p * (1u64 << 20) as f64).round() as u64).collect();
+                let next = mesh.point_count();
+                let index = *known.entry(key).or_insert(next);
+                if index == next {
+                    mesh.points.extend((0..d).map(|k| self.origin[k] + place[k] / self.cells[k] as f64 * self.size[k]));
+                }
+                connectivity.push(index);
+            }
+        }
+        mesh.blocks.push(CellBlock { element: self.element.clone(), connectivity });
+        mesh.groups = self.groups(&mesh);
+        mesh.orient()?;
+        mesh.reversed = 0;
+        Ok(mesh)
+    }
+
+    fn check(&self, d: usize) -> Result<()> {
+        if d < 2 {
+            return Err(Error::expected("element", "an element of two or three dimensions", &self.element.name));
+        }
+        let lengths = [("size", self.size.len()), ("cells", self.cells.len()), ("origin", self.origin.len())];
+        if let Some((key, found)) = lengths.iter().find(|(_, found)| *found != d) {
+            return Err(Error::expected(*key, format!("{d} entries for {}", self.element.name), found));
+        }
+        if let Some(size) = self.size.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
+            return Err(Error::expected("size", "positive lengths in m", size));
+        }
+        if let Some(origin) = self.origin.iter().find(|x| !x.is_finite()) {
+            return Err(Error::expected("origin", "finite coordinates in m", origin));
+        }
+        let total = self.cells.iter().try_fold(1usize, |a, &n| a.checked_mul(n)).unwrap_or(usize::MAX);
+        if total == 0 || total > MOST_CELLS {
+            return Err(Error::expected("cells", format!("1 to {MOST_CELLS} cells in all"), format!("{:?}", self.cells)));
+        }
+        Ok(())
+    }
+
+    fn groups(&self, mesh: &Mesh) -> BTreeMap<String, Group> {
+        let mut groups: BTreeMap<String, Group> = BTreeMap::new();
+        let body = groups.entry("body".into()).or_default();
+        body.points = (0..mesh.point_count()).collect();
+        body.cells = (0..mesh.blocks[0].cells().len()).map(|cell| CellIndex { block: 0, cell }).collect();
+        for (k, axis) in ["x", "y", "z"].iter().enumerate().take(mesh.dimension) {
+            for (end, at) in [("min", self.origin[k]), ("max", self.origin[k] + self.size[k])] {
+                let near = |&p: &usize| (mesh.point(p)[k] - at).abs() <= 1e-9 * self.size[k];
+                let mut group = Group { points: (0..mesh.point_count()).filter(near).collect(), ..Group::default() };
+                for nodes in mesh.blocks[0].cells() {
+                    for side in self.element.sides() {
+                        let points: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
+                        if points.iter().all(near) {
+                            group.sides.push(sorted(&points));
+                        }
+                    }
+                }
+                groups.insert(format!("{axis}{end}"), group);
+            }
+        }
+        groups
+    }
+}
+
+/// An affine map of the reference cell into the unit cube: `origin + Σ_k ξ_k edges_k`.
+struct Part {
+    origin: Vec<f64>,
+    edges: Vec<Vec<f64>>,
+}
+
+impl Part {
+    fn place(&self, at: &[f64]) -> Vec<f64> {
+        let mut x = self.origin.clone();
+        for (xi, edge) in at.iter().zip(&self.edges) {
+            x.iter_mut().zip(edge).for_each(|(x, e)| *x += xi * e);
+        }
+        x
+    }
+}
+
+fn parts(cell: Cell) -> Vec<Part> {
+    let d = cell.dimension();
+    let unit = |k: usize, length: f64| (0..d).map(|i| if i == k { length } else { 0.0 }).collect::<Vec<_>>();
+    if !cell.is_simplex() {
+        return vec![Part { origin: vec![0.5; d], edges: (0..d).map(|k| unit(k, 0.5)).collect() }];
+    }
+    // The simplex 0, e_p, e_p + e_q, … for every order p, q, … of the directions.
+    let orders: &[&[usize]] = match d {
+        2 => &[&[0, 1], &[1, 0]],
+        _ => &[&[0, 1, 2], &[0, 2, 1], &[1, 0, 2], &[1, 2, 0], &[2, 0, 1], &[2, 1, 0]],
+    };
+    let walk = |order: &&[usize]| {
+        let mut corner = vec![0.0; d];
+        let step = |&k: &usize| { corner[k] = 1.0; corner.clone() };
+        Part { origin: vec![0.0; d], edges: order.iter().map(step).collect() }
+    };
+    orders.iter().map(walk).collect()
+}
+

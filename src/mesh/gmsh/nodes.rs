@@ -1,0 +1,63 @@
+//! The nodes of a Gmsh mesh and the places of their tags.
+
+use crate::error::{Error, Result};
+use std::collections::HashMap;
+
+pub(super) struct Nodes {
+    pub points: Vec<[f64; 3]>,
+    places: Places,
+}
+
+enum Places {
+    /// The place of tag `first + i` at `i`, `ABSENT` for a tag without a node.
+    Dense {
+        first: u64,
+        places: Vec<usize>,
+    },
+    Sparse(HashMap<u64, usize>),
+}
+
+const ABSENT: usize = usize::MAX;
+
+impl Nodes {
+    /// The node with `tags[i]` is at `points[i]`.
+    ///
+    /// # Errors
+    /// A tag occurs twice.
+    pub fn new(tags: &[u64], points: Vec<[f64; 3]>) -> Result<Nodes> {
+        let twice = |tag: u64| Error::at("$Nodes", format!("node {tag} occurs twice"));
+        let first = tags.iter().copied().min().unwrap_or(0);
+        let span = tags.iter().copied().max().unwrap_or(0) - first;
+        let dense = usize::try_from(span).ok().filter(|&span| span / 4 <= tags.len());
+        let places = if let Some(span) = dense {
+            let mut places = vec![ABSENT; span + 1];
+            for (i, &tag) in tags.iter().enumerate() {
+                // `tag - first` is at most `span`, which is a `usize`
+                if std::mem::replace(&mut places[(tag - first) as usize], i) != ABSENT {
+                    return Err(twice(tag));
+                }
+            }
+            Places::Dense { first, places }
+        } else {
+            let mut places = HashMap::with_capacity(tags.len());
+            for (i, &tag) in tags.iter().enumerate() {
+                if places.insert(tag, i).is_some() {
+                    return Err(twice(tag));
+                }
+            }
+            Places::Sparse(places)
+        };
+        Ok(Nodes { points, places })
+    }
+
+    /// The index into `points` of the node with this tag.
+    pub fn place(&self, tag: u64) -> Option<usize> {
+        match &self.places {
+            Places::Dense { first, places } => {
+                let i = usize::try_from(tag.checked_sub(*first)?).ok()?;
+                places.get(i).copied().filter(|&place| place != ABSENT)
+            }
+            Places::Sparse(places) => places.get(&tag).copied(),
+        }
+    }
+}

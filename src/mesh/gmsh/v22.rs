@@ -1,0 +1,139 @@
+//! The sections whose layout is peculiar to MSH 2.2.
+
+use super::nodes::Nodes;
+use super::types::shape;
+use super::unknown_node;
+use crate::error::Result;
+use crate::mesh::grouping::Gather;
+use crate::mesh::reader::{Encoding, Reader};
+
+/// Cell type and physical tags, ascending.
+pub(super) type Key = (u32, Vec<u32>);
+
+/// `parametric` for a section that adds entity and parameters to each node.
+pub(super) fn nodes(reader: &mut Reader, parametric: bool) -> Result<Nodes> {
+    let total: u64 = reader.text_number()?;
+    reader.start_data()?;
+    reader.announce("nodes", total);
+    let mut tags = Vec::with_capacity(reader.capacity::<f64>(total, 3));
+    let mut points = Vec::with_capacity(reader.capacity::<f64>(total, 3));
+    for _ in 0..total {
+        tags.push(node_tag(reader)?);
+        points.push([reader.number()?, reader.number()?, reader.number()?]);
+        if parametric {
+            let dimension: i32 = reader.number()?;
+            reader.number::<i32>()?;
+            let parameters = if dimension == 1 || dimension == 2 { dimension } else { 0 };
+            for _ in 0..parameters {
+                reader.number::<f64>()?;
+            }
+        }
+        reader.count_one();
+    }
+    Nodes::new(&tags, points)
+}
+
+pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>> {
+    let total: u64 = reader.text_number()?;
+    reader.start_data()?;
+    reader.announce("elements", total);
+    let mut cells = Cells::new();
+    if reader.encoding == Encoding::Text {
+        for _ in 0..total {
+            let element: u64 = reader.number()?;
+            let cell_type = reader.number()?;
+            let (_, node_count) = shape(reader, cell_type)?;
+            let tags: u64 = reader.number()?;
+            cells.read(reader, nodes, Header { element, cell_type, tags, node_count })?;
+        }
+    } else {
+        let mut found = 0;
+        while found < total {
+            let cell_type = reader.number()?;
+            let (_, node_count) = shape(reader, cell_type)?;
+            let count: u32 = reader.number()?;
+            let tags: u32 = reader.number()?;
+            found += u64::from(count);
+            if found > total {
+                return Err(reader.expected(&format!("{total} elements"), &found.to_string()));
+            }
+            for _ in 0..count {
+                let element = u64::from(reader.number::<u32>()?);
+                cells.read(reader, nodes, Header { element, cell_type, tags: tags.into(), node_count })?;
+            }
+        }
+    }
+    cells.close();
+    Ok(cells.gather)
+}
+
+/// What precedes the tags of an element.
+struct Header {
+    element: u64,
+    cell_type: u32,
+    tags: u64,
+    node_count: usize,
+}
+
+/// The cells read so far.
+///
+/// The format repeats a cell for each of its physical groups, so the last cell is held back until the next one differs.
+struct Cells {
+    gather: Gather<Key>,
+    key: Key,
+    entity: i32,
+    nodes: Vec<usize>,
+    next: Vec<usize>,
+}
+
+impl Cells {
+    fn new() -> Self {
+        Cells { gather: Gather::new(), key: (0, Vec::new()), entity: 0, nodes: Vec::new(), next: Vec::new() }
+    }
+
+    fn read(&mut self, reader: &mut Reader, nodes: &Nodes, header: Header) -> Result<()> {
+        let Header { element, cell_type, tags, node_count } = header;
+        let (mut physical, mut entity) = (0, 0);
+        for i in 0..tags {
+            let tag: i32 = reader.number()?;
+            match i {
+                // a minus sign stands for the opposite orientation
+                0 => physical = tag.unsigned_abs(),
+                1 => entity = tag,
+                _ => {}
+            }
+        }
+        self.next.clear();
+        for _ in 0..node_count {
+            let tag = node_tag(reader)?;
+            self.next.push(nodes.place(tag).ok_or_else(|| unknown_node(reader, element, tag))?);
+        }
+        reader.count_one();
+        let (last_type, groups) = &mut self.key;
+        let again = *last_type == cell_type && self.entity == entity && self.nodes == self.next;
+        if again && physical != 0 && !groups.is_empty() && !groups.contains(&physical) {
+            groups.push(physical);
+            return Ok(());
+        }
+        self.close();
+        self.key.0 = cell_type;
+        self.key.1.extend((physical != 0).then_some(physical));
+        self.entity = entity;
+        std::mem::swap(&mut self.nodes, &mut self.next);
+        Ok(())
+    }
+
+    /// Files the cell held back.
+    fn close(&mut self) {
+        self.key.1.sort_unstable();
+        self.gather.list(&self.key).append(&mut self.nodes);
+        self.key.1.clear();
+    }
+}
+
+fn node_tag(reader: &mut Reader) -> Result<u64> {
+    if reader.encoding == Encoding::Text {
+        return reader.number();
+    }
+    reader.number::<u32>().map(u64::from)
+}

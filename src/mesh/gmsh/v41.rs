@@ -1,0 +1,124 @@
+//! The sections whose layout is peculiar to MSH 4.1. Text and binary files hold the same numbers in the same order.
+
+use super::nodes::Nodes;
+use super::types::shape;
+use super::unknown_node;
+use crate::error::Result;
+use crate::mesh::grouping::Gather;
+use crate::mesh::reader::Reader;
+use std::collections::HashMap;
+
+/// Physical tags, ascending, of each entity: dimension and tag.
+pub(super) type Entities = HashMap<(i32, i32), Vec<u32>>;
+
+/// Cell type, and dimension and tag of the entity.
+pub(super) type Key = (u32, i32, i32);
+
+pub(super) fn entities(reader: &mut Reader) -> Result<Entities> {
+    reader.start_data()?;
+    let mut counts = [0_u64; 4];
+    for count in &mut counts {
+        *count = reader.number()?;
+    }
+    let total = counts.iter().fold(0, |sum: u64, &count| sum.saturating_add(count));
+    reader.announce("entities", total);
+    let mut entities = Entities::new();
+    for (dimension, count) in (0_i32..).zip(counts) {
+        for _ in 0..count {
+            let tag = reader.number::<i32>()?;
+            for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                reader.number::<f64>()?;
+            }
+            let mut physical = Vec::new();
+            for _ in 0..reader.number::<u64>()? {
+                // a minus sign stands for the opposite orientation
+                physical.push(reader.number::<i32>()?.unsigned_abs());
+            }
+            physical.sort_unstable();
+            physical.dedup();
+            if dimension > 0 {
+                for _ in 0..reader.number::<u64>()? {
+                    reader.number::<i32>()?;
+                }
+            }
+            reader.count_one();
+            if !physical.is_empty() {
+                entities.insert((dimension, tag), physical);
+            }
+        }
+    }
+    Ok(entities)
+}
+
+pub(super) fn nodes(reader: &mut Reader) -> Result<Nodes> {
+    reader.start_data()?;
+    let blocks: u64 = reader.number()?;
+    let total: u64 = reader.number()?;
+    reader.number::<u64>()?;
+    reader.number::<u64>()?;
+    reader.announce("nodes", total);
+    let mut tags = Vec::with_capacity(reader.capacity::<u64>(total, 4));
+    let mut points = Vec::with_capacity(reader.capacity::<u64>(total, 4));
+    for _ in 0..blocks {
+        let dimension: i32 = reader.number()?;
+        reader.number::<i32>()?;
+        let parameters = match reader.number::<i32>()? {
+            0 => 0,
+            1 => dimension.clamp(0, 3),
+            other => return Err(reader.expected("0 or 1 for parametric", &other.to_string())),
+        };
+        let count: u64 = reader.number()?;
+        for _ in 0..count {
+            tags.push(reader.number()?);
+        }
+        for _ in 0..count {
+            points.push([reader.number()?, reader.number()?, reader.number()?]);
+            for _ in 0..parameters {
+                reader.number::<f64>()?;
+            }
+            reader.count_one();
+        }
+    }
+    if points.len() as u64 != total {
+        return Err(reader.expected(&format!("{total} nodes"), &points.len().to_string()));
+    }
+    Nodes::new(&tags, points)
+}
+
+pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>> {
+    reader.start_data()?;
+    let blocks: u64 = reader.number()?;
+    let total: u64 = reader.number()?;
+    reader.number::<u64>()?;
+    reader.number::<u64>()?;
+    reader.announce("elements", total);
+    let mut cells = Gather::new();
+    let mut found = 0_u64;
+    for _ in 0..blocks {
+        let dimension: i32 = reader.number()?;
+        let entity: i32 = reader.number()?;
+        let cell_type: u32 = reader.number()?;
+        let (of_type, node_count) = shape(reader, cell_type)?;
+        if usize::try_from(dimension) != Ok(of_type) {
+            let expected = format!("dimension {of_type} for element type {cell_type}");
+            return Err(reader.expected(&expected, &dimension.to_string()));
+        }
+        let count: u64 = reader.number()?;
+        let capacity = reader.capacity::<u64>(count, node_count + 1) * node_count;
+        let list = cells.list(&(cell_type, dimension, entity));
+        list.reserve(capacity);
+        for _ in 0..count {
+            let element: u64 = reader.number()?;
+            for _ in 0..node_count {
+                let tag: u64 = reader.number()?;
+                list.push(nodes.place(tag).ok_or_else(|| unknown_node(reader, element, tag))?);
+            }
+            reader.count_one();
+            found += 1;
+        }
+    }
+    if found != total {
+        return Err(reader.expected(&format!("{total} elements"), &found.to_string()));
+    }
+    Ok(cells)
+}

@@ -1,0 +1,257 @@
+//! Meshes of known elements: points, cells and named groups, in metres.
+
+mod boxes;
+pub mod gmsh;
+mod grouping;
+mod reader;
+mod selection;
+mod source;
+pub mod vtk;
+
+pub use boxes::BoxMesh;
+pub use selection::{CellIndex, Selection, SideIndex};
+pub use source::{Format, MeshSource, SourceBlock};
+
+use crate::element::{Element, FormatEntry, SHIPPED};
+use crate::error::{Error, Result};
+use crate::stiffness::{Fault, Geometry};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Cells of proved elements. Every point belongs to a cell, and every cell has a positive volume.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// `[points × dimension]`, m.
+    pub points: Vec<f64>,
+    /// One block per element type.
+    pub blocks: Vec<CellBlock>,
+    pub groups: BTreeMap<String, Group>,
+    /// Cells that were numbered the other way round and have been turned.
+    pub reversed: usize,
+    /// Points of the file that belong to no cell and were left out.
+    pub unused_points: usize,
+}
+
+/// Cells of one element type.
+#[derive(Debug, Clone)]
+pub struct CellBlock {
+    pub element: Arc<Element>,
+    /// `[cells × nodes]`.
+    pub connectivity: Vec<usize>,
+}
+
+/// Points, sides and cells that carry one name.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Group {
+    /// Sorted.
+    pub points: Vec<usize>,
+    /// Each side by its points, sorted.
+    pub sides: Vec<Vec<usize>>,
+    pub cells: Vec<CellIndex>,
+}
+
+impl CellBlock {
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
+        self.connectivity.chunks_exact(self.element.nodes())
+    }
+}
+
+impl Mesh {
+    /// Gives each cell of a file its element: one of `own` if it serves the cell type, else a shipped one.
+    /// Coordinates are multiplied by `scale`.
+    ///
+    /// # Errors
+    /// No element serves a cell type, a plane mesh is not in a plane of constant z, or a cell is tangled or flat.
+    pub fn resolve(source: &MeshSource, own: &[Arc<Element>], scale: f64) -> Result<Mesh> {
+        let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
+        if dimension < 2 {
+            return Err(Error::expected("cells", "surface or solid cells", "none"));
+        }
+        if dimension == 2 {
+            in_one_plane(source)?;
+        }
+        let mut mesh = Mesh {
+            dimension,
+            points: source.points.iter().flat_map(|p| p[..dimension].iter().map(|x| x * scale)).collect(),
+            blocks: Vec::new(),
+            groups: BTreeMap::new(),
+            reversed: 0,
+            unused_points: 0,
+        };
+        let mut served: BTreeMap<u32, usize> = BTreeMap::new();
+        for block in source.blocks.iter().filter(|b| b.dimension == dimension) {
+            let index = match served.get(&block.cell_type) {
+                Some(&index) => index,
+                None => {
+                    let element = element_for(source.format, block, own)?;
+                    mesh.blocks.push(CellBlock { element, connectivity: Vec::new() });
+                    served.insert(block.cell_type, mesh.blocks.len() - 1);
+                    mesh.blocks.len() - 1
+                }
+            };
+            mesh.add_cells(index, block, source.format);
+        }
+        for block in source.blocks.iter().filter(|b| b.dimension < dimension && b.nodes_per_cell > 0) {
+            for name in &block.groups {
+                let group = mesh.groups.entry(name.clone()).or_default();
+                group.points.extend(&block.connectivity);
+                if block.dimension + 1 == dimension {
+                    group.sides.extend(block.connectivity.chunks_exact(block.nodes_per_cell).map(sorted));
+                }
+            }
+        }
+        mesh.drop_unused_points();
+        mesh.orient()?;
+        Ok(mesh)
+    }
+
+    fn add_cells(&mut self, index: usize, block: &SourceBlock, format: Format) {
+        let CellBlock { element, connectivity } = &mut self.blocks[index];
+        let first = connectivity.len() / element.nodes();
+        let order = entry(element, format).and_then(|e| e.order.clone());
+        for nodes in block.connectivity.chunks_exact(block.nodes_per_cell) {
+            match &order {
+                Some(order) => connectivity.extend(order.iter().map(|&place| nodes[place])),
+                None => connectivity.extend(nodes),
+            }
+        }
+        let last = connectivity.len() / element.nodes();
+        for name in &block.groups {
+            let group = self.groups.entry(name.clone()).or_default();
+            group.points.extend(&block.connectivity);
+            group.cells.extend((first..last).map(|cell| CellIndex { block: index, cell }));
+        }
+    }
+
+    fn drop_unused_points(&mut self) {
+        let total = self.points.len() / self.dimension;
+        let mut new = vec![usize::MAX; total];
+        self.blocks.iter().flat_map(|b| &b.connectivity).for_each(|&p| new[p] = 0);
+        let mut used = 0;
+        for (old, new) in new.iter_mut().enumerate() {
+            if *new == 0 {
+                *new = used;
+                self.points.copy_within(old * self.dimension..(old + 1) * self.dimension, used * self.dimension);
+                used += 1;
+            }
+        }
+        self.points.truncate(used * self.dimension);
+        self.unused_points = total - used;
+        self.blocks.iter_mut().flat_map(|b| &mut b.connectivity).for_each(|p| *p = new[*p]);
+        for group in self.groups.values_mut() {
+            let renumber = |points: &mut Vec<usize>| {
+                points.retain(|&p| new[p] != usize::MAX);
+                points.iter_mut().for_each(|p| *p = new[*p]);
+                points.sort_unstable();
+            };
+            renumber(&mut group.points);
+            group.points.dedup();
+            group.sides.iter_mut().for_each(renumber);
+        }
+    }
+
+    /// Turns reversed cells and makes sure that every cell has a volume.
+    fn orient(&mut self) -> Result<()> {
+        let d = self.dimension;
+        for block in &mut self.blocks {
+            let element = block.element.clone();
+            let mut geometry = Geometry::new(&element.tabulation);
+            let mut x = vec![0.0; element.nodes() * d];
+            for (cell, nodes) in block.connectivity.chunks_exact_mut(element.nodes()).enumerate() {
+                gather(&self.points, d, nodes, &mut x);
+                let fault = match (geometry.set(&element.tabulation, &x), &element.reflection) {
+                    (Ok(()), _) => continue,
+                    (Err(Fault::Reversed), Some(reflection)) => {
+                        let turned: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();
+                        nodes.copy_from_slice(&turned);
+                        gather(&self.points, d, nodes, &mut x);
+                        self.reversed += 1;
+                        geometry.set(&element.tabulation, &x).err()
+                    }
+                    (Err(fault), _) => Some(fault),
+                };
+                if let Some(fault) = fault {
+                    let first = &x[..d];
+                    let key = format!("{} cell {} at {first:?} m", element.name, cell + 1);
+                    return Err(Error::at(key, fault.to_string()));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub fn point_count(&self) -> usize {
+        self.points.len() / self.dimension
+    }
+
+    pub fn cell_count(&self) -> usize {
+        self.blocks.iter().map(|b| b.cells().len()).sum()
+    }
+
+    /// The coordinates of one point, m.
+    pub fn point(&self, index: usize) -> &[f64] {
+        &self.points[index * self.dimension..(index + 1) * self.dimension]
+    }
+}
+
+/// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
+pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
+    for (x, &node) in x.chunks_exact_mut(dimension).zip(nodes) {
+        x.copy_from_slice(&points[node * dimension..(node + 1) * dimension]);
+    }
+}
+
+fn sorted(points: &[usize]) -> Vec<usize> {
+    let mut points = points.to_vec();
+    points.sort_unstable();
+    points
+}
+
+fn entry(element: &Element, format: Format) -> Option<&FormatEntry> {
+    match format {
+        Format::Gmsh => element.formats.gmsh.as_ref(),
+        Format::Vtk => element.formats.vtk.as_ref(),
+    }
+}
+
+fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Result<Arc<Element>> {
+    let number = block.cell_type;
+    let serves = |element: &&Arc<Element>| entry(element, format).is_some_and(|e| e.cell_type == number);
+    let shipped_number = |s: &crate::element::Shipped| match format {
+        Format::Gmsh => s.gmsh,
+        Format::Vtk => s.vtk,
+    };
+    let element = match own.iter().find(serves) {
+        Some(element) => element.clone(),
+        None => match SHIPPED.iter().find(|s| shipped_number(s) == Some(i64::from(number))) {
+            Some(shipped) => Arc::new(shipped.load()?),
+            None => {
+                let cells = block.connectivity.len() / block.nodes_per_cell.max(1);
+                let known: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
+                let expected = format!("cells of {} or of an element file you name", known.join(", "));
+                let found = format!("{cells} cells of {format:?} type {number} with {} nodes", block.nodes_per_cell);
+                return Err(Error::expected("cells", expected, found));
+            }
+        },
+    };
+    if element.nodes() != block.nodes_per_cell || element.dimension() != block.dimension {
+        let expected = format!("{} nodes in {} dimensions as in {}", element.nodes(), element.dimension(), element.name);
+        let found = format!("{} nodes in {}", block.nodes_per_cell, block.dimension);
+        return Err(Error::expected("cells", expected, found));
+    }
+    Ok(element)
+}
+
+fn in_one_plane(source: &MeshSource) -> Result<()> {
+    let used = || source.blocks.iter().flat_map(|b| &b.connectivity).map(|&p| source.points[p]);
+    let range = |k: usize| used().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));
+    let (lo, hi) = range(2);
+    let extent = (0..2).map(|k| range(k).1 - range(k).0).fold(0.0, f64::max);
+    if hi - lo > 1e-9 * extent {
+        let found = format!("z from {lo} to {hi}");
+        return Err(Error::expected("points", "a plane mesh at constant z, or solid cells", found));
+    }
+    Ok(())
+}

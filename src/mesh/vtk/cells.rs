@@ -1,0 +1,51 @@
+//! VTK's cell types.
+
+/// Dimension of a cell type, and its number of nodes where the type fixes it.
+pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
+    let (dimension, nodes) = match cell_type {
+        1 => (0, 1),
+        3 => (1, 2),
+        21 => (1, 3),
+        35 => (1, 4),
+        5 => (2, 3),
+        22 => (2, 6),
+        34 => (2, 7),
+        8 | 9 => (2, 4),
+        30 => (2, 6),
+        23 => (2, 8),
+        28 => (2, 9),
+        10 => (3, 4),
+        24 => (3, 10),
+        11 | 12 => (3, 8),
+        25 => (3, 20),
+        33 => (3, 24),
+        29 => (3, 27),
+        13 => (3, 6),
+        31 => (3, 12),
+        26 => (3, 15),
+        32 => (3, 18),
+        14 => (3, 5),
+        27 => (3, 13),
+        68 => return Some((1, None)),
+        69 | 70 => return Some((2, None)),
+        71..=74 => return Some((3, None)),
+        _ => return None,
+    };
+    Some((dimension, Some(nodes)))
+}
+
+/// Turns a pixel or a voxel, whose nodes run along the axes, into the quadrangle or hexahedron they are.
+pub(super) fn without_raster(cell_type: u8, nodes: &mut [usize]) -> u8 {
+    match cell_type {
+        8 => {
+            nodes.swap(2, 3);
+            9
+        }
+        11 => {
+            nodes.swap(2, 3);
+            nodes.swap(6, 7);
+            12
+        }
+        other => other,
+    }
+}

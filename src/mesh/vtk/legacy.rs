@@ -1,0 +1,293 @@
+//! Legacy `.vtk` files with an unstructured grid, file versions 1 to 5.
+
+use super::legacy_type::Type;
+use super::piece::{Labels, Piece};
+use crate::error::{Error, Result};
+use crate::mesh::reader::{Encoding, Reader, quoted};
+
+/// What the arrays being read belong to.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    File,
+    Points(u64),
+    Cells(u64),
+}
+
+/// Reads the grid.
+///
+/// # Errors
+/// The file is of another kind, damaged or cut short. The format has no end mark: a file cut just before a section of
+/// cell or point data is a whole file without that data.
+pub(super) fn parse(bytes: &[u8]) -> Result<Piece> {
+    let mut reader = Reader::new(bytes);
+    header(&mut reader)?;
+    let mut file = File { reader, piece: Piece::default(), seen: Vec::new(), place: Place::File };
+    while !file.reader.peek().is_empty() {
+        file.read_section()?;
+    }
+    for section in ["DATASET", "POINTS", "CELLS", "CELL_TYPES"] {
+        if !file.seen.iter().any(|seen| seen == section) {
+            return Err(Error::new(format!("the file ends before {section}")));
+        }
+    }
+    if file.reader.encoding == Encoding::Text && !bytes.last().is_some_and(u8::is_ascii_whitespace) {
+        return Err(Error::new("the file ends within a line: expected a line end after its last number"));
+    }
+    Ok(file.piece)
+}
+
+fn header(reader: &mut Reader) -> Result<()> {
+    const MARK: &[u8] = b"# vtk DataFile Version";
+    let line = reader.rest_of_line();
+    if !line.get(..MARK.len()).is_some_and(|mark| mark.eq_ignore_ascii_case(MARK)) {
+        return Err(reader.expected("\"# vtk DataFile Version\" and a number", &quoted(line.trim_ascii())));
+    }
+    reader.line();
+    reader.line();
+    let encoding = reader.rest_of_line().trim_ascii();
+    reader.encoding = if encoding.eq_ignore_ascii_case(b"ASCII") {
+        Encoding::Text
+    } else if encoding.eq_ignore_ascii_case(b"BINARY") {
+        Encoding::Binary { big_endian: true }
+    } else {
+        return Err(reader.expected("ASCII or BINARY", &quoted(encoding)));
+    };
+    reader.line();
+    Ok(())
+}
+
+struct File<'a> {
+    reader: Reader<'a>,
+    piece: Piece,
+    seen: Vec<String>,
+    place: Place,
+}
+
+impl File<'_> {
+    fn read_section(&mut self) -> Result<()> {
+        let word = self.reader.peek();
+        self.reader.enter("");
+        let section = String::from_utf8_lossy(word).to_ascii_uppercase();
+        if ["DATASET", "POINTS", "CELLS", "CELL_TYPES"].contains(&section.as_str()) {
+            if self.seen.contains(&section) {
+                return Err(self.reader.fault(format!("{section} stands in the file a second time")));
+            }
+            self.seen.push(section.clone());
+        }
+        match section.as_str() {
+            "DATASET" => self.after(&section).dataset(),
+            "POINTS" => self.after(&section).points(),
+            "CELLS" => self.after(&section).cells(),
+            "CELL_TYPES" => self.after(&section).cell_types(),
+            "CELL_DATA" => {
+                let count = self.after(&section).reader.text_number()?;
+                self.place = Place::Cells(count);
+                let cells = self.piece.types.len();
+                if count != cells as u64 {
+                    return Err(self.reader.expected(&format!("{cells} cells"), &count.to_string()));
+                }
+                Ok(())
+            }
+            "POINT_DATA" => {
+                let count = self.after(&section).reader.text_number()?;
+                self.place = Place::Points(count);
+                let points = self.piece.points.len();
+                if count != points as u64 {
+                    return Err(self.reader.expected(&format!("{points} points"), &count.to_string()));
+                }
+                Ok(())
+            }
+            "METADATA" => self.after(&section).metadata(),
+            "FIELD" => self.after(&section).field(),
+            _ if self.place != Place::File => self.attribute(&section),
+            _ => Err(self.reader.expected("a section such as POINTS", &quoted(word))),
+        }
+    }
+
+    /// Moves past the keyword of a section.
+    fn after(&mut self, section: &str) -> &mut Self {
+        self.reader.enter(section);
+        self.reader.word();
+        self
+    }
+
+    fn dataset(&mut self) -> Result<()> {
+        if !self.reader.next_is("UNSTRUCTURED_GRID") {
+            return Err(self.reader.unexpected("UNSTRUCTURED_GRID"));
+        }
+        self.reader.word();
+        Ok(())
+    }
+
+    fn points(&mut self) -> Result<()> {
+        let count: u64 = self.reader.text_number()?;
+        let coordinates = Type::read(&mut self.reader)?.reals(&mut self.reader, count.saturating_mul(3))?;
+        self.piece.points = coordinates.as_chunks().0.to_vec();
+        Ok(())
+    }
+
+    fn cells(&mut self) -> Result<()> {
+        let count: u64 = self.reader.text_number()?;
+        let size: u64 = self.reader.text_number()?;
+        if self.reader.next_is("OFFSETS") {
+            self.reader.word();
+            let offsets = self.indices(count)?;
+            self.piece.ends = match offsets.split_first() {
+                Some((0, ends)) => ends.to_vec(),
+                Some((first, _)) => return Err(self.reader.expected("offsets from 0", &first.to_string())),
+                None => Vec::new(),
+            };
+            if !self.reader.next_is("CONNECTIVITY") {
+                return Err(self.reader.unexpected("CONNECTIVITY"));
+            }
+            self.reader.word();
+            self.piece.connectivity = self.indices(size)?;
+            return Ok(());
+        }
+        self.reader.start_data()?;
+        self.reader.announce("cells", count);
+        self.piece.ends.reserve(self.reader.capacity::<i32>(count, 2));
+        self.piece.connectivity.reserve(self.reader.capacity::<i32>(size, 1));
+        for _ in 0..count {
+            for _ in 0..self.reader.number::<u32>()? {
+                self.piece.connectivity.push(self.reader.number::<u32>()?.into());
+            }
+            self.piece.ends.push(self.piece.connectivity.len() as u64);
+            self.reader.count_one();
+        }
+        let found = self.piece.connectivity.len() as u64 + count;
+        if found == size { Ok(()) } else { Err(self.reader.expected(&format!("{size} numbers"), &found.to_string())) }
+    }
+
+    fn indices(&mut self, count: u64) -> Result<Vec<u64>> {
+        let Some(values) = Type::read(&mut self.reader)?.whole_numbers(&mut self.reader, count)? else {
+            return Err(self.reader.expected("a type of whole numbers", "another"));
+        };
+        values
+            .into_iter()
+            .map(|i| u64::try_from(i).map_err(|_| self.reader.expected("indices", &i.to_string())))
+            .collect()
+    }
+
+    fn cell_types(&mut self) -> Result<()> {
+        let count: u64 = self.reader.text_number()?;
+        self.reader.start_data()?;
+        self.reader.announce("cell types", count);
+        self.piece.types.reserve(self.reader.capacity::<i32>(count, 1));
+        for _ in 0..count {
+            let cell_type: u32 = self.reader.number()?;
+            let cell_type =
+                u8::try_from(cell_type).map_err(|_| self.reader.expected("a cell type", &cell_type.to_string()))?;
+            self.piece.types.push(cell_type);
+            self.reader.count_one();
+        }
+        Ok(())
+    }
+
+    /// Skips the notes on an array, which a blank line ends.
+    fn metadata(&mut self) -> Result<()> {
+        self.reader.line();
+        loop {
+            if self.reader.rest().is_empty() {
+                return Err(self.reader.ends());
+            }
+            if self.reader.line().trim_ascii().is_empty() {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Reads a list of arrays, each with its own name, size and type.
+    fn field(&mut self) -> Result<()> {
+        self.word("the name of the field")?;
+        for _ in 0..self.reader.text_number::<u64>()? {
+            if self.reader.next_is("METADATA") {
+                self.after("METADATA").metadata()?;
+            }
+            let name = self.word("the name of an array")?;
+            self.reader.enter(&name);
+            let components: u64 = self.reader.text_number()?;
+            let tuples: u64 = self.reader.text_number()?;
+            self.array(name, components, tuples)?;
+        }
+        Ok(())
+    }
+
+    /// Reads an array of point or cell data that has a keyword of its own.
+    fn attribute(&mut self, section: &str) -> Result<()> {
+        let tuples = match self.place {
+            Place::File => 0,
+            Place::Points(count) | Place::Cells(count) => count,
+        };
+        let components = match section {
+            "SCALARS" | "COLOR_SCALARS" | "LOOKUP_TABLE" | "TEXTURE_COORDINATES" => 0,
+            "GLOBAL_IDS" | "PEDIGREE_IDS" | "EDGE_FLAGS" => 1,
+            "VECTORS" | "NORMALS" => 3,
+            "TENSORS6" => 6,
+            "TENSORS" => 9,
+            _ => return Err(self.reader.unexpected("an array such as SCALARS or FIELD")),
+        };
+        let name = self.after(section).word("the name of an array")?;
+        match section {
+            "SCALARS" => self.scalars(name, tuples),
+            "TEXTURE_COORDINATES" => {
+                let components = self.reader.text_number()?;
+                self.array(name, components, tuples)
+            }
+            "COLOR_SCALARS" | "LOOKUP_TABLE" => {
+                let count: u64 = self.reader.text_number()?;
+                let colors = if section == "LOOKUP_TABLE" { 4 } else { tuples };
+                let in_binary = self.reader.encoding != Encoding::Text;
+                let bytes_or_reals = if in_binary { Type::UnsignedChar } else { Type::Float };
+                bytes_or_reals.skip(&mut self.reader, count.saturating_mul(colors))
+            }
+            _ => self.array(name, components, tuples),
+        }
+    }
+
+    fn scalars(&mut self, name: String, tuples: u64) -> Result<()> {
+        let kind = Type::read(&mut self.reader)?;
+        let components =
+            if self.reader.rest_of_line().trim_ascii().is_empty() { 1 } else { self.reader.text_number()? };
+        if self.reader.next_is("LOOKUP_TABLE") {
+            self.reader.word();
+            self.word("the name of a lookup table")?;
+        }
+        self.values(kind, name, components, tuples)
+    }
+
+    fn array(&mut self, name: String, components: u64, tuples: u64) -> Result<()> {
+        let kind = Type::read(&mut self.reader)?;
+        self.values(kind, name, components, tuples)
+    }
+
+    /// Reads the values of an array, and keeps them if they can name groups.
+    fn values(&mut self, kind: Type, name: String, components: u64, tuples: u64) -> Result<()> {
+        let labels_cells = matches!(self.place, Place::Cells(count) if count == tuples) && components == 1;
+        if !labels_cells {
+            return kind.skip(&mut self.reader, components.saturating_mul(tuples));
+        }
+        if let Some(values) = kind.whole_numbers(&mut self.reader, tuples)? {
+            self.piece.labels.push(Labels { name, values });
+        }
+        Ok(())
+    }
+
+    /// The next word, in which `%20` stands for a space.
+    fn word(&mut self, what: &str) -> Result<String> {
+        let word = self.reader.peek();
+        if word.is_empty() || word.len() == self.reader.rest().len() {
+            return Err(self.reader.unexpected(what));
+        }
+        self.reader.word();
+        let mut name = Vec::with_capacity(word.len());
+        let mut rest = word;
+        while let Some((&byte, after)) = rest.split_first() {
+            let code = (byte == b'%').then(|| after.get(..2)).flatten();
+            let code = code.and_then(|code| u8::from_str_radix(std::str::from_utf8(code).ok()?, 16).ok());
+            name.push(code.unwrap_or(byte));
+            rest = if code.is_some() { &after[2..] } else { after };
+        }
+        Ok(String::from_utf8_lossy(&name).into_owned())
+    }
+}

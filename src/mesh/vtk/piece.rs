@@ -1,0 +1,123 @@
+//! Pieces of an unstructured grid, and the mesh they make up.
+
+use super::cells::{shape, without_raster};
+use crate::error::{Error, Result};
+use crate::mesh::grouping::Gather;
+use crate::mesh::source::{Format, MeshSource, SourceBlock};
+use std::collections::HashSet;
+
+/// An array with more values than this does not name groups.
+const MOST_GROUPS: usize = 1000;
+
+/// Points and cells as both file kinds hold them.
+#[derive(Default)]
+pub(super) struct Piece {
+    pub points: Vec<[f64; 3]>,
+    pub types: Vec<u8>,
+    /// Where each cell ends in `connectivity`.
+    pub ends: Vec<u64>,
+    pub connectivity: Vec<u64>,
+    pub labels: Vec<Labels>,
+}
+
+/// A whole number for each cell.
+pub(super) struct Labels {
+    pub name: String,
+    pub values: Vec<i128>,
+}
+
+/// Cell type, nodes per cell, and the value of each grouping array that the cell's piece has.
+type Key = (u8, usize, Vec<Option<i128>>);
+
+/// The mesh of all pieces, one after the other.
+///
+/// # Errors
+/// A cell is of a type without a fixed shape, has the wrong number of nodes or names a point that its piece lacks.
+pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
+    let arrays = grouping_arrays(&pieces);
+    let mut points = Vec::new();
+    let mut cells: Gather<Key> = Gather::new();
+    let mut nodes = Vec::new();
+    for piece in pieces {
+        check_lengths(&piece)?;
+        let columns: Vec<Option<&Labels>> =
+            arrays.iter().map(|name| piece.labels.iter().find(|labels| labels.name == *name)).collect();
+        let mut key: Key = (0, 0, vec![None; columns.len()]);
+        let mut start = 0;
+        for (i, (&cell_type, &end)) in piece.types.iter().zip(&piece.ends).enumerate() {
+            let Some((_, node_count)) = shape(cell_type) else {
+                return Err(Error::new(format!(
+                    "cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown"
+                )));
+            };
+            let end = usize::try_from(end).unwrap_or(usize::MAX);
+            let Some(cell) = piece.connectivity.get(start..end) else {
+                let problem =
+                    format!("cell {i}: expected an end of its nodes from {start} to {}", piece.connectivity.len());
+                return Err(Error::new(format!("{problem}, found {end}")));
+            };
+            if cell.is_empty() || node_count.is_some_and(|count| count != cell.len()) {
+                let count = node_count.map_or("some".to_string(), |count| count.to_string());
+                let problem = format!("cell {i}: expected {count} nodes for VTK cell type {cell_type}");
+                return Err(Error::new(format!("{problem}, found {}", cell.len())));
+            }
+            nodes.clear();
+            for &node in cell {
+                let place = usize::try_from(node).ok().filter(|&place| place < piece.points.len());
+                let Some(place) = place else {
+                    let problem = format!("cell {i}: expected point indices below {}", piece.points.len());
+                    return Err(Error::new(format!("{problem}, found {node}")));
+                };
+                nodes.push(points.len() + place);
+            }
+            key.0 = without_raster(cell_type, &mut nodes);
+            key.1 = nodes.len();
+            for (value, column) in key.2.iter_mut().zip(&columns) {
+                *value = column.and_then(|labels| labels.values.get(i).copied());
+            }
+            cells.list(&key).extend_from_slice(&nodes);
+            start = end;
+        }
+        points.extend_from_slice(&piece.points);
+    }
+    let blocks = cells.into_lists().filter_map(|((cell_type, nodes_per_cell, values), connectivity)| {
+        let (dimension, _) = shape(cell_type)?;
+        let groups = arrays.iter().zip(values).filter_map(|(name, value)| Some(format!("{name}={}", value?))).collect();
+        Some(SourceBlock { dimension, cell_type: cell_type.into(), nodes_per_cell, connectivity, groups })
+    });
+    Ok(MeshSource { format: Format::Vtk, blocks: blocks.collect(), points })
+}
+
+fn check_lengths(piece: &Piece) -> Result<()> {
+    let cells = piece.types.len();
+    if piece.ends.len() != cells {
+        return Err(Error::expected("cells", format!("{cells} of them, one for each type"), piece.ends.len()));
+    }
+    let used = piece.ends.last().copied().unwrap_or(0);
+    if used != piece.connectivity.len() as u64 {
+        return Err(Error::expected("cells", format!("{used} nodes in all"), piece.connectivity.len()));
+    }
+    match piece.labels.iter().find(|labels| labels.values.len() != cells) {
+        Some(labels) => Err(Error::expected(&labels.name, format!("{cells} values"), labels.values.len())),
+        None => Ok(()),
+    }
+}
+
+/// The names, in order of occurrence, of the arrays with few enough values.
+fn grouping_arrays(pieces: &[Piece]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for labels in pieces.iter().flat_map(|piece| &piece.labels) {
+        if !names.contains(&labels.name) {
+            names.push(labels.name.clone());
+        }
+    }
+    names.retain(|name| {
+        let mut values = HashSet::new();
+        let labels = pieces.iter().flat_map(|piece| &piece.labels).filter(|labels| labels.name == *name);
+        labels.flat_map(|labels| &labels.values).all(|&value| {
+            values.insert(value);
+            values.len() <= MOST_GROUPS
+        })
+    });
+    names
+}

@@ -1,0 +1,58 @@
+//! The finite element model.
+
+use super::Entries;
+use crate::material::Moduli;
+use crate::mesh::{Mesh, gather};
+use crate::stiffness::Geometry;
+use faer::sparse::Triplet;
+
+/// Calls `visit(block, nodes, geometry)` for every cell of the mesh.
+pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(usize, &[usize], &Geometry)) {
+    for (index, block) in mesh.blocks.iter().enumerate() {
+        let table = &block.element.tabulation;
+        let mut geometry = Geometry::new(table);
+        let mut x = vec![0.0; table.nodes * mesh.dimension];
+        for nodes in block.cells() {
+            gather(&mesh.points, mesh.dimension, nodes, &mut x);
+            geometry.set(table, &x).expect("a mesh holds only cells with a volume");
+            visit(index, nodes, &geometry);
+        }
+    }
+}
+
+/// The assembled stiffness of the mesh, N/m; degree of freedom `point · dimension + direction`.
+pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
+    let d = mesh.dimension;
+    let mut entries = Entries::new();
+    each_cell(mesh, |_, nodes, geometry| {
+        let r = geometry.stiffness(moduli);
+        for (i, row) in dofs(nodes, d).enumerate() {
+            for (j, column) in dofs(nodes, d).enumerate() {
+                if row >= column {
+                    entries.push(Triplet::new(row, column, r[(i, j)]));
+                }
+            }
+        }
+    });
+    entries
+}
+
+/// The degrees of freedom of `nodes`, in order.
+pub(super) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
+    nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
+}
+
+/// Nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix, which for a
+/// tetrahedron are a quarter of its mass. `thickness` in m, 1 for a solid; `density` in kg/m³.
+pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
+    let mut masses = vec![0.0; mesh.point_count()];
+    each_cell(mesh, |block, nodes, geometry| {
+        let values = mesh.blocks[block].element.tabulation.values.chunks_exact(nodes.len());
+        for (values, v) in values.zip(&geometry.volumes) {
+            for (&node, n) in nodes.iter().zip(values) {
+                masses[node] += density * thickness * v * n;
+            }
+        }
+    });
+    masses
+}

@@ -1,0 +1,76 @@
+//! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
+
+use crate::fit::{Objective, Spread};
+use crate::solve::Standing;
+use crate::study::{FitOutcome, LoadOutcome, Outcome};
+use serde_json::{Value, json};
+
+/// The report as text.
+pub fn report(outcome: &Outcome) -> String {
+    let value = json!({
+        "scene": outcome.scene,
+        "nodes": outcome.mesh.point_count(),
+        "elements": outcome.mesh.cell_count(),
+        "element_types": outcome.mesh.blocks.iter().map(|b| b.element.name.as_str()).collect::<Vec<_>>(),
+        "turned_elements": outcome.mesh.reversed,
+        "unused_nodes": outcome.mesh.unused_points,
+        "springs": outcome.fits.iter().map(|f| f.network.len()).max(),
+        "young": outcome.material.young(),
+        "poisson": outcome.material.poisson(),
+        "left_out": outcome.left_out,
+        "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count())).collect::<Vec<_>>(),
+    });
+    serde_json::to_string_pretty(&value).expect("a value of finite numbers and text is JSON") + "\n"
+}
+
+fn fit(outcome: &FitOutcome, elements: usize) -> Value {
+    let fit = &outcome.fit.fit;
+    let higher = if let Objective::Modal { higher } = fit.objective { Some(higher) } else { None };
+    json!({
+        "name": outcome.fit.name,
+        "objective": fit.objective.name(),
+        "higher": higher,
+        "groups": outcome.fit.springs,
+        "tied": fit.tied,
+        "nonnegative": fit.nonnegative,
+        "solver": if fit.nonnegative { "block principal pivoting" } else { "normal equations" },
+        "status": status(outcome),
+        "springs": outcome.network.len(),
+        "seconds": outcome.seconds,
+        "seconds_per_element": outcome.seconds / elements.max(1) as f64,
+        "seconds_assembly": outcome.seconds_assembly,
+        "relative_frobenius": spread(outcome.frobenius),
+        "relative_spectral": spread(outcome.spectral),
+        "negative_springs": outcome.network.negative(),
+        "undetermined_elements": outcome.deficient,
+        "energy_ratio": outcome.stability.as_ref().map(|s| s.energy_ratio),
+        "loose_nodes": outcome.loose_points,
+        "certificate_gap": Value::Null,
+        "loads": outcome.loads.iter().map(load).collect::<Vec<_>>(),
+    })
+}
+
+fn spread(spread: Spread) -> Value {
+    json!({ "mean": spread.mean, "max": spread.max })
+}
+
+fn load(outcome: &LoadOutcome) -> Value {
+    json!({
+        "name": outcome.name,
+        "e_rms": outcome.error.map(|e| e.rms),
+        "e_max": outcome.error.map(|e| e.max),
+        "seconds_fem": outcome.seconds_fem,
+        "seconds_lem": outcome.seconds_lem,
+    })
+}
+
+/// One word for how the network stands.
+pub fn status(outcome: &FitOutcome) -> &'static str {
+    match outcome.stability.as_ref().map(|s| s.standing) {
+        None => "fitted",
+        Some(Standing::Sound) => "sound",
+        Some(Standing::Soft) => "near-mechanism",
+        Some(Standing::Indefinite) => "indefinite",
+        Some(Standing::Singular) => "mechanism",
+    }
+}

@@ -1,0 +1,73 @@
+//! Grids for ParaView.
+
+use crate::mesh::Mesh;
+use crate::mesh::vtk::{Array, Grid};
+use crate::study::{FitOutcome, Outcome};
+
+const LINE: u8 = 3;
+const POINTS: u8 = 2;
+
+/// The solid cells, with the displacements of the finite elements and of each network.
+pub fn displacement_grid(outcome: &Outcome) -> Grid {
+    let mesh = &outcome.mesh;
+    let mut grid = Grid { points: spatial(&mesh.points, mesh.dimension), ..Grid::default() };
+    for block in &mesh.blocks {
+        let Some(vtk) = &block.element.formats.vtk else { continue };
+        for nodes in block.cells() {
+            let mut placed = nodes.to_vec();
+            for (a, &place) in vtk.order.iter().flatten().enumerate() {
+                placed[place] = nodes[a];
+            }
+            grid.push_cell(vtk.cell_type as u8, &placed);
+        }
+    }
+    let loads = outcome.fits.first().map_or(&[][..], |f| &f.loads);
+    for (load, u) in loads.iter().zip(&outcome.fem) {
+        grid.point_data.push(vectors(format!("u fem {} (m)", load.name), u, mesh.dimension));
+    }
+    for fit in &outcome.fits {
+        for load in &fit.loads {
+            if let Some(u) = &load.displacement {
+                grid.point_data.push(vectors(format!("u {} {} (m)", fit.fit.name, load.name), u, mesh.dimension));
+            }
+        }
+    }
+    grid
+}
+
+/// The springs as lines with their constants and rest lengths, with the displacements of both models. A spring on an
+/// area or volume is the set of its points.
+pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: &[Vec<f64>]) -> Grid {
+    let network = &fit.network;
+    let mut grid = Grid { points: spatial(&mesh.points, mesh.dimension), ..Grid::default() };
+    network.lengths.iter().for_each(|s| grid.push_cell(LINE, &s.points));
+    network.contents.iter().for_each(|s| grid.push_cell(POINTS, &s.points));
+    let per_spring = |length: fn(&crate::model::LengthSpring) -> f64, content: fn(&crate::model::ContentSpring) -> f64| {
+        network.lengths.iter().map(length).chain(network.contents.iter().map(content)).collect()
+    };
+    let scalar = |name: &str, values| Array { name: name.into(), components: 1, values };
+    grid.cell_data = vec![
+        scalar("k", per_spring(|s| s.constant, |s| s.constant)),
+        scalar("rest", per_spring(|s| s.rest, |s| s.rest)),
+        scalar("is_length", per_spring(|_| 1.0, |_| 0.0)),
+    ];
+    if let Some(masses) = masses {
+        grid.point_data.push(scalar("mass (kg)", masses.to_vec()));
+    }
+    for (load, u) in fit.loads.iter().zip(fem) {
+        grid.point_data.push(vectors(format!("u fem {} (m)", load.name), u, mesh.dimension));
+        if let Some(u) = &load.displacement {
+            grid.point_data.push(vectors(format!("u {} (m)", load.name), u, mesh.dimension));
+        }
+    }
+    grid
+}
+
+fn spatial(values: &[f64], dimension: usize) -> Vec<[f64; 3]> {
+    let place = |x: &[f64]| std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0));
+    values.chunks_exact(dimension).map(place).collect()
+}
+
+fn vectors(name: String, values: &[f64], dimension: usize) -> Array {
+    Array { name, components: 3, values: spatial(values, dimension).into_iter().flatten().collect() }
+}

@@ -1,0 +1,146 @@
+//! The table on the terminal.
+
+use super::json::status;
+use crate::solve::Standing;
+use crate::study::{FitOutcome, Outcome};
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
+use std::fmt::Write;
+
+/// What was modelled, in a line or two.
+pub fn summary(outcome: &Outcome) -> String {
+    let mesh = &outcome.mesh;
+    let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
+    let material = outcome.material;
+    let mut text = format!(
+        "{}\n{} points, {}; E = {} Pa, nu = {}\n",
+        outcome.scene,
+        mesh.point_count(),
+        cells.join(", "),
+        material.young(),
+        material.poisson()
+    );
+    if mesh.reversed > 0 {
+        writeln!(text, "{} elements were numbered the other way round and have been turned", mesh.reversed)
+            .expect("a String grows");
+    }
+    if mesh.unused_points > 0 {
+        writeln!(text, "{} points of the file belong to no element and were left out", mesh.unused_points)
+            .expect("a String grows");
+    }
+    text
+}
+
+/// One row per fit.
+pub fn table(outcome: &Outcome) -> String {
+    let mut table = Table::new();
+    table.load_preset(UTF8_HORIZONTAL_ONLY).set_content_arrangement(ContentArrangement::Disabled);
+    let mut header: Vec<String> = ["fit", "springs", "k < 0", "|R-K|/|R| F, mean", "max", "2-norm, mean", "max", "us/element"]
+        .map(String::from)
+        .into();
+    let loads: Vec<&str> = outcome.fits.first().map_or(vec![], |f| f.loads.iter().map(|l| l.name.as_str()).collect());
+    for load in &loads {
+        header.push(format!("{load} %e_rms"));
+        header.push("%e_max".into());
+    }
+    if !loads.is_empty() {
+        header.push("network".into());
+    }
+    table.set_header(header);
+    for fit in &outcome.fits {
+        table.add_row(row(fit, outcome.mesh.cell_count()));
+    }
+    for (index, column) in table.column_iter_mut().enumerate() {
+        let last = !loads.is_empty() && index == 8 + 2 * loads.len();
+        column.set_cell_alignment(if index == 0 || last { CellAlignment::Left } else { CellAlignment::Right });
+    }
+    let text = table.to_string();
+    let lines: Vec<_> = text.lines().map(str::trim_end).collect();
+    lines.join("\n") + "\n" + &times(outcome)
+}
+
+fn row(fit: &FitOutcome, elements: usize) -> Vec<String> {
+    let mut row = vec![
+        fit.fit.name.clone(),
+        fit.network.len().to_string(),
+        fit.network.negative().to_string(),
+        format!("{:.4}", fit.frobenius.mean),
+        format!("{:.4}", fit.frobenius.max),
+        format!("{:.4}", fit.spectral.mean),
+        format!("{:.4}", fit.spectral.max),
+        format!("{:.2}", 1e6 * fit.seconds / elements.max(1) as f64),
+    ];
+    for load in &fit.loads {
+        let percent = |e: Option<f64>| e.map_or("-".to_string(), |e| format!("{e:.2}"));
+        row.push(percent(load.error.map(|e| e.rms)));
+        row.push(percent(load.error.map(|e| e.max)));
+    }
+    if !fit.loads.is_empty() {
+        row.push(status(fit).into());
+    }
+    row
+}
+
+fn times(outcome: &Outcome) -> String {
+    let loads: Vec<_> = outcome.fits.iter().flat_map(|f| &f.loads).collect();
+    if loads.is_empty() {
+        return String::new();
+    }
+    let mean = |seconds: &dyn Fn(&crate::study::LoadOutcome) -> f64| {
+        1e3 * loads.iter().map(|l| seconds(l)).sum::<f64>() / loads.len() as f64
+    };
+    format!(
+        "One load, assembled and solved: {:.2} ms with finite elements, {:.2} ms with springs (means).\n",
+        mean(&|l| l.seconds_fem),
+        mean(&|l| l.seconds_lem)
+    )
+}
+
+/// What a reader must know before trusting a row, one sentence per line.
+pub fn notes(outcome: &Outcome) -> Vec<String> {
+    outcome.fits.iter().flat_map(|fit| note(outcome, fit)).collect()
+}
+
+fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
+    let name = &fit.fit.name;
+    let mut notes = Vec::new();
+    if fit.deficient > 0 {
+        notes.push(format!(
+            "{name}: in {} elements this objective does not determine the springs; of all optima the least was taken",
+            fit.deficient
+        ));
+    }
+    let Some(stability) = &fit.stability else { return notes };
+    let points = points(outcome, &fit.loose_points);
+    let [least, _] = stability.energy_ratio;
+    let remedy = if fit.network.negative() > 0 {
+        format!("; it has {} negative springs, which \"nonnegative = true\" forbids", fit.network.negative())
+    } else {
+        String::new()
+    };
+    match stability.standing {
+        Standing::Sound => {}
+        Standing::Soft => notes.push(format!(
+            "{name}: near-mechanism, some motion meets only {least:.1e} of the body's resistance; its displacements are \
+             not to be trusted. Loosest: {points}{remedy}"
+        )),
+        Standing::Indefinite => notes.push(format!(
+            "{name}: indefinite, some motion releases energy ({least:.1e} of what the body stores): it has an equilibrium \
+             but runs away from it. Moving most: {points}{remedy}"
+        )),
+        Standing::Singular => notes.push(format!(
+            "{name}: mechanism, some motion meets no resistance, so no displacement is given. Moving freely: {points}{remedy}"
+        )),
+    }
+    notes
+}
+
+fn points(outcome: &Outcome, points: &[usize]) -> String {
+    let place = |&p: &usize| {
+        let x: Vec<String> = outcome.mesh.point(p).iter().map(|x| format!("{x:.4}")).collect();
+        format!("{} ({})", p + 1, x.join(", "))
+    };
+    let named: Vec<_> = points.iter().take(3).map(place).collect();
+    let rest = if points.len() > 3 { format!(" and {} more", points.len() - 3) } else { String::new() };
+    let word = if points.len() == 1 { "point" } else { "points" };
+    format!("{word} {}{rest}", named.join(", "))
+}

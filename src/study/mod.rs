@@ -1,0 +1,9 @@
+//! Whole studies: a scene from its file to the errors and times of each fit.
+
+mod metrics;
+mod run;
+mod scene;
+
+pub use metrics::{DisplacementError, displacement_error};
+pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
+pub use scene::{LoadCase, MeshInput, NamedFit, Output, Plane, Scene, load_elements, material_for};

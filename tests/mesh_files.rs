@@ -1,0 +1,472 @@
+//! Reads one bar of hexahedra and tetrahedra from every kind of mesh file, whole, cut short and damaged.
+
+use proptest::prelude::*;
+use springfit::mesh::vtk::{Array, Grid, write};
+use springfit::mesh::{Format, MeshSource, SourceBlock, gmsh, vtk};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const GMSH_BARS: [&str; 4] = ["bar_41_ascii.msh", "bar_41_binary.msh", "bar_22_ascii.msh", "bar_22_binary.msh"];
+const VTK_BARS: [&str; 11] = [
+    "bar_ascii.vtu",
+    "bar_base64.vtu",
+    "bar_zlib.vtu",
+    "bar_blocks.vtu",
+    "bar_appended.vtu",
+    "bar_appended_zlib.vtu",
+    "bar_ascii.vtk",
+    "bar_binary.vtk",
+    "bar_42_ascii.vtk",
+    "bar_42_binary.vtk",
+    "bar_metadata.vtk",
+];
+const PARAMETRIC_CUBES: [&str; 2] = ["cube_parametric_22.msh", "cube_parametric_41.msh"];
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")
+}
+
+fn all_files() -> impl Iterator<Item = &'static str> {
+    GMSH_BARS.into_iter().chain(VTK_BARS).chain(PARAMETRIC_CUBES)
+}
+
+fn bytes_of(file: &str) -> Vec<u8> {
+    fs::read(folder().join(file)).unwrap()
+}
+
+fn parse(file: &str, bytes: &[u8]) -> springfit::error::Result<MeshSource> {
+    match file.rsplit('.').next().unwrap() {
+        "msh" => gmsh::parse(bytes),
+        ending => vtk::parse(bytes, ending),
+    }
+}
+
+fn gmsh_error(text: &str) -> String {
+    gmsh::parse(text.as_bytes()).unwrap_err().to_string()
+}
+
+/// Dimension, nodes and groups of each cell, sorted.
+fn sorted_cells(mesh: &MeshSource) -> Vec<(usize, Vec<usize>, Vec<String>)> {
+    let cells_of = |block: &SourceBlock| {
+        let cell = |nodes: &[usize]| (block.dimension, nodes.to_vec(), block.groups.clone());
+        block.connectivity.chunks(block.nodes_per_cell).map(cell).collect::<Vec<_>>()
+    };
+    let mut cells: Vec<_> = mesh.blocks.iter().flat_map(cells_of).collect();
+    cells.sort();
+    cells
+}
+
+/// What the rest of the program relies on.
+fn assert_sound(mesh: &MeshSource) {
+    for block in &mesh.blocks {
+        assert!(block.dimension <= 3 && block.nodes_per_cell > 0 && !block.connectivity.is_empty());
+        assert_eq!(block.connectivity.len() % block.nodes_per_cell, 0);
+        assert!(block.connectivity.iter().all(|&node| node < mesh.points.len()));
+    }
+}
+
+/// Whether the points are the same to the digits that every file has.
+fn agree(some: &[[f64; 3]], others: &[[f64; 3]]) -> bool {
+    let (some, others) = (some.as_flattened(), others.as_flattened());
+    some.len() == others.len() && some.iter().zip(others).all(|(a, b)| (a - b).abs() < 1e-10)
+}
+
+#[test]
+fn every_format_gives_the_same_bar() {
+    let reference = MeshSource::read(&folder().join(GMSH_BARS[0])).unwrap();
+    assert_eq!(reference.points.len(), 20);
+    assert_eq!(reference.points[9], [3.1, 0.0, 0.125]);
+    let cells = sorted_cells(&reference);
+    assert_eq!(cells.len(), 16);
+    for file in GMSH_BARS {
+        let mesh = MeshSource::read(&folder().join(file)).unwrap();
+        assert_eq!(mesh.format, Format::Gmsh);
+        assert!(agree(&mesh.points, &reference.points), "{file}");
+        assert_eq!(sorted_cells(&mesh), cells, "{file}");
+    }
+    let vtk_cells = sorted_cells(&MeshSource::read(&folder().join(VTK_BARS[0])).unwrap());
+    for file in VTK_BARS {
+        let mesh = MeshSource::read(&folder().join(file)).unwrap();
+        assert_eq!(mesh.format, Format::Vtk);
+        assert!(agree(&mesh.points, &reference.points), "{file}");
+        assert_eq!(sorted_cells(&mesh), vtk_cells, "{file}");
+    }
+    assert!(vtk_cells.iter().map(|c| (c.0, &c.1)).eq(cells.iter().map(|c| (c.0, &c.1))));
+}
+
+#[test]
+fn gmsh_groups_come_from_physical_names() {
+    let mesh = gmsh::parse(&bytes_of("bar_41_ascii.msh")).unwrap();
+    let blocks: Vec<_> =
+        mesh.blocks.iter().map(|b| (b.dimension, b.cell_type, b.connectivity.len() / b.nodes_per_cell)).collect();
+    assert_eq!(blocks, [(1, 1, 2), (2, 3, 2), (2, 3, 2), (2, 2, 2), (3, 5, 2), (3, 4, 6)]);
+    let groups: Vec<_> = mesh.blocks.iter().map(|b| b.groups.join("+")).collect();
+    assert_eq!(groups, ["1:9", "fixed", "load", "load", "body", "body+soft part"]);
+}
+
+#[test]
+fn vtk_groups_come_from_arrays_of_whole_numbers() {
+    let mesh = vtk::parse(&bytes_of("bar_zlib.vtu"), "vtu").unwrap();
+    let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.cell_type, b.groups.join("+"))).collect();
+    let expected = [(3, 9), (5, 2), (9, 1), (9, 2), (10, 3), (12, 3)];
+    assert_eq!(blocks, expected.map(|(cell_type, tag)| (cell_type, format!("gmsh:physical={tag}"))));
+}
+
+#[test]
+fn parametric_coordinates_are_passed_over() {
+    let meshes = PARAMETRIC_CUBES.map(|file| gmsh::parse(&bytes_of(file)).unwrap());
+    assert_eq!(meshes[0], meshes[1]);
+    assert_eq!(meshes[0].points.len(), 14);
+    assert_eq!(meshes[0].points[13], [0.5, 0.5, 1.0]);
+}
+
+#[test]
+fn every_mesh_of_the_scenes_reads() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
+    let mut count = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let mesh = MeshSource::read(&entry.unwrap().path()).unwrap();
+        assert_sound(&mesh);
+        let groups: Vec<_> = mesh.blocks.iter().flat_map(|b| &b.groups).collect();
+        for name in ["fixed", "load", "body"] {
+            assert!(groups.iter().any(|group| *group == name));
+        }
+        count += 1;
+    }
+    assert_eq!(count, 10);
+}
+
+/// A legacy file that ends just before data on its points or cells is a whole file without them.
+fn ends_before_data(file: &str, rest: &[u8]) -> bool {
+    let keywords: [&[u8]; 4] = [b"CELL_DATA", b"POINT_DATA", b"FIELD", b"METADATA"];
+    file.ends_with(".vtk") && keywords.iter().any(|keyword| rest.trim_ascii_start().starts_with(keyword))
+}
+
+#[test]
+fn no_file_cut_short_is_read() {
+    for file in all_files() {
+        let bytes = bytes_of(file);
+        for length in 0..bytes.len() {
+            let (start, rest) = bytes.split_at(length);
+            if parse(file, start).is_ok() {
+                assert!(rest.trim_ascii().is_empty() || ends_before_data(file, rest), "{file} cut to {length} bytes");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_damaged_file_makes_the_reader_panic() {
+    let mut state = 1_u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for file in all_files() {
+        let whole = bytes_of(file);
+        for round in 0..600 {
+            let mut bytes = whole.clone();
+            for _ in 0..1 + round % 3 {
+                let at = random(bytes.len());
+                match random(6) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => bytes[at] = b"0123456789 -.$\"<>=\n"[random(19)],
+                    2 => bytes[at] ^= 1 << random(8),
+                    3 => drop(bytes.remove(at)),
+                    4 => bytes.insert(at, b'9'),
+                    _ => {
+                        let end = (at + random(16)).min(bytes.len());
+                        bytes[at..end].fill(255);
+                    }
+                }
+            }
+            if let Ok(mesh) = parse(file, &bytes) {
+                assert_sound(&mesh);
+            }
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_the_readers_panic(bytes in prop::collection::vec(any::<u8>(), 0..200), header in 0..6_usize) {
+        let headers = [
+            "",
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n",
+            "$MeshFormat\n4.1 1 8\n\u{1}\0\0\0\n$EndMeshFormat\n$Entities\n",
+            "$MeshFormat\n2.2 1 8\n\u{1}\0\0\0\n$EndMeshFormat\n$Nodes\n9\n",
+            "# vtk DataFile Version 3.0\n\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n",
+            "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLibDataCompressor\"><DataArray format=\"binary\">",
+        ];
+        let bytes = [headers[header].as_bytes(), &bytes].concat();
+        for ending in ["x.msh", "x.vtk", "x.vtu"] {
+            if let Ok(mesh) = parse(ending, &bytes) {
+                assert_sound(&mesh);
+            }
+        }
+    }
+}
+
+const FORMAT: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+const NODES: &str = "$Nodes\n1 3 7 900000000000\n2 1 0 3\n900000000000\n7\n8\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n";
+const ELEMENTS: &str = "$Elements\n1 1 1 1\n2 1 2 1\n1 900000000000 8 7\n$EndElements\n";
+
+#[test]
+fn node_tags_may_be_sparse_and_unordered() {
+    let mesh = gmsh::parse(format!("{FORMAT}{NODES}{ELEMENTS}").as_bytes()).unwrap();
+    assert_eq!(mesh.points, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    assert_eq!(mesh.blocks.len(), 1);
+    assert_eq!(mesh.blocks[0].connectivity, [0, 2, 1]);
+    assert!(mesh.blocks[0].groups.is_empty());
+}
+
+#[test]
+fn unknown_sections_are_skipped_and_windows_lines_are_read() {
+    let text = format!(
+        "$Comments\n$Nodes here are none\n$EndComments\n{FORMAT}$Periodic\n0\n$EndPeriodic\n{NODES}{ELEMENTS}\
+         $NodeData\n1\n\"a\"\n$EndNodeData\n"
+    );
+    let mesh = gmsh::parse(text.as_bytes()).unwrap();
+    assert_eq!(gmsh::parse(text.replace('\n', "\r\n").as_bytes()).unwrap(), mesh);
+    assert_eq!(gmsh_error(text.trim_end_matches("$EndNodeData\n")), "the file ends inside $NodeData");
+}
+
+#[test]
+fn a_name_may_stand_for_groups_of_several_dimensions() {
+    let names = "$PhysicalNames\n2\n1 4 \"all of it\"\n2 4 \"all of it\"\n$EndPhysicalNames\n";
+    let nodes = "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n";
+    let elements = "$Elements\n4\n1 1 2 4 1 1 2\n2 2 2 4 1 1 2 3\n3 2 2 -5 1 1 2 3\n4 15 2 0 1 3\n$EndElements\n";
+    let format = FORMAT.replace("4.1", "2.2");
+    let mesh = gmsh::parse(format!("{format}{names}{nodes}{elements}").as_bytes()).unwrap();
+    let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.dimension, b.groups.join("+"))).collect();
+    let both = "all of it+2:5".to_string();
+    assert_eq!(blocks, [(1, "all of it".to_string()), (2, both), (0, String::new())]);
+}
+
+#[test]
+fn gmsh_errors_say_what_was_expected_and_found() {
+    let with_nodes = |nodes: &str| gmsh_error(&format!("{FORMAT}{nodes}{ELEMENTS}"));
+    let with_elements = |elements: &str| gmsh_error(&format!("{FORMAT}{NODES}{elements}"));
+    let damaged = NODES.replace("1 0 0\n0 1", "1 abc 0\n0 1");
+    assert_eq!(with_nodes(&damaged), "line 11: $Nodes: expected a number, found \"abc\"");
+    let short = NODES.replace("0 1 0\n$", "$");
+    assert_eq!(with_nodes(&short), "line 12: $Nodes: expected 3 nodes, found 2");
+    let long = NODES.replace("$End", "4 4 4\n$End");
+    assert_eq!(with_nodes(&long), "line 13: $Nodes: expected $EndNodes, found \"4\"");
+    assert_eq!(with_nodes(&NODES.replace("\n8\n", "\n7\n")), "$Nodes: node 7 occurs twice");
+    assert_eq!(with_nodes(""), "line 4: $Elements: expected $Nodes before it");
+    let cut = format!("{FORMAT}{}", &NODES[..NODES.len() - 16]);
+    assert_eq!(gmsh_error(&cut), "the file ends inside $Nodes: expected 3 nodes, found 2");
+    let unknown = ELEMENTS.replace("8 7", "8 6");
+    assert_eq!(with_elements(&unknown), "line 17: $Elements: element 1 names node 6, which $Nodes lacks");
+    let kind = ELEMENTS.replace("2 1 2 1", "2 1 999 1");
+    assert_eq!(with_elements(&kind), "line 16: $Elements: element type 999 is unknown");
+    assert_eq!(with_elements(""), "the file ends before $Elements");
+    assert_eq!(gmsh_error(""), "the file ends before $MeshFormat");
+    assert_eq!(gmsh_error("solid a\n"), "line 1: expected a section such as $MeshFormat, found \"solid\"");
+    let version = "line 2: $MeshFormat: expected version 4.1 or 2.2, found \"4\"";
+    assert_eq!(gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n"), version);
+    let parts = gmsh_error(&format!("{FORMAT}$PartitionedEntities\n"));
+    assert_eq!(parts, "line 4: $PartitionedEntities: partitioned meshes are not supported");
+}
+
+#[test]
+fn counts_beyond_the_file_are_errors() {
+    let huge = u64::MAX.to_string();
+    let nodes = format!("$Nodes\n1 {huge} 1 1\n0 1 0 {huge}\n1\n");
+    let expected = format!("the file ends inside $Nodes: expected {huge} nodes, found 0");
+    assert_eq!(gmsh_error(&format!("{FORMAT}{nodes}")), expected);
+    let elements = format!("$Elements\n1 {huge} 1 1\n2 1 2 {huge}\n1 7 8");
+    let expected = format!("the file ends inside $Elements: expected {huge} elements, found 0");
+    assert_eq!(gmsh_error(&format!("{FORMAT}{NODES}{elements}")), expected);
+    for section in [format!("POINTS {huge} double"), format!("CELLS {huge} {huge}"), format!("CELL_TYPES {huge}")] {
+        for (encoding, data) in [("ASCII", "1 1\n"), ("BINARY", "\0\0\0\u{1}\0\0\0\u{1}")] {
+            let head = format!("# vtk DataFile Version 3.0\n\n{encoding}\nDATASET UNSTRUCTURED_GRID\n");
+            let error = vtk::parse(format!("{head}{section}\n{data}").as_bytes(), "vtk").unwrap_err().to_string();
+            assert!(error.contains(&format!(": expected {huge} ")), "{error}");
+        }
+    }
+}
+
+#[test]
+fn coordinates_that_are_not_finite_are_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.msh");
+    fs::write(&path, format!("{FORMAT}{NODES}{ELEMENTS}").replace("0 1 0\n$", "0 nan 0\n$")).unwrap();
+    let expected = format!("{}: node 3: expected finite coordinates, found (0, NaN, 0)", path.display());
+    assert_eq!(MeshSource::read(&path).unwrap_err().to_string(), expected);
+}
+
+/// One tetrahedron.
+fn binary_tetrahedron(version: &str, big_endian: bool) -> Vec<u8> {
+    let mut bytes = format!("$MeshFormat\n{version} 1 8\n").into_bytes();
+    let int = |i: i32| if big_endian { i.to_be_bytes() } else { i.to_le_bytes() };
+    let size = |i: u64| if big_endian { i.to_be_bytes() } else { i.to_le_bytes() };
+    let real = |x: f64| if big_endian { x.to_be_bytes() } else { x.to_le_bytes() };
+    let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.5]];
+    bytes.extend(int(1));
+    bytes.extend(b"\n$EndMeshFormat\n$Nodes\n");
+    if version == "4.1" {
+        bytes.extend([1, 4, 1, 4].map(size).concat());
+        bytes.extend([3, 1, 0].map(int).concat());
+        bytes.extend([4, 1, 2, 3, 4].map(size).concat());
+        bytes.extend(points.as_flattened().iter().flat_map(|&x| real(x)));
+        bytes.extend(b"\n$EndNodes\n$Elements\n");
+        bytes.extend([1, 1, 1, 1].map(size).concat());
+        bytes.extend([3, 1, 4].map(int).concat());
+        bytes.extend([1, 1, 1, 2, 3, 4].map(size).concat());
+    } else {
+        bytes.extend(b"4\n");
+        for (tag, point) in (1..).zip(points) {
+            bytes.extend(int(tag));
+            bytes.extend(point.map(real).concat());
+        }
+        bytes.extend(b"\n$EndNodes\n$Elements\n1\n");
+        bytes.extend([4, 1, 2, 1, 0, 1, 1, 2, 3, 4].map(int).concat());
+    }
+    bytes.extend(b"\n$EndElements\n");
+    bytes
+}
+
+#[test]
+fn both_byte_orders_are_read() {
+    for version in ["4.1", "2.2"] {
+        let meshes = [false, true].map(|big_endian| gmsh::parse(&binary_tetrahedron(version, big_endian)).unwrap());
+        assert_eq!(meshes[0], meshes[1]);
+        assert_eq!(meshes[0].points[3], [0.0, 0.0, 1.5]);
+        assert_eq!(meshes[0].blocks[0].connectivity, [0, 1, 2, 3]);
+    }
+    let mut bytes = binary_tetrahedron("2.2", false);
+    bytes.truncate(bytes.len() - 40);
+    let error = gmsh::parse(&bytes).unwrap_err().to_string();
+    assert_eq!(error, "the file ends inside $Elements: expected 1 elements, found 0");
+}
+
+const LEGACY: &str = "# vtk DataFile Version 3.0\na title\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n\
+                      0 0 0 1 0 0\n0 1 0 1 1 0\n";
+
+#[test]
+fn pixels_become_quadrangles_and_names_lose_their_escapes() {
+    let text = format!(
+        "{LEGACY}CELLS 2 9\n4 0 1 2 3\n3 0 1 2\nCELL_TYPES 2\n8\n5\nCELL_DATA 2\nSCALARS my%20part char\n\
+         LOOKUP_TABLE default\n4 -5\nVECTORS v float\n1 2 3 4 5 6\nFIELD more 2\nnote 1 1 string\na b\n\
+         both 2 2 int\n1 2 3 4\nPOINT_DATA 4\nSCALARS id int\n1 2 3 4\n"
+    );
+    let mesh = vtk::parse(text.as_bytes(), "vtk").unwrap();
+    let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.cell_type, &b.connectivity[..], b.groups.join("+"))).collect();
+    let expected = [(9, &[0, 1, 3, 2][..], "my part=4".to_string()), (5, &[0, 1, 2][..], "my part=-5".to_string())];
+    assert_eq!(blocks, expected);
+}
+
+#[test]
+fn an_array_with_many_values_names_no_groups() {
+    let count = 1001;
+    let cells = "1 0\n".repeat(count);
+    let types = "1\n".repeat(count);
+    let numbers = |most: usize| (0..count).map(|i| format!("{}\n", i.min(most))).collect::<String>();
+    let text = |most| {
+        let data = format!("CELL_DATA {count}\nSCALARS a int\n{}", numbers(most));
+        format!("{LEGACY}CELLS {count} {}\n{cells}CELL_TYPES {count}\n{types}{data}", 2 * count)
+    };
+    assert_eq!(vtk::parse(text(1000).as_bytes(), "vtk").unwrap().blocks.len(), 1);
+    assert_eq!(vtk::parse(text(999).as_bytes(), "vtk").unwrap().blocks.len(), 1000);
+}
+
+#[test]
+fn vtk_errors_say_what_was_expected_and_found() {
+    let legacy = |text: &str| vtk::parse(format!("{LEGACY}{text}").as_bytes(), "vtk").unwrap_err().to_string();
+    assert_eq!(legacy("CELLS 1 4\n3 0 1 4\nCELL_TYPES 1\n5\n"), "cell 0: expected point indices below 4, found 4");
+    let count = "cell 0: expected 4 nodes for VTK cell type 10, found 3";
+    assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n"), count);
+    let shape = "cell 0: VTK cell type 7 has no fixed shape or is unknown";
+    assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n7\n"), shape);
+    assert_eq!(legacy("CELLS 1 4\n3 0 x 2\n"), "line 9: CELLS: expected a whole number, found \"x\"");
+    assert_eq!(legacy("CELLS 2 8\n3 0 1 2\n"), "the file ends inside CELLS: expected 2 cells, found 1");
+    assert_eq!(legacy("CELLS 1 4\n3 0 1 2\n"), "the file ends before CELL_TYPES");
+    let within = "the file ends within a line: expected a line end after its last number";
+    assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5"), within);
+    let raw = vtk::parse(&bytes_of("bar_appended_raw.vtu"), "vtu").unwrap_err().to_string();
+    assert!(raw.starts_with("AppendedData: expected encoding base64, found raw"), "{raw}");
+    let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
+    let xml = |from: &str, to: &str| vtk::parse(text.replace(from, to).as_bytes(), "vtu").unwrap_err().to_string();
+    assert_eq!(xml("</VTKFile>", ""), "the file ends before </VTKFile>");
+    assert_eq!(
+        xml("type=\"UnstructuredGrid\"", "type=\"PolyData\""),
+        "VTKFile: expected type UnstructuredGrid, found PolyData"
+    );
+    let array = "the file is damaged: its cell data array \"gmsh:physical\" cannot be decoded";
+    assert_eq!(xml("Name=\"gmsh:physical\"", "Name=\"gmsh:physical\" NumberOfComponents=\"2\""), array);
+}
+
+#[test]
+fn pieces_follow_one_another() {
+    let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
+    let start = text.find("<Piece").unwrap();
+    let end = text.find("</Piece>").unwrap() + "</Piece>".len();
+    let piece = &text[start..end];
+    let twice = format!("{}{piece}{}{}", &text[..start], piece.replace("gmsh:physical", "part"), &text[end..]);
+    let (one, two) = (vtk::parse(text.as_bytes(), "vtu").unwrap(), vtk::parse(twice.as_bytes(), "vtu").unwrap());
+    assert_eq!(two.points, [&one.points[..], &one.points[..]].concat());
+    assert_eq!(two.blocks.len(), 2 * one.blocks.len());
+    for (first, second) in one.blocks.iter().zip(&two.blocks[one.blocks.len()..]) {
+        assert!(second.connectivity.iter().eq(first.connectivity.iter().map(|i| i + 20).collect::<Vec<_>>().iter()));
+        assert_eq!(second.groups, [first.groups[0].replace("gmsh:physical", "part")]);
+    }
+}
+
+#[test]
+fn field_data_are_passed_over() {
+    let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
+    let field = "<FieldData><Array type=\"String\" Name=\"a\" format=\"ascii\">65 0</Array>\
+                 <DataArray type=\"Int32\" Name=\"b\" NumberOfTuples=\"1\" format=\"ascii\">7</DataArray></FieldData>";
+    let with_field = text.replace("<UnstructuredGrid>", &format!("<UnstructuredGrid>{field}"));
+    assert_eq!(vtk::parse(with_field.as_bytes(), "vtu").unwrap(), vtk::parse(text.as_bytes(), "vtu").unwrap());
+}
+
+fn two_cells() -> Grid {
+    let mut grid = Grid {
+        points: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0 / 3.0]],
+        point_data: vec![Array { name: "shift".into(), components: 3, values: (0..12).map(f64::from).collect() }],
+        cell_data: vec![Array { name: "stress <σ> & \"more\"".into(), components: 1, values: vec![0.1, f64::NAN] }],
+        ..Grid::default()
+    };
+    grid.push_cell(10, &[0, 1, 2, 3]);
+    grid.push_cell(3, &[3, 1]);
+    grid
+}
+
+#[test]
+fn a_written_grid_reads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtu");
+    let grid = two_cells();
+    write(&path, &grid).unwrap();
+    let mesh = MeshSource::read(&path).unwrap();
+    assert_eq!(mesh.points, grid.points);
+    let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.cell_type, &b.connectivity[..], b.groups.len())).collect();
+    assert_eq!(blocks, [(10, &[0, 1, 2, 3][..], 0), (3, &[3, 1][..], 0)]);
+    let bytes = fs::read(&path).unwrap();
+    for length in 0..bytes.len() {
+        assert!(vtk::parse(&bytes[..length], "vtu").is_err(), "cut to {length} bytes");
+    }
+}
+
+#[test]
+fn a_grid_that_does_not_fit_together_is_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtu");
+    let problem = |change: fn(&mut Grid)| {
+        let mut grid = two_cells();
+        change(&mut grid);
+        write(&path, &grid).unwrap_err().in_file(Path::new("a")).problem().to_string()
+    };
+    assert_eq!(problem(|grid| grid.point_data[0].components = 2), "expected 1 or 3 components, found 2");
+    assert_eq!(problem(|grid| grid.cell_data[0].values.truncate(1)), "expected 2 values, found 1");
+    assert_eq!(problem(|grid| grid.connectivity[0] = 4), "expected point indices below 4, found 4");
+    assert_eq!(problem(|grid| grid.ends[0] = 3), "expected 4 points for VTK cell type 10, found 3");
+    assert_eq!(problem(|grid| grid.cell_data[0].name.clear()), "expected a name of its own for each array");
+    assert_eq!(problem(|grid| *grid = Grid::default()), "a grid without points or cells cannot be written");
+    assert_eq!(problem(|grid| grid.cell_types[0] = 255), "expected a VTK cell type, found 255");
+    assert_eq!(problem(|grid| grid.ends[0] = 9), "expected 2 rising ends up to 6");
+    assert!(!path.exists());
+}
