@@ -3,7 +3,8 @@
 use super::json::status;
 use crate::solve::Standing;
 use crate::study::{FitOutcome, Outcome};
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
 use std::fmt::Write;
 
 /// What was modelled, in a line or two.
@@ -32,47 +33,41 @@ pub fn summary(outcome: &Outcome) -> String {
 
 /// One row per fit.
 pub fn table(outcome: &Outcome) -> String {
-    let mut table = Table::new();
-    table.load_preset(UTF8_HORIZONTAL_ONLY).set_content_arrangement(ContentArrangement::Disabled);
-    let mut header: Vec<String> = ["fit", "springs", "k < 0", "|R-K|/|R| F, mean", "max", "2-norm, mean", "max", "us/element"]
-        .map(String::from)
-        .into();
     let loads: Vec<&str> = outcome.fits.first().map_or(vec![], |f| f.loads.iter().map(|l| l.name.as_str()).collect());
-    for load in &loads {
-        header.push(format!("{load} %e_rms"));
-        header.push("%e_max".into());
-    }
+    let mut header: Vec<String> =
+        ["fit", "springs", "k < 0", "|R-K|/|R| Frobenius\nmean / max", "2-norm\nmean / max", "fit\nus/element"]
+            .map(String::from)
+            .into();
+    header.extend(loads.iter().map(|load| format!("{load}\n%e_rms / %e_max")));
     if !loads.is_empty() {
         header.push("network".into());
     }
-    table.set_header(header);
+    let mut table = Table::new();
+    table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
+    table.set_content_arrangement(ContentArrangement::Disabled).set_header(header);
     for fit in &outcome.fits {
         table.add_row(row(fit, outcome.mesh.cell_count()));
     }
     for (index, column) in table.column_iter_mut().enumerate() {
-        let last = !loads.is_empty() && index == 8 + 2 * loads.len();
-        column.set_cell_alignment(if index == 0 || last { CellAlignment::Left } else { CellAlignment::Right });
+        let text = index == 0 || index == 6 + loads.len();
+        column.set_cell_alignment(if text { CellAlignment::Left } else { CellAlignment::Right });
     }
-    let text = table.to_string();
-    let lines: Vec<_> = text.lines().map(str::trim_end).collect();
+    let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_string()).collect();
     lines.join("\n") + "\n" + &times(outcome)
 }
 
 fn row(fit: &FitOutcome, elements: usize) -> Vec<String> {
+    let pair = |mean: f64, max: f64| format!("{mean:.4} / {max:.4}");
     let mut row = vec![
         fit.fit.name.clone(),
         fit.network.len().to_string(),
         fit.network.negative().to_string(),
-        format!("{:.4}", fit.frobenius.mean),
-        format!("{:.4}", fit.frobenius.max),
-        format!("{:.4}", fit.spectral.mean),
-        format!("{:.4}", fit.spectral.max),
+        pair(fit.frobenius.mean, fit.frobenius.max),
+        pair(fit.spectral.mean, fit.spectral.max),
         format!("{:.2}", 1e6 * fit.seconds / elements.max(1) as f64),
     ];
     for load in &fit.loads {
-        let percent = |e: Option<f64>| e.map_or("-".to_string(), |e| format!("{e:.2}"));
-        row.push(percent(load.error.map(|e| e.rms)));
-        row.push(percent(load.error.map(|e| e.max)));
+        row.push(load.error.map_or("-".into(), |e| format!("{:.2} / {:5.2}", e.rms, e.max)));
     }
     if !fit.loads.is_empty() {
         row.push(status(fit).into());

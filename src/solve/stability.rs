@@ -34,36 +34,50 @@ pub enum Standing {
 
 /// The extreme ratios of the energies of `network` and `body`, both with the same support.
 ///
-/// With a Cholesky factor of the network the pencil is iterated as `K⁻¹R`, which finds the softest motion to full
-/// precision; without one as `R⁻¹K`, which finds that there is one of no or negative energy.
+/// A factor of the network iterates the pencil as `K⁻¹R`, which finds the ratios next to zero, of either sign, to full
+/// precision; without one `R⁻¹K` finds the least.
 pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System, body_factor: &Factor) -> Stability {
-    let (ratios, softest) = match factor {
-        Some(factor) if factor.is_positive_definite() => {
-            let (values, vector) = lanczos(body, true, |r| {
-                let mut x = r.to_vec();
-                factor.solve(&mut x);
-                x
-            });
-            ([1.0 / values[1], 1.0 / values[0]], vector)
-        }
-        _ => lanczos(body, false, |r| {
-            let mut x = network.apply(r);
+    let positive = factor.is_some_and(Factor::is_positive_definite);
+    let spectrum = match factor {
+        Some(factor) => lanczos(body, |_, r| {
+            let mut x = r.to_vec();
+            factor.solve(&mut x);
+            x
+        }),
+        None => lanczos(body, |v, _| {
+            let mut x = network.apply(v);
             body_factor.solve(&mut x);
             x
         }),
     };
-    let standing = match ratios[0] {
-        least if least < -NOTHING * ratios[1].abs() => Standing::Indefinite,
-        least if least < NOTHING || !least.is_finite() => Standing::Singular,
+    let Some([low, high]) = spectrum else {
+        return Stability { standing: Standing::Singular, energy_ratio: [0.0; 2], softest: vec![0.0; body.size()] };
+    };
+    let (ratios, softest) = match factor {
+        Some(_) if positive => ([1.0 / high.value, 1.0 / low.value], high.vector),
+        // One end of K⁻¹R is the negative ratio nearest to zero, the other the positive one.
+        Some(_) if low.value < 0.0 => ([1.0 / low.value, 1.0 / high.value], low.vector),
+        Some(_) => ([1.0 / high.value, 1.0 / low.value], high.vector),
+        None => ([low.value, high.value], low.vector),
+    };
+    let standing = match ratios[0].abs() {
+        least if !(least >= NOTHING) => Standing::Singular,
+        _ if !positive => Standing::Indefinite,
         least if least < SOFT => Standing::Soft,
         _ => Standing::Sound,
     };
     Stability { standing, energy_ratio: ratios, softest }
 }
 
-/// The ends of the spectrum of an operator that is symmetric in the inner product `xᵀ R y` of `body`, and the vector
-/// at the upper end if `largest`, else at the lower. With `largest`, `operator` is handed `R v` in place of `v`.
-fn lanczos(body: &System, largest: bool, operator: impl Fn(&[f64]) -> Vec<f64>) -> ([f64; 2], Vec<f64>) {
+/// An approximate eigenvalue and its vector on the free degrees of freedom.
+struct Ritz {
+    value: f64,
+    vector: Vec<f64>,
+}
+
+/// The lower and upper end of the spectrum of an operator that is symmetric in the inner product `xᵀ R y` of `body`.
+/// `operator` is handed `v` and `R v`. `None` where no step could be made.
+fn lanczos(body: &System, operator: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Option<[Ritz; 2]> {
     let n = body.size();
     let steps = STEPS.min(n);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -86,7 +100,7 @@ fn lanczos(body: &System, largest: bool, operator: impl Fn(&[f64]) -> Vec<f64>) 
         }
         v.iter_mut().for_each(|x| *x /= size);
         rv.iter_mut().for_each(|x| *x /= size);
-        let mut next = operator(if largest { &rv } else { &v });
+        let mut next = operator(&v, &rv);
         let before = dot(&next, &body.apply(&next)).sqrt();
         basis.push((v, rv));
         for _ in 0..2 {
@@ -98,19 +112,22 @@ fn lanczos(body: &System, largest: bool, operator: impl Fn(&[f64]) -> Vec<f64>) 
         }
         let left = dot(&next, &body.apply(&next)).max(0.0).sqrt();
         v = next;
-        if !(left > 1e-13 * before) {
+        if left.is_nan() || left <= 1e-13 * before {
             break;
         }
     }
     let m = basis.len();
     let projected = projected.view((0, 0), (m, m)).into_owned();
-    let eigen = ((&projected + projected.transpose()) * 0.5).symmetric_eigen();
-    let end = |sign: f64| (0..m).max_by(|&a, &b| (sign * eigen.eigenvalues[a]).total_cmp(&(sign * eigen.eigenvalues[b])));
-    let (Some(low), Some(high)) = (end(-1.0), end(1.0)) else { return ([f64::NAN; 2], vec![0.0; n]) };
-    let weights = eigen.eigenvectors.column(if largest { high } else { low });
-    let mut vector = DVector::zeros(n);
-    for ((q, _), w) in basis.iter().zip(weights.iter()) {
-        vector.axpy(*w, &DVector::from_column_slice(q), 1.0);
+    if m == 0 || projected.iter().any(|x: &f64| !x.is_finite()) {
+        return None;
     }
-    ([eigen.eigenvalues[low], eigen.eigenvalues[high]], vector.as_slice().to_vec())
+    let eigen = ((&projected + projected.transpose()) * 0.5).symmetric_eigen();
+    let ritz = |index: usize| {
+        let mut vector = DVector::zeros(n);
+        for ((q, _), w) in basis.iter().zip(eigen.eigenvectors.column(index).iter()) {
+            vector.axpy(*w, &DVector::from_column_slice(q), 1.0);
+        }
+        Ritz { value: eigen.eigenvalues[index], vector: vector.as_slice().to_vec() }
+    };
+    Some([ritz(eigen.eigenvalues.imin()), ritz(eigen.eigenvalues.imax())])
 }

@@ -1,0 +1,74 @@
+//! The study behind the default objective: every scene of a folder, fitted in many ways.
+//!
+//! `cargo run --release --example defaults` prints, for each element type, the geometric mean of %e_rms over the loads
+//! of its scenes, the worst of them, and in how many scenes the network does not stand soundly.
+
+use springfit::element::SpringKind;
+use springfit::error::{Error, Result};
+use springfit::fit::{Fit, Objective};
+use springfit::solve::Standing;
+use springfit::study::{NamedFit, Scene, run};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The percentages of one fit on the scenes of one element type, and how many of its networks are unsound.
+#[derive(Default)]
+struct Row {
+    errors: Vec<f64>,
+    unsound: usize,
+}
+
+fn main() -> Result<()> {
+    let mut rows: BTreeMap<(String, usize), (String, Row)> = BTreeMap::new();
+    for path in scenes(Path::new("scenes"))? {
+        let mut scene = Scene::load(&path)?;
+        let mesh = scene.build_mesh()?;
+        let element = mesh.blocks[0].element.clone();
+        let lengths: Vec<String> = names(&element, |kind| kind == SpringKind::Length);
+        let all: Vec<String> = names(&element, |_| true);
+        scene.fits = candidates(&lengths, &all);
+        let outcome = run(&scene, &mut |_, _, _| {})?;
+        for (order, fit) in outcome.fits.iter().enumerate() {
+            let (_, row) = rows.entry((element.name.clone(), order)).or_insert((fit.fit.name.clone(), Row::default()));
+            row.errors.extend(fit.loads.iter().map(|l| l.error.map_or(f64::INFINITY, |e| e.rms)));
+            let sound = fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Sound);
+            row.unsound += usize::from(!sound);
+        }
+    }
+    println!("{:8} {:28} {:>12} {:>8} {:>8}", "element", "fit", "mean %e_rms", "worst", "unsound");
+    for ((element, _), (fit, row)) in rows {
+        let mean = (row.errors.iter().map(|e| e.ln()).sum::<f64>() / row.errors.len() as f64).exp();
+        let worst = row.errors.iter().copied().fold(0.0, f64::max);
+        println!("{element:8} {fit:28} {mean:12.2} {worst:8.2} {:8}", row.unsound);
+    }
+    Ok(())
+}
+
+fn scenes(folder: &Path) -> Result<Vec<std::path::PathBuf>> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Error::new(format!("cannot be read: {e}")).in_file(folder))?;
+    let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
+    paths.sort();
+    Ok(paths)
+}
+
+fn names(element: &springfit::element::Element, wanted: impl Fn(SpringKind) -> bool) -> Vec<String> {
+    element.springs.iter().filter(|g| wanted(g.kind)).map(|g| g.name.clone()).collect()
+}
+
+fn candidates(lengths: &[String], all: &[String]) -> Vec<NamedFit> {
+    let mut fits = Vec::new();
+    for (groups, bulk) in [(lengths, ""), (all, " with bulk")] {
+        for nonnegative in [false, true] {
+            let mut objectives = vec![Objective::Frobenius, Objective::OffDiagonal];
+            objectives.extend([0.7, 0.5, 0.316, 0.2, 0.1].map(|higher| Objective::Modal { higher }));
+            for objective in objectives {
+                let fit = Fit { objective, tied: false, nonnegative };
+                let mut named = NamedFit::new(fit, None);
+                named.name += bulk;
+                named.springs = Some(groups.to_vec());
+                fits.push(named);
+            }
+        }
+    }
+    fits
+}
