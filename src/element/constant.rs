@@ -24,7 +24,11 @@ impl Constant {
     fn parse(text: &str) -> Result<Constant, String> {
         let expr = Scope::default().expression(text).map_err(|e| e.problem().to_string())?;
         let value = expr.evaluate(&[]);
-        if value.is_finite() { Ok(Constant { expr, value }) } else { Err(format!("expected a finite number, found \"{text}\"")) }
+        if value.is_finite() {
+            Ok(Constant { expr, value })
+        } else {
+            Err(format!("expected a finite number, found \"{text}\""))
+        }
     }
 }
 

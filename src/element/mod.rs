@@ -91,9 +91,9 @@ impl Element {
         proof::coordinates(&definition)?;
         let mut scope = Scope::new(&definition.coordinates);
         for (name, value) in &definition.definitions {
-            let text = value.as_str().ok_or_else(|| {
-                Error::expected(format!("let.{name}"), "an expression in quotes", value.type_str())
-            })?;
+            let text = value
+                .as_str()
+                .ok_or_else(|| Error::expected(format!("let.{name}"), "an expression in quotes", value.type_str()))?;
             scope.define(name, text).map_err(|e| e.under(format!("let.{name}")))?;
         }
         let mut values = Vec::new();
@@ -147,7 +147,11 @@ impl Element {
         let points = local
             .points
             .chunks_exact(d - 1)
-            .flat_map(|s| (0..d).map(|l| origin[l] + s.iter().zip(&tangents).map(|(s, t)| s * t[l]).sum::<f64>()).collect::<Vec<_>>())
+            .flat_map(|s| {
+                (0..d)
+                    .map(|l| origin[l] + s.iter().zip(&tangents).map(|(s, t)| s * t[l]).sum::<f64>())
+                    .collect::<Vec<_>>()
+            })
             .collect();
         let rule = Quadrature { dimension: d, points, weights: local.weights };
         let functions = ShapeFunctions {

@@ -25,7 +25,9 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
         return Err(Error::expected("nodes", expected, definition.nodes.len()));
     }
     match definition.nodes.iter().position(|n| n.at.len() != d) {
-        Some(a) => Err(Error::expected(format!("nodes[{a}].at"), format!("{d} coordinates"), definition.nodes[a].at.len())),
+        Some(a) => {
+            Err(Error::expected(format!("nodes[{a}].at"), format!("{d} coordinates"), definition.nodes[a].at.len()))
+        }
         None => Ok(()),
     }
 }
@@ -81,7 +83,9 @@ fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), St
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
         .unwrap_or((&[], 0.0));
     let holds = match Polynomial::expand(&defect, d) {
-        Some(polynomial) if definition.nodes.iter().all(|n| n.at.iter().all(|c| c.exact().is_some())) => polynomial.is_zero(),
+        Some(polynomial) if definition.nodes.iter().all(|n| n.at.iter().all(|c| c.exact().is_some())) => {
+            polynomial.is_zero()
+        }
         _ => worst.abs() <= ROUNDING,
     };
     if holds { Ok(()) } else { Err(format!("{worst:+.3e} at {at:.3?}")) }
@@ -150,13 +154,24 @@ pub fn springs(definition: &Definition) -> Result<Vec<SpringGroup>> {
             (SpringKind::Area, None) if definition.cell.dimension() == 2 => Vec::new(),
             (SpringKind::Volume, None) if definition.cell.dimension() == 3 => Vec::new(),
             (SpringKind::Area, None) => {
-                return Err(Error::expected(key("kind"), "\"volume\" in a solid, \"area\" in a plane cell", "\"area\""));
+                return Err(Error::expected(
+                    key("kind"),
+                    "\"volume\" in a solid, \"area\" in a plane cell",
+                    "\"area\"",
+                ));
             }
             (SpringKind::Volume, None) => {
-                return Err(Error::expected(key("kind"), "\"area\" in a plane cell, \"volume\" in a solid", "\"volume\""));
+                return Err(Error::expected(
+                    key("kind"),
+                    "\"area\" in a plane cell, \"volume\" in a solid",
+                    "\"volume\"",
+                ));
             }
             (_, Some(_)) => {
-                return Err(Error::at(key("nodes"), "expected no nodes: an area or volume spring measures the whole cell"));
+                return Err(Error::at(
+                    key("nodes"),
+                    "expected no nodes: an area or volume spring measures the whole cell",
+                ));
             }
         };
         for (p, &[a, b]) in pairs.iter().enumerate() {
@@ -204,4 +219,3 @@ pub fn finite(tabulation: &Tabulation) -> Result<()> {
         None => Ok(()),
     }
 }
-

@@ -64,7 +64,13 @@ impl Quadrature {
             .collect();
         product(&lines, |s| {
             let mut left = 1.0;
-            s.iter().map(|t| { let x = t * left; left *= 1.0 - t; x }).collect()
+            s.iter()
+                .map(|t| {
+                    let x = t * left;
+                    left *= 1.0 - t;
+                    x
+                })
+                .collect()
         })
     }
 }

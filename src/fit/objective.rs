@@ -2,9 +2,9 @@
 //!
 //! Each objective is an inner product of matrices, and so gives normal equations `M k = b` in which no `g gᵀ` is formed.
 
+use super::frobenius;
 use super::modes;
 use super::normal::Normal;
-use super::frobenius;
 use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::Springs;

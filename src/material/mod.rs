@@ -95,7 +95,8 @@ pub fn parse_pressure(text: &str) -> Result<f64> {
     let trimmed = text.trim();
     let digits = trimmed.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     // In "10e3" the last letter belongs to the number; in "10kPa" all letters are the unit.
-    let (number, unit) = if trimmed.parse::<f64>().is_ok() { (trimmed, "") } else { (digits, &trimmed[digits.len()..]) };
+    let (number, unit) =
+        if trimmed.parse::<f64>().is_ok() { (trimmed, "") } else { (digits, &trimmed[digits.len()..]) };
     let factor = match unit {
         "" | "Pa" => Some(1.0),
         "kPa" => Some(1e3),

@@ -40,8 +40,18 @@ impl BoxMesh {
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for cube in 0..self.cells.iter().product() {
             let mut rest = cube;
-            let corner: Vec<usize> = self.cells.iter().map(|n| { let i = rest % n; rest /= n; i }).collect();
-            for (part, at) in parts.iter().flat_map(|part| self.element.positions.chunks_exact(d).map(move |at| (part, at))) {
+            let corner: Vec<usize> = self
+                .cells
+                .iter()
+                .map(|n| {
+                    let i = rest % n;
+                    rest /= n;
+                    i
+                })
+                .collect();
+            for (part, at) in
+                parts.iter().flat_map(|part| self.element.positions.chunks_exact(d).map(move |at| (part, at)))
+            {
                 let unit = part.place(at);
                 let place: Vec<f64> = corner.iter().zip(&unit).map(|(c, u)| *c as f64 + u).collect();
                 let key = place.iter().map(|p| (p * (1u64 << 20) as f64).round() as u64).collect();
@@ -76,7 +86,11 @@ impl BoxMesh {
         }
         let total = self.cells.iter().try_fold(1usize, |a, &n| a.checked_mul(n)).unwrap_or(usize::MAX);
         if total == 0 || total > MOST_CELLS {
-            return Err(Error::expected("cells", format!("1 to {MOST_CELLS} cells in all"), format!("{:?}", self.cells)));
+            return Err(Error::expected(
+                "cells",
+                format!("1 to {MOST_CELLS} cells in all"),
+                format!("{:?}", self.cells),
+            ));
         }
         Ok(())
     }
@@ -134,9 +148,11 @@ fn parts(cell: Cell) -> Vec<Part> {
     };
     let walk = |order: &&[usize]| {
         let mut corner = vec![0.0; d];
-        let step = |&k: &usize| { corner[k] = 1.0; corner.clone() };
+        let step = |&k: &usize| {
+            corner[k] = 1.0;
+            corner.clone()
+        };
         Part { origin: vec![0.0; d], edges: order.iter().map(step).collect() }
     };
     orders.iter().map(walk).collect()
 }
-

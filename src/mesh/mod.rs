@@ -237,7 +237,8 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
         },
     };
     if element.nodes() != block.nodes_per_cell || element.dimension() != block.dimension {
-        let expected = format!("{} nodes in {} dimensions as in {}", element.nodes(), element.dimension(), element.name);
+        let expected =
+            format!("{} nodes in {} dimensions as in {}", element.nodes(), element.dimension(), element.name);
         let found = format!("{} nodes in {}", block.nodes_per_cell, block.dimension);
         return Err(Error::expected("cells", expected, found));
     }

@@ -43,8 +43,10 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
     let motions = d * (d + 1) / 2;
     let mut unheld = Vec::new();
     for body in bodies(mesh) {
-        let held: Vec<usize> = body.iter().flat_map(|p| p * d..(p + 1) * d).filter(|&dof| support.is_fixed(dof)).collect();
-        let centre: Vec<f64> = (0..d).map(|k| body.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / body.len() as f64).collect();
+        let held: Vec<usize> =
+            body.iter().flat_map(|p| p * d..(p + 1) * d).filter(|&dof| support.is_fixed(dof)).collect();
+        let centre: Vec<f64> =
+            (0..d).map(|k| body.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / body.len() as f64).collect();
         let extent = body.iter().map(|&p| crate::springs::distance(mesh.point(p), &centre)).fold(0.0, f64::max);
         // Translations e_k, then rotations in the planes (k, l), in units of the body's size.
         let mut modes = DMatrix::zeros(held.len().max(motions), motions);

@@ -26,12 +26,14 @@ pub fn network_csv(network: &Network) -> String {
 /// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
 pub fn network_json(mesh: &Mesh, masses: Option<&[f64]>, network: &Network) -> String {
     let kind = if network.dimension == 2 { "area" } else { "volume" };
-    let lengths = network.lengths.iter().map(|s| {
-        json!({ "kind": "length", "points": s.points, "constant": s.constant, "rest": s.rest })
-    });
-    let contents = network.contents.iter().map(|s| {
-        json!({ "kind": kind, "points": s.points, "constant": s.constant, "rest": s.rest })
-    });
+    let lengths = network
+        .lengths
+        .iter()
+        .map(|s| json!({ "kind": "length", "points": s.points, "constant": s.constant, "rest": s.rest }));
+    let contents = network
+        .contents
+        .iter()
+        .map(|s| json!({ "kind": kind, "points": s.points, "constant": s.constant, "rest": s.rest }));
     let value = json!({
         "units": { "length": "m", "mass": "kg", "length spring": "N/m", "area spring": "N/m^3", "volume spring": "N/m^5" },
         "points": mesh.points.chunks_exact(mesh.dimension).collect::<Vec<_>>(),

@@ -42,7 +42,8 @@ pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: 
     let mut grid = Grid { points: spatial(&mesh.points, mesh.dimension), ..Grid::default() };
     network.lengths.iter().for_each(|s| grid.push_cell(LINE, &s.points));
     network.contents.iter().for_each(|s| grid.push_cell(POINTS, &s.points));
-    let per_spring = |length: fn(&crate::model::LengthSpring) -> f64, content: fn(&crate::model::ContentSpring) -> f64| {
+    let per_spring = |length: fn(&crate::model::LengthSpring) -> f64,
+                      content: fn(&crate::model::ContentSpring) -> f64| {
         network.lengths.iter().map(length).chain(network.contents.iter().map(content)).collect()
     };
     let scalar = |name: &str, values| Array { name: name.into(), components: 1, values };

@@ -2,10 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::model::{Entries, Support};
+use faer::Side;
 use faer::prelude::{MatMut, Solve};
 use faer::sparse::linalg::solvers::{Llt, Lu};
 use faer::sparse::{SparseColMat, Triplet};
-use faer::Side;
 
 /// The equations of the free degrees of freedom.
 #[derive(Debug, Clone)]

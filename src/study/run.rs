@@ -140,9 +140,17 @@ pub fn fit_mesh(mesh: &Mesh, material: Material, named: &NamedFit, progress: &mu
     let mut fits: Vec<CellFits> = Vec::new();
     for block in &mesh.blocks {
         let springs = Springs::select(&block.element, named.springs.as_deref())?;
-        fits.push(fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &named.fit, &mut |n| {
-            progress(&named.name, done + n, total);
-        })?);
+        fits.push(fit_cells(
+            &block.element,
+            &springs,
+            &mesh.points,
+            &block.connectivity,
+            moduli,
+            &named.fit,
+            &mut |n| {
+                progress(&named.name, done + n, total);
+            },
+        )?);
         done += block.cells().len();
     }
     let seconds = start.elapsed().as_secs_f64();
@@ -261,7 +269,10 @@ impl Body {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?;
                 let factor = system.factorize().filter(Factor::is_positive_definite).ok_or_else(|| {
-                    Error::at("mesh", "the finite element stiffness is not positive definite: some motion has no stiffness")
+                    Error::at(
+                        "mesh",
+                        "the finite element stiffness is not positive definite: some motion has no stiffness",
+                    )
                 })?;
                 body.systems.push((system, factor));
                 body.system_of.push(body.systems.len() - 1);
@@ -309,7 +320,9 @@ impl Body {
             let displacement = displacement.map(|(u, _)| u);
             fit.loads.push(LoadOutcome {
                 name: case.name.clone(),
-                error: displacement.as_ref().and_then(|u| displacement_error(&self.displacements[i], u, mesh.dimension)),
+                error: displacement
+                    .as_ref()
+                    .and_then(|u| displacement_error(&self.displacements[i], u, mesh.dimension)),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,

@@ -251,12 +251,7 @@ impl Scene {
         let element = Arc::new(Element::load(&name).map_err(in_box)?);
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
-        let spec = BoxMesh {
-            element,
-            size: scaled(&entry.size),
-            cells: entry.cells.clone(),
-            origin: scaled(&origin),
-        };
+        let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
         spec.build().map_err(in_box)
     }
 
@@ -309,7 +304,9 @@ pub fn material_for(
             }
         }
         (_, Some(_)) => return Err(Error::at("plane", "expected a plane mesh, found a solid one")),
-        (_, None) if thickness.is_some() => return Err(Error::at("thickness", "expected a plane mesh, found a solid one")),
+        (_, None) if thickness.is_some() => {
+            return Err(Error::at("thickness", "expected a plane mesh, found a solid one"));
+        }
         _ => State::Solid,
     };
     Material::new(young, poisson, state)

@@ -26,7 +26,9 @@ impl Expr {
                     Function::Ln => Expr::power(x, -BigRational::one()),
                     Function::Sin => Expr::call(Function::Cos, x),
                     Function::Cos => Expr::call(Function::Sin, x).negated(),
-                    Function::Tan => Expr::sum([Expr::integer(1), Expr::power(self.clone(), BigRational::from_integer(2.into()))]),
+                    Function::Tan => {
+                        Expr::sum([Expr::integer(1), Expr::power(self.clone(), BigRational::from_integer(2.into()))])
+                    }
                     Function::Abs => Expr::product([x.clone(), Expr::power(self.clone(), -BigRational::one())]),
                 };
                 Expr::product([outer, inner])

@@ -69,8 +69,7 @@ impl Scope {
         let lexed = lex(text).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))?;
         let tree = evalexpr::build_operator_tree(&lexed.rewritten)
             .map_err(|e| Error::new(format!("\"{}\" is not an expression: {e}", shortened(text))))?;
-        self.walk(&tree, &lexed.literals)
-            .map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))
+        self.walk(&tree, &lexed.literals).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))
     }
 
     fn walk(&self, node: &Node, literals: &[BigRational]) -> Result<Parsed> {
