@@ -4,9 +4,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::error::{Error, Result};
 use springfit::fit::{Fit, Objective};
-use springfit::material::parse_pressure;
+use springfit::material::{Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, vtk};
-use springfit::study::{NamedFit, Plane, Scene, fit_mesh, load_elements, material_for, run, stages};
+use springfit::study::{NamedFit, Scene, fit_mesh, load_elements, run, stages};
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -51,9 +51,9 @@ struct FitArguments {
     /// Poisson's ratio
     #[arg(long, allow_negative_numbers = true)]
     poisson: f64,
-    /// frobenius, offdiag or modal
-    #[arg(long, default_value = "frobenius")]
-    objective: String,
+    /// frobenius, offdiag or modal [default: offdiag with --nonnegative]
+    #[arg(long)]
+    objective: Option<String>,
     /// Scale of the modes beyond constant strain (modal only)
     #[arg(long)]
     higher: Option<f64>,
@@ -137,7 +137,9 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         return Err(Error::expected("--output", "a file ending in .vtu, .json or .csv", arguments.output.display()));
     }
     let young = parse_pressure(&arguments.young).map_err(|e| e.under("--young"))?;
-    let objective = Objective::named(&arguments.objective, arguments.higher).map_err(|e| e.under("--objective"))?;
+    // Of the fits that serve every element alike, the one with the least error among those that always stand.
+    let chosen = arguments.objective.as_deref();
+    let objective = Objective::named(chosen.unwrap_or("offdiag"), arguments.higher)?;
     if !(arguments.scale > 0.0 && arguments.scale.is_finite()) {
         return Err(Error::expected("--scale", "a positive number of metres per mesh unit", arguments.scale));
     }
@@ -151,8 +153,8 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         PlaneArgument::Stress => Plane::Stress,
         PlaneArgument::Strain => Plane::Strain,
     });
-    let material = material_for(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)?;
-    let fit = Fit { objective, tied: arguments.tied, nonnegative: arguments.nonnegative };
+    let material = Material::for_body(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)?;
+    let fit = Fit { objective, tied: arguments.tied, nonnegative: arguments.nonnegative || chosen.is_none() };
     let mut bar = Bar::new();
     let named = NamedFit::new(fit, arguments.springs.clone());
     let outcome = fit_mesh(&mesh, material, &named, &mut |stage, done, total| bar.show(stage, done, total))?;

@@ -185,6 +185,34 @@ impl Geometry {
     }
 }
 
+/// Calls `visit(cell, x, geometry)` for every cell: `connectivity` is `[cells × nodes]` into `points`,
+/// `[points × dimension]`, m; `x` the positions of the cell's nodes.
+///
+/// # Errors
+/// The first cell that is reversed, tangled or flat, counted from 0.
+pub fn each_cell(
+    table: &Tabulation,
+    points: &[f64],
+    connectivity: &[usize],
+    mut visit: impl FnMut(usize, &[f64], &Geometry),
+) -> Result<(), (usize, Fault)> {
+    let mut geometry = Geometry::new(table);
+    let mut x = vec![0.0; table.nodes * table.dimension];
+    for (cell, nodes) in connectivity.chunks_exact(table.nodes).enumerate() {
+        gather(points, table.dimension, nodes, &mut x);
+        geometry.set(table, &x).map_err(|fault| (cell, fault))?;
+        visit(cell, &x, &geometry);
+    }
+    Ok(())
+}
+
+/// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
+pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
+    for (x, &node) in x.chunks_exact_mut(dimension).zip(nodes) {
+        x.copy_from_slice(&points[node * dimension..(node + 1) * dimension]);
+    }
+}
+
 /// `adj(J)` and `det J`, so that `J⁻¹ = adj(J)/det J`.
 fn adjugate<const D: usize>(j: &[[f64; D]; D]) -> ([[f64; D]; D], f64) {
     let mut a = [[0.0; D]; D];

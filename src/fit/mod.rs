@@ -15,7 +15,7 @@ use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::Springs;
-use crate::stiffness::Geometry;
+use crate::stiffness::{self, Geometry};
 use normal::Normal;
 
 /// How the constants of each element are chosen.
@@ -108,24 +108,13 @@ fn solve(fit: &Fit, springs: &Springs, normal: &mut Normal, constants: &mut Vec<
     rank
 }
 
-/// Calls `visit(cell, x, geometry)` for every cell.
+/// [`stiffness::each_cell`] with an error that names the cell.
 fn each_cell(
     element: &Element,
     points: &[f64],
     connectivity: &[usize],
-    mut visit: impl FnMut(usize, &[f64], &Geometry),
+    visit: impl FnMut(usize, &[f64], &Geometry),
 ) -> Result<()> {
-    let d = element.dimension();
-    let mut geometry = Geometry::new(&element.tabulation);
-    let mut x = vec![0.0; element.nodes() * d];
-    for (cell, nodes) in connectivity.chunks_exact(element.nodes()).enumerate() {
-        for (x, &node) in x.chunks_exact_mut(d).zip(nodes) {
-            x.copy_from_slice(&points[node * d..(node + 1) * d]);
-        }
-        geometry
-            .set(&element.tabulation, &x)
-            .map_err(|fault| Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string()))?;
-        visit(cell, &x, &geometry);
-    }
-    Ok(())
+    stiffness::each_cell(&element.tabulation, points, connectivity, visit)
+        .map_err(|(cell, fault)| Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string()))
 }

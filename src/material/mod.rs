@@ -1,6 +1,7 @@
 //! Isotropic linear elasticity.
 
 use crate::error::{Error, Result};
+use serde::Deserialize;
 
 /// How a plane body relates to the solid it stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,6 +12,14 @@ pub enum State {
     PlaneStress { thickness: f64 },
     /// No strain through the thickness (m).
     PlaneStrain { thickness: f64 },
+}
+
+/// The two plane states, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Plane {
+    Stress,
+    Strain,
 }
 
 /// An isotropic material that has been proved physical.
@@ -55,6 +64,34 @@ impl Material {
             positive("thickness", thickness, "m")?;
         }
         Ok(Material { young, poisson, state })
+    }
+
+    /// The material of a body of that dimension; in the plane `plane` defaults to stress and `thickness` to 1 m.
+    ///
+    /// # Errors
+    /// A constant is out of range, or a plane state or thickness is given for a solid.
+    pub fn for_body(
+        dimension: usize,
+        young: f64,
+        poisson: f64,
+        plane: Option<Plane>,
+        thickness: Option<f64>,
+    ) -> Result<Material> {
+        let state = match (dimension, plane) {
+            (2, plane) => {
+                let thickness = thickness.unwrap_or(1.0);
+                match plane {
+                    Some(Plane::Strain) => State::PlaneStrain { thickness },
+                    _ => State::PlaneStress { thickness },
+                }
+            }
+            (_, Some(_)) => return Err(Error::at("plane", "expected a plane mesh, found a solid one")),
+            (_, None) if thickness.is_some() => {
+                return Err(Error::at("thickness", "expected a plane mesh, found a solid one"));
+            }
+            _ => State::Solid,
+        };
+        Material::new(young, poisson, state)
     }
 
     pub fn young(&self) -> f64 {

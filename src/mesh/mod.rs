@@ -14,7 +14,7 @@ pub use source::{Format, MeshSource, SourceBlock};
 
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, Result};
-use crate::stiffness::{Fault, Geometry};
+use crate::stiffness::{Fault, Geometry, gather};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -193,13 +193,6 @@ impl Mesh {
     /// The coordinates of one point, m.
     pub fn point(&self, index: usize) -> &[f64] {
         &self.points[index * self.dimension..(index + 1) * self.dimension]
-    }
-}
-
-/// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
-pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
-    for (x, &node) in x.chunks_exact_mut(dimension).zip(nodes) {
-        x.copy_from_slice(&points[node * dimension..(node + 1) * dimension]);
     }
 }
 

@@ -3,7 +3,8 @@
 use super::system::each_cell;
 use crate::element::Tabulation;
 use crate::error::{Error, Result};
-use crate::mesh::{Mesh, Selection, SideIndex, gather};
+use crate::mesh::{Mesh, Selection, SideIndex};
+use crate::stiffness::gather;
 
 /// What acts on the selected part of the mesh; one entry per direction.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,21 +2,19 @@
 
 use super::Entries;
 use crate::material::Moduli;
-use crate::mesh::{Mesh, gather};
-use crate::stiffness::Geometry;
+use crate::mesh::Mesh;
+use crate::stiffness::{self, Geometry};
 use faer::sparse::Triplet;
 
 /// Calls `visit(block, nodes, geometry)` for every cell of the mesh.
 pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(usize, &[usize], &Geometry)) {
     for (index, block) in mesh.blocks.iter().enumerate() {
-        let table = &block.element.tabulation;
-        let mut geometry = Geometry::new(table);
-        let mut x = vec![0.0; table.nodes * mesh.dimension];
-        for nodes in block.cells() {
-            gather(&mesh.points, mesh.dimension, nodes, &mut x);
-            geometry.set(table, &x).expect("a mesh holds only cells with a volume");
-            visit(index, nodes, &geometry);
-        }
+        let n = block.element.nodes();
+        let visit = |cell, _: &[f64], geometry: &Geometry| {
+            visit(index, &block.connectivity[cell * n..(cell + 1) * n], geometry);
+        };
+        stiffness::each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, visit)
+            .expect("a mesh holds only cells with a volume");
     }
 }
 

@@ -6,4 +6,4 @@ mod scene;
 
 pub use metrics::{DisplacementError, displacement_error};
 pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
-pub use scene::{LoadCase, MeshInput, NamedFit, Output, Plane, Scene, load_elements, material_for};
+pub use scene::{BoxEntry, LoadCase, MeshInput, NamedFit, Output, Part, Scene, load_elements};

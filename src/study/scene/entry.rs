@@ -1,0 +1,245 @@
+//! The scene file as it is written, key by key, and what each entry must satisfy on its own.
+
+use super::{LoadCase, NamedFit, Part};
+use crate::error::{Error, Result};
+use crate::fit::{Fit, Objective};
+use crate::material::{Material, Plane, parse_pressure};
+use crate::model::Action;
+use serde::Deserialize;
+use serde::de::{self, Deserializer, Visitor};
+use std::fmt;
+use std::path::PathBuf;
+
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// The springs and displacements as VTU files.
+    pub vtu: bool,
+    /// The springs as a CSV file.
+    pub csv: bool,
+    /// report.json; written unless switched off.
+    pub report: Option<bool>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    pub title: Option<String>,
+    pub mesh: MeshInput,
+    pub material: MaterialEntry,
+    #[serde(default)]
+    pub fit: Vec<FitEntry>,
+    #[serde(default)]
+    pub fix: Vec<FixEntry>,
+    #[serde(default)]
+    pub load: Vec<LoadEntry>,
+    #[serde(default)]
+    pub output: Output,
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshInput {
+    /// Relative to the scene.
+    pub file: Option<PathBuf>,
+    #[serde(rename = "box")]
+    pub generated: Option<BoxEntry>,
+    /// Mesh units to metres.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Element files to look in before the shipped ones, relative to the scene.
+    #[serde(default)]
+    pub elements: Vec<PathBuf>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxEntry {
+    /// A shipped element's name, or a path relative to the scene that ends in .toml.
+    pub element: String,
+    pub size: Vec<f64>,
+    pub cells: Vec<usize>,
+    pub origin: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialEntry {
+    pub young: Pressure,
+    pub poisson: f64,
+    pub plane: Option<Plane>,
+    pub thickness: Option<f64>,
+    pub density: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitEntry {
+    pub name: Option<String>,
+    pub objective: String,
+    pub higher: Option<f64>,
+    pub springs: Option<Vec<String>>,
+    #[serde(default)]
+    pub tied: bool,
+    #[serde(default)]
+    pub nonnegative: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FixEntry {
+    pub group: Option<String>,
+    #[serde(rename = "where")]
+    pub condition: Option<String>,
+    /// Directions that are held; all if absent.
+    pub axes: Option<Vec<String>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoadEntry {
+    pub name: Option<String>,
+    pub group: Option<String>,
+    #[serde(rename = "where")]
+    pub condition: Option<String>,
+    pub traction: Option<Vec<f64>>,
+    pub force: Option<Vec<f64>>,
+    pub body: Option<Vec<f64>>,
+    pub displacement: Option<Vec<Given>>,
+}
+
+/// One direction of a prescribed displacement: a number of metres, or `"free"`.
+#[derive(Debug, Clone, Copy)]
+pub struct Given(pub Option<f64>);
+
+/// A number of Pa, or a text with a unit.
+#[derive(Debug, Clone, Copy)]
+pub struct Pressure(pub f64);
+
+fn one() -> f64 {
+    1.0
+}
+
+impl MaterialEntry {
+    /// What can be said before the dimension is known.
+    pub fn check(&self) -> Result<()> {
+        let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
+        // Plane stress admits more of ν than a solid; a solid is checked again when the mesh is known.
+        let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
+        Material::for_body(2, self.young.0, self.poisson, state, self.thickness).map_err(|e| e.under("material"))?;
+        match self.density {
+            Some(density) if !(density > 0.0 && density.is_finite()) => {
+                Err(Error::expected("material.density", "a positive number of kg/m³", density))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl FitEntry {
+    pub fn check(self) -> Result<NamedFit> {
+        let objective = Objective::named(&self.objective, self.higher)?;
+        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative };
+        let mut named = NamedFit::new(fit, self.springs);
+        if let Some(name) = self.name {
+            named.name = name;
+        }
+        Ok(named)
+    }
+}
+
+impl FixEntry {
+    pub fn check(self) -> Result<(Part, Option<Vec<usize>>)> {
+        let part = Part::named(self.group, self.condition)?;
+        if part == Part::Everything {
+            return Err(Error::new("expected \"group\" or \"where\", found neither"));
+        }
+        let axes = match self.axes {
+            None => None,
+            Some(axes) => {
+                let directions = axes.iter().map(|a| ["x", "y", "z"].iter().position(|k| k == a));
+                let directions: Option<Vec<usize>> = directions.collect();
+                let valid = directions.filter(|d| !d.is_empty());
+                Some(valid.ok_or_else(|| Error::expected("axes", "some of \"x\", \"y\", \"z\"", format!("{axes:?}")))?)
+            }
+        };
+        Ok((part, axes))
+    }
+}
+
+impl LoadEntry {
+    pub fn check(self, name: String) -> Result<LoadCase> {
+        let finite = |key: &str, v: Vec<f64>| match v.iter().find(|x| !x.is_finite()) {
+            Some(x) => Err(Error::expected(key, "finite numbers", x)),
+            None => Ok(v),
+        };
+        let mut actions = Vec::new();
+        if let Some(v) = self.traction {
+            actions.push(Action::Traction(finite("traction", v)?));
+        }
+        if let Some(v) = self.force {
+            actions.push(Action::Force(finite("force", v)?));
+        }
+        if let Some(v) = self.body {
+            actions.push(Action::Body(finite("body", v)?));
+        }
+        if let Some(v) = self.displacement {
+            actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
+        }
+        if actions.len() != 1 {
+            let expected = "one of \"traction\", \"force\", \"body\", \"displacement\"";
+            return Err(Error::new(format!("expected {expected}, found {}", actions.len())));
+        }
+        let action = actions.remove(0);
+        let part = Part::named(self.group, self.condition)?;
+        if part == Part::Everything && !matches!(action, Action::Body(_)) {
+            return Err(Error::new("expected \"group\" or \"where\", found neither"));
+        }
+        Ok(LoadCase { name, part, action })
+    }
+}
+
+impl<'de> Deserialize<'de> for Given {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Given, D::Error> {
+        struct GivenVisitor;
+        impl Visitor<'_> for GivenVisitor {
+            type Value = Given;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a finite number of metres or \"free\"")
+            }
+            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Given, E> {
+                Ok(Given(Some(v as f64)))
+            }
+            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Given, E> {
+                if v.is_finite() { Ok(Given(Some(v))) } else { Err(E::invalid_value(de::Unexpected::Float(v), &self)) }
+            }
+            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Given, E> {
+                if v == "free" { Ok(Given(None)) } else { Err(E::invalid_value(de::Unexpected::Str(v), &self)) }
+            }
+        }
+        deserializer.deserialize_any(GivenVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for Pressure {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Pressure, D::Error> {
+        struct PressureVisitor;
+        impl Visitor<'_> for PressureVisitor {
+            type Value = Pressure;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number of Pa or a text such as \"10kPa\"")
+            }
+            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Pressure, E> {
+                Ok(Pressure(v as f64))
+            }
+            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Pressure, E> {
+                Ok(Pressure(v))
+            }
+            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Pressure, E> {
+                parse_pressure(v).map(Pressure).map_err(|e| E::custom(e.problem()))
+            }
+        }
+        deserializer.deserialize_any(PressureVisitor)
+    }
+}

@@ -1,0 +1,223 @@
+//! The scene file.
+
+mod entry;
+
+pub use entry::{BoxEntry, MeshInput, Output};
+
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::file;
+use crate::fit::{Fit, Objective};
+use crate::material::Material;
+use crate::mesh::{BoxMesh, Mesh, MeshSource, Selection};
+use crate::model::Action;
+use crate::symbolic::Scope;
+use entry::{MaterialEntry, SceneFile};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A mesh, a material, fits, supports and loads; proved as far as it can be without reading the mesh.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    pub path: PathBuf,
+    pub title: String,
+    pub mesh: MeshInput,
+    material: MaterialEntry,
+    pub fits: Vec<NamedFit>,
+    /// The parts that are held, and in which directions (all if absent).
+    pub supports: Vec<(Part, Option<Vec<usize>>)>,
+    pub loads: Vec<LoadCase>,
+    pub output: Output,
+}
+
+/// A fit, what a report calls it, and the spring groups it uses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedFit {
+    pub name: String,
+    pub fit: Fit,
+    /// All groups that are not optional, if absent.
+    pub springs: Option<Vec<String>>,
+}
+
+#[derive(Debug, Clone)]
+pub struct LoadCase {
+    pub name: String,
+    pub part: Part,
+    pub action: Action,
+}
+
+/// A part of the mesh as a scene names it; a condition is parsed once the mesh's dimension is known.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    Group(String),
+    Where(String),
+    Everything,
+}
+
+impl Scene {
+    /// Reads and checks a scene.
+    ///
+    /// # Errors
+    /// Names the file, the key, what was expected and what was found.
+    pub fn load(path: &Path) -> Result<Scene> {
+        let text = file::read_text(path)?;
+        Scene::parse(&text, path).map_err(|e| e.in_file(path))
+    }
+
+    fn parse(text: &str, path: &Path) -> Result<Scene> {
+        let entry: SceneFile = file::parse_toml(text)?;
+        let mesh = entry.mesh;
+        if mesh.file.is_some() == mesh.generated.is_some() {
+            let found = if mesh.file.is_some() { "both" } else { "neither" };
+            return Err(Error::expected("mesh", "either \"file\" or \"box\"", found));
+        }
+        if !(mesh.scale > 0.0 && mesh.scale.is_finite()) {
+            return Err(Error::expected("mesh.scale", "a positive number of metres per mesh unit", mesh.scale));
+        }
+        if entry.fit.is_empty() {
+            return Err(Error::expected("fit", "at least one [[fit]]", "none"));
+        }
+        entry.material.check()?;
+        let mut fits: Vec<NamedFit> = Vec::new();
+        for (i, fit) in entry.fit.into_iter().enumerate() {
+            let fit = fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
+            if fits.iter().any(|f| f.name == fit.name) {
+                let expected = "a name of its own";
+                return Err(Error::expected(format!("fit[{i}].name"), expected, format!("\"{}\" again", fit.name)));
+            }
+            fits.push(fit);
+        }
+        let mut supports = Vec::new();
+        for (i, fix) in entry.fix.into_iter().enumerate() {
+            supports.push(fix.check().map_err(|e| e.under(format!("fix[{i}]")))?);
+        }
+        let mut loads: Vec<LoadCase> = Vec::new();
+        for (i, load) in entry.load.into_iter().enumerate() {
+            let name = load.name.clone().unwrap_or_else(|| format!("load {}", i + 1));
+            if loads.iter().any(|l| l.name == name) {
+                let expected = "a name of its own";
+                return Err(Error::expected(format!("load[{i}].name"), expected, format!("\"{name}\" again")));
+            }
+            loads.push(load.check(name).map_err(|e| e.under(format!("load[{i}]")))?);
+        }
+        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Scene {
+            path: path.to_path_buf(),
+            title: entry.title.unwrap_or(stem),
+            mesh,
+            material: entry.material,
+            fits,
+            supports,
+            loads,
+            output: entry.output,
+        })
+    }
+
+    /// Reads or generates the mesh.
+    ///
+    /// # Errors
+    /// The file or an element is wrong, or a cell has no volume.
+    pub fn build_mesh(&self) -> Result<Mesh> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        if let Some(file) = &self.mesh.file {
+            let own = load_elements(&self.mesh.elements, folder)?;
+            let path = folder.join(file);
+            let source = MeshSource::read(&path)?;
+            return Mesh::resolve(&source, &own, self.mesh.scale).map_err(|e| e.in_file(&path));
+        }
+        let entry = self.mesh.generated.as_ref().expect("a scene has a file or a box");
+        let name = if entry.element.ends_with(".toml") {
+            folder.join(&entry.element).to_string_lossy().into_owned()
+        } else {
+            entry.element.clone()
+        };
+        let in_box = |e: Error| if e.file().is_some() { e } else { e.under("mesh.box").in_file(&self.path) };
+        let element = Arc::new(Element::load(&name).map_err(in_box)?);
+        let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
+        let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
+        let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
+        spec.build().map_err(in_box)
+    }
+
+    /// The material of a body of that dimension.
+    ///
+    /// # Errors
+    /// A constant is out of range, or the plane state does not go with the dimension.
+    pub fn material(&self, dimension: usize) -> Result<Material> {
+        let entry = &self.material;
+        Material::for_body(dimension, entry.young.0, entry.poisson, entry.plane, entry.thickness)
+            .map_err(|e| e.under("material").in_file(&self.path))
+    }
+
+    /// kg/m³, where the scene gives one.
+    pub fn density(&self) -> Option<f64> {
+        self.material.density
+    }
+
+    /// Names the scene in an error about one of its entries.
+    pub fn at(&self, key: &str, error: Error) -> Error {
+        error.under(key).in_file(&self.path)
+    }
+}
+
+/// The element files, each on its own or relative to `folder`.
+///
+/// # Errors
+/// A file is missing or wrong.
+pub fn load_elements(paths: &[PathBuf], folder: &Path) -> Result<Vec<Arc<Element>>> {
+    paths.iter().map(|p| Element::load(&folder.join(p).to_string_lossy()).map(Arc::new)).collect()
+}
+
+impl NamedFit {
+    /// The fit under the name that says what it does, such as `modal 0.1 +bulk`.
+    pub fn new(fit: Fit, springs: Option<Vec<String>>) -> NamedFit {
+        NamedFit { name: fit_name(&fit, springs.as_deref()), fit, springs }
+    }
+}
+
+fn fit_name(fit: &Fit, springs: Option<&[String]>) -> String {
+    let mut name = fit.objective.name().to_string();
+    if let Objective::Modal { higher } = fit.objective {
+        name += &format!(" {higher}");
+    }
+    for group in springs.unwrap_or_default() {
+        name += &format!(" +{group}");
+    }
+    if fit.tied {
+        name += " tied";
+    }
+    if fit.nonnegative {
+        name += " k>=0";
+    }
+    name
+}
+
+impl Part {
+    pub(super) fn named(group: Option<String>, condition: Option<String>) -> Result<Part> {
+        match (group, condition) {
+            (Some(_), Some(_)) => Err(Error::new("expected \"group\" or \"where\", found both")),
+            (Some(name), None) => Ok(Part::Group(name)),
+            (None, Some(text)) => {
+                // Fails early on what is wrong in any dimension.
+                Scope::new(&["x", "y", "z"]).predicate(&text).map_err(|e| e.under("where"))?;
+                Ok(Part::Where(text))
+            }
+            (None, None) => Ok(Part::Everything),
+        }
+    }
+
+    /// The part as a selection of a mesh of that dimension.
+    ///
+    /// # Errors
+    /// The condition names z in the plane.
+    pub fn selection(&self, dimension: usize) -> Result<Selection> {
+        Ok(match self {
+            Part::Group(name) => Selection::Group(name.clone()),
+            Part::Where(text) => {
+                let scope = Scope::new(&["x", "y", "z"][..dimension]);
+                Selection::Where(scope.predicate(text).map_err(|e| e.under("where"))?)
+            }
+            Part::Everything => Selection::Everything,
+        })
+    }
+}
