@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+
 pub mod element;
 pub mod error;
 mod file;

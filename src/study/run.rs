@@ -105,6 +105,7 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
 pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     let mesh = scene.build_mesh()?;
     let material = scene.material(mesh.dimension)?;
+    drawable(scene, &mesh)?;
     let cases = load_cases(scene, &mesh, material)?;
     let mut outcome = Outcome {
         scene: scene.title.clone(),
@@ -126,6 +127,17 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     }
     outcome.fem = body.displacements;
     Ok(outcome)
+}
+
+/// Asked for before the work, not after it.
+fn drawable(scene: &Scene, mesh: &Mesh) -> Result<()> {
+    match mesh.blocks.iter().find(|b| scene.output.vtu && b.element.formats.vtk.is_none()) {
+        Some(block) => {
+            let expected = "elements that name their VTK type in [formats]";
+            Err(Error::expected("output.vtu", expected, &block.element.name).in_file(&scene.path))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Fits one objective on every cell and assembles the network.
