@@ -3,6 +3,7 @@
 use crate::element::Tabulation;
 use crate::material::Moduli;
 use nalgebra::DMatrix;
+use std::array::from_fn;
 
 /// Where a Jacobian determinant counts as zero: this fraction of the largest that its columns' lengths allow is lost
 /// in the rounding of the determinant itself.
@@ -46,30 +47,29 @@ impl Geometry {
     /// # Errors
     /// The element is reversed, tangled or flat.
     pub fn set(&mut self, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
-        match self.dimension {
-            2 => self.set_in::<2>(table, x),
-            3 => self.set_in::<3>(table, x),
-            _ => self.set_in::<1>(table, x),
+        // A number of nodes known at compile time unrolls the loops, which for few nodes are all overhead.
+        match (self.dimension, self.nodes) {
+            (2, 3) => self.set_in::<2>(3, table, x),
+            (2, 4) => self.set_in::<2>(4, table, x),
+            (3, 4) => self.set_in::<3>(4, table, x),
+            (3, 8) => self.set_in::<3>(8, table, x),
+            (2, n) => self.set_in::<2>(n, table, x),
+            (3, n) => self.set_in::<3>(n, table, x),
+            (_, n) => self.set_in::<1>(n, table, x),
         }
     }
 
-    fn set_in<const D: usize>(&mut self, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
-        let n = self.nodes;
-        let (x, _) = x.as_chunks::<D>();
+    #[inline(always)]
+    fn set_in<const D: usize>(&mut self, n: usize, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
+        let x = &x.as_chunks::<D>().0[..n];
         let (mut positive, mut negative) = (0, 0);
         let reference = table.gradients.chunks_exact(n * D);
         let physical = self.gradients.chunks_exact_mut(n * D);
         for (((dn, grad), volume), w) in reference.zip(physical).zip(&mut self.volumes).zip(&table.weights) {
-            let (dn, grad) = (dn.as_chunks::<D>().0, grad.as_chunks_mut::<D>().0);
+            let (dn, grad) = (&dn.as_chunks::<D>().0[..n], &mut grad.as_chunks_mut::<D>().0[..n]);
             // J_kl = ∂x_k/∂ξ_l = Σ_a x_ak ∂N_a/∂ξ_l
-            let mut j = [[0.0; D]; D];
-            for (xa, dna) in x.iter().zip(dn) {
-                for k in 0..D {
-                    for l in 0..D {
-                        j[k][l] += xa[k] * dna[l];
-                    }
-                }
-            }
+            let entry = |k: usize, l: usize| (0..n).map(|a| x[a][k] * dn[a][l]).sum::<f64>();
+            let j: [[f64; D]; D] = from_fn(|k| from_fn(|l| entry(k, l)));
             let (adjugate, determinant) = adjugate(&j);
             let bound: f64 = (0..D).map(|l| (0..D).map(|k| j[k][l] * j[k][l]).sum::<f64>()).product();
             // A product of squares may leave the range of f64 where the determinant does not.
@@ -87,9 +87,7 @@ impl Geometry {
             // ∂N_a/∂x_k = Σ_l ∂N_a/∂ξ_l (J⁻¹)_lk
             let inverse = 1.0 / determinant;
             for (ga, dna) in grad.iter_mut().zip(dn) {
-                for k in 0..D {
-                    ga[k] = (0..D).map(|l| dna[l] * adjugate[l][k]).sum::<f64>() * inverse;
-                }
+                *ga = from_fn(|k| inverse * (0..D).map(|l| dna[l] * adjugate[l][k]).sum::<f64>());
             }
         }
         match (positive, negative, self.volumes.len()) {
@@ -140,14 +138,10 @@ impl Geometry {
         let u = u.as_chunks::<D>().0;
         let mut energy = 0.0;
         for (grad, v) in self.gradients.chunks_exact(self.nodes * D).zip(&self.volumes) {
-            let mut h = [[0.0; D]; D];
-            for (ua, ga) in u.iter().zip(grad.as_chunks::<D>().0) {
-                for k in 0..D {
-                    for l in 0..D {
-                        h[k][l] += ua[k] * ga[l];
-                    }
-                }
-            }
+            let entry = |k: usize, l: usize| {
+                u.iter().zip(grad.as_chunks::<D>().0).map(|(ua, ga)| ua[k] * ga[l]).sum::<f64>()
+            };
+            let h: [[f64; D]; D] = from_fn(|k| from_fn(|l| entry(k, l)));
             let (mut trace, mut squares) = (0.0, 0.0);
             for k in 0..D {
                 trace += h[k][k];
@@ -214,22 +208,18 @@ pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) 
 }
 
 /// `adj(J)` and `det J`, so that `J⁻¹ = adj(J)/det J`.
+#[inline(always)]
 fn adjugate<const D: usize>(j: &[[f64; D]; D]) -> ([[f64; D]; D], f64) {
     let mut a = [[0.0; D]; D];
+    let minor = |p: usize, q: usize, r: usize, s: usize| j[p][r] * j[q][s] - j[p][s] * j[q][r];
     match D {
-        2 => {
-            (a[0][0], a[0][1], a[1][0], a[1][1]) = (j[1][1], -j[0][1], -j[1][0], j[0][0]);
+        1 => a[0][0] = 1.0,
+        2 => (a[0][0], a[0][1], a[1][0], a[1][1]) = (j[1][1], -j[0][1], -j[1][0], j[0][0]),
+        _ => {
+            (a[0][0], a[1][0], a[2][0]) = (minor(1, 2, 1, 2), minor(1, 2, 2, 0), minor(1, 2, 0, 1));
+            (a[0][1], a[1][1], a[2][1]) = (minor(2, 0, 1, 2), minor(2, 0, 2, 0), minor(2, 0, 0, 1));
+            (a[0][2], a[1][2], a[2][2]) = (minor(0, 1, 1, 2), minor(0, 1, 2, 0), minor(0, 1, 0, 1));
         }
-        3 => {
-            for k in 0..3 {
-                let (p, q) = ((k + 1) % 3, (k + 2) % 3);
-                for l in 0..3 {
-                    let (r, s) = ((l + 1) % 3, (l + 2) % 3);
-                    a[l][k] = j[p][r] * j[q][s] - j[p][s] * j[q][r];
-                }
-            }
-        }
-        _ => a[0][0] = 1.0,
     }
     let determinant = (0..D).map(|l| j[0][l] * a[l][0]).sum();
     (a, determinant)

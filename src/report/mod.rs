@@ -21,15 +21,15 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The folder or a file cannot be written.
 pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Result<Vec<PathBuf>> {
+    let stems = file_stems(outcome.fits.iter().map(|f| f.fit.name.as_str()));
     let mut written = Vec::new();
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if output.report != Some(false) {
         files.push((folder.join("report.json"), report(outcome).into_bytes()));
     }
     if output.csv {
-        for fit in &outcome.fits {
-            let text = network_csv(&fit.network);
-            files.push((folder.join(format!("{}.csv", file_stem(&fit.fit.name))), text.into_bytes()));
+        for (fit, stem) in outcome.fits.iter().zip(&stems) {
+            files.push((folder.join(format!("{stem}.csv")), network_csv(&fit.network).into_bytes()));
         }
     }
     if !files.is_empty() || output.vtu {
@@ -43,8 +43,8 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         let mesh = folder.join("mesh.vtu");
         vtk::write(&mesh, &displacement_grid(outcome))?;
         written.push(mesh);
-        for fit in &outcome.fits {
-            let path = folder.join(format!("{}.vtu", file_stem(&fit.fit.name)));
+        for (fit, stem) in outcome.fits.iter().zip(&stems) {
+            let path = folder.join(format!("{stem}.vtu"));
             vtk::write(&path, &network_grid(&outcome.mesh, outcome.masses.as_deref(), fit, &outcome.fem))?;
             written.push(path);
         }
@@ -52,9 +52,25 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     Ok(written)
 }
 
-/// A fit's name as part of a file name: `modal 0.1 +bulk` is `modal-0.1-bulk`.
-fn file_stem(name: &str) -> String {
-    let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
-    let dashed: String = name.chars().map(kept).collect();
-    dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+/// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
+fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut stems = vec!["mesh".to_string()];
+    for name in names {
+        let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
+        let dashed: String = name.chars().map(kept).collect();
+        let stem = dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
+        let numbered = (2..).map(|i| format!("{stem}-{i}"));
+        let free = std::iter::once(stem.clone()).chain(numbered).find(|s| !s.is_empty() && !stems.contains(s));
+        stems.extend(free);
+    }
+    stems.split_off(1)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn each_fit_has_a_file_of_its_own() {
+        let names = ["modal 0.1 +bulk", "modal 0.1 bulk", "mesh", "±"];
+        assert_eq!(super::file_stems(names.into_iter()), ["modal-0.1-bulk", "modal-0.1-bulk-2", "mesh-2", "-2"]);
+    }
 }

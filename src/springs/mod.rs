@@ -18,8 +18,8 @@ pub struct Springs {
     /// The group of each spring, as an index into `names`.
     pub groups: Vec<usize>,
     pub names: Vec<String>,
-    /// Length springs that share a node: `(s, t, sign)`, s < t, `g_s · g_t = sign · n_s · n_t`.
-    pub(crate) touching: Vec<(usize, usize, f64)>,
+    /// Length springs that share a node: `(s, t)`, s < t, `(g_s · g_t)² = (n_s · n_t)²`; all others are orthogonal.
+    pub(crate) touching: Vec<(usize, usize)>,
 }
 
 impl Springs {
@@ -92,16 +92,7 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt()
 }
 
-fn touching(pairs: &[[usize; 2]]) -> Vec<(usize, usize, f64)> {
-    let mut touching = Vec::new();
-    for (t, &[c, d]) in pairs.iter().enumerate() {
-        for (s, &[a, b]) in pairs[..t].iter().enumerate() {
-            if a == c || b == d {
-                touching.push((s, t, 1.0));
-            } else if a == d || b == c {
-                touching.push((s, t, -1.0));
-            }
-        }
-    }
-    touching
+fn touching(pairs: &[[usize; 2]]) -> Vec<(usize, usize)> {
+    let share = |s: usize, t: usize| pairs[s].iter().any(|node| pairs[t].contains(node));
+    (0..pairs.len()).flat_map(|t| (0..t).filter(move |&s| share(s, t)).map(move |s| (s, t))).collect()
 }
