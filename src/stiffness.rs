@@ -138,9 +138,8 @@ impl Geometry {
         let u = u.as_chunks::<D>().0;
         let mut energy = 0.0;
         for (grad, v) in self.gradients.chunks_exact(self.nodes * D).zip(&self.volumes) {
-            let entry = |k: usize, l: usize| {
-                u.iter().zip(grad.as_chunks::<D>().0).map(|(ua, ga)| ua[k] * ga[l]).sum::<f64>()
-            };
+            let entry =
+                |k: usize, l: usize| u.iter().zip(grad.as_chunks::<D>().0).map(|(ua, ga)| ua[k] * ga[l]).sum::<f64>();
             let h: [[f64; D]; D] = from_fn(|k| from_fn(|l| entry(k, l)));
             let (mut trace, mut squares) = (0.0, 0.0);
             for k in 0..D {

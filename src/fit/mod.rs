@@ -17,6 +17,12 @@ use crate::material::Moduli;
 use crate::springs::Springs;
 use crate::stiffness::{self, Geometry};
 use normal::Normal;
+use rayon::prelude::*;
+
+/// Cells that one thread fits in one go.
+const CHUNK: usize = 512;
+/// Cells between two reports of progress.
+const ROUND: usize = 64 * CHUNK;
 
 /// How the constants of each element are chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,23 +65,32 @@ pub fn fit_cells(
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
-    let cells = connectivity.len() / element.nodes();
-    let mut fits =
-        CellFits { springs: springs.clone(), constants: Vec::with_capacity(cells * springs.len()), deficient: 0 };
-    if springs.is_empty() {
+    let (n, m) = (element.nodes(), springs.len());
+    let cells = connectivity.len() / n;
+    let mut fits = CellFits { springs: springs.clone(), constants: vec![0.0; cells * m], deficient: 0 };
+    if m == 0 {
         return Ok(fits);
     }
-    let mut normal = Normal::default();
-    each_cell(element, points, connectivity, |cell, x, geometry| {
-        fit.objective.normal_equations(springs, x, geometry, moduli, &mut normal);
-        if solve(fit, springs, &mut normal, &mut fits.constants) == Rank::Deficient {
-            fits.deficient += 1;
+    let chunk = |first: usize, nodes: &[usize], constants: &mut [f64]| {
+        let mut normal = Normal::default();
+        let mut deficient = 0;
+        each_cell(element, points, nodes, first, |cell, x, geometry| {
+            fit.objective.normal_equations(springs, x, geometry, moduli, &mut normal);
+            let rank = solve(fit, springs, &mut normal, &mut constants[cell * m..(cell + 1) * m]);
+            deficient += usize::from(rank == Rank::Deficient);
+        })?;
+        Ok(deficient)
+    };
+    let rounds = connectivity.chunks(ROUND * n).zip(fits.constants.chunks_mut(ROUND * m));
+    for (round, (nodes, constants)) in rounds.enumerate() {
+        let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m)).enumerate();
+        let results: Vec<Result<usize>> =
+            chunks.map(|(i, (nodes, constants))| chunk(round * ROUND + i * CHUNK, nodes, constants)).collect();
+        for deficient in results {
+            fits.deficient += deficient?;
         }
-        if cell % 1024 == 1023 {
-            progress(cell + 1);
-        }
-    })?;
-    progress(cells);
+        progress(((round + 1) * ROUND).min(cells));
+    }
     Ok(fits)
 }
 
@@ -88,8 +103,8 @@ pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Modu
     Ok(fit_cells(element, springs, x, &connectivity, moduli, fit, &mut |_| {})?.constants)
 }
 
-/// Appends the solution to `constants`.
-fn solve(fit: &Fit, springs: &Springs, normal: &mut Normal, constants: &mut Vec<f64>) -> Rank {
+/// Writes the solution into `constants`, `[springs]`.
+fn solve(fit: &Fit, springs: &Springs, normal: &mut Normal, constants: &mut [f64]) -> Rank {
     let mut tied = fit.tied.then(|| normal.tied(&springs.groups, springs.names.len()));
     let equations = tied.as_mut().unwrap_or(normal);
     let (solution, rank);
@@ -101,20 +116,21 @@ fn solve(fit: &Fit, springs: &Springs, normal: &mut Normal, constants: &mut Vec<
         &equations.rhs
     };
     if fit.tied {
-        constants.extend(springs.groups.iter().map(|&group| k[group]));
+        constants.iter_mut().zip(&springs.groups).for_each(|(constant, &group)| *constant = k[group]);
     } else {
-        constants.extend_from_slice(k);
+        constants.copy_from_slice(k);
     }
     rank
 }
 
-/// [`stiffness::each_cell`] with an error that names the cell.
+/// [`stiffness::each_cell`] with an error that names the cell, the first being number `first` (from 0) of its block.
 fn each_cell(
     element: &Element,
     points: &[f64],
     connectivity: &[usize],
+    first: usize,
     visit: impl FnMut(usize, &[f64], &Geometry),
 ) -> Result<()> {
     stiffness::each_cell(&element.tabulation, points, connectivity, visit)
-        .map_err(|(cell, fault)| Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string()))
+        .map_err(|(cell, fault)| Error::at(format!("{} cell {}", element.name, first + cell + 1), fault.to_string()))
 }

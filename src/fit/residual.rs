@@ -1,10 +1,11 @@
 //! How far the springs of an element are from its stiffness.
 
-use super::{CellFits, each_cell};
+use super::{CHUNK, CellFits, each_cell};
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::Moduli;
 use nalgebra::{DMatrix, DVectorView};
+use rayon::prelude::*;
 
 /// Mean and largest over the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,22 +48,31 @@ pub fn element_errors(
     moduli: Moduli,
     fits: &CellFits,
 ) -> Result<ElementErrors> {
-    let size = element.nodes() * element.dimension();
+    let (n, size) = (element.nodes(), element.nodes() * element.dimension());
     let m = fits.springs.len();
-    let mut errors = ElementErrors::default();
-    let mut g = Vec::new();
-    each_cell(element, points, connectivity, |cell, x, geometry| {
-        let r = geometry.stiffness(moduli);
-        let mut difference = r.clone();
-        fits.springs.gradients(x, geometry, &mut g);
-        for (g, k) in g.chunks_exact(size).zip(&fits.constants[cell * m..]) {
-            let g = DVectorView::from_slice(g, size);
-            difference.ger(-k, &g, &g, 1.0);
-        }
-        errors.frobenius.push(difference.norm() / r.norm());
-        errors.spectral.push(spectral_norm(difference) / spectral_norm(r));
-    })?;
-    Ok(errors)
+    let chunk = |(i, nodes): (usize, &[usize])| {
+        let first = i * CHUNK;
+        let mut errors = ElementErrors::default();
+        let mut g = Vec::new();
+        each_cell(element, points, nodes, first, |cell, x, geometry| {
+            let r = geometry.stiffness(moduli);
+            let mut difference = r.clone();
+            fits.springs.gradients(x, geometry, &mut g);
+            for (g, k) in g.chunks_exact(size).zip(&fits.constants[(first + cell) * m..]) {
+                let g = DVectorView::from_slice(g, size);
+                difference.ger(-k, &g, &g, 1.0);
+            }
+            errors.frobenius.push(difference.norm() / r.norm());
+            errors.spectral.push(spectral_norm(difference) / spectral_norm(r));
+        })?;
+        Ok(errors)
+    };
+    let chunks: Vec<Result<ElementErrors>> = connectivity.par_chunks(CHUNK * n).enumerate().map(chunk).collect();
+    let mut all = ElementErrors::default();
+    for errors in chunks {
+        all.extend(errors?);
+    }
+    Ok(all)
 }
 
 fn spectral_norm(symmetric: DMatrix<f64>) -> f64 {

@@ -1,0 +1,292 @@
+//! What every element file must give, at random distorted shapes.
+
+use nalgebra::{DMatrix, DVector};
+use springfit::element::{Element, SHIPPED};
+use springfit::material::{Material, Plane};
+use springfit::mesh::{BoxMesh, Mesh, Selection};
+use springfit::model::{Support, finite_elements};
+use springfit::solve::System;
+use springfit::springs::Springs;
+use springfit::stiffness::{Fault, Geometry};
+use std::sync::Arc;
+
+/// A repeatable source of numbers in [-1, 1].
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn elements() -> Vec<Element> {
+    SHIPPED.iter().map(|s| s.load().unwrap()).collect()
+}
+
+/// Reference positions under a random affine map of positive determinant, each node moved by up to 5 % of the size.
+fn distorted(element: &Element, random: &mut Random) -> Vec<f64> {
+    let d = element.dimension();
+    loop {
+        let map = DMatrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)) + 0.4 * random.next());
+        if map.determinant() < 0.3 {
+            continue;
+        }
+        let place = |at: &[f64]| (&map * DVector::from_column_slice(at)).as_slice().to_vec();
+        let mut x: Vec<f64> = element.positions.chunks_exact(d).flat_map(place).collect();
+        x.iter_mut().for_each(|x| *x += 0.05 * random.next());
+        return x;
+    }
+}
+
+fn materials(dimension: usize) -> Vec<Material> {
+    let planes = if dimension == 2 { vec![Some(Plane::Stress), Some(Plane::Strain)] } else { vec![None] };
+    let ratios = [-0.6, 0.0, 0.3, 0.45];
+    let each = |plane: &Option<Plane>| ratios.map(|nu| Material::for_body(dimension, 1e4, nu, *plane, None).unwrap());
+    planes.iter().flat_map(each).collect()
+}
+
+fn geometry(element: &Element, x: &[f64]) -> Geometry {
+    let mut geometry = Geometry::new(&element.tabulation);
+    geometry.set(&element.tabulation, x).unwrap();
+    geometry
+}
+
+/// Translations and infinitesimal rotations, `[motions][nodes × dimension]`.
+fn rigid_motions(x: &[f64], d: usize) -> Vec<Vec<f64>> {
+    let field = |f: &dyn Fn(&[f64], usize) -> f64| -> Vec<f64> {
+        x.chunks_exact(d).flat_map(|x| (0..d).map(|k| f(x, k)).collect::<Vec<_>>()).collect()
+    };
+    let mut motions: Vec<Vec<f64>> = (0..d).map(|e| field(&|_, k| f64::from(u8::from(k == e)))).collect();
+    for i in 0..d {
+        for j in 0..i {
+            let turn = |x: &[f64], k: usize| {
+                if k == i {
+                    x[j]
+                } else if k == j {
+                    -x[i]
+                } else {
+                    0.0
+                }
+            };
+            motions.push(field(&turn));
+        }
+    }
+    motions
+}
+
+/// Central differences of step 1e-5 err by about 1e-10 for functions of size one.
+#[test]
+fn gradients_are_those_of_differences() {
+    for element in elements() {
+        let d = element.dimension();
+        let mut random = Random(1);
+        for _ in 0..20 {
+            let at: Vec<f64> = (0..d).map(|_| 0.3 * (1.0 + random.next()) / d as f64).collect();
+            let sum: f64 = element.functions.values.iter().map(|n| n.evaluate(&at)).sum();
+            assert!((sum - 1.0).abs() < 1e-14, "{}", element.name);
+            for (n, gradient) in element.functions.values.iter().zip(&element.functions.gradients) {
+                for k in 0..d {
+                    let moved = |h: f64| {
+                        let mut at = at.clone();
+                        at[k] += h;
+                        n.evaluate(&at)
+                    };
+                    let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+                    assert!((gradient[k].evaluate(&at) - difference).abs() < 1e-8, "{}", element.name);
+                }
+            }
+        }
+    }
+}
+
+/// R is symmetric, vanishes on rigid motions, is positive on all others (rank 2n − 3, 3n − 6), equals the energy form
+/// and `∫ Bᵀ D B`, computed here in Voigt notation. Rounding of a few hundred products is below 1e-12 of ‖R‖.
+#[test]
+fn stiffness_is_symmetric_and_of_full_rank() {
+    for element in elements() {
+        let (d, n) = (element.dimension(), element.nodes());
+        let mut random = Random(2);
+        for _ in 0..20 {
+            let x = distorted(&element, &mut random);
+            let geometry = geometry(&element, &x);
+            for material in materials(d) {
+                let moduli = material.moduli();
+                let r = geometry.stiffness(moduli);
+                let size = r.norm();
+                assert!((&r - r.transpose()).norm() == 0.0);
+                for u in rigid_motions(&x, d) {
+                    assert!((&r * DVector::from_vec(u)).norm() < 1e-12 * size, "{}", element.name);
+                }
+                let eigenvalues = r.clone().symmetric_eigenvalues();
+                let positive = eigenvalues.iter().filter(|e| **e > 1e-9 * size).count();
+                assert_eq!(positive, n * d - d * (d + 1) / 2, "{} nu {}", element.name, material.poisson());
+                assert!(eigenvalues.min() > -1e-12 * size);
+                let u = DVector::from_fn(n * d, |_, _| random.next());
+                let energy = geometry.energy(moduli, u.as_slice());
+                assert!((energy - (&r * &u).dot(&u)).abs() < 1e-11 * energy);
+                assert!((&r - voigt(&geometry, moduli.lambda, moduli.mu)).norm() < 1e-12 * size);
+            }
+        }
+    }
+}
+
+fn voigt(geometry: &Geometry, lambda: f64, mu: f64) -> DMatrix<f64> {
+    let (d, n) = (geometry.dimension, geometry.nodes);
+    let shears: Vec<(usize, usize)> = (0..d).flat_map(|i| (0..i).map(move |j| (i, j))).collect();
+    let rows = d + shears.len();
+    let elasticity = DMatrix::from_fn(rows, rows, |i, j| match (i < d && j < d, i == j) {
+        (true, same) => lambda + if same { 2.0 * mu } else { 0.0 },
+        (false, same) => {
+            if same {
+                mu
+            } else {
+                0.0
+            }
+        }
+    });
+    let mut r = DMatrix::zeros(n * d, n * d);
+    for (gradients, v) in geometry.gradients.chunks_exact(n * d).zip(&geometry.volumes) {
+        let mut b = DMatrix::zeros(rows, n * d);
+        for a in 0..n {
+            for k in 0..d {
+                b[(k, a * d + k)] = gradients[a * d + k];
+            }
+            for (row, &(i, j)) in shears.iter().enumerate() {
+                b[(d + row, a * d + i)] = gradients[a * d + j];
+                b[(d + row, a * d + j)] = gradients[a * d + i];
+            }
+        }
+        r += *v * b.transpose() * &elasticity * b;
+    }
+    r
+}
+
+#[test]
+fn springs_feel_no_rigid_motion() {
+    for element in elements() {
+        let names: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
+        let springs = Springs::select(&element, Some(&names)).unwrap();
+        let mut random = Random(3);
+        let x = distorted(&element, &mut random);
+        let mut g = Vec::new();
+        springs.gradients(&x, &geometry(&element, &x), &mut g);
+        for g in g.chunks_exact(x.len()) {
+            for u in rigid_motions(&x, element.dimension()) {
+                let c: f64 = g.iter().zip(&u).map(|(g, u)| g * u).sum();
+                assert!(c.abs() < 1e-13, "{}: {c}", element.name);
+            }
+        }
+    }
+}
+
+/// `∫ ∇N dV` is the gradient of the content: differences of step 1e-5 of a polynomial of size ten.
+#[test]
+fn content_gradient_is_that_of_differences() {
+    for element in elements() {
+        let x = distorted(&element, &mut Random(4));
+        let gradient = geometry(&element, &x).content_gradient();
+        for i in 0..x.len() {
+            let moved = |h: f64| {
+                let mut x = x.clone();
+                x[i] += h;
+                geometry(&element, &x).content()
+            };
+            assert!(((moved(1e-5) - moved(-1e-5)) / 2e-5 - gradient[i]).abs() < 1e-8, "{}", element.name);
+        }
+    }
+}
+
+#[test]
+fn the_reflection_turns_an_element_inside_out() {
+    for element in elements() {
+        let d = element.dimension();
+        let x = distorted(&element, &mut Random(5));
+        let order = element.reflection.clone().unwrap();
+        let turned: Vec<f64> = order.iter().flat_map(|&a| x[a * d..(a + 1) * d].to_vec()).collect();
+        let mut room = Geometry::new(&element.tabulation);
+        assert_eq!(room.set(&element.tabulation, &turned), Err(Fault::Reversed), "{}", element.name);
+    }
+}
+
+fn patch(element: Element, random: &mut Random) -> Mesh {
+    let d = element.dimension();
+    let spec = BoxMesh { element: Arc::new(element), size: vec![1.0; d], cells: vec![3; d], origin: vec![0.0; d] };
+    let mut mesh = spec.build().unwrap();
+    for p in 0..mesh.point_count() {
+        if mesh.point(p).iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9) {
+            (0..d).for_each(|k| mesh.points[p * d + k] += 0.05 * random.next());
+        }
+    }
+    mesh
+}
+
+/// A linear displacement prescribed on the boundary of a distorted patch is the solution inside, and its stress is the
+/// uniform one of the material. The condition of the patch costs three of sixteen digits.
+#[test]
+fn distorted_patches_carry_uniform_strain() {
+    for element in elements() {
+        let d = element.dimension();
+        let mut random = Random(6);
+        let mesh = patch(element, &mut random);
+        for material in materials(d) {
+            let strain: Vec<f64> = (0..d * d).map(|_| 0.01 * random.next()).collect();
+            let linear = |x: &[f64], k: usize| (0..d).map(|l| strain[k * d + l] * x[l]).sum::<f64>();
+            let mut support = Support::free(&mesh);
+            let mut exact = vec![0.0; mesh.points.len()];
+            let mut inside = 0;
+            for p in 0..mesh.point_count() {
+                let x = mesh.point(p);
+                let boundary = x.iter().any(|x| x.abs() < 1e-9 || (x - 1.0).abs() < 1e-9);
+                inside += usize::from(!boundary);
+                for k in 0..d {
+                    exact[p * d + k] = linear(x, k);
+                    if boundary {
+                        support.prescribed[p * d + k] = Some(exact[p * d + k]);
+                    }
+                }
+            }
+            assert!(inside > 0);
+            let entries = finite_elements(&mesh, material.moduli());
+            let system = System::new(&entries, &support).unwrap();
+            let (u, _) = system.solve(&system.factorize().unwrap(), &vec![0.0; exact.len()]);
+            let worst = u.iter().zip(&exact).map(|(u, e)| (u - e).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-12, "{}: {worst}", mesh.blocks[0].element.name);
+
+            // σ = λ tr(ε) I + 2μ ε: the nodal forces on the face xmax add up to its first column times the area 1.
+            let (mut forces, moduli) = (vec![0.0; u.len()], material.moduli());
+            for e in &entries {
+                forces[e.row] += e.val * u[e.col];
+                if e.row != e.col {
+                    forces[e.col] += e.val * u[e.row];
+                }
+            }
+            let face = Selection::Group("xmax".into()).points(&mesh).unwrap();
+            let interior = |p: &usize| mesh.point(*p)[1..].iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9);
+            let symmetric = |i: usize, j: usize| (strain[i * d + j] + strain[j * d + i]) / 2.0;
+            let trace: f64 = (0..d).map(|k| symmetric(k, k)).sum();
+            for k in 0..d {
+                let stress = 2.0 * moduli.mu * symmetric(k, 0) + if k == 0 { moduli.lambda * trace } else { 0.0 };
+                // A point inside a face of a 3 × 3 grid carries 1/3 of the edge, 1/9 of the face, if cells are alike.
+                let share: f64 = face.iter().filter(|p| interior(p)).map(|p| forces[p * d + k]).sum();
+                let total = face.iter().map(|p| forces[p * d + k]).sum::<f64>();
+                assert!(share.is_finite() && total.is_finite());
+                let expected = stress * interior_share(&mesh, &face);
+                assert!((share - expected).abs() < 1e-7, "{}: {share} {expected}", mesh.blocks[0].element.name);
+            }
+        }
+    }
+}
+
+/// `∫ Σ N_a dA` over the points inside the face xmax.
+fn interior_share(mesh: &Mesh, face: &[usize]) -> f64 {
+    let d = mesh.dimension;
+    let mut unit = vec![0.0; d];
+    unit[0] = 1.0;
+    let traction = springfit::model::Action::Traction(unit);
+    let f = springfit::model::nodal_forces(mesh, &Selection::Group("xmax".into()), &traction, 1.0).unwrap();
+    let area: f64 = f.iter().sum();
+    assert!((area - 1.0).abs() < 1e-12, "the face has the area {area}");
+    let interior = |p: &&usize| mesh.point(**p)[1..].iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9);
+    face.iter().filter(interior).map(|p| f[p * d]).sum()
+}
