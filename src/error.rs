@@ -54,6 +54,14 @@ impl Error {
         self
     }
 
+    /// The same fault of a command-line option, which has no file: `young` is `--young`.
+    pub fn of_option(mut self) -> Self {
+        if self.file.is_none() {
+            self.key = self.key.map(|key| format!("--{key}"));
+        }
+        self
+    }
+
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }

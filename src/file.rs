@@ -39,6 +39,20 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
     })
 }
 
+/// Whether [`create_folder`] could succeed, without creating anything.
+///
+/// # Errors
+/// Something that is no folder stands in the way.
+pub fn check_folder(path: &Path) -> Result<()> {
+    let existing = path.ancestors().find(|p| p.as_os_str().is_empty() || p.exists());
+    match existing {
+        Some(place) if !place.as_os_str().is_empty() && !place.is_dir() => {
+            Err(Error::new("the folder cannot be created: a file stands in the way").in_file(path))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Creates the folder and those above it.
 ///
 /// # Errors
@@ -65,5 +79,13 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
 }
 
 fn one_line(message: &str) -> String {
-    message.replace('`', "\"").split_whitespace().collect::<Vec<_>>().join(" ")
+    // serde speaks of Rust's types.
+    let words = [("expected f64", "expected a number"), ("expected usize", "expected a whole number")];
+    let words =
+        words.iter().chain(&[("expected u64", "expected a whole number"), ("expected a sequence", "expected a list")]);
+    words
+        .fold(message.replace('`', "\""), |text, (rust, plain)| text.replace(rust, plain))
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }

@@ -14,4 +14,4 @@ pub mod stiffness;
 pub mod study;
 pub mod symbolic;
 
-pub use file::write_whole;
+pub use file::{check_folder, write_whole};

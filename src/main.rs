@@ -46,10 +46,10 @@ struct FitArguments {
     /// The mesh: .msh, .vtu or .vtk
     mesh: PathBuf,
     /// Young's modulus, such as 10kPa
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     young: String,
     /// Poisson's ratio
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_hyphen_values = true)]
     poisson: f64,
     /// frobenius, offdiag or modal [default: offdiag with --nonnegative]
     #[arg(long)]
@@ -70,17 +70,17 @@ struct FitArguments {
     #[arg(long)]
     plane: Option<PlaneArgument>,
     /// Plane mesh: thickness in m [default: 1]
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     thickness: Option<f64>,
     /// In kg/m³; gives the points masses
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     density: Option<f64>,
     /// Mesh units to metres
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
     scale: f64,
     /// An element file to look in before the shipped ones; may be repeated
     #[arg(long)]
-    element: Vec<PathBuf>,
+    element: Vec<String>,
     /// Where the springs go: .vtu, .json or .csv
     #[arg(short, long)]
     output: PathBuf,
@@ -116,6 +116,9 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
         });
         return print(&lines.collect::<String>());
     }
+    let stem = arguments.scene.file_stem().unwrap_or_default();
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
+    springfit::check_folder(&folder)?;
     let mut bar = Bar::new();
     let outcome = run(&scene, &mut |stage, done, total| bar.show(stage, done, total))?;
     bar.clear();
@@ -123,8 +126,6 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
     for note in report::notes(&outcome) {
         eprintln!("note: {note}");
     }
-    let stem = arguments.scene.file_stem().unwrap_or_default();
-    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
     for path in report::write_outputs(&outcome, &scene.output, &folder)? {
         print(&format!("written: {}\n", path.display()))?;
     }
@@ -139,21 +140,23 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let young = parse_pressure(&arguments.young).map_err(|e| e.under("--young"))?;
     // Of the fits that serve every element alike, the one with the least error among those that always stand.
     let chosen = arguments.objective.as_deref();
-    let objective = Objective::named(chosen.unwrap_or("offdiag"), arguments.higher)?;
+    let objective = Objective::named(chosen.unwrap_or("offdiag"), arguments.higher).map_err(Error::of_option)?;
     if !(arguments.scale > 0.0 && arguments.scale.is_finite()) {
         return Err(Error::expected("--scale", "a positive number of metres per mesh unit", arguments.scale));
     }
     if let Some(density) = arguments.density.filter(|d| !(*d > 0.0 && d.is_finite())) {
         return Err(Error::expected("--density", "a positive number of kg/m³", density));
     }
-    let own = load_elements(&arguments.element, Path::new(""))?;
+    let own = load_elements(&arguments.element, Path::new(""))
+        .map_err(|e| if e.file().is_some() { e } else { Error::at("--element", e.problem()) })?;
     let source = MeshSource::read(&arguments.mesh)?;
     let mesh = Mesh::resolve(&source, &own, arguments.scale).map_err(|e| e.in_file(&arguments.mesh))?;
     let plane = arguments.plane.map(|p| match p {
         PlaneArgument::Stress => Plane::Stress,
         PlaneArgument::Strain => Plane::Strain,
     });
-    let material = Material::for_body(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)?;
+    let material = Material::for_body(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)
+        .map_err(Error::of_option)?;
     let fit = Fit { objective, tied: arguments.tied, nonnegative: arguments.nonnegative || chosen.is_none() };
     let mut bar = Bar::new();
     let named = NamedFit::new(fit, arguments.springs.clone());

@@ -369,7 +369,7 @@ fn fits() {
             (
                 "\"modal\"",
                 "\"modal\"\nsprings = \"edge\"",
-                "scene.toml:8: fit[0].springs: invalid type: string \"edge\", expected a sequence",
+                "scene.toml:8: fit[0].springs: invalid type: string \"edge\", expected a list",
             ),
             (
                 "[[fix]]",
@@ -578,16 +578,20 @@ fn boxes() {
             (size, "size = [-1, 1, 1]", "scene.toml: mesh.box.size: expected positive lengths in m, found -1"),
             (size, "size = [nan, 1, 1]", "scene.toml: mesh.box.size: expected positive lengths in m, found NaN"),
             (size, "size = [1, 1]", "scene.toml: mesh.box.size: expected 3 entries for tet4, found 2"),
-            (size, "size = [1e308, 1e308, 1e308]", &format!("scene.toml: mesh.box.{flat}")),
+            (
+                size,
+                "size = [1e308, 1e308, 1e308]",
+                "scene.toml: mesh.box.size: expected lengths from 1e-30 to 1e30 m, found 1e308",
+            ),
             (
                 cells,
                 "cells = [0, 1, 1]",
-                "scene.toml: mesh.box.cells: expected 1 to 50000000 cells in all, found [0, 1, 1]",
+                "scene.toml: mesh.box.cells: expected 1 to 2000000 cells in all, found [0, 1, 1]",
             ),
             (
                 cells,
                 "cells = [9223372036854775807, 9, 9]",
-                "scene.toml: mesh.box.cells: expected 1 to 50000000 cells in all, found [9223372036854775807, 9, 9]",
+                "scene.toml: mesh.box.cells: expected 1 to 2000000 cells in all, found [9223372036854775807, 9, 9]",
             ),
             (cells, "cells = []", "scene.toml: mesh.box.cells: expected 3 entries for tet4, found 0"),
             (
@@ -610,7 +614,11 @@ fn boxes() {
                 "[mesh]\nscale = nan",
                 "scene.toml: mesh.scale: expected a positive number of metres per mesh unit, found NaN",
             ),
-            ("[mesh]", "[mesh]\nscale = 1e300", &format!("scene.toml: mesh.box.{flat}")),
+            (
+                "[mesh]",
+                "[mesh]\nscale = 1e300",
+                "scene.toml: mesh.box.size: expected lengths from 1e-30 to 1e30 m, found 1e300",
+            ),
             (
                 "[mesh]",
                 "[mesh]\nfile = \"mesh.msh\"",
@@ -637,7 +645,7 @@ fn shape_functions() {
         (
             "\"xi\" }",
             "\"xi^2\" }",
-            "own.toml: nodes: expected shape functions that sum to 1, found 1 -2.497e-1 at [0.517, 0.282, 0.135]",
+            "own.toml: nodes: expected shape functions that sum to 1, found 1 -2.500e-1 at [0.500, 0.335, 0.154]",
         ),
         ("at = [0, 0, 1]", "at = [0, 1, 0]", "own.toml: nodes[2].shape: is 1 at nodes[3], expected 0"),
         ("at = [0, 0, 1]", "at = [0, 1]", "own.toml: nodes[3].at: expected 3 coordinates, found 2"),
@@ -658,7 +666,7 @@ fn shape_functions() {
     refusals.expect_of_files(
         &incomplete,
         &unit_mesh(),
-        "own.toml: nodes: expected shape functions that reproduce xi, found xi -2.497e-1 at [0.517, 0.415, 0.063]",
+        "own.toml: nodes: expected shape functions that reproduce xi, found xi -2.500e-1 at [0.500, 0.465, 0.032]",
     );
     let open = "(".repeat(101);
     let deep = edited(TETRAHEDRON, "\"xi\" }", &format!("\"{open}xi{}\" }}", ")".repeat(101)));
@@ -774,7 +782,7 @@ fn springs_and_formats() {
         ("[2, 3]]", "[2, 4]]", "own.toml: springs[0].nodes[5]: expected two different nodes below 4, found [2, 4]"),
         ("[2, 3]]", "[2, 2]]", "own.toml: springs[0].nodes[5]: expected two different nodes below 4, found [2, 2]"),
         ("[2, 3]]", "[1, 0]]", "own.toml: springs[0].nodes[5]: the pair [1, 0] has a spring already"),
-        ("[2, 3]]", "[2]]", "own.toml:21: springs[0].nodes[5]: invalid length 1, expected an array of length 2"),
+        ("[2, 3]]", "[2]]", "own.toml: springs[0].nodes[5]: expected two nodes, found 1"),
         (
             "nodes = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]]\n",
             "",
@@ -979,7 +987,7 @@ fn springs_that_cannot_be_written() {
     let mut refusals = Refusals::default();
     for (output, problem) in [
         ("missing/springs.csv", "No such file or directory (os error 2)"),
-        ("file/springs.json", "Not a directory (os error 20)"),
+        ("file/springs.json", "a file stands in the way"),
         ("folder.csv", "Is a directory (os error 21)"),
     ] {
         let arguments = ["fit", "mesh.msh", "--young", "10kPa", "--poisson", "0.3", "-o", output];
@@ -990,10 +998,10 @@ fn springs_that_cannot_be_written() {
 
 #[cfg(unix)]
 #[test]
-#[ignore = "the folder is made only after the work is done and the table printed"]
+
 fn report_folders_that_cannot_be_made() {
     let mut refusals = Refusals::default();
-    for (out, problem) in [("file", "File exists (os error 17)"), ("file/report", "Not a directory (os error 20)")] {
+    for (out, problem) in [("file", "a file stands in the way"), ("file/report", "a file stands in the way")] {
         refusals.expect(
             &[("scene.toml", BRICK.as_bytes()), ("file", b"")],
             &["run", "scene.toml", "--out", out],
@@ -1003,13 +1011,13 @@ fn report_folders_that_cannot_be_made() {
     refusals.expect(
         &[("scene.toml", BRICK.as_bytes()), ("out", b"")],
         &["run", "scene.toml"],
-        "out/scene: the folder cannot be created: Not a directory (os error 20)",
+        "out/scene: the folder cannot be created: a file stands in the way",
     );
     refusals.finish();
 }
 
 #[test]
-#[ignore = "a long chain of operators overflows the stack"]
+
 fn chains_of_operators() {
     let mut refusals = Refusals::default();
     for chain in ["!", "0+", "0-", "1*", "1/"] {
@@ -1025,7 +1033,7 @@ fn chains_of_operators() {
 }
 
 #[test]
-#[ignore = "powers of powers and squares of squares grow without bound"]
+
 fn numbers_without_bound() {
     let squares: Vec<_> = (1..30).map(|i| format!("a{i} = \"a{}*a{}\"", i - 1, i - 1)).collect();
     let squares = format!("let = {{ a0 = \"1234567890\", {} }}\nnodes = [\n", squares.join(", "));
@@ -1042,7 +1050,7 @@ fn numbers_without_bound() {
 }
 
 #[test]
-#[ignore = "each name is copied into the next: eight lines fill the memory"]
+
 fn expressions_without_bound() {
     let sums: Vec<_> = (1..8).map(|i| format!("a{i} = \"{}0\"", format!("a{} + ", i - 1).repeat(100))).collect();
     let sums = format!("let = {{ a0 = \"xi\", {} }}\nnodes = [\n", sums.join(", "));
@@ -1050,12 +1058,12 @@ fn expressions_without_bound() {
     refuses_elements(&[(
         "nodes = [\n",
         &sums,
-        &format!("own.toml: let.a2: expected at most 10000 terms and factors in all in \"{shown}...\""),
+        &format!("own.toml: let.a2: expected at most 2000 terms and factors in all in \"{shown}...\""),
     )]);
 }
 
 #[test]
-#[ignore = "the check of the supports does not end where the centre of the body overflows"]
+
 fn lengths_near_the_largest_number() {
     refuses_edits(
         BRICK,
@@ -1068,7 +1076,7 @@ fn lengths_near_the_largest_number() {
 }
 
 #[test]
-#[ignore = "errors of 0.00 % or NaN are reported where squares leave the range of numbers"]
+
 fn quantities_out_of_range() {
     refuses_edits(
         BRICK,
@@ -1085,17 +1093,13 @@ fn quantities_out_of_range() {
 }
 
 #[test]
-#[ignore = "the third node is dropped"]
+
 fn springs_of_three_nodes() {
-    refuses_elements(&[(
-        "[2, 3]]",
-        "[2, 3, 1]]",
-        "own.toml:21: springs[0].nodes[5]: invalid length 3, expected an array of length 2",
-    )]);
+    refuses_elements(&[("[2, 3]]", "[2, 3, 1]]", "own.toml: springs[0].nodes[5]: expected two nodes, found 3")]);
 }
 
 #[test]
-#[ignore = "the message speaks of the program's types, or of something else"]
+
 fn messages_in_the_words_of_the_file() {
     let mut refusals = Refusals::default();
     refusals.expect_of_edits(
@@ -1114,10 +1118,10 @@ fn messages_in_the_words_of_the_file() {
             (
                 "cells = [1, 1, 1]",
                 "cells = [1, 1, 18446744073709551616]",
-                "scene.toml:2: mesh.box.cells[2]: invalid value: integer \"18446744073709551616\", expected a whole \
-                 number",
+                "scene.toml:2: mesh.box.cells[2]: invalid type: integer \"18446744073709551616\" as i128, \
+                 expected a whole number",
             ),
-            ("[[fit]]", "[fit]", "scene.toml:6: fit: invalid type: map, expected [[fit]]"),
+            ("[[fit]]", "[fit]", "scene.toml:6: fit: invalid type: map, expected a list"),
             (
                 "size = [1, 1, 1]",
                 "size = [1e-8, 1, 1]",
@@ -1158,7 +1162,7 @@ fn messages_in_the_words_of_the_file() {
 }
 
 #[test]
-#[ignore = "a value is named without its dashes, and a negative one is taken for an option"]
+
 fn options_by_their_names() {
     let mesh = unit_mesh();
     let mut refusals = Refusals::default();

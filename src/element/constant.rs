@@ -44,6 +44,9 @@ impl<'de> Deserialize<'de> for Constant {
                 Ok(Constant { expr: Expr::integer(v), value: v as f64 })
             }
             fn visit_f64<E: de::Error>(self, v: f64) -> Result<Constant, E> {
+                if !v.is_finite() {
+                    return Err(E::custom(format!("expected a finite number, found {}", v.to_string().to_lowercase())));
+                }
                 if v < 0.0 { self.visit_str(&format!("-({})", -v)) } else { self.visit_str(&v.to_string()) }
             }
             fn visit_str<E: de::Error>(self, v: &str) -> Result<Constant, E> {

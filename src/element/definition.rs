@@ -58,7 +58,7 @@ pub struct SpringEntry {
     pub group: String,
     pub kind: SpringKind,
     /// Node pairs of length springs.
-    pub nodes: Option<Vec<[usize; 2]>>,
+    pub nodes: Option<Vec<Vec<usize>>>,
     /// Used only where a fit names the group.
     #[serde(default)]
     pub optional: bool,

@@ -6,7 +6,7 @@ use super::definition::{Definition, FormatEntry, Rule, SpringKind};
 use super::quadrature::{MOST_POINTS, Quadrature};
 use super::{SpringGroup, Tabulation};
 use crate::error::{Error, Result};
-use crate::symbolic::{Expr, Polynomial};
+use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;
 use num_traits::Zero;
 
@@ -19,6 +19,10 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
     if definition.coordinates.len() != d {
         let expected = format!("{d} names for a cell of dimension {d}");
         return Err(Error::expected("coordinates", expected, definition.coordinates.len()));
+    }
+    let mut scope = Scope::default();
+    for (k, name) in definition.coordinates.iter().enumerate() {
+        scope.define(name, "0").map_err(|e| Error::at(format!("coordinates[{k}]"), e.problem()))?;
     }
     if definition.nodes.len() <= d || definition.nodes.len() > MOST_NODES {
         let expected = format!("{} to {MOST_NODES} nodes", d + 1);
@@ -117,7 +121,10 @@ pub fn quadrature(definition: &Definition) -> Result<Quadrature> {
             Err(Error::expected("quadrature.rule", "\"gauss-legendre\" or \"explicit\" on this cell", "\"simplex\""))
         }
         Rule::Explicit { points, weights } => {
-            if points.is_empty() || points.len() != weights.len() {
+            if points.is_empty() {
+                return Err(Error::expected("quadrature.points", "at least one point", "none"));
+            }
+            if points.len() != weights.len() {
                 let expected = format!("one weight for each of the {} points", points.len());
                 return Err(Error::expected("quadrature.weights", expected, weights.len()));
             }
@@ -149,7 +156,7 @@ pub fn springs(definition: &Definition) -> Result<Vec<SpringGroup>> {
             return Err(Error::expected(key("group"), "a name used once", format!("\"{}\" again", entry.group)));
         }
         let pairs = match (entry.kind, &entry.nodes) {
-            (SpringKind::Length, Some(pairs)) if !pairs.is_empty() => pairs.clone(),
+            (SpringKind::Length, Some(lists)) if !lists.is_empty() => node_pairs(i, lists)?,
             (SpringKind::Length, _) => return Err(Error::expected(key("nodes"), "pairs of nodes", "none")),
             (SpringKind::Area, None) if definition.cell.dimension() == 2 => Vec::new(),
             (SpringKind::Volume, None) if definition.cell.dimension() == 3 => Vec::new(),
@@ -190,6 +197,14 @@ pub fn springs(definition: &Definition) -> Result<Vec<SpringGroup>> {
         groups.push(SpringGroup { name: entry.group.clone(), kind: entry.kind, pairs, optional: entry.optional });
     }
     Ok(groups)
+}
+
+fn node_pairs(group: usize, lists: &[Vec<usize>]) -> Result<Vec<[usize; 2]>> {
+    let pair = |(p, list): (usize, &Vec<usize>)| {
+        <[usize; 2]>::try_from(list.as_slice())
+            .map_err(|_| Error::expected(format!("springs[{group}].nodes[{p}]"), "two nodes", list.len()))
+    };
+    lists.iter().enumerate().map(pair).collect()
 }
 
 pub fn formats(definition: &Definition) -> Result<()> {

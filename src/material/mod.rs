@@ -45,12 +45,14 @@ impl Material {
     /// # Errors
     /// `E ≤ 0`, `ν ≤ −1`, `ν ≥ 1/2` (plane stress: `ν > 1/2`), thickness not positive, or a value that is not finite.
     pub fn new(young: f64, poisson: f64, state: State) -> Result<Material> {
-        let positive = |key: &str, value: f64, unit: &str| {
-            if value > 0.0 && value.is_finite() {
-                Ok(())
-            } else {
+        let positive = |key: &str, value: f64, unit: &str| match value {
+            v if !(v > 0.0 && v.is_finite()) => {
                 Err(Error::expected(key, format!("a positive number of {unit}"), value))
             }
+            v if !(1e-30..=1e30).contains(&v) => {
+                Err(Error::expected(key, format!("a number from 1e-30 to 1e30 {unit}"), format!("{v:?}")))
+            }
+            _ => Ok(()),
         };
         positive("young", young, "Pa")?;
         let in_range = match state {

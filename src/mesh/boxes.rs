@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-const MOST_CELLS: usize = 50_000_000;
+const MOST_CELLS: usize = 2_000_000;
 
 /// A box of `cells` equal cells per direction, `size` m long, with its least corner at `origin` m.
 ///
@@ -80,6 +80,9 @@ impl BoxMesh {
         }
         if let Some(size) = self.size.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
             return Err(Error::expected("size", "positive lengths in m", size));
+        }
+        if let Some(size) = self.size.iter().find(|s| !(1e-30..=1e30).contains(*s)) {
+            return Err(Error::expected("size", "lengths from 1e-30 to 1e30 m", format!("{size:?}")));
         }
         if let Some(origin) = self.origin.iter().find(|x| !x.is_finite()) {
             return Err(Error::expected("origin", "finite coordinates in m", origin));

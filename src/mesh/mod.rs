@@ -72,6 +72,12 @@ impl Mesh {
         if dimension == 2 {
             in_one_plane(source)?;
         }
+        let lengths = || source.points.iter().flatten().map(|x| (x * scale).abs());
+        let largest = lengths().fold(0.0, f64::max);
+        if !(1e-30..=1e30).contains(&largest) {
+            let expected = "coordinates of which the largest is between 1e-30 and 1e30 m";
+            return Err(Error::expected("points", expected, format!("{largest:?} m")));
+        }
         let mut mesh = Mesh {
             dimension,
             points: source.points.iter().flat_map(|p| p[..dimension].iter().map(|x| x * scale)).collect(),

@@ -120,7 +120,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         let fitted = fit_mesh(&outcome.mesh, material, fit, progress).map_err(|e| scene.at(&format!("fit[{i}]"), e))?;
         outcome.fits.push(fitted);
     }
-    let body = Body::solve(&outcome.mesh, material.moduli(), &cases, progress)?;
+    let body = Body::solve(&outcome.mesh, material.moduli(), &cases, progress).map_err(|e| e.in_file(&scene.path))?;
     for fit in &mut outcome.fits {
         progress("networks", outcome.fem.len(), cases.len());
         body.compare(&outcome.mesh, &cases, fit)?;

@@ -52,7 +52,8 @@ impl Value for BigRational {
         self * other
     }
     fn to_power(self, exponent: &BigRational) -> Option<BigRational> {
-        let n = exponent.to_i32().filter(|_| exponent.is_integer())?;
+        // A larger power would have too many digits to be worth being exact.
+        let n = exponent.to_i32().filter(|n| exponent.is_integer() && n.abs() <= 1000)?;
         if self.is_zero() && n < 0 {
             return None;
         }

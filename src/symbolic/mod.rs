@@ -144,6 +144,24 @@ impl Expr {
         if let Expr::Number(c) = self { Some(c) } else { None }
     }
 
+    /// How many numbers, variables and operations it consists of.
+    fn parts(&self) -> usize {
+        1 + match self {
+            Expr::Number(_) | Expr::Variable(_) => 0,
+            Expr::Sum(inner) | Expr::Product(inner) => inner.iter().map(Expr::parts).sum(),
+            Expr::Power(inner, _) | Expr::Call(_, inner) => inner.parts(),
+        }
+    }
+
+    /// Bits of the constant that was last folded: the number itself, or the first of a sum or product.
+    fn largest_constant(&self) -> u64 {
+        match self {
+            Expr::Number(c) => c.numer().bits().max(c.denom().bits()),
+            Expr::Sum(inner) | Expr::Product(inner) => inner[0].largest_constant(),
+            _ => 0,
+        }
+    }
+
     /// Whether it prints with a leading minus.
     fn is_negative(&self) -> bool {
         match self {

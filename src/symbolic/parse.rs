@@ -10,9 +10,16 @@ use evalexpr::{Node, Operator};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Pow, Zero};
+use std::cell::Cell;
 
 const LONGEST_TEXT: usize = 10_000;
 const DEEPEST_NESTING: usize = 100;
+/// A chain of operators is a tree as deep as it is long.
+const MOST_OPERATORS: usize = 1000;
+/// Named sub-expressions are copied to where they are used; this bounds what they can grow to.
+const MOST_PARTS: usize = 2000;
+/// About a thousand digits.
+const MOST_BITS: u64 = 3322;
 const LARGEST_DECIMAL_EXPONENT: i32 = 400;
 
 /// The names an expression may use: variables by position, and named sub-expressions.
@@ -69,13 +76,13 @@ impl Scope {
         let lexed = lex(text).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))?;
         let tree = evalexpr::build_operator_tree(&lexed.rewritten)
             .map_err(|e| Error::new(format!("\"{}\" is not an expression: {e}", shortened(text))))?;
-        self.walk(&tree, &lexed.literals).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))
+        self.walk(&tree, &lexed).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))
     }
 
-    fn walk(&self, node: &Node, literals: &[BigRational]) -> Result<Parsed> {
+    fn walk(&self, node: &Node, lexed: &Lexed) -> Result<Parsed> {
         let children = node.children();
         let child = |i: usize| match children.get(i) {
-            Some(c) => self.walk(c, literals),
+            Some(c) => self.walk(c, lexed),
             None => Err(Error::new("expected one more operand")),
         };
         let real = |i: usize| child(i)?.real();
@@ -103,7 +110,8 @@ impl Scope {
                     (base, n) => Expr::call(Function::Exp, Expr::product([n, Expr::call(Function::Ln, base)])),
                 }
             }
-            Operator::VariableIdentifierRead { identifier } => self.name(identifier, literals)?,
+            Operator::Const { value } => self.name(&value.to_string(), lexed)?,
+            Operator::VariableIdentifierRead { identifier } => self.name(identifier, lexed)?,
             Operator::FunctionIdentifier { identifier } => {
                 let argument = real(0)?;
                 match function(identifier) {
@@ -125,17 +133,24 @@ impl Scope {
             Operator::Not => return Ok(Parsed::Condition(Predicate::Not(condition(0)?.into()))),
             other => return Err(Error::new(format!("the operator {other} is not known here"))),
         };
+        if parsed.largest_constant() > MOST_BITS {
+            return Err(Error::new("expected numbers of at most 1000 digits"));
+        }
         Ok(Parsed::Real(parsed))
     }
 
-    fn name(&self, name: &str, literals: &[BigRational]) -> Result<Expr> {
-        if let Some(literal) = name.strip_prefix('#').and_then(|i| literals.get(i.parse::<usize>().ok()?)) {
+    fn name(&self, name: &str, lexed: &Lexed) -> Result<Expr> {
+        if let Some(literal) = name.strip_prefix('#').and_then(|i| lexed.literals.get(i.parse::<usize>().ok()?)) {
             return Ok(Expr::Number(literal.clone()));
         }
         if let Some(v) = self.variables.iter().position(|v| v == name) {
             return Ok(Expr::Variable(v));
         }
         if let Some((_, expr)) = self.definitions.iter().find(|(n, _)| n == name) {
+            lexed.parts.set(lexed.parts.get() + expr.parts());
+            if lexed.parts.get() > MOST_PARTS {
+                return Err(Error::new(format!("expected at most {MOST_PARTS} terms and factors in all")));
+            }
             return Ok(expr.clone());
         }
         let mut known: Vec<&str> = self.variables.iter().map(String::as_str).collect();
@@ -193,6 +208,8 @@ fn shortened(text: &str) -> String {
 struct Lexed {
     rewritten: String,
     literals: Vec<BigRational>,
+    /// Terms and factors that came in with named sub-expressions so far.
+    parts: Cell<usize>,
 }
 
 /// Splits into numbers, names, operators and parentheses, and makes sure that operands and operators alternate.
@@ -201,7 +218,9 @@ fn lex(text: &str) -> Result<Lexed> {
         return Err(Error::new(format!("expected at most {LONGEST_TEXT} characters, found {}", text.len())));
     }
     let chars: Vec<char> = text.chars().collect();
-    let mut lexed = Lexed { rewritten: String::with_capacity(2 * text.len()), literals: Vec::new() };
+    let mut lexed =
+        Lexed { rewritten: String::with_capacity(2 * text.len()), literals: Vec::new(), parts: Cell::new(0) };
+    let mut operators = 0;
     let (mut at, mut open, mut operand_next, mut sign_allowed) = (0, 0usize, true, true);
     let fault = |at: usize, expected: &str| {
         let found = chars.get(at).map_or("the end".to_string(), |c| format!("'{c}'"));
@@ -223,9 +242,9 @@ fn lex(text: &str) -> Result<Lexed> {
                     }
                     (at, sign_allowed) = (at + 1, true);
                 }
-                '-' if sign_allowed => (at, sign_allowed) = (at + 1, false),
+                '-' if sign_allowed => (at, sign_allowed, operators) = (at + 1, false, operators + 1),
                 '-' => return fault(at, "parentheses around a negative term"),
-                '!' if sign_allowed && chars.get(at + 1) != Some(&'=') => at += 1,
+                '!' if sign_allowed && chars.get(at + 1) != Some(&'=') => (at, operators) = (at + 1, operators + 1),
                 _ if c.is_ascii_digit() || c == '.' => {
                     at = end_of_number(&chars, at);
                     let literal: String = chars[start..at].iter().collect();
@@ -255,7 +274,9 @@ fn lex(text: &str) -> Result<Lexed> {
             match c {
                 ')' if open > 0 => (at, open) = (at + 1, open - 1),
                 ')' => return fault(at, "an operator or the end"),
-                '+' | '-' | '*' | '/' | '^' => (at, operand_next, sign_allowed) = (at + 1, true, false),
+                '+' | '-' | '*' | '/' | '^' => {
+                    (at, operand_next, sign_allowed, operators) = (at + 1, true, false, operators + 1);
+                }
                 '<' | '>' | '=' | '!' | '&' | '|' => {
                     let pair: String = chars[at..chars.len().min(at + 2)].iter().collect();
                     at += match pair.as_str() {
@@ -263,7 +284,7 @@ fn lex(text: &str) -> Result<Lexed> {
                         _ if c == '<' || c == '>' => 1,
                         _ => return fault(at, "one of <, <=, >, >=, ==, !=, &&, ||"),
                     };
-                    (operand_next, sign_allowed) = (true, true);
+                    (operand_next, sign_allowed, operators) = (true, true, operators + 1);
                 }
                 _ => return fault(at, "an operator"),
             }
@@ -276,6 +297,9 @@ fn lex(text: &str) -> Result<Lexed> {
     }
     if open > 0 {
         return fault(chars.len(), "')'");
+    }
+    if operators > MOST_OPERATORS {
+        return Err(Error::new(format!("expected at most {MOST_OPERATORS} operators, found {operators}")));
     }
     Ok(lexed)
 }

@@ -50,7 +50,7 @@ pub struct MeshInput {
     pub scale: f64,
     /// Element files to look in before the shipped ones, relative to the scene.
     #[serde(default)]
-    pub elements: Vec<PathBuf>,
+    pub elements: Vec<String>,
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -120,19 +120,15 @@ impl Scene {
     pub fn build_mesh(&self) -> Result<Mesh> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         if let Some(file) = &self.mesh.file {
-            let own = load_elements(&self.mesh.elements, folder)?;
+            let own = load_elements(&self.mesh.elements, folder)
+                .map_err(|e| if e.file().is_some() { e } else { self.at("mesh", e) })?;
             let path = folder.join(file);
             let source = MeshSource::read(&path)?;
             return Mesh::resolve(&source, &own, self.mesh.scale).map_err(|e| e.in_file(&path));
         }
         let entry = self.mesh.generated.as_ref().expect("a scene has a file or a box");
-        let name = if entry.element.ends_with(".toml") {
-            folder.join(&entry.element).to_string_lossy().into_owned()
-        } else {
-            entry.element.clone()
-        };
         let in_box = |e: Error| if e.file().is_some() { e } else { e.under("mesh.box").in_file(&self.path) };
-        let element = Arc::new(Element::load(&name).map_err(in_box)?);
+        let element = load_element(&entry.element, folder).map_err(in_box)?;
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
         let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
@@ -160,12 +156,22 @@ impl Scene {
     }
 }
 
-/// The element files, each on its own or relative to `folder`.
+/// The elements of that name, or in the files of that path relative to `folder`.
 ///
 /// # Errors
-/// A file is missing or wrong.
-pub fn load_elements(paths: &[PathBuf], folder: &Path) -> Result<Vec<Arc<Element>>> {
-    paths.iter().map(|p| Element::load(&folder.join(p).to_string_lossy()).map(Arc::new)).collect()
+/// A file is missing or wrong, or a name unknown; `element[i]` is the key.
+pub fn load_elements(names: &[String], folder: &Path) -> Result<Vec<Arc<Element>>> {
+    let load = |(i, name): (usize, &String)| {
+        load_element(name, folder)
+            .map_err(|e| if e.file().is_some() { e } else { Error::at(format!("elements[{i}]"), e.problem()) })
+    };
+    names.iter().enumerate().map(load).collect()
+}
+
+fn load_element(name: &str, folder: &Path) -> Result<Arc<Element>> {
+    let place =
+        if name.ends_with(".toml") { folder.join(name).to_string_lossy().into_owned() } else { name.to_string() };
+    Element::load(&place).map(Arc::new)
 }
 
 impl NamedFit {

@@ -1,0 +1,83 @@
+//! Time per element of every objective on every shipped element, on jittered boxes; and a million tetrahedra beside a
+//! batched NumPy implementation of the same fit, in the same run. Medians of five runs.
+
+use springfit::element::{Element, SHIPPED};
+use springfit::fit::{CellFits, Fit, Objective, fit_cells};
+use springfit::material::Material;
+use springfit::mesh::{BoxMesh, Mesh};
+use springfit::springs::Springs;
+use std::process::Command;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A unit box of about `count` cells, each point moved by up to a tenth of a cell.
+fn jittered(name: &str, count: usize) -> Mesh {
+    let element = Arc::new(Element::load(name).expect("it is shipped"));
+    let d = element.dimension();
+    let per_cube = if element.cell.is_simplex() { d * (d - 1) } else { 1 };
+    let side = ((count / per_cube) as f64).powf(1.0 / d as f64).ceil() as usize;
+    let spec = BoxMesh { element, size: vec![1.0; d], cells: vec![side; d], origin: vec![0.0; d] };
+    let mut mesh = spec.build().expect("the box is valid");
+    let mut state = 1u64;
+    for x in &mut mesh.points {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        *x += 0.1 / side as f64 * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0);
+    }
+    mesh
+}
+
+/// The constants, and the median seconds of five fits.
+fn timed(mesh: &Mesh, fit: Fit) -> (CellFits, f64) {
+    let block = &mesh.blocks[0];
+    let springs = Springs::select(&block.element, None).expect("no group is named");
+    let moduli = Material::for_body(mesh.dimension, 1e4, 0.3, None, None).expect("it is valid").moduli();
+    let run = || {
+        let start = Instant::now();
+        let fits = fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &fit, &mut |_| {});
+        (fits.expect("every cell has a volume"), start.elapsed().as_secs_f64())
+    };
+    let mut runs: Vec<_> = (0..5).map(|_| run()).collect();
+    runs.sort_by(|a, b| a.1.total_cmp(&b.1));
+    runs.swap_remove(2)
+}
+
+fn main() {
+    println!("{} threads", rayon::current_num_threads());
+    println!("{:10} {:20} {:>14} {:>16}", "element", "fit", "ns/element", "elements/s");
+    for shipped in SHIPPED {
+        let mesh = jittered(shipped.name, 30_000);
+        for objective in [Objective::Frobenius, Objective::OffDiagonal, Objective::Modal { higher: 0.316 }] {
+            for nonnegative in [false, true] {
+                let (_, seconds) = timed(&mesh, Fit { objective, tied: false, nonnegative });
+                let each = seconds / mesh.cell_count() as f64;
+                let name = format!("{}{}", objective.name(), if nonnegative { ", k >= 0" } else { "" });
+                println!("{:10} {name:20} {:14.0} {:16.0}", shipped.name, 1e9 * each, 1.0 / each);
+            }
+        }
+    }
+    beside_numpy();
+}
+
+fn beside_numpy() {
+    let mesh = jittered("tet4", 1_000_000);
+    let (fits, seconds) = timed(&mesh, Fit::new(Objective::Frobenius));
+    let cells = mesh.cell_count();
+    println!("\n{cells} tet4, frobenius: {:.3} s, {:.0} ns per element", seconds, 1e9 * seconds / cells as f64);
+    let nodes: Vec<u8> =
+        mesh.blocks[0].connectivity.iter().flat_map(|&p| mesh.point(p)).flat_map(|x| x.to_ne_bytes()).collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("nodes.f64");
+    std::fs::write(&file, nodes).expect("room for the nodes");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/numpy_tet4.py");
+    let Ok(output) = Command::new("python3").arg(script).arg(&file).output() else {
+        return println!("python3 is not installed: no comparison with NumPy");
+    };
+    let text = String::from_utf8_lossy(&output.stdout);
+    let figures: Vec<f64> = text.split_whitespace().filter_map(|t| t.parse().ok()).collect();
+    let [numpy, sum] = figures[..] else {
+        return println!("the comparison with NumPy did not run:\n{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let ours: f64 = fits.constants.iter().sum();
+    println!("NumPy, one thread:            {numpy:.3} s, {:.0} ns per element", 1e9 * numpy / cells as f64);
+    println!("ratio {:.1}; the sums of all constants agree to {:.0e}", numpy / seconds, ((ours - sum) / sum).abs());
+}
