@@ -201,9 +201,16 @@ pub fn each_cell(
 
 /// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
 pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
-    for (x, &node) in x.chunks_exact_mut(dimension).zip(nodes) {
-        x.copy_from_slice(&points[node * dimension..(node + 1) * dimension]);
+    match dimension {
+        2 => gather_in::<2>(points, nodes, x),
+        3 => gather_in::<3>(points, nodes, x),
+        _ => gather_in::<1>(points, nodes, x),
     }
+}
+
+fn gather_in<const D: usize>(points: &[f64], nodes: &[usize], x: &mut [f64]) {
+    let points = points.as_chunks::<D>().0;
+    x.as_chunks_mut::<D>().0.iter_mut().zip(nodes).for_each(|(x, &node)| *x = points[node]);
 }
 
 /// `adj(J)` and `det J`, so that `J⁻¹ = adj(J)/det J`.
