@@ -159,7 +159,7 @@ impl Scene {
 /// The elements of that name, or in the files of that path relative to `folder`.
 ///
 /// # Errors
-/// A file is missing or wrong, or a name unknown; `element[i]` is the key.
+/// A file is missing or wrong, or a name unknown; `elements[i]` is the key.
 pub fn load_elements(names: &[String], folder: &Path) -> Result<Vec<Arc<Element>>> {
     let load = |(i, name): (usize, &String)| {
         load_element(name, folder)
