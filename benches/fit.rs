@@ -2,7 +2,7 @@
 //! batched NumPy implementation of the same fit, in the same run. Medians of five runs.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::fit::{CellFits, Fit, Objective, fit_cells};
+use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
 use springfit::material::Material;
 use springfit::mesh::{BoxMesh, Mesh};
 use springfit::springs::Springs;
@@ -42,11 +42,17 @@ fn timed(mesh: &Mesh, fit: Fit) -> (CellFits, f64) {
 }
 
 fn main() {
+    // `cargo bench -- tet4` times that element alone.
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     println!("{} threads", rayon::current_num_threads());
     println!("{:10} {:20} {:>14} {:>16}", "element", "fit", "ns/element", "elements/s");
-    for shipped in SHIPPED {
+    for shipped in SHIPPED.iter().filter(|s| chosen.is_empty() || chosen.iter().any(|c| c == s.name)) {
         let mesh = jittered(shipped.name, 30_000);
-        for objective in [Objective::Frobenius, Objective::OffDiagonal, Objective::Modal { higher: 0.316 }] {
+        for objective in [
+            Objective::Frobenius(Weight::None),
+            Objective::Frobenius(Weight::OffDiagonal),
+            Objective::Frobenius(Weight::Modal { higher: 0.316 }),
+        ] {
             for nonnegative in [false, true] {
                 let (_, seconds) = timed(&mesh, Fit { objective, tied: false, nonnegative });
                 let each = seconds / mesh.cell_count() as f64;
@@ -60,7 +66,7 @@ fn main() {
 
 fn beside_numpy() {
     let mesh = jittered("tet4", 1_000_000);
-    let (fits, seconds) = timed(&mesh, Fit::new(Objective::Frobenius));
+    let (fits, seconds) = timed(&mesh, Fit::new(Objective::Frobenius(Weight::None)));
     let cells = mesh.cell_count();
     println!("\n{cells} tet4, frobenius: {:.3} s, {:.0} ns per element", seconds, 1e9 * seconds / cells as f64);
     let nodes: Vec<u8> =

@@ -5,7 +5,7 @@
 
 use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
-use springfit::fit::{Fit, Objective};
+use springfit::fit::{Fit, Objective, Weight};
 use springfit::solve::Standing;
 use springfit::study::{NamedFit, Scene, run};
 use std::collections::BTreeMap;
@@ -60,8 +60,8 @@ fn candidates(lengths: &[String], all: &[String]) -> Vec<NamedFit> {
     let mut fits = Vec::new();
     for (groups, bulk) in [(lengths, ""), (all, " with bulk")] {
         for nonnegative in [false, true] {
-            let mut objectives = vec![Objective::Frobenius, Objective::OffDiagonal];
-            objectives.extend([0.7, 0.5, 0.316, 0.2, 0.1].map(|higher| Objective::Modal { higher }));
+            let mut objectives = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
+            objectives.extend([0.7, 0.5, 0.316, 0.2, 0.1].map(|higher| Objective::Frobenius(Weight::Modal { higher })));
             for objective in objectives {
                 let fit = Fit { objective, tied: false, nonnegative };
                 let mut named = NamedFit::new(fit, None);

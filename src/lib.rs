@@ -8,6 +8,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod report;
+pub mod scalar;
 pub mod solve;
 pub mod springs;
 pub mod stiffness;

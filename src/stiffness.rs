@@ -2,12 +2,13 @@
 
 use crate::element::Tabulation;
 use crate::material::Moduli;
+use crate::scalar::{Scalar, adjugate, multiple, zeros};
 use nalgebra::DMatrix;
 use std::array::from_fn;
 
-/// Where a Jacobian determinant counts as zero: this fraction of the largest that its columns' lengths allow is lost
-/// in the rounding of the determinant itself.
-const FLAT: f64 = 1e-15;
+/// Where a Jacobian determinant counts as zero: this many rounding errors of the largest that its columns' lengths allow
+/// are lost in the determinant itself.
+const FLAT: f64 = 9.0;
 
 /// Why an element has no stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,26 +21,104 @@ pub enum Fault {
     Flat,
 }
 
-/// Gradients of the shape functions and volumes at the quadrature points of one element.
+/// Gradients of the shape functions and volumes at the quadrature points of one element, or of one per lane.
 #[derive(Debug, Clone)]
-pub struct Geometry {
+pub struct Geometry<T = f64> {
     pub dimension: usize,
     pub nodes: usize,
     /// `∂N_a/∂x_k`, `[points × nodes × dimension]`, 1/m.
-    pub gradients: Vec<f64>,
+    pub gradients: Vec<T>,
     /// `w_q |J_q|`, `[points]`, m³ (m² in two dimensions).
-    pub volumes: Vec<f64>,
+    pub volumes: Vec<T>,
+}
+
+impl<T: Scalar> Geometry<T> {
+    /// Room for any element of this tabulation, filled by [`Geometry::update`]; `any` says the kind of number.
+    pub fn of_kind(any: &T, table: &Tabulation<T::Constant>) -> Geometry<T> {
+        Geometry {
+            dimension: table.dimension,
+            nodes: table.nodes,
+            gradients: vec![any.zero(); table.gradients.len()],
+            volumes: vec![any.zero(); table.points()],
+        }
+    }
+
+    /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m. Returns false where a Jacobian is not
+    /// safely positive; what is wrong then, [`Geometry::set`] can tell.
+    #[inline(always)]
+    pub fn update(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
+        // A number of nodes known at compile time unrolls the loops, which for few nodes are all overhead.
+        match (self.dimension, self.nodes) {
+            (2, 3) => self.update_in::<2>(3, table, x),
+            (2, 4) => self.update_in::<2>(4, table, x),
+            (3, 4) => self.update_in::<3>(4, table, x),
+            (3, 8) => self.update_in::<3>(8, table, x),
+            (2, n) => self.update_in::<2>(n, table, x),
+            (3, n) => self.update_in::<3>(n, table, x),
+            (_, n) => self.update_in::<1>(n, table, x),
+        }
+    }
+
+    #[inline(always)]
+    fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
+        let x = &x.as_chunks::<D>().0[..n];
+        let mut positive = true;
+        let flat = T::exact((FLAT * T::epsilon()).powi(2));
+        let reference = table.gradients.chunks_exact(n * D);
+        let physical = self.gradients.chunks_exact_mut(n * D);
+        for (((dn, grad), volume), w) in reference.zip(physical).zip(&mut self.volumes).zip(&table.weights) {
+            let (dn, grad) = (&dn.as_chunks::<D>().0[..n], &mut grad.as_chunks_mut::<D>().0[..n]);
+            let j = jacobian(x, dn);
+            let (adjugate, determinant) = adjugate(&j);
+            let least = squared_bound(&j).scaled(&flat);
+            positive &= determinant.exceeds(&determinant.zero()) && determinant.clone().squared().exceeds(&least);
+            // ∂N_a/∂x_k = Σ_l ∂N_a/∂ξ_l (J⁻¹)_lk
+            let inverse = multiple(&(determinant.one() / &determinant), &adjugate);
+            *volume = determinant.scaled(w);
+            for (ga, dna) in grad.iter_mut().zip(dn) {
+                for k in 0..D {
+                    ga[k] = inverse[0][k].clone().scaled(&dna[0]);
+                    for l in 1..D {
+                        ga[k] = ga[k].clone().plus_product(&inverse[l][k], &inverse[l][k].constant(&dna[l]));
+                    }
+                }
+            }
+        }
+        positive
+    }
+
+    pub fn points(&self) -> usize {
+        self.volumes.len()
+    }
+
+    /// Length, area or volume of the element, `Σ_q w_q |J_q|`.
+    #[inline(always)]
+    pub fn content(&self) -> T {
+        let mut sum = self.volumes[0].clone();
+        for v in &self.volumes[1..] {
+            sum = sum + v;
+        }
+        sum
+    }
+
+    /// `∫ ∂N_a/∂x_k dV`, `[nodes × dimension]`: the gradient of the element's content with respect to its nodes.
+    #[inline(always)]
+    pub fn content_gradient(&self) -> Vec<T> {
+        let size = self.nodes * self.dimension;
+        let mut gradient = vec![self.volumes[0].zero(); size];
+        for (grad, v) in self.gradients.chunks_exact(size).zip(&self.volumes) {
+            for (sum, g) in gradient.iter_mut().zip(grad) {
+                *sum = sum.clone().plus_product(v, g);
+            }
+        }
+        gradient
+    }
 }
 
 impl Geometry {
     /// Room for any element of this tabulation; filled by [`Geometry::set`].
     pub fn new(table: &Tabulation) -> Geometry {
-        Geometry {
-            dimension: table.dimension,
-            nodes: table.nodes,
-            gradients: vec![0.0; table.gradients.len()],
-            volumes: vec![0.0; table.points()],
-        }
+        Geometry::of_kind(&0.0, table)
     }
 
     /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m.
@@ -47,34 +126,25 @@ impl Geometry {
     /// # Errors
     /// The element is reversed, tangled or flat.
     pub fn set(&mut self, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
-        // A number of nodes known at compile time unrolls the loops, which for few nodes are all overhead.
-        match (self.dimension, self.nodes) {
-            (2, 3) => self.set_in::<2>(3, table, x),
-            (2, 4) => self.set_in::<2>(4, table, x),
-            (3, 4) => self.set_in::<3>(4, table, x),
-            (3, 8) => self.set_in::<3>(8, table, x),
-            (2, n) => self.set_in::<2>(n, table, x),
-            (3, n) => self.set_in::<3>(n, table, x),
-            (_, n) => self.set_in::<1>(n, table, x),
+        if self.update(table, x) {
+            return Ok(());
+        }
+        match self.dimension {
+            2 => self.fault::<2>(table, x),
+            3 => self.fault::<3>(table, x),
+            _ => self.fault::<1>(table, x),
         }
     }
 
-    #[inline(always)]
-    fn set_in<const D: usize>(&mut self, n: usize, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
-        let x = &x.as_chunks::<D>().0[..n];
+    /// The fault of an element whose Jacobian is not safely positive; none if only the bound left the range of `f64`.
+    fn fault<const D: usize>(&self, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
         let (mut positive, mut negative) = (0, 0);
-        let reference = table.gradients.chunks_exact(n * D);
-        let physical = self.gradients.chunks_exact_mut(n * D);
-        for (((dn, grad), volume), w) in reference.zip(physical).zip(&mut self.volumes).zip(&table.weights) {
-            let (dn, grad) = (&dn.as_chunks::<D>().0[..n], &mut grad.as_chunks_mut::<D>().0[..n]);
-            // J_kl = ∂x_k/∂ξ_l = Σ_a x_ak ∂N_a/∂ξ_l
-            let entry = |k: usize, l: usize| (0..n).map(|a| x[a][k] * dn[a][l]).sum::<f64>();
-            let j: [[f64; D]; D] = from_fn(|k| from_fn(|l| entry(k, l)));
-            let (adjugate, determinant) = adjugate(&j);
-            let bound: f64 = (0..D).map(|l| (0..D).map(|k| j[k][l] * j[k][l]).sum::<f64>()).product();
-            // A product of squares may leave the range of f64 where the determinant does not.
+        for dn in table.gradients.chunks_exact(table.nodes * D) {
+            let j = jacobian(x.as_chunks::<D>().0, dn.as_chunks::<D>().0);
+            let (_, determinant) = adjugate(&j);
+            let bound = squared_bound(&j);
             let flat = if bound > 0.0 && bound.is_finite() {
-                determinant * determinant <= FLAT * FLAT * bound
+                determinant * determinant <= (FLAT * f64::epsilon()).powi(2) * bound
             } else {
                 determinant == 0.0
             };
@@ -83,14 +153,8 @@ impl Geometry {
                 det if det > 0.0 => positive += 1,
                 _ => negative += 1,
             }
-            *volume = w * determinant;
-            // ∂N_a/∂x_k = Σ_l ∂N_a/∂ξ_l (J⁻¹)_lk
-            let inverse = 1.0 / determinant;
-            for (ga, dna) in grad.iter_mut().zip(dn) {
-                *ga = from_fn(|k| inverse * (0..D).map(|l| dna[l] * adjugate[l][k]).sum::<f64>());
-            }
         }
-        match (positive, negative, self.volumes.len()) {
+        match (positive, negative, table.points()) {
             (p, _, all) if p == all => Ok(()),
             (_, n, all) if n == all => Err(Fault::Reversed),
             (0, 0, _) => Err(Fault::Flat),
@@ -103,54 +167,6 @@ impl Geometry {
         let least = determinants().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
         let (point, determinant) = least.unwrap_or((0, 0.0));
         Fault::Tangled { point, determinant, largest: determinants().fold(f64::NEG_INFINITY, f64::max) }
-    }
-
-    pub fn points(&self) -> usize {
-        self.volumes.len()
-    }
-
-    /// Length, area or volume of the element, `Σ_q w_q |J_q|`.
-    pub fn content(&self) -> f64 {
-        self.volumes.iter().sum()
-    }
-
-    /// `∫ ∂N_a/∂x_k dV`, `[nodes × dimension]`: the gradient of the element's content with respect to its nodes.
-    pub fn content_gradient(&self) -> Vec<f64> {
-        let size = self.nodes * self.dimension;
-        let mut gradient = vec![0.0; size];
-        for (grad, v) in self.gradients.chunks_exact(size).zip(&self.volumes) {
-            gradient.iter_mut().zip(grad).for_each(|(s, g)| *s += v * g);
-        }
-        gradient
-    }
-
-    /// `uᵀ R u`, twice the strain energy (J) of the nodal displacements `u`, `[nodes × dimension]`, without forming R:
-    /// `∫ λ (div u)² + μ (∇u : ∇u + ∇u : ∇uᵀ) dV`.
-    pub fn energy(&self, moduli: Moduli, u: &[f64]) -> f64 {
-        match self.dimension {
-            2 => self.energy_in::<2>(moduli, u),
-            3 => self.energy_in::<3>(moduli, u),
-            _ => self.energy_in::<1>(moduli, u),
-        }
-    }
-
-    fn energy_in<const D: usize>(&self, Moduli { lambda, mu }: Moduli, u: &[f64]) -> f64 {
-        let u = u.as_chunks::<D>().0;
-        let mut energy = 0.0;
-        for (grad, v) in self.gradients.chunks_exact(self.nodes * D).zip(&self.volumes) {
-            let entry =
-                |k: usize, l: usize| u.iter().zip(grad.as_chunks::<D>().0).map(|(ua, ga)| ua[k] * ga[l]).sum::<f64>();
-            let h: [[f64; D]; D] = from_fn(|k| from_fn(|l| entry(k, l)));
-            let (mut trace, mut squares) = (0.0, 0.0);
-            for k in 0..D {
-                trace += h[k][k];
-                for l in 0..D {
-                    squares += h[k][l] * (h[k][l] + h[l][k]);
-                }
-            }
-            energy += v * (lambda * trace * trace + mu * squares);
-        }
-        energy
     }
 
     /// `R = ∫ Bᵀ D B dV` of an isotropic material, `[nodes·dimension × nodes·dimension]`, N/m:
@@ -213,22 +229,34 @@ fn gather_in<const D: usize>(points: &[f64], nodes: &[usize], x: &mut [f64]) {
     x.as_chunks_mut::<D>().0.iter_mut().zip(nodes).for_each(|(x, &node)| *x = points[node]);
 }
 
-/// `adj(J)` and `det J`, so that `J⁻¹ = adj(J)/det J`.
+/// `J_kl = ∂x_k/∂ξ_l = Σ_a x_ak ∂N_a/∂ξ_l`.
 #[inline(always)]
-fn adjugate<const D: usize>(j: &[[f64; D]; D]) -> ([[f64; D]; D], f64) {
-    let mut a = [[0.0; D]; D];
-    let minor = |p: usize, q: usize, r: usize, s: usize| j[p][r] * j[q][s] - j[p][s] * j[q][r];
-    match D {
-        1 => a[0][0] = 1.0,
-        2 => (a[0][0], a[0][1], a[1][0], a[1][1]) = (j[1][1], -j[0][1], -j[1][0], j[0][0]),
-        _ => {
-            (a[0][0], a[1][0], a[2][0]) = (minor(1, 2, 1, 2), minor(1, 2, 2, 0), minor(1, 2, 0, 1));
-            (a[0][1], a[1][1], a[2][1]) = (minor(2, 0, 1, 2), minor(2, 0, 2, 0), minor(2, 0, 0, 1));
-            (a[0][2], a[1][2], a[2][2]) = (minor(0, 1, 1, 2), minor(0, 1, 2, 0), minor(0, 1, 0, 1));
+fn jacobian<T: Scalar, const D: usize>(x: &[[T; D]], dn: &[[T::Constant; D]]) -> [[T; D]; D] {
+    let zero = x[0][0].zero();
+    let mut j: [[T; D]; D] = from_fn(|_| zeros(&zero));
+    for k in 0..D {
+        for l in 0..D {
+            j[k][l] = x[0][k].clone().scaled(&dn[0][l]);
+            for a in 1..x.len() {
+                j[k][l] = j[k][l].clone().plus_product(&x[a][k], &zero.constant(&dn[a][l]));
+            }
         }
     }
-    let determinant = (0..D).map(|l| j[0][l] * a[l][0]).sum();
-    (a, determinant)
+    j
+}
+
+/// The product of the squared lengths of the columns: `det² J` is at most that (Hadamard).
+#[inline(always)]
+fn squared_bound<T: Scalar, const D: usize>(j: &[[T; D]; D]) -> T {
+    let mut bound = j[0][0].one();
+    for l in 0..D {
+        let mut square = j[0][l].clone().squared();
+        for k in 1..D {
+            square = square.plus_product(&j[k][l], &j[k][l]);
+        }
+        bound = bound * &square;
+    }
+    bound
 }
 
 impl std::fmt::Display for Fault {

@@ -1,6 +1,6 @@
 //! The reference figures of whole bodies, %e_rms / %e_max, and how networks that do not stand are told.
 
-use springfit::fit::{Fit, Objective};
+use springfit::fit::{Fit, Objective, Weight};
 use springfit::solve::Standing;
 use springfit::study::{FitOutcome, NamedFit, Scene, run};
 use std::path::Path;
@@ -22,19 +22,19 @@ fn check(scene: &str, objective: Objective, bulk: bool, load: usize, rms: f64, m
     assert!((found.rms - rms).abs() < 0.021 && (found.max - max).abs() < 0.021, "{scene}: {found:?}, {rms} / {max}");
 }
 
-const MODAL: Objective = Objective::Modal { higher: 0.316 };
+const MODAL: Objective = Objective::Frobenius(Weight::Modal { higher: 0.316 });
 
 /// Derived with a linear model on both sides, a fixed face and consistent traction; `offdiag` 2.18 by an independent
 /// computation.
 #[test]
 fn bodies_under_tension_match_the_reference_figures() {
-    check("cube_hex", Objective::Frobenius, false, 0, 14.98, 25.58);
-    check("cube_hex", Objective::OffDiagonal, false, 0, 1.37, 2.18);
-    check("cylinder_tet", Objective::Frobenius, false, 0, 12.84, 30.76);
-    check("cube_tet", Objective::Frobenius, false, 0, 11.96, 31.36);
-    check("cylinder_hole_tet", Objective::Frobenius, false, 0, 7.53, 25.05);
-    check("tissue_tri", Objective::Frobenius, false, 0, 1.86, 4.51);
-    check("tissue_quad", Objective::Frobenius, false, 0, 8.92, 19.75);
+    check("cube_hex", Objective::Frobenius(Weight::None), false, 0, 14.98, 25.58);
+    check("cube_hex", Objective::Frobenius(Weight::OffDiagonal), false, 0, 1.37, 2.18);
+    check("cylinder_tet", Objective::Frobenius(Weight::None), false, 0, 12.84, 30.76);
+    check("cube_tet", Objective::Frobenius(Weight::None), false, 0, 11.96, 31.36);
+    check("cylinder_hole_tet", Objective::Frobenius(Weight::None), false, 0, 7.53, 25.05);
+    check("tissue_tri", Objective::Frobenius(Weight::None), false, 0, 1.86, 4.51);
+    check("tissue_quad", Objective::Frobenius(Weight::None), false, 0, 8.92, 19.75);
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn modal_fits_with_a_content_spring_match_the_reference_figures() {
     check("cylinder_hex", MODAL, true, 1, 0.19, 1.55);
     check("tissue_quad", MODAL, true, 0, 0.54, 1.48);
     check("tissue_quad", MODAL, true, 1, 0.20, 0.68);
-    let cube = fitted("cube_hex", Fit::new(Objective::Modal { higher: 0.1 }), true);
+    let cube = fitted("cube_hex", Fit::new(Objective::Frobenius(Weight::Modal { higher: 0.1 })), true);
     for (load, rms, max) in [(0, 0.15, 0.62), (1, 0.40, 0.92)] {
         let found = cube.loads[load].error.unwrap();
         assert!(found.rms <= rms && found.max <= max, "{found:?}");
@@ -52,7 +52,7 @@ fn modal_fits_with_a_content_spring_match_the_reference_figures() {
 
 #[test]
 fn a_network_that_releases_energy_is_told() {
-    let outcome = fitted("cylinder_hex", Fit::new(Objective::Modal { higher: 0.1 }), true);
+    let outcome = fitted("cylinder_hex", Fit::new(Objective::Frobenius(Weight::Modal { higher: 0.1 })), true);
     assert!(outcome.loads[0].error.unwrap().max > 500.0);
     let stability = outcome.stability.unwrap();
     assert_eq!(stability.standing, Standing::Indefinite);
@@ -66,7 +66,7 @@ fn a_network_that_releases_energy_is_told() {
 fn a_mechanism_has_no_displacement_but_names_its_points() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/square_quad.toml");
     let mut scene = Scene::load(&path).unwrap();
-    scene.fits = vec![NamedFit::new(Fit::new(Objective::Frobenius), Some(vec!["edge".into()]))];
+    scene.fits = vec![NamedFit::new(Fit::new(Objective::Frobenius(Weight::None)), Some(vec!["edge".into()]))];
     let outcome = run(&scene, &mut |_, _, _| {}).unwrap().fits.remove(0);
     assert_eq!(outcome.stability.unwrap().standing, Standing::Singular);
     assert!(!outcome.loose_points.is_empty());

@@ -1,7 +1,7 @@
 //! Published and derived figures for single elements.
 
 use springfit::element::Element;
-use springfit::fit::{Fit, Objective, element_errors, fit_cells, fit_element};
+use springfit::fit::{Fit, Objective, Weight, element_errors, fit_cells, fit_element};
 use springfit::material::{Material, State};
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
@@ -25,10 +25,10 @@ fn constants(element: &str, x: &[f64], material: Material, objective: Objective)
 #[test]
 fn square_constants_match_the_derived_figures() {
     let cases = [
-        (STRAIN, Objective::OffDiagonal, 3846.1538, 5288.4615),
-        (STRAIN, Objective::Frobenius, 3571.4286, 4945.0549),
-        (STRESS, Objective::OffDiagonal, 3021.9780, 4258.2418),
-        (STRESS, Objective::Frobenius, 2982.7316, 4003.1397),
+        (STRAIN, Objective::Frobenius(Weight::OffDiagonal), 3846.1538, 5288.4615),
+        (STRAIN, Objective::Frobenius(Weight::None), 3571.4286, 4945.0549),
+        (STRESS, Objective::Frobenius(Weight::OffDiagonal), 3021.9780, 4258.2418),
+        (STRESS, Objective::Frobenius(Weight::None), 2982.7316, 4003.1397),
     ];
     for (state, objective, edge, diagonal) in cases {
         let k = constants("quad4", &SQUARE, Material::new(1e4, 0.3, state).unwrap(), objective);
@@ -87,11 +87,11 @@ fn regular_tetrahedron_matches_published_constants() {
     ];
     for (poisson, expected) in figures {
         let material = Material::new(1.0, poisson, State::Solid).unwrap();
-        let k = constants("tet4", &regular_tetrahedron(), material, Objective::Frobenius);
+        let k = constants("tet4", &regular_tetrahedron(), material, Objective::Frobenius(Weight::None));
         k.iter().for_each(|k| close(*k, expected, 6e-5));
         // Off-diagonal: E V / l² (Van Gelder 1998) at ν = 1/4.
         if poisson == 0.25 {
-            let k = constants("tet4", &regular_tetrahedron(), material, Objective::OffDiagonal);
+            let k = constants("tet4", &regular_tetrahedron(), material, Objective::Frobenius(Weight::OffDiagonal));
             k.iter().for_each(|k| close(*k, 1.0 / 72f64.sqrt(), 1e-12));
         }
     }
@@ -106,7 +106,7 @@ fn relative_frobenius(name: &str, x: &[f64], material: Material, groups: Option<
     let element = Element::load(name).unwrap();
     let springs = Springs::select(&element, groups).unwrap();
     let cell: Vec<usize> = (0..element.nodes()).collect();
-    let fit = Fit::new(Objective::Frobenius);
+    let fit = Fit::new(Objective::Frobenius(Weight::None));
     let fits = fit_cells(&element, &springs, x, &cell, material.moduli(), &fit, &mut |_| {}).unwrap();
     element_errors(&element, x, &cell, material.moduli(), &fits).unwrap().frobenius[0]
 }
@@ -122,7 +122,7 @@ fn cube_matches_published_constants() {
     ];
     for (poisson, edge, face, body, error) in figures {
         let material = Material::new(1.0, poisson, State::Solid).unwrap();
-        let k = constants("hex8", &unit_cube(), material, Objective::Frobenius);
+        let k = constants("hex8", &unit_cube(), material, Objective::Frobenius(Weight::None));
         k[..12].iter().for_each(|k| close(*k, edge, 7e-5));
         k[12..24].iter().for_each(|k| close(*k, face, 7e-5));
         k[24..].iter().for_each(|k| close(*k, body, 1e-4));
@@ -135,7 +135,7 @@ fn cube_matches_published_constants() {
 fn corner_tetrahedron_matches_published_constants() {
     let x = [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1.];
     let material = Material::new(1.0, 0.25, State::Solid).unwrap();
-    let k = constants("tet4", &x, material, Objective::Frobenius);
+    let k = constants("tet4", &x, material, Objective::Frobenius(Weight::None));
     for (s, expected) in [(0, 0.22353), (2, 0.22353), (3, 0.22353), (1, 0.03922), (4, 0.03922), (5, 0.03922)] {
         close(k[s], expected, 1.3e-4);
     }
@@ -147,13 +147,13 @@ fn corner_tetrahedron_matches_published_constants() {
 fn plane_constants_of_lloyd_follow() {
     let material = Material::new(1.0, 1.0 / 3.0, STRESS).unwrap();
     let triangle = [0., 0., 1., 0., 0.5, 3f64.sqrt() / 2.0];
-    let k = constants("tri3", &triangle, material, Objective::Frobenius);
+    let k = constants("tri3", &triangle, material, Objective::Frobenius(Weight::None));
     k.iter().for_each(|k| close(*k, 3f64.sqrt() / 4.0, 1e-14));
     assert!(relative_frobenius("tri3", &triangle, material, None) < 1e-14);
-    let k = constants("quad4", &SQUARE, material, Objective::OffDiagonal);
+    let k = constants("quad4", &SQUARE, material, Objective::Frobenius(Weight::OffDiagonal));
     close(k[0], 5.0 / 16.0, 1e-14);
     close(k[4], 7.0 / 16.0, 1e-14);
-    let k = constants("quad4", &SQUARE, material, Objective::Frobenius);
+    let k = constants("quad4", &SQUARE, material, Objective::Frobenius(Weight::None));
     close(k[0], 17.0 / 56.0, 1e-14);
     close(k[4], 23.0 / 56.0, 1e-14);
 }
@@ -184,7 +184,7 @@ fn simplex_closed_form_off_the_diagonal() {
     let element = Element::load("tet4").unwrap();
     let mut geometry = Geometry::new(&element.tabulation);
     geometry.set(&element.tabulation, &x).unwrap();
-    let k = constants("tet4", &x, material, Objective::OffDiagonal);
+    let k = constants("tet4", &x, material, Objective::Frobenius(Weight::OffDiagonal));
     for (k, &[i, j]) in k.iter().zip(&element.springs[0].pairs) {
         let dot: f64 = (0..3).map(|c| geometry.gradients[3 * i + c] * geometry.gradients[3 * j + c]).sum();
         let square: f64 = (0..3).map(|c| (x[3 * j + c] - x[3 * i + c]).powi(2)).sum();

@@ -4,9 +4,10 @@ use springfit::element::SHIPPED;
 use std::path::{Path, PathBuf};
 
 /// A module may import those before it; a folder counts as one.
-const LAYERS: [&str; 13] = [
+const LAYERS: [&str; 14] = [
     "error",
     "file",
+    "scalar",
     "symbolic",
     "element",
     "material",

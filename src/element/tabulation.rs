@@ -5,15 +5,15 @@ use crate::symbolic::Expr;
 
 /// What the numerical code knows of an element: `N_a(ξ_q)`, `∂N_a/∂ξ_k(ξ_q)`, `w_q`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tabulation {
+pub struct Tabulation<C = f64> {
     pub nodes: usize,
     pub dimension: usize,
     /// `[points]`.
-    pub weights: Vec<f64>,
+    pub weights: Vec<C>,
     /// `[points × nodes]`.
-    pub values: Vec<f64>,
+    pub values: Vec<C>,
     /// `[points × nodes × dimension]`, with respect to the reference coordinates.
-    pub gradients: Vec<f64>,
+    pub gradients: Vec<C>,
 }
 
 impl Tabulation {
@@ -43,6 +43,20 @@ impl Tabulation {
         Tabulation { gradients, dimension: tangents.len(), ..self }
     }
 
+    /// The same table in another kind of number.
+    pub fn map<C>(&self, convert: impl Fn(f64) -> C) -> Tabulation<C> {
+        let all = |values: &[f64]| values.iter().map(|v| convert(*v)).collect();
+        Tabulation {
+            nodes: self.nodes,
+            dimension: self.dimension,
+            weights: all(&self.weights),
+            values: all(&self.values),
+            gradients: all(&self.gradients),
+        }
+    }
+}
+
+impl<C> Tabulation<C> {
     pub fn points(&self) -> usize {
         self.weights.len()
     }

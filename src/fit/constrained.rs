@@ -12,18 +12,10 @@ const OPTIMALITY: f64 = 1e-10;
 /// solve for them, exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. Where `M` is singular or the exchange does not
 /// end, the interior-point solver decides.
 pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
-    let m = normal.size();
-    let scale: Vec<f64> = (0..m).map(|s| 1.0 / normal.gram[s * m + s].sqrt()).collect();
-    let mut scaled = normal.clone();
-    for s in 0..m {
-        scaled.rhs[s] *= scale[s];
-        for t in 0..m {
-            scaled.gram[s * m + t] *= scale[s] * scale[t];
-        }
-    }
+    let (scaled, scale) = normal.scaled();
     let (mut k, rank) = match pivot(&scaled) {
         Some(k) => (k, Rank::Full),
-        None => (interior_point(&scaled).unwrap_or_else(|| vec![0.0; m]), Rank::Deficient),
+        None => (interior_point(&scaled).unwrap_or_else(|| vec![0.0; normal.size()]), Rank::Deficient),
     };
     k.iter_mut().zip(&scale).for_each(|(k, s)| *k *= s);
     (k, rank)
@@ -37,7 +29,7 @@ fn pivot(normal: &Normal) -> Option<Vec<f64>> {
     for _ in 0..100 + 10 * m {
         let set: Vec<usize> = (0..m).filter(|&s| positive[s]).collect();
         let mut free = normal.restricted(&set);
-        if free.solve() == Rank::Deficient {
+        if !free.solve_regular() {
             return None;
         }
         let mut k = vec![0.0; m];
@@ -66,7 +58,7 @@ pub fn interior_point(normal: &Normal) -> Option<Vec<f64>> {
     let upper: Vec<(usize, usize)> = (0..m).flat_map(|t| (0..=t).map(move |s| (s, t))).collect();
     let rows = upper.iter().map(|st| st.0).collect();
     let columns = upper.iter().map(|st| st.1).collect();
-    let values = upper.iter().map(|&(s, t)| normal.gram[s * m + t]).collect();
+    let values = upper.iter().map(|&(s, t)| normal.entry(s, t)).collect();
     let p = CscMatrix::new_from_triplets(m, m, rows, columns, values);
     let q: Vec<f64> = normal.rhs.iter().map(|b| -b).collect();
     let mut minus = CscMatrix::identity(m);

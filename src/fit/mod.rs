@@ -1,22 +1,23 @@
 //! Spring constants from the stiffness of each element.
 
+mod batch;
 mod constrained;
-mod frobenius;
-mod modes;
+mod least_squares;
 mod normal;
 mod objective;
 mod residual;
 
+pub use least_squares::constants_in;
 pub use normal::Rank;
-pub use objective::Objective;
+pub use objective::{Objective, Weight};
 pub use residual::{ElementErrors, Spread, element_errors};
 
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::Springs;
-use crate::stiffness::{self, Geometry};
-use normal::Normal;
+use crate::stiffness::{self, Fault, Geometry};
+use batch::Batch;
 use rayon::prelude::*;
 
 /// Cells that one thread fits in one go.
@@ -71,15 +72,10 @@ pub fn fit_cells(
     if m == 0 {
         return Ok(fits);
     }
-    let chunk = |first: usize, nodes: &[usize], constants: &mut [f64]| {
-        let mut normal = Normal::default();
-        let mut deficient = 0;
-        each_cell(element, points, nodes, first, |cell, x, geometry| {
-            fit.objective.normal_equations(springs, x, geometry, moduli, &mut normal);
-            let rank = solve(fit, springs, &mut normal, &mut constants[cell * m..(cell + 1) * m]);
-            deficient += usize::from(rank == Rank::Deficient);
-        })?;
-        Ok(deficient)
+    let Objective::Frobenius(weight) = fit.objective;
+    let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
+        let batch = Batch { element, springs, points, connectivity, moduli, weight, fit: *fit, constants };
+        batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
     };
     let rounds = connectivity.chunks(ROUND * n).zip(fits.constants.chunks_mut(ROUND * m));
     for (round, (nodes, constants)) in rounds.enumerate() {
@@ -103,26 +99,6 @@ pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Modu
     Ok(fit_cells(element, springs, x, &connectivity, moduli, fit, &mut |_| {})?.constants)
 }
 
-/// Writes the solution into `constants`, `[springs]`.
-fn solve(fit: &Fit, springs: &Springs, normal: &mut Normal, constants: &mut [f64]) -> Rank {
-    let mut tied = fit.tied.then(|| normal.tied(&springs.groups, springs.names.len()));
-    let equations = tied.as_mut().unwrap_or(normal);
-    let (solution, rank);
-    let k: &[f64] = if fit.nonnegative {
-        (solution, rank) = constrained::solve_nonnegative(equations);
-        &solution
-    } else {
-        rank = equations.solve();
-        &equations.rhs
-    };
-    if fit.tied {
-        constants.iter_mut().zip(&springs.groups).for_each(|(constant, &group)| *constant = k[group]);
-    } else {
-        constants.copy_from_slice(k);
-    }
-    rank
-}
-
 /// [`stiffness::each_cell`] with an error that names the cell, the first being number `first` (from 0) of its block.
 fn each_cell(
     element: &Element,
@@ -132,5 +108,10 @@ fn each_cell(
     visit: impl FnMut(usize, &[f64], &Geometry),
 ) -> Result<()> {
     stiffness::each_cell(&element.tabulation, points, connectivity, visit)
-        .map_err(|(cell, fault)| Error::at(format!("{} cell {}", element.name, first + cell + 1), fault.to_string()))
+        .map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+}
+
+/// `cell` is counted from 0, and named from 1.
+fn cell_fault(element: &Element, cell: usize, fault: Fault) -> Error {
+    Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string())
 }

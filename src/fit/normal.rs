@@ -1,21 +1,24 @@
 //! Normal equations `M k = b` of a least-squares fit: assembly by groups and solution.
 
+use crate::scalar::Scalar;
 use nalgebra::{DMatrix, DVector};
 
-/// A pivot below this fraction of its diagonal entry counts as zero. Rounding leaves about
-/// m·10⁻¹⁶; what lies between is solved and the digits are lost that the condition costs.
-const RANK: f64 = 1e-13;
+/// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves about m of them;
+/// what lies between is solved and the digits are lost that the condition costs.
+const RANK: f64 = 1000.0;
 
-/// `M`, row by row, and `b`.
-#[derive(Debug, Clone, Default)]
-pub struct Normal {
-    pub gram: Vec<f64>,
-    pub rhs: Vec<f64>,
+/// `M`, row by row, and `b`, of one element or of one per lane. Only the lower triangle of `M` is ever read.
+#[derive(Debug, Clone)]
+pub struct Normal<T = f64> {
+    pub gram: Vec<T>,
+    pub rhs: Vec<T>,
     /// Room for the edge vectors `x_j − x_i` of the length springs, `[springs × dimension]`.
-    pub(super) edges: Vec<f64>,
+    pub(super) edges: Vec<T>,
+    /// Room for their images under the inverse spread of the nodes, `[springs × dimension]`.
+    pub(super) images: Vec<T>,
     /// Room for their inverse squares, `[springs]`.
-    pub(super) inverse_squares: Vec<f64>,
-    pivots: Vec<f64>,
+    pub(super) inverse_squares: Vec<T>,
+    pivots: Vec<T>,
 }
 
 /// How the constants were determined.
@@ -27,119 +30,171 @@ pub enum Rank {
     Deficient,
 }
 
-impl Normal {
-    pub fn new(gram: Vec<f64>, rhs: Vec<f64>) -> Normal {
-        Normal { gram, rhs, ..Normal::default() }
+impl<T> Default for Normal<T> {
+    fn default() -> Normal<T> {
+        Normal::new(Vec::new(), Vec::new())
     }
+}
 
-    pub fn resize(&mut self, m: usize) {
-        self.gram.resize(m * m, 0.0);
-        self.rhs.resize(m, 0.0);
+impl<T> Normal<T> {
+    pub fn new(gram: Vec<T>, rhs: Vec<T>) -> Normal<T> {
+        Normal { gram, rhs, edges: vec![], images: vec![], inverse_squares: vec![], pivots: vec![] }
     }
 
     pub fn size(&self) -> usize {
         self.rhs.len()
     }
+}
 
+impl<T: Scalar> Normal<T> {
     /// The equations of one constant per group: `M_IJ = Σ_{s∈I, t∈J} M_st`, `b_I = Σ_{s∈I} b_s`.
-    pub fn tied(&self, groups: &[usize], count: usize) -> Normal {
-        let m = self.size();
-        let mut tied = Normal::new(vec![0.0; count * count], vec![0.0; count]);
+    #[inline(always)]
+    pub fn tied(&self, groups: &[usize], count: usize, tied: &mut Normal<T>) {
+        let (m, zero) = (self.size(), self.rhs[0].zero());
+        for (room, size) in [(&mut tied.gram, count * count), (&mut tied.rhs, count)] {
+            room.clear();
+            room.resize(size, zero.clone());
+        }
         for (s, &i) in groups.iter().enumerate() {
-            tied.rhs[i] += self.rhs[s];
-            for (t, &j) in groups.iter().enumerate() {
-                tied.gram[i * count + j] += self.gram[s * m + t];
+            tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
+            for (t, &j) in groups[..=s].iter().enumerate() {
+                let entry = &self.gram[s * m + t];
+                let sum = &mut tied.gram[i.max(j) * count + i.min(j)];
+                *sum = sum.clone() + entry;
+                if i == j && s != t {
+                    *sum = sum.clone() + entry;
+                }
             }
         }
-        tied
     }
 
-    /// The equations of the springs `set` alone.
-    pub fn restricted(&self, set: &[usize]) -> Normal {
-        let m = self.size();
-        let entries = set.iter().flat_map(|&s| set.iter().map(move |&t| s * m + t));
-        Normal::new(entries.map(|st| self.gram[st]).collect(), set.iter().map(|&s| self.rhs[s]).collect())
-    }
-
-    /// `½ kᵀ M k − bᵀ k`'s gradient `M k − b`.
-    pub fn gradient(&self, k: &[f64]) -> Vec<f64> {
-        let rows = self.gram.chunks_exact(self.size());
-        rows.zip(&self.rhs).map(|(row, b)| row.iter().zip(k).map(|(m, k)| m * k).sum::<f64>() - b).collect()
-    }
-
-    /// Solves `M k = b`, overwriting both; `k` is left in `rhs`.
-    pub fn solve(&mut self) -> Rank {
-        let m = self.size();
-        self.pivots.resize(m, 0.0);
-        // A size known at compile time unrolls the loops of the small systems, where they are most of the work.
-        let regular = match m {
-            3 => self.factorize(3),
-            6 => self.factorize(6),
-            _ => self.factorize(m),
-        };
-        if regular {
-            return Rank::Full;
-        }
-        let scale: Vec<f64> = (0..m).map(|s| 1.0 / self.gram[s * m + s].sqrt()).collect();
-        least_norm(&self.gram, &scale, &mut self.rhs);
-        Rank::Deficient
-    }
-
-    /// `M = L D Lᵀ`, with L in the strict lower triangle, then `b ← M⁻¹ b`. Returns false, with the upper triangle and
-    /// diagonal of `M` and `b` as they were, if a pivot vanishes.
+    /// `M = L D Lᵀ`, with L in the strict lower triangle, then `b ← M⁻¹ b`. Returns false if a pivot vanishes in some
+    /// lane; the diagonal is kept, the lower triangle not.
     ///
     /// No scaling is needed: each pivot and its diagonal entry scale alike.
     #[inline(always)]
+    pub fn solve_regular(&mut self) -> bool {
+        // A size known at compile time unrolls the loops of the small systems, where they are most of the work.
+        match self.size() {
+            0 => true,
+            3 => self.factorize(3),
+            6 => self.factorize(6),
+            28 => self.factorize(28),
+            m => self.factorize(m),
+        }
+    }
+
+    #[inline(always)]
     fn factorize(&mut self, m: usize) -> bool {
+        self.pivots.resize(m, self.rhs[0].zero());
         let (gram, rhs, inverse) = (&mut self.gram[..m * m], &mut self.rhs[..m], &mut self.pivots[..m]);
+        let least = T::exact(RANK * T::epsilon());
         for s in 0..m {
-            // L_st = (M_st − Σ_{r<t} L_sr D_r L_tr)/D_t; the row holds L_sr D_r until its pivot is known.
-            for t in 1..s {
-                for r in 0..t {
-                    gram[s * m + t] -= gram[s * m + r] * gram[t * m + r];
-                }
+            let (before, row) = gram.split_at_mut(s * m);
+            let row = &mut row[..=s];
+            // L_st = (M_st − Σ_{r<t} L_sr D_r L_tr)/D_t; the row holds L_sr D_r until its pivot is known. Four entries
+            // at once: their sums are independent, where the terms of one must wait for each other.
+            let mut t = 0;
+            while t + 4 <= s {
+                eliminate::<T, 4>(row, before, m, t);
+                t += 4;
             }
-            let mut pivot = gram[s * m + s];
+            while t < s {
+                eliminate::<T, 1>(row, before, m, t);
+                t += 1;
+            }
+            let mut pivot = row[s].clone();
             for t in 0..s {
-                let scaled = gram[s * m + t];
-                gram[s * m + t] *= inverse[t];
-                pivot -= scaled * gram[s * m + t];
+                let scaled = row[t].clone() * &inverse[t];
+                pivot = pivot.minus_product(&row[t], &scaled);
+                row[t] = scaled;
             }
-            if !(pivot > RANK * gram[s * m + s]) {
+            if !pivot.exceeds(&row[s].clone().scaled(&least)) {
                 return false;
             }
-            inverse[s] = 1.0 / pivot;
+            inverse[s] = pivot.one() / &pivot;
         }
         for s in 1..m {
+            let mut sum = rhs[s].clone();
             for t in 0..s {
-                rhs[s] -= gram[s * m + t] * rhs[t];
+                sum = sum.minus_product(&gram[s * m + t], &rhs[t]);
             }
+            rhs[s] = sum;
         }
-        rhs.iter_mut().zip(&*inverse).for_each(|(b, d)| *b *= d);
+        for s in 0..m {
+            rhs[s] = rhs[s].clone() * &inverse[s];
+        }
         for s in (1..m).rev() {
             for t in 0..s {
-                rhs[t] -= gram[s * m + t] * rhs[s];
+                rhs[t] = rhs[t].clone().minus_product(&gram[s * m + t], &rhs[s]);
             }
         }
         true
     }
 }
 
-/// The solution of least `Σ (k_s/scale_s)²`, from the eigenvectors of the matrix scaled to a unit diagonal; the upper
-/// triangle and diagonal of `M` are given.
-fn least_norm(gram: &[f64], scale: &[f64], rhs: &mut [f64]) {
-    let m = rhs.len();
-    let entry = |s: usize, t: usize| gram[s.min(t) * m + s.max(t)] * scale[s] * scale[t];
-    let eigen = DMatrix::from_fn(m, m, entry).symmetric_eigen();
-    let b = DVector::from_fn(m, |s, _| rhs[s] * scale[s]);
-    let largest = eigen.eigenvalues.amax();
-    let mut coefficients = eigen.eigenvectors.tr_mul(&b);
-    for (c, &value) in coefficients.iter_mut().zip(&eigen.eigenvalues) {
-        *c = if value > RANK * largest { *c / value } else { 0.0 };
+/// Takes the terms of the columns before from the entries `t..t + B` of a row.
+#[inline(always)]
+fn eliminate<T: Scalar, const B: usize>(row: &mut [T], before: &[T], m: usize, t: usize) {
+    let (done, rest) = row.split_at_mut(t);
+    let entries = &mut rest[..B];
+    let mut sums: [T; B] = std::array::from_fn(|b| entries[b].clone());
+    let others: [&[T]; B] = std::array::from_fn(|b| &before[(t + b) * m..(t + b) * m + t + b]);
+    for r in 0..t {
+        for b in 0..B {
+            sums[b] = sums[b].clone().minus_product(&done[r], &others[b][r]);
+        }
     }
-    let k = &eigen.eigenvectors * coefficients;
-    for s in 0..m {
-        rhs[s] = k[s] * scale[s];
+    for b in 1..B {
+        for c in 0..b {
+            sums[b] = sums[b].clone().minus_product(&sums[c], &others[b][t + c]);
+        }
+    }
+    entries.clone_from_slice(&sums);
+}
+
+impl Normal {
+    pub fn entry(&self, s: usize, t: usize) -> f64 {
+        self.gram[s.max(t) * self.size() + s.min(t)]
+    }
+
+    /// The equations of the springs `set` alone.
+    pub fn restricted(&self, set: &[usize]) -> Normal {
+        let entries = set.iter().flat_map(|&s| set.iter().map(move |&t| self.entry(s, t)));
+        Normal::new(entries.collect(), set.iter().map(|&s| self.rhs[s]).collect())
+    }
+
+    /// The same equations for `k_s/scale_s`, in which `M` has a unit diagonal, and the scales.
+    pub fn scaled(&self) -> (Normal, Vec<f64>) {
+        let m = self.size();
+        let scale: Vec<f64> = (0..m).map(|s| 1.0 / self.entry(s, s).sqrt()).collect();
+        let gram = (0..m * m).map(|st| self.entry(st / m, st % m) * scale[st / m] * scale[st % m]).collect();
+        let rhs = self.rhs.iter().zip(&scale).map(|(b, s)| b * s).collect();
+        (Normal::new(gram, rhs), scale)
+    }
+
+    /// `½ kᵀ M k − bᵀ k`'s gradient `M k − b`.
+    pub fn gradient(&self, k: &[f64]) -> Vec<f64> {
+        let row = |s: usize| k.iter().enumerate().map(|(t, k)| self.entry(s, t) * k).sum::<f64>();
+        self.rhs.iter().enumerate().map(|(s, b)| row(s) - b).collect()
+    }
+
+    /// `k = M⁻¹ b`; where M is singular, the solution of least norm in the scaling with a unit diagonal.
+    pub fn solve(&self) -> (Vec<f64>, Rank) {
+        let mut copy = self.clone();
+        if copy.solve_regular() {
+            return (copy.rhs, Rank::Full);
+        }
+        let (scaled, scale) = self.scaled();
+        let m = self.size();
+        let eigen = DMatrix::from_vec(m, m, scaled.gram).symmetric_eigen();
+        let least = RANK * f64::epsilon() * eigen.eigenvalues.amax();
+        let mut coefficients = eigen.eigenvectors.tr_mul(&DVector::from_vec(scaled.rhs));
+        for (c, &value) in coefficients.iter_mut().zip(&eigen.eigenvalues) {
+            *c = if value > least { *c / value } else { 0.0 };
+        }
+        let k = &eigen.eigenvectors * coefficients;
+        (k.iter().zip(&scale).map(|(k, s)| k * s).collect(), Rank::Deficient)
     }
 }
 
@@ -150,11 +205,11 @@ mod tests {
     /// `k = (1, 2)` for a regular matrix, `(1, 1)` where only the sum of the two is determined.
     #[test]
     fn solves_and_tells_the_rank() {
-        let mut regular = Normal::new(vec![4.0, 1.0, 1.0, 3.0], vec![6.0, 7.0]);
-        assert_eq!(regular.solve(), Rank::Full);
-        assert!((regular.rhs[0] - 1.0).abs() < 1e-15 && (regular.rhs[1] - 2.0).abs() < 1e-15);
-        let mut singular = Normal::new(vec![4.0; 4], vec![8.0; 2]);
-        assert_eq!(singular.solve(), Rank::Deficient);
-        assert!(singular.rhs.iter().all(|k| (k - 1.0).abs() < 1e-14));
+        let (k, rank) = Normal::new(vec![4.0, 1.0, 1.0, 3.0], vec![6.0, 7.0]).solve();
+        assert_eq!(rank, Rank::Full);
+        assert!((k[0] - 1.0).abs() < 1e-15 && (k[1] - 2.0).abs() < 1e-15);
+        let (k, rank) = Normal::new(vec![4.0; 4], vec![8.0; 2]).solve();
+        assert_eq!(rank, Rank::Deficient);
+        assert!(k.iter().all(|k| (k - 1.0).abs() < 1e-14));
     }
 }

@@ -34,9 +34,9 @@ pub struct Material {
 ///
 /// In plane stress λ is `Eν/(1−ν²) = 2λμ/(λ+2μ)`, the one that leaves no stress through the thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moduli {
-    pub lambda: f64,
-    pub mu: f64,
+pub struct Moduli<C = f64> {
+    pub lambda: C,
+    pub mu: C,
 }
 
 impl Material {

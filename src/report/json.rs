@@ -1,6 +1,6 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
-use crate::fit::{Objective, Spread};
+use crate::fit::Spread;
 use crate::solve::Standing;
 use crate::study::{FitOutcome, LoadOutcome, Outcome};
 use serde_json::{Value, json};
@@ -25,7 +25,7 @@ pub fn report(outcome: &Outcome) -> String {
 
 fn fit(outcome: &FitOutcome, elements: usize) -> Value {
     let fit = &outcome.fit.fit;
-    let higher = if let Objective::Modal { higher } = fit.objective { Some(higher) } else { None };
+    let higher = fit.objective.higher();
     json!({
         "name": outcome.fit.name,
         "objective": fit.objective.name(),

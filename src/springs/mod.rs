@@ -20,6 +20,8 @@ pub struct Springs {
     pub names: Vec<String>,
     /// Length springs that share a node: `(s, t)`, s < t, `(g_s · g_t)² = (n_s · n_t)²`; all others are orthogonal.
     pub(crate) touching: Vec<(usize, usize)>,
+    /// Those of them that join the same two nodes.
+    pub(crate) parallel: Vec<(usize, usize)>,
 }
 
 impl Springs {
@@ -38,6 +40,7 @@ impl Springs {
             groups: Vec::new(),
             names: chosen.iter().map(|g| g.name.clone()).collect(),
             touching: Vec::new(),
+            parallel: Vec::new(),
         };
         for (index, group) in chosen.iter().enumerate() {
             match group.kind {
@@ -51,7 +54,8 @@ impl Springs {
                 }
             }
         }
-        springs.touching = touching(&springs.pairs);
+        springs.touching = sharing(&springs.pairs, 1);
+        springs.parallel = sharing(&springs.pairs, 2);
         Ok(springs)
     }
 
@@ -92,7 +96,8 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt()
 }
 
-fn touching(pairs: &[[usize; 2]]) -> Vec<(usize, usize)> {
-    let share = |s: usize, t: usize| pairs[s].iter().any(|node| pairs[t].contains(node));
-    (0..pairs.len()).flat_map(|t| (0..t).filter(move |&s| share(s, t)).map(move |s| (s, t))).collect()
+/// The springs `(s, t)`, s < t, that have at least `nodes` nodes in common.
+fn sharing(pairs: &[[usize; 2]], nodes: usize) -> Vec<(usize, usize)> {
+    let common = |s: usize, t: usize| pairs[s].iter().filter(|node| pairs[t].contains(node)).count();
+    (0..pairs.len()).flat_map(|t| (0..t).filter(move |&s| common(s, t) >= nodes).map(move |s| (s, t))).collect()
 }

@@ -7,7 +7,7 @@ pub use entry::{BoxEntry, MeshInput, Output};
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::fit::{Fit, Objective};
+use crate::fit::Fit;
 use crate::material::Material;
 use crate::mesh::{BoxMesh, Mesh, MeshSource, Selection};
 use crate::model::Action;
@@ -183,7 +183,7 @@ impl NamedFit {
 
 fn fit_name(fit: &Fit, springs: Option<&[String]>) -> String {
     let mut name = fit.objective.name().to_string();
-    if let Objective::Modal { higher } = fit.objective {
+    if let Some(higher) = fit.objective.higher() {
         name += &format!(" {higher}");
     }
     for group in springs.unwrap_or_default() {

@@ -1,0 +1,248 @@
+//! The constants of every fit at random shapes of every element, against matrices formed here entry by entry.
+
+mod shapes;
+
+use nalgebra::{DMatrix, DVector};
+use num_rational::BigRational;
+use shapes::{Random, distorted, elements, materials};
+use springfit::element::Element;
+use springfit::fit::{Fit, Objective, Weight, constants_in, fit_element};
+use springfit::material::{Material, Moduli};
+use springfit::springs::Springs;
+use springfit::stiffness::Geometry;
+use std::sync::Arc;
+
+const WEIGHTS: [Weight; 4] =
+    [Weight::None, Weight::OffDiagonal, Weight::Modal { higher: 0.316 }, Weight::Modal { higher: 1.0 }];
+
+/// R and the rows g_s of one element.
+struct Case {
+    name: String,
+    element: Arc<Element>,
+    springs: Springs,
+    x: Vec<f64>,
+    moduli: Moduli,
+    r: DMatrix<f64>,
+    g: Vec<DVector<f64>>,
+}
+
+fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
+    let mut geometry = Geometry::new(&element.tabulation);
+    geometry.set(&element.tabulation, x).unwrap();
+    let mut rows = Vec::new();
+    springs.gradients(x, &geometry, &mut rows);
+    let g = rows.chunks_exact(x.len()).map(DVector::from_column_slice).collect();
+    let name = format!("{} with {} springs", element.name, springs.len());
+    let r = geometry.stiffness(moduli);
+    Case { name, element: element.clone(), springs: springs.clone(), x: x.to_vec(), moduli, r, g }
+}
+
+/// Every element, with and without its optional springs, at random shapes, for every material.
+fn cases(shapes: usize) -> Vec<Case> {
+    let mut all = Vec::new();
+    for element in elements().into_iter().map(Arc::new) {
+        let mut random = Random(11);
+        let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
+        for springs in [None, Some(&every[..])].map(|names| Springs::select(&element, names).unwrap()) {
+            for _ in 0..shapes {
+                let x = distorted(&element, &mut random);
+                let of = |material: Material| case(&element, &springs, &x, material.moduli());
+                all.extend(materials(element.dimension()).into_iter().map(of));
+            }
+        }
+    }
+    all
+}
+
+impl Case {
+    fn fit(&self, fit: Fit) -> Vec<f64> {
+        fit_element(&self.element, &self.springs, &self.x, self.moduli, &fit).unwrap()
+    }
+
+    /// `W A W`, or A without its diagonal blocks; the constant-strain motions here from an orthonormal basis.
+    fn weighted(&self, weight: Weight, a: &DMatrix<f64>) -> DMatrix<f64> {
+        let d = self.springs.dimension;
+        match weight {
+            Weight::None => a.clone(),
+            Weight::OffDiagonal => {
+                DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| if i / d == j / d { 0.0 } else { a[(i, j)] })
+            }
+            Weight::Modal { higher } => {
+                let n = self.springs.nodes;
+                // All linear motions u_a = e_k x_al, translations among them: C Cᵀ is their projection on a matrix that
+                // vanishes on the rigid ones.
+                let linear = DMatrix::from_fn(n * d, d * (d + 1), |row, column| {
+                    let (a, k, l) = (row / d, column % d, column / d);
+                    let place = if l == d { 1.0 } else { self.x[a * d + l] };
+                    if row % d == k { place } else { 0.0 }
+                });
+                let basis = linear.qr().q();
+                let projection = &basis * basis.transpose();
+                let identity = DMatrix::identity(n * d, n * d);
+                let w = &projection + higher * (identity - &projection);
+                &w * a * &w
+            }
+        }
+    }
+
+    /// The gradient of `½‖R − K(k)‖²` in k: `−⟨g_s g_sᵀ, R − K⟩`, and its scale.
+    fn slopes(&self, weight: Weight, k: &[f64]) -> (Vec<f64>, f64) {
+        let mut difference = self.r.clone();
+        self.g.iter().zip(k).for_each(|(g, k)| difference -= *k * g * g.transpose());
+        let seen = self.weighted(weight, &difference);
+        let matrices: Vec<DMatrix<f64>> = self.g.iter().map(|g| self.weighted(weight, &(g * g.transpose()))).collect();
+        // In the scaling where every spring's matrix has norm one.
+        let slopes = matrices.iter().map(|a| -a.dot(&seen) / a.norm()).collect();
+        (slopes, self.weighted(weight, &self.r).norm())
+    }
+
+    /// Constants in the scaling where every g has norm one.
+    fn normalised<'a>(&'a self, k: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        k.iter().zip(&self.g).map(|(k, g)| k * g.norm_squared())
+    }
+}
+
+/// Rounding, multiplied by the condition of the equations (up to 1e4 with the content spring): 1e-10 of ‖R‖.
+const ROUNDING: f64 = 1e-10;
+
+#[test]
+fn the_residual_is_orthogonal_to_every_spring() {
+    for case in cases(5) {
+        for weight in WEIGHTS {
+            let k = case.fit(Fit::new(Objective::Frobenius(weight)));
+            let (slopes, scale) = case.slopes(weight, &k);
+            slopes.iter().for_each(|s| assert!(s.abs() < ROUNDING * scale, "{} {weight:?}: {s}", case.name));
+        }
+    }
+}
+
+#[test]
+fn nonnegative_constants_satisfy_the_optimality_conditions() {
+    let mut bound = 0;
+    for case in cases(5) {
+        for weight in WEIGHTS {
+            let k = case.fit(Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(weight)) });
+            let (slopes, scale) = case.slopes(weight, &k);
+            for (slope, &k) in slopes.iter().zip(&k) {
+                assert!(k >= 0.0 && *slope > -ROUNDING * scale, "{} {weight:?}: {k} {slope}", case.name);
+                assert!(k == 0.0 || slope.abs() < ROUNDING * scale, "{} {weight:?}: {k} {slope}", case.name);
+                bound += usize::from(k == 0.0);
+            }
+        }
+    }
+    assert!(bound > 100, "the bound was hardly ever active");
+}
+
+#[test]
+fn tied_constants_are_equal_and_optimal_in_sum() {
+    for case in cases(5) {
+        for weight in WEIGHTS {
+            let k = case.fit(Fit { tied: true, ..Fit::new(Objective::Frobenius(weight)) });
+            let groups = &case.springs.groups;
+            assert!((0..k.len()).all(|s| (0..s).all(|t| groups[s] != groups[t] || k[s] == k[t])), "{}", case.name);
+            // All springs of a group are of one kind, and length springs have matrices of one norm without a weight.
+            if let Weight::None | Weight::OffDiagonal = weight {
+                let (slopes, scale) = case.slopes(weight, &k);
+                for group in 0..case.springs.names.len() {
+                    let sum: f64 = slopes.iter().zip(groups).filter(|(_, g)| **g == group).map(|(s, _)| s).sum();
+                    assert!(sum.abs() < ROUNDING * scale, "{} {weight:?}: {sum}", case.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn length_springs_off_the_diagonal_are_minus_n_r_n() {
+    for case in cases(5).iter().filter(|case| case.springs.content.is_none()) {
+        let d = case.springs.dimension;
+        let k = case.fit(Fit::new(Objective::Frobenius(Weight::OffDiagonal)));
+        for ((k, g), &[i, j]) in k.iter().zip(&case.g).zip(&case.springs.pairs) {
+            let n = g.rows(j * d, d);
+            let expected = -(n.transpose() * case.r.view((i * d, j * d), (d, d)) * n)[(0, 0)];
+            assert!((k - expected).abs() < 1e-13 * case.r.norm(), "{}: {k} {expected}", case.name);
+        }
+    }
+}
+
+/// The stiffness is linear in the moduli, so that the constants are too: a power of two passes bit for bit.
+#[test]
+fn constants_are_linear_in_the_moduli() {
+    for case in cases(2) {
+        for weight in WEIGHTS {
+            let of = |lambda: f64, mu: f64| {
+                let fit = Fit::new(Objective::Frobenius(weight));
+                fit_element(&case.element, &case.springs, &case.x, Moduli { lambda, mu }, &fit).unwrap()
+            };
+            let Moduli { lambda, mu } = case.moduli;
+            let whole = of(lambda, mu);
+            assert!(of(4.0 * lambda, 4.0 * mu).iter().zip(&whole).all(|(four, one)| *four == 4.0 * one));
+            let (first, second) = (of(lambda, 0.0), of(0.0, mu));
+            let sum: Vec<f64> = first.iter().zip(&second).map(|(a, b)| a + b).collect();
+            for (sum, whole) in case.normalised(&sum).zip(case.normalised(&whole)) {
+                assert!((sum - whole).abs() < ROUNDING * case.r.norm(), "{} {weight:?}: {sum} {whole}", case.name);
+            }
+        }
+    }
+}
+
+/// A rigid motion leaves the constants, a size s multiplies them by s (in space; that of a volume by s⁻³, in the
+/// plane 1 and s⁻²), and a mirror image with its nodes turned has the same constants.
+#[test]
+fn constants_follow_the_element() {
+    let mut random = Random(3);
+    for case in cases(2) {
+        let d = case.springs.dimension;
+        let axis = DMatrix::from_fn(d, d, |_, _| random.next());
+        let mut rotation = axis.qr().q();
+        if rotation.determinant() < 0.0 {
+            rotation.column_mut(0).neg_mut();
+        }
+        let map = |scale: f64, shift: f64| -> Vec<f64> {
+            let place = |x: &[f64]| (scale * (&rotation * DVector::from_column_slice(x))).add_scalar(shift);
+            case.x.chunks_exact(d).flat_map(|x| place(x).as_slice().to_vec()).collect()
+        };
+        for weight in WEIGHTS {
+            let fit = Fit::new(Objective::Frobenius(weight));
+            let of = |x: &[f64]| fit_element(&case.element, &case.springs, x, case.moduli, &fit).unwrap();
+            let k = of(&case.x);
+            let check = |found: Vec<f64>, length: f64, content: f64| {
+                let content_of = |s: usize| s == case.springs.pairs.len() && case.springs.content.is_some();
+                let back: Vec<f64> =
+                    (0..k.len()).map(|s| found[s] / if content_of(s) { content } else { length }).collect();
+                for (back, k) in case.normalised(&back).zip(case.normalised(&k)) {
+                    assert!((back - k).abs() < 1e-9 * case.r.norm(), "{} {weight:?}: {back} {k}", case.name);
+                }
+            };
+            check(of(&map(1.0, 0.7)), 1.0, 1.0);
+            for scale in [1e-9f64, 1e6] {
+                check(of(&map(scale, 0.0)), scale.powi(d as i32 - 2), scale.powi(-(d as i32)));
+            }
+        }
+    }
+}
+
+/// The kernels in exact rationals give the same constants. Elimination of 28 springs would take minutes: few springs.
+#[test]
+fn exact_rationals_agree() {
+    for case in cases(1).iter().filter(|case| case.springs.len() < 12) {
+        for weight in WEIGHTS {
+            let exact: Vec<BigRational> = constants_in(
+                weight,
+                &case.springs,
+                &case.element.tabulation.map(|v| BigRational::from_float(v).unwrap()),
+                &case.x.iter().map(|x| BigRational::from_float(*x).unwrap()).collect::<Vec<_>>(),
+                &Moduli {
+                    lambda: BigRational::from_float(case.moduli.lambda).unwrap(),
+                    mu: BigRational::from_float(case.moduli.mu).unwrap(),
+                },
+            )
+            .unwrap();
+            let exact: Vec<f64> = exact.iter().map(|k| num_traits::ToPrimitive::to_f64(k).unwrap()).collect();
+            let k = case.fit(Fit::new(Objective::Frobenius(weight)));
+            for (k, exact) in case.normalised(&k).zip(case.normalised(&exact)) {
+                assert!((k - exact).abs() < ROUNDING * case.r.norm(), "{} {weight:?}: {k} {exact}", case.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Random shapes and materials of every shipped element.
+
+use nalgebra::{DMatrix, DVector};
+use springfit::element::{Element, SHIPPED};
+use springfit::material::{Material, Plane};
+
+/// A repeatable source of numbers in [-1, 1].
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+pub fn elements() -> Vec<Element> {
+    SHIPPED.iter().map(|s| s.load().unwrap()).collect()
+}
+
+/// Reference positions under a random affine map of positive determinant, each node moved by up to 5 % of the size.
+pub fn distorted(element: &Element, random: &mut Random) -> Vec<f64> {
+    let d = element.dimension();
+    loop {
+        let map = DMatrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)) + 0.4 * random.next());
+        if map.determinant() < 0.3 {
+            continue;
+        }
+        let place = |at: &[f64]| (&map * DVector::from_column_slice(at)).as_slice().to_vec();
+        let mut x: Vec<f64> = element.positions.chunks_exact(d).flat_map(place).collect();
+        x.iter_mut().for_each(|x| *x += 0.05 * random.next());
+        return x;
+    }
+}
+
+pub fn materials(dimension: usize) -> Vec<Material> {
+    let planes = if dimension == 2 { vec![Some(Plane::Stress), Some(Plane::Strain)] } else { vec![None] };
+    let ratios = [-0.6, 0.0, 0.3, 0.45];
+    let each = |plane: &Option<Plane>| ratios.map(|nu| Material::for_body(dimension, 1e4, nu, *plane, None).unwrap());
+    planes.iter().flat_map(each).collect()
+}
