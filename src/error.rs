@@ -54,6 +54,11 @@ impl Error {
         self
     }
 
+    /// Places a fault that stands in no file yet; one with a file is complete.
+    pub fn placed(self, place: impl FnOnce(Error) -> Error) -> Self {
+        if self.file.is_some() { self } else { place(self) }
+    }
+
     /// The same fault of a command-line option, which has no file: `young` is `--young`.
     pub fn of_option(mut self) -> Self {
         if self.file.is_none() {

@@ -148,7 +148,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         return Err(Error::expected("--density", "a positive number of kg/m³", density));
     }
     let own = load_elements(&arguments.element, Path::new(""))
-        .map_err(|e| if e.file().is_some() { e } else { Error::at("--element", e.problem()) })?;
+        .map_err(|e| e.placed(|e| Error::at("--element", e.problem())))?;
     let source = MeshSource::read(&arguments.mesh)?;
     let mesh = Mesh::resolve(&source, &own, arguments.scale).map_err(|e| e.in_file(&arguments.mesh))?;
     let plane = arguments.plane.map(|p| match p {

@@ -119,18 +119,24 @@ impl<'a, S: Simd> Room<'a, S> {
             return false;
         }
         let m = self.springs.len();
-        for (lane, constants) in constants.chunks_exact_mut(m).enumerate() {
-            let k = |s: usize| equations.rhs[s].as_slice()[lane];
-            let negative = (0..equations.rhs.len()).any(|s| k(s) < 0.0);
-            if let Some(kept) = kept.as_ref().filter(|_| negative) {
+        let cells = constants.len() / m;
+        for s in 0..m {
+            let k = equations.rhs[if self.fit.tied { self.springs.groups[s] } else { s }].as_slice();
+            for cell in 0..cells {
+                constants[cell * m + s] = k[cell];
+            }
+        }
+        if let Some(kept) = kept {
+            for (lane, constants) in constants.chunks_exact_mut(m).enumerate() {
+                if constants.iter().all(|k| *k >= 0.0) {
+                    continue;
+                }
                 self.single.gram.clear();
                 self.single.gram.extend(kept.gram.iter().map(|entry| entry.as_slice()[lane]));
                 self.single.rhs.clear();
                 self.single.rhs.extend(kept.rhs.iter().map(|entry| entry.as_slice()[lane]));
                 let (k, _) = solve_nonnegative(&self.single);
-                spread(&self.fit, self.springs, constants, |s| k[s]);
-            } else {
-                spread(&self.fit, self.springs, constants, k);
+                spread(&self.fit, self.springs, constants, &k);
             }
         }
         true
@@ -150,7 +156,7 @@ impl<'a, S: Simd> Room<'a, S> {
             normal = tied;
         }
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
-        spread(&self.fit, self.springs, constants, |s| k[s]);
+        spread(&self.fit, self.springs, constants, &k);
         Ok(rank)
     }
 
@@ -181,11 +187,8 @@ impl<'a, S: Simd> Room<'a, S> {
 }
 
 /// One constant per spring from the solution of the equations, which has one per group where they are tied.
-#[inline(always)]
-fn spread(fit: &Fit, springs: &Springs, constants: &mut [f64], k: impl Fn(usize) -> f64) {
-    if fit.tied {
-        constants.iter_mut().zip(&springs.groups).for_each(|(constant, &group)| *constant = k(group));
-    } else {
-        constants.iter_mut().enumerate().for_each(|(s, constant)| *constant = k(s));
+fn spread(fit: &Fit, springs: &Springs, constants: &mut [f64], k: &[f64]) {
+    for (s, constant) in constants.iter_mut().enumerate() {
+        *constant = k[if fit.tied { springs.groups[s] } else { s }];
     }
 }

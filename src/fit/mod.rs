@@ -66,28 +66,50 @@ pub fn fit_cells(
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
-    let (n, m) = (element.nodes(), springs.len());
-    let cells = connectivity.len() / n;
-    let mut fits = CellFits { springs: springs.clone(), constants: vec![0.0; cells * m], deficient: 0 };
-    if m == 0 {
-        return Ok(fits);
-    }
-    let Objective::Frobenius(weight) = fit.objective;
-    let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
-        let batch = Batch { element, springs, points, connectivity, moduli, weight, fit: *fit, constants };
-        batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
-    };
-    let rounds = connectivity.chunks(ROUND * n).zip(fits.constants.chunks_mut(ROUND * m));
-    for (round, (nodes, constants)) in rounds.enumerate() {
-        let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m)).enumerate();
-        let results: Vec<Result<usize>> =
-            chunks.map(|(i, (nodes, constants))| chunk(round * ROUND + i * CHUNK, nodes, constants)).collect();
-        for deficient in results {
-            fits.deficient += deficient?;
-        }
-        progress(((round + 1) * ROUND).min(cells));
-    }
+    let mut fits = CellFits { springs: springs.clone(), constants: Vec::new(), deficient: 0 };
+    fits.refit(element, points, connectivity, moduli, fit, progress)?;
     Ok(fits)
+}
+
+impl CellFits {
+    /// [`fit_cells`] into the memory of an earlier fit.
+    ///
+    /// # Errors
+    /// Those of [`fit_cells`].
+    pub fn refit(
+        &mut self,
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        moduli: Moduli,
+        fit: &Fit,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<()> {
+        let CellFits { springs, constants, deficient } = self;
+        let (n, m) = (element.nodes(), springs.len());
+        let cells = connectivity.len() / n;
+        constants.resize(cells * m, 0.0);
+        *deficient = 0;
+        if m == 0 {
+            return Ok(());
+        }
+        let Objective::Frobenius(weight) = fit.objective;
+        let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
+            let batch = Batch { element, springs, points, connectivity, moduli, weight, fit: *fit, constants };
+            batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+        };
+        let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
+        for (round, (nodes, constants)) in rounds.enumerate() {
+            let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m)).enumerate();
+            let results: Vec<Result<usize>> =
+                chunks.map(|(i, (nodes, constants))| chunk(round * ROUND + i * CHUNK, nodes, constants)).collect();
+            for found in results {
+                *deficient += found?;
+            }
+            progress(((round + 1) * ROUND).min(cells));
+        }
+        Ok(())
+    }
 }
 
 /// The constants of a single element with nodes at `x`, `[nodes × dimension]`, m; `[springs]`.

@@ -1,6 +1,6 @@
 //! Loads as nodal forces, consistent with the shape functions; the same for both models.
 
-use super::system::each_cell;
+use super::system::{each_cell, shares};
 use crate::element::Tabulation;
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Selection, SideIndex};
@@ -57,15 +57,10 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             }
             cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
             let mut weights = Vec::new();
-            let mut cell = vec![0; mesh.blocks.len()];
-            each_cell(mesh, |block, nodes, geometry| {
-                if chosen[block][cell[block]] {
-                    let values = mesh.blocks[block].element.tabulation.values.chunks_exact(nodes.len());
-                    for (values, v) in values.zip(&geometry.volumes) {
-                        weights.extend(nodes.iter().zip(values).map(|(&node, n)| (node, v * n)));
-                    }
+            each_cell(mesh, |cell, nodes, geometry| {
+                if chosen[cell.block][cell.cell] {
+                    shares(mesh, cell, geometry, |a, share| weights.push((nodes[a], share)));
                 }
-                cell[block] += 1;
             });
             Ok(spread(mesh, &weights, &body.iter().map(|b| b * thickness).collect::<Vec<_>>()))
         }

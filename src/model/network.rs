@@ -45,15 +45,12 @@ impl Network {
         let mut network = Network { dimension: mesh.dimension, ..Network::default() };
         network.lengths = merge(mesh, fits);
         if fits.iter().any(|f| f.springs.content.is_some()) {
-            let mut cell = vec![0; fits.len()];
-            each_cell(mesh, |block, nodes, geometry| {
-                let springs = &fits[block].springs;
-                let index = cell[block];
-                cell[block] += 1;
+            each_cell(mesh, |cell, nodes, geometry| {
+                let springs = &fits[cell.block].springs;
                 if springs.content.is_none() {
                     return;
                 }
-                let constant = fits[block].constants[(index + 1) * springs.len() - 1];
+                let constant = fits[cell.block].constants[(cell.cell + 1) * springs.len() - 1];
                 if constant != 0.0 {
                     let (rest, gradient) = (geometry.content(), geometry.content_gradient());
                     network.contents.push(ContentSpring { points: nodes.to_vec(), constant, rest, gradient });

@@ -2,16 +2,16 @@
 
 use super::Entries;
 use crate::material::Moduli;
-use crate::mesh::Mesh;
+use crate::mesh::{CellIndex, Mesh};
 use crate::stiffness::{self, Geometry};
 use faer::sparse::Triplet;
 
-/// Calls `visit(block, nodes, geometry)` for every cell of the mesh.
-pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(usize, &[usize], &Geometry)) {
+/// Calls `visit(cell, nodes, geometry)` for every cell of the mesh.
+pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], &Geometry)) {
     for (index, block) in mesh.blocks.iter().enumerate() {
         let n = block.element.nodes();
         let visit = |cell, _: &[f64], geometry: &Geometry| {
-            visit(index, &block.connectivity[cell * n..(cell + 1) * n], geometry);
+            visit(CellIndex { block: index, cell }, &block.connectivity[cell * n..(cell + 1) * n], geometry);
         };
         stiffness::each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, visit)
             .expect("a mesh holds only cells with a volume");
@@ -44,13 +44,16 @@ pub(super) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = us
 /// tetrahedron are a quarter of its mass. `thickness` in m, 1 for a solid; `density` in kg/m³.
 pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
     let mut masses = vec![0.0; mesh.point_count()];
-    each_cell(mesh, |block, nodes, geometry| {
-        let values = mesh.blocks[block].element.tabulation.values.chunks_exact(nodes.len());
-        for (values, v) in values.zip(&geometry.volumes) {
-            for (&node, n) in nodes.iter().zip(values) {
-                masses[node] += density * thickness * v * n;
-            }
-        }
+    each_cell(mesh, |cell, nodes, geometry| {
+        shares(mesh, cell, geometry, |a, share| masses[nodes[a]] += density * thickness * share);
     });
     masses
+}
+
+/// Calls `visit(a, share)` with `N_a w |J|` for every node a and quadrature point of a cell.
+pub(super) fn shares(mesh: &Mesh, cell: CellIndex, geometry: &Geometry, mut visit: impl FnMut(usize, f64)) {
+    let values = mesh.blocks[cell.block].element.tabulation.values.chunks_exact(geometry.nodes);
+    for (values, v) in values.zip(&geometry.volumes) {
+        values.iter().enumerate().for_each(|(a, n)| visit(a, v * n));
+    }
 }

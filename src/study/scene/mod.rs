@@ -120,14 +120,13 @@ impl Scene {
     pub fn build_mesh(&self) -> Result<Mesh> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         if let Some(file) = &self.mesh.file {
-            let own = load_elements(&self.mesh.elements, folder)
-                .map_err(|e| if e.file().is_some() { e } else { self.at("mesh", e) })?;
+            let own = load_elements(&self.mesh.elements, folder).map_err(|e| e.placed(|e| self.at("mesh", e)))?;
             let path = folder.join(file);
             let source = MeshSource::read(&path)?;
             return Mesh::resolve(&source, &own, self.mesh.scale).map_err(|e| e.in_file(&path));
         }
         let entry = self.mesh.generated.as_ref().expect("a scene has a file or a box");
-        let in_box = |e: Error| if e.file().is_some() { e } else { e.under("mesh.box").in_file(&self.path) };
+        let in_box = |e: Error| e.placed(|e| e.under("mesh.box").in_file(&self.path));
         let element = load_element(&entry.element, folder).map_err(in_box)?;
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
@@ -162,8 +161,7 @@ impl Scene {
 /// A file is missing or wrong, or a name unknown; `elements[i]` is the key.
 pub fn load_elements(names: &[String], folder: &Path) -> Result<Vec<Arc<Element>>> {
     let load = |(i, name): (usize, &String)| {
-        load_element(name, folder)
-            .map_err(|e| if e.file().is_some() { e } else { Error::at(format!("elements[{i}]"), e.problem()) })
+        load_element(name, folder).map_err(|e| e.placed(|e| Error::at(format!("elements[{i}]"), e.problem())))
     };
     names.iter().enumerate().map(load).collect()
 }
