@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::error::{Error, Result};
-use springfit::fit::{Fit, Objective};
+use springfit::fit::{Choices, Fit, Objective};
 use springfit::material::{Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, vtk};
 use springfit::study::{NamedFit, Scene, fit_mesh, load_elements, run, stages};
@@ -54,9 +54,15 @@ struct FitArguments {
     /// frobenius, offdiag or modal [default: offdiag with --nonnegative]
     #[arg(long)]
     objective: Option<String>,
+    /// What counts: none, offdiag, modal or relative (with the objectives frobenius and spectral)
+    #[arg(long)]
+    weight: Option<String>,
     /// Scale of the modes beyond constant strain (modal only)
     #[arg(long)]
     higher: Option<f64>,
+    /// From 0, which errs to the soft side, to 1 (divergence only)
+    #[arg(long)]
+    balance: Option<f64>,
     /// Spring groups to use, separated by commas [default: all that are not optional]
     #[arg(long, value_delimiter = ',')]
     springs: Option<Vec<String>>,
@@ -140,7 +146,8 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let young = parse_pressure(&arguments.young).map_err(|e| e.under("--young"))?;
     // Of the fits that serve every element alike, the one with the least error among those that always stand.
     let chosen = arguments.objective.as_deref();
-    let objective = Objective::named(chosen.unwrap_or("offdiag"), arguments.higher).map_err(Error::of_option)?;
+    let choices = Choices { weight: arguments.weight.as_deref(), higher: arguments.higher, balance: arguments.balance };
+    let objective = Objective::named(chosen.unwrap_or("offdiag"), choices).map_err(Error::of_option)?;
     if !(arguments.scale > 0.0 && arguments.scale.is_finite()) {
         return Err(Error::expected("--scale", "a positive number of metres per mesh unit", arguments.scale));
     }

@@ -334,7 +334,7 @@ fn fits() {
             (
                 "\"modal\"",
                 "\"modular\"",
-                "scene.toml: fit[0].objective: expected one of frobenius, offdiag, modal, found \"modular\"",
+                "scene.toml: fit[0].objective: expected one of frobenius, offdiag, modal, spectral, divergence, found \"modular\"",
             ),
             (
                 "\"modal\"",
@@ -350,6 +350,37 @@ fn fits() {
                 "\"modal\"",
                 "\"modal\"\nhigher = nan",
                 "scene.toml: fit[0].higher: expected a scale above 0 and at most 1, found NaN",
+            ),
+            (
+                "\"modal\"",
+                "\"spectral\"\nweight = \"offdiag\"",
+                "scene.toml: fit[0].weight: expected one of none, modal, relative: the largest eigenvalue has no blocks, \
+                 found \"offdiag\"",
+            ),
+            (
+                "\"modal\"",
+                "\"spectral\"\nweight = \"heavy\"",
+                "scene.toml: fit[0].weight: expected one of none, offdiag, modal, relative, found \"heavy\"",
+            ),
+            (
+                "\"modal\"",
+                "\"modal\"\nweight = \"none\"",
+                "scene.toml: fit[0].weight: belongs to \"frobenius\" and \"spectral\", found \"none\" with \"modal\"",
+            ),
+            (
+                "\"modal\"",
+                "\"divergence\"\nweight = \"modal\"",
+                "scene.toml: fit[0].weight: does not go with \"divergence\": no weight changes it",
+            ),
+            (
+                "\"modal\"",
+                "\"divergence\"\nbalance = 2",
+                "scene.toml: fit[0].balance: expected a number from 0 to 1, found 2",
+            ),
+            (
+                "\"modal\"",
+                "\"spectral\"\nbalance = 0.5",
+                "scene.toml: fit[0].balance: belongs to the objective \"divergence\", found with \"spectral\"",
             ),
             (
                 "\"modal\"",
@@ -1177,7 +1208,7 @@ fn options_by_their_names() {
             "1kPa",
             "0.3",
             &["--objective", "least"],
-            "--objective: expected one of frobenius, offdiag, modal, found \"least\"".into(),
+            "--objective: expected one of frobenius, offdiag, modal, spectral, divergence, found \"least\"".into(),
         ),
         (
             "1kPa",

@@ -37,6 +37,48 @@ fn bodies_under_tension_match_the_reference_figures() {
     check("tissue_quad", Objective::Frobenius(Weight::None), false, 0, 8.92, 19.75);
 }
 
+/// The optimum is flat: within 2 %.
+#[test]
+fn spectral_fits_match_the_reference_figures() {
+    let figures = [
+        ("cylinder_tet", 27.49, 58.16),
+        ("cube_tet", 28.75, 53.76),
+        ("cylinder_hole_tet", 19.00, 39.31),
+        ("tissue_tri", 2.91, 5.15),
+        ("cylinder_hex", 3.46, 10.00),
+        ("cube_hex", 5.47, 9.08),
+    ];
+    for (scene, rms, max) in figures {
+        let outcome = fitted(scene, Fit::new(Objective::Spectral(Weight::None)), false);
+        let found = outcome.loads[0].error.unwrap();
+        assert!((found.rms / rms - 1.0).abs() < 0.02 && (found.max / max - 1.0).abs() < 0.02, "{scene}: {found:?}");
+        assert!(outcome.gap.unwrap() <= 1e-8 && outcome.unreached == 0);
+    }
+}
+
+#[test]
+fn divergence_fits_match_the_reference_figures() {
+    let figures = [
+        ("cube_tet", 0.1, false, 9.79, 3.36),
+        ("cube_tet", 0.25, true, 8.15, 3.02),
+        ("cylinder_hole_tet", 0.1, false, 6.51, 4.11),
+        ("cylinder_hole_tet", 0.5, true, 4.85, 2.03),
+        ("cylinder_tet", 0.1, true, 6.21, 8.81),
+        ("cylinder_tet", 0.25, true, 6.84, 5.82),
+        ("tissue_tri", 0.0, false, 1.44, 0.27),
+    ];
+    for (scene, balance, bulk, tension, shear) in figures {
+        let outcome = fitted(scene, Fit::new(Objective::Divergence { balance }), bulk);
+        for (load, rms) in [(0, tension), (1, shear)] {
+            let found = outcome.loads[load].error.unwrap().rms;
+            assert!((found - rms).abs() < 0.006 + 0.001 * rms, "{scene} {balance}: {found}, expected {rms}");
+        }
+        assert_eq!((outcome.network.negative(), outcome.unreached), (0, 0));
+    }
+    check("tissue_tri", Objective::Frobenius(Weight::Relative), false, 0, 1.06, 2.28);
+    check("tissue_tri", Objective::Frobenius(Weight::Relative), false, 1, 1.49, 2.94);
+}
+
 #[test]
 fn modal_fits_with_a_content_spring_match_the_reference_figures() {
     check("cylinder_hex", MODAL, true, 0, 0.59, 2.43);

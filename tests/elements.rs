@@ -3,7 +3,7 @@
 mod shapes;
 
 use nalgebra::{DMatrix, DVector};
-use shapes::{Random, distorted, elements, materials};
+use shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::Element;
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{Support, finite_elements};
@@ -16,29 +16,6 @@ fn geometry(element: &Element, x: &[f64]) -> Geometry {
     let mut geometry = Geometry::new(&element.tabulation);
     geometry.set(&element.tabulation, x).unwrap();
     geometry
-}
-
-/// Translations and infinitesimal rotations, `[motions][nodes × dimension]`.
-fn rigid_motions(x: &[f64], d: usize) -> Vec<Vec<f64>> {
-    let field = |f: &dyn Fn(&[f64], usize) -> f64| -> Vec<f64> {
-        x.chunks_exact(d).flat_map(|x| (0..d).map(|k| f(x, k)).collect::<Vec<_>>()).collect()
-    };
-    let mut motions: Vec<Vec<f64>> = (0..d).map(|e| field(&|_, k| f64::from(u8::from(k == e)))).collect();
-    for i in 0..d {
-        for j in 0..i {
-            let turn = |x: &[f64], k: usize| {
-                if k == i {
-                    x[j]
-                } else if k == j {
-                    -x[i]
-                } else {
-                    0.0
-                }
-            };
-            motions.push(field(&turn));
-        }
-    }
-    motions
 }
 
 /// Central differences of step 1e-5 err by about 1e-10 for functions of size one.

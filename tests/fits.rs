@@ -4,16 +4,21 @@ mod shapes;
 
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
-use shapes::{Random, distorted, elements, materials};
+use shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, constants_in, fit_element};
+use springfit::fit::{CellFits, Fit, Objective, Weight, constants_in, fit_cells, fit_element};
 use springfit::material::{Material, Moduli};
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
 
-const WEIGHTS: [Weight; 4] =
-    [Weight::None, Weight::OffDiagonal, Weight::Modal { higher: 0.316 }, Weight::Modal { higher: 1.0 }];
+const WEIGHTS: [Weight; 5] = [
+    Weight::None,
+    Weight::OffDiagonal,
+    Weight::Modal { higher: 0.316 },
+    Weight::Modal { higher: 1.0 },
+    Weight::Relative,
+];
 
 /// R and the rows g_s of one element.
 struct Case {
@@ -80,6 +85,14 @@ impl Case {
                 let projection = &basis * basis.transpose();
                 let identity = DMatrix::identity(n * d, n * d);
                 let w = &projection + higher * (identity - &projection);
+                &w * a * &w
+            }
+            Weight::Relative => {
+                let eigen = self.r.clone().symmetric_eigen();
+                let root = |e: f64| if e > 1e-9 * self.r.norm() { 1.0 / e.sqrt() } else { 0.0 };
+                let w = &eigen.eigenvectors
+                    * DMatrix::from_diagonal(&eigen.eigenvalues.map(root))
+                    * eigen.eigenvectors.transpose();
                 &w * a * &w
             }
         }
@@ -169,7 +182,7 @@ fn length_springs_off_the_diagonal_are_minus_n_r_n() {
 #[test]
 fn constants_are_linear_in_the_moduli() {
     for case in cases(2) {
-        for weight in WEIGHTS {
+        for weight in WEIGHTS.into_iter().filter(|weight| *weight != Weight::Relative) {
             let of = |lambda: f64, mu: f64| {
                 let fit = Fit::new(Objective::Frobenius(weight));
                 fit_element(&case.element, &case.springs, &case.x, Moduli { lambda, mu }, &fit).unwrap()
@@ -226,7 +239,7 @@ fn constants_follow_the_element() {
 #[test]
 fn exact_rationals_agree() {
     for case in cases(1).iter().filter(|case| case.springs.len() < 12) {
-        for weight in WEIGHTS {
+        for weight in WEIGHTS.into_iter().filter(|weight| *weight != Weight::Relative) {
             let exact: Vec<BigRational> = constants_in(
                 weight,
                 &case.springs,
@@ -242,6 +255,151 @@ fn exact_rationals_agree() {
             let k = case.fit(Fit::new(Objective::Frobenius(weight)));
             for (k, exact) in case.normalised(&k).zip(case.normalised(&exact)) {
                 assert!((k - exact).abs() < ROUNDING * case.r.norm(), "{} {weight:?}: {k} {exact}", case.name);
+            }
+        }
+    }
+}
+
+impl Case {
+    fn certified(&self, fit: Fit) -> CellFits {
+        let cell: Vec<usize> = (0..self.element.nodes()).collect();
+        fit_cells(&self.element, &self.springs, &self.x, &cell, self.moduli, &fit, &mut |_| {}).unwrap()
+    }
+
+    /// `‖W (R − K(k)) W‖₂`, weight none or modal.
+    fn largest_eigenvalue(&self, weight: Weight, k: &[f64]) -> f64 {
+        let mut difference = self.r.clone();
+        self.g.iter().zip(k).for_each(|(g, k)| difference -= *k * g * g.transpose());
+        self.weighted(weight, &difference).symmetric_eigenvalues().amax()
+    }
+}
+
+const SPECTRAL: [Weight; 2] = [Weight::None, Weight::Modal { higher: 0.316 }];
+
+/// The value is that of the constants, and nothing near or far does better than the bound.
+#[test]
+fn spectral_optima_are_certified() {
+    let mut random = Random(17);
+    for case in cases(4) {
+        for (weight, nonnegative, tied) in
+            SPECTRAL.into_iter().flat_map(|w| [(w, false, false), (w, true, false), (w, false, true), (w, true, true)])
+        {
+            let fit = Fit { objective: Objective::Spectral(weight), nonnegative, tied };
+            let fits = case.certified(fit);
+            let certificate = fits.certificates[0];
+            let name = format!("{} {weight:?} nonnegative {nonnegative} tied {tied}", case.name);
+            assert!(certificate.gap() <= 1e-8 && fits.unreached == 0, "{name}: {certificate:?}");
+            let value = case.largest_eigenvalue(weight, &fits.constants);
+            // R and K are computed to about 1e-15 ‖R‖ here and there.
+            let rounding = 1e-13 * case.r.norm();
+            assert!(value <= certificate.value + rounding, "{name}: {value} {certificate:?}");
+            assert!(value >= certificate.bound - rounding, "{name}: {value} {certificate:?}");
+            assert!(!nonnegative || fits.constants.iter().all(|k| *k >= 0.0), "{name}");
+            let least_squares = case.fit(Fit { objective: Objective::Frobenius(weight), nonnegative, tied });
+            assert!(case.largest_eigenvalue(weight, &least_squares) >= certificate.bound - rounding, "{name}");
+            if !nonnegative && !tied {
+                for size in [1e-6, 1e-3, 0.1] {
+                    let near: Vec<f64> = fits.constants.iter().map(|k| k * (1.0 + size * random.next())).collect();
+                    assert!(case.largest_eigenvalue(weight, &near) >= certificate.bound - rounding, "{name}");
+                }
+            }
+        }
+    }
+}
+
+/// With weight `relative` the value ε is dimensionless, and `(1 − ε) R ⪯ K ⪯ (1 + ε) R`.
+#[test]
+fn relative_spectral_fits_bound_the_energy() {
+    for case in cases(4) {
+        let fits = case.certified(Fit::new(Objective::Spectral(Weight::Relative)));
+        let epsilon = fits.certificates[0].value;
+        let mut k = DMatrix::zeros(case.x.len(), case.x.len());
+        case.g.iter().zip(&fits.constants).for_each(|(g, s)| k += *s * g * g.transpose());
+        for side in [&k - (1.0 - epsilon) * &case.r, (1.0 + epsilon) * &case.r - &k] {
+            assert!(side.symmetric_eigenvalues().min() > -1e-11 * case.r.norm(), "{}: {epsilon}", case.name);
+        }
+    }
+}
+
+/// Squares and cubes have optima that are not unique. Among them the least Frobenius error decides: nothing on the way to
+/// the least-squares constants, as long as it keeps the value, has less.
+#[test]
+fn ambiguous_optima_have_the_least_frobenius_error() {
+    let mut ambiguous = 0;
+    for element in elements().into_iter().map(Arc::new) {
+        let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
+        let springs = Springs::select(&element, Some(&every)).unwrap();
+        for material in materials(element.dimension()) {
+            let case = case(&element, &springs, &element.positions, material.moduli());
+            let fits = case.certified(Fit::new(Objective::Spectral(Weight::None)));
+            let certificate = fits.certificates[0];
+            if !certificate.ambiguous {
+                continue;
+            }
+            ambiguous += 1;
+            let error = |k: &[f64]| {
+                let mut difference = case.r.clone();
+                case.g.iter().zip(k).for_each(|(g, k)| difference -= *k * g * g.transpose());
+                difference.norm()
+            };
+            assert!(case.largest_eigenvalue(Weight::None, &fits.constants) <= certificate.value * (1.0 + 1e-12));
+            let target = case.fit(Fit::new(Objective::Frobenius(Weight::None)));
+            let found = error(&fits.constants);
+            for way in (1..20).map(|i| f64::from(i) / 20.0) {
+                let k: Vec<f64> = fits.constants.iter().zip(&target).map(|(a, b)| a + way * (b - a)).collect();
+                let kept = case.largest_eigenvalue(Weight::None, &k) <= certificate.value;
+                assert!(!kept || error(&k) >= found * (1.0 - 1e-6), "{}", case.name);
+            }
+        }
+    }
+    assert!(ambiguous > 3, "nearly every optimum was unique");
+}
+
+/// Newton's method stops where the gradient vanishes: `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, in terms of R and K as
+/// `tr R⁺G − (1 − c) tr K⁺G − c tr K⁺RK⁺G`, G = g gᵀ.
+#[test]
+fn divergences_are_stationary() {
+    for case in cases(4) {
+        for balance in [0.0, 0.25, 1.0] {
+            let fits = case.certified(Fit::new(Objective::Divergence { balance }));
+            assert_eq!(fits.unreached, 0, "{}", case.name);
+            let mut k = DMatrix::zeros(case.x.len(), case.x.len());
+            case.g.iter().zip(&fits.constants).for_each(|(g, s)| k += *s * g * g.transpose());
+            // On the deformations: rigid motions get a stiffness of their own, which no g sees.
+            let motions: Vec<_> =
+                rigid_motions(&case.x, case.springs.dimension).into_iter().map(DVector::from_vec).collect();
+            let z = DMatrix::from_columns(&motions).qr().q();
+            let inverse = |a: &DMatrix<f64>| (a + case.r.norm() * &z * z.transpose()).try_inverse().unwrap();
+            let (r, k) = (inverse(&case.r), inverse(&k));
+            for g in &case.g {
+                let terms = [g.dot(&(&r * g)), g.dot(&(&k * g)), (&k * g).dot(&(&case.r * &k * g))];
+                let slope = terms[0] - (1.0 - balance) * terms[1] - balance * terms[2];
+                assert!(slope.abs() < 1e-7 * terms[0].max(terms[1]), "{} {balance}: {slope} {terms:?}", case.name);
+            }
+        }
+    }
+}
+
+/// The same relative answer for E from 1e-9 to 1e15 Pa and sizes from 1e-9 to 1e6 m.
+#[test]
+fn certified_fits_know_no_scale() {
+    for case in cases(1) {
+        for objective in [Objective::Spectral(Weight::None), Objective::Divergence { balance: 0.25 }] {
+            let reference = case.certified(Fit::new(objective)).constants;
+            for young in [1e-9, 1e15] {
+                for size in [1e-9f64, 1e6] {
+                    let Moduli { lambda, mu } = case.moduli;
+                    let moduli = Moduli { lambda: young / 1e4 * lambda, mu: young / 1e4 * mu };
+                    let x: Vec<f64> = case.x.iter().map(|x| size * x).collect();
+                    let scaled = self::case(&case.element, &case.springs, &x, moduli);
+                    let fits = scaled.certified(Fit::new(objective));
+                    assert_eq!(fits.unreached, 0, "{} {young} {size}", case.name);
+                    let factor = case.r.norm() / scaled.r.norm();
+                    for (a, b) in case.normalised(&reference).zip(scaled.normalised(&fits.constants)) {
+                        // The optimum of the 2-norm is flat: its constants are free to the root of the gap.
+                        assert!((a - factor * b).abs() < 1e-3 * case.r.norm(), "{}: {a} {}", case.name, factor * b);
+                    }
+                }
             }
         }
     }

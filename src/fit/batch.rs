@@ -1,9 +1,10 @@
-//! Least-squares fits of many cells, one cell per lane of the machine's registers.
+//! Fits of many cells, one cell per lane of the machine's registers.
 
 use super::constrained::solve_nonnegative;
 use super::least_squares::normal_equations;
+use super::method::{Method, Verdict};
 use super::normal::{Normal, Rank};
-use super::{Fit, Weight};
+use super::{Certificate, Fit, Weight};
 use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::Lanes;
@@ -20,45 +21,65 @@ pub struct Batch<'a> {
     /// `[cells × nodes]`.
     pub connectivity: &'a [usize],
     pub moduli: Moduli,
-    pub weight: Weight,
     pub fit: Fit,
     /// `[cells × springs]`.
     pub constants: &'a mut [f64],
 }
 
+/// What is to be said of the cells besides their constants.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tally {
+    /// Cells whose normal equations were singular.
+    pub deficient: usize,
+    /// Cells whose iteration did not reach its end.
+    pub unreached: usize,
+    /// `[cells]` where the objective has certificates, otherwise empty.
+    pub certificates: Vec<Certificate>,
+}
+
+impl Tally {
+    fn add(&mut self, verdict: Verdict) {
+        self.deficient += usize::from(verdict.rank == Rank::Deficient);
+        self.unreached += usize::from(!verdict.reached);
+        self.certificates.extend(verdict.certificate);
+    }
+}
+
 impl Batch<'_> {
-    /// Fits every cell; returns the number of cells whose normal equations were singular.
+    /// Fits every cell.
     ///
     /// # Errors
     /// The first cell that has no stiffness, from 0.
-    pub fn run(self) -> Result<usize, (usize, Fault)> {
+    pub fn run(self) -> Result<Tally, (usize, Fault)> {
         pulp::Arch::new().dispatch(self)
     }
 }
 
 impl WithSimd for Batch<'_> {
-    type Output = Result<usize, (usize, Fault)>;
+    type Output = Result<Tally, (usize, Fault)>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let (n, m) = (self.element.nodes(), self.springs.len());
         let mut room = Room::new(simd, &self);
-        let mut deficient = 0;
-        let blocks = self.connectivity.chunks(Lanes::<S>::COUNT * n);
-        for (index, (nodes, constants)) in blocks.zip(self.constants.chunks_mut(Lanes::<S>::COUNT * m)).enumerate() {
-            if room.fit(nodes, constants) {
-                continue;
-            }
-            // One of them has no regular equations. Each alone in all lanes: its digits do not depend on its neighbours.
-            for (cell, (nodes, constants)) in nodes.chunks(n).zip(constants.chunks_mut(m)).enumerate() {
-                if !room.fit(nodes, constants) {
-                    let rank = room.fit_singular(nodes, constants);
-                    let rank = rank.map_err(|fault| (index * Lanes::<S>::COUNT + cell, fault))?;
-                    deficient += usize::from(rank == Rank::Deficient);
-                }
+        let mut tally = Tally::default();
+        let cells = self.connectivity.len() / n;
+        let (mut cell, mut alone) = (0, 0);
+        while cell < cells {
+            let count = if cell < alone { 1 } else { Lanes::<S>::COUNT.min(cells - cell) };
+            let nodes = &self.connectivity[cell * n..(cell + count) * n];
+            let constants = &mut self.constants[cell * m..(cell + count) * m];
+            if room.fit(nodes, constants, &mut tally) {
+                cell += count;
+            } else if count > 1 {
+                // One of them has no regular equations. Each alone in all lanes: its digits do not depend on the others.
+                alone = cell + count;
+            } else {
+                tally.add(room.fit_singular(nodes, constants).map_err(|fault| (cell, fault))?);
+                cell += 1;
             }
         }
-        Ok(deficient)
+        Ok(tally)
     }
 }
 
@@ -68,8 +89,11 @@ struct Room<'a, S: Simd> {
     springs: &'a Springs,
     points: &'a [f64],
     moduli: Moduli,
-    weight: Weight,
     fit: Fit,
+    /// Of the objectives with a closed form.
+    weight: Weight,
+    /// Of the others.
+    method: Option<Method<Lanes<S>>>,
     x: Vec<Lanes<S>>,
     geometry: Geometry<Lanes<S>>,
     normal: Normal<Lanes<S>>,
@@ -82,14 +106,15 @@ impl<'a, S: Simd> Room<'a, S> {
     #[inline(always)]
     fn new(simd: S, batch: &Batch<'a>) -> Room<'a, S> {
         let zero = Lanes::splat(simd, 0.0);
-        let Batch { element, springs, points, moduli, weight, fit, .. } = *batch;
+        let Batch { element, springs, points, moduli, fit, .. } = *batch;
         Room {
             element,
             springs,
             points,
             moduli,
-            weight,
             fit,
+            weight: fit.objective.weight().unwrap_or(Weight::None),
+            method: Method::of_kind(&zero, springs, &fit),
             x: vec![zero; element.nodes() * element.dimension()],
             geometry: Geometry::of_kind(&zero, &element.tabulation),
             normal: Normal::default(),
@@ -101,10 +126,17 @@ impl<'a, S: Simd> Room<'a, S> {
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
     /// Jacobian of one is not safely positive or its equations are not regular.
     #[inline(always)]
-    fn fit(&mut self, nodes: &[usize], constants: &mut [f64]) -> bool {
+    fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
         self.gather(nodes);
         if !self.geometry.update(&self.element.tabulation, &self.x) {
             return false;
+        }
+        if let Some(method) = &mut self.method {
+            method.solve(self.springs, &self.x, &self.geometry, &self.moduli);
+            for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
+                tally.add(method.finish(|value| value.as_slice()[lane], constants));
+            }
+            return true;
         }
         normal_equations(self.weight, self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal);
         let equations = if self.fit.tied {
@@ -143,11 +175,15 @@ impl<'a, S: Simd> Room<'a, S> {
     }
 
     /// A single cell, with all care.
-    fn fit_singular(&mut self, nodes: &[usize], constants: &mut [f64]) -> Result<Rank, Fault> {
+    fn fit_singular(&mut self, nodes: &[usize], constants: &mut [f64]) -> Result<Verdict, Fault> {
         let mut x = vec![0.0; self.x.len()];
         gather(self.points, self.element.dimension(), nodes, &mut x);
         let mut geometry = Geometry::new(&self.element.tabulation);
         geometry.set(&self.element.tabulation, &x)?;
+        if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
+            method.solve(self.springs, &x, &geometry, &self.moduli);
+            return Ok(method.finish(|value| *value, constants));
+        }
         let mut normal = Normal::default();
         normal_equations(self.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
         if self.fit.tied {
@@ -157,7 +193,7 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
         spread(&self.fit, self.springs, constants, &k);
-        Ok(rank)
+        Ok(Verdict { certificate: None, rank, reached: true })
     }
 
     /// The coordinates of the cells' nodes, one cell per lane; lanes without a cell repeat the first.

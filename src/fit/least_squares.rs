@@ -19,7 +19,8 @@ use crate::stiffness::Geometry;
 use std::array::from_fn;
 
 /// The constants of one element in any kind of number, such as `f32` or exact rationals; nodes at `x`,
-/// `[nodes × dimension]`. None if the Jacobian is not positive everywhere or the springs are linearly dependent.
+/// `[nodes × dimension]`. None if the Jacobian is not positive everywhere or the springs are linearly dependent, and for the
+/// weight `relative`, which needs roots.
 pub fn constants_in<T: Scalar>(
     weight: Weight,
     springs: &Springs,
@@ -27,6 +28,9 @@ pub fn constants_in<T: Scalar>(
     x: &[T],
     moduli: &Moduli<T::Constant>,
 ) -> Option<Vec<T>> {
+    if weight == Weight::Relative {
+        return None;
+    }
     let mut geometry = Geometry::of_kind(x.first()?, table);
     let mut normal = Normal::default();
     if !geometry.update(table, x) {
@@ -106,6 +110,7 @@ fn equations<T: Scalar, const D: usize>(
                 gram[s * m + s] = two.clone().squared();
             }
         }
+        Weight::Relative => unreachable!("it needs R itself, which another method forms"),
         Weight::OffDiagonal => {
             cell.energies(
                 rhs,

@@ -1,15 +1,22 @@
 //! Spring constants from the stiffness of each element.
 
+mod ambiguity;
 mod batch;
 mod constrained;
+mod dense;
+mod divergence;
 mod least_squares;
+mod method;
 mod normal;
 mod objective;
+mod reduction;
 mod residual;
+mod spectral;
 
 pub use least_squares::constants_in;
+pub use method::Certificate;
 pub use normal::Rank;
-pub use objective::{Objective, Weight};
+pub use objective::{Choices, Objective, Weight};
 pub use residual::{ElementErrors, Spread, element_errors};
 
 use crate::element::Element;
@@ -17,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::Springs;
 use crate::stiffness::{self, Fault, Geometry};
-use batch::Batch;
+use batch::{Batch, Tally};
 use rayon::prelude::*;
 
 /// Cells that one thread fits in one go.
@@ -49,6 +56,10 @@ pub struct CellFits {
     pub constants: Vec<f64>,
     /// Cells whose normal equations were singular, see [`Rank::Deficient`].
     pub deficient: usize,
+    /// Cells whose iteration did not reach its end.
+    pub unreached: usize,
+    /// `[cells]` for the spectral objective, otherwise empty.
+    pub certificates: Vec<Certificate>,
 }
 
 /// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
@@ -66,7 +77,13 @@ pub fn fit_cells(
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
-    let mut fits = CellFits { springs: springs.clone(), constants: Vec::new(), deficient: 0 };
+    let mut fits = CellFits {
+        springs: springs.clone(),
+        constants: Vec::new(),
+        deficient: 0,
+        unreached: 0,
+        certificates: Vec::new(),
+    };
     fits.refit(element, points, connectivity, moduli, fit, progress)?;
     Ok(fits)
 }
@@ -85,26 +102,30 @@ impl CellFits {
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
-        let CellFits { springs, constants, deficient } = self;
+        let CellFits { springs, constants, .. } = self;
         let (n, m) = (element.nodes(), springs.len());
         let cells = connectivity.len() / n;
         constants.resize(cells * m, 0.0);
-        *deficient = 0;
+        (self.deficient, self.unreached) = (0, 0);
+        self.certificates.clear();
         if m == 0 {
             return Ok(());
         }
-        let Objective::Frobenius(weight) = fit.objective;
+        let springs = &*springs;
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
-            let batch = Batch { element, springs, points, connectivity, moduli, weight, fit: *fit, constants };
+            let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants };
             batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
         };
         let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
         for (round, (nodes, constants)) in rounds.enumerate() {
             let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m)).enumerate();
-            let results: Vec<Result<usize>> =
+            let results: Vec<Result<Tally>> =
                 chunks.map(|(i, (nodes, constants))| chunk(round * ROUND + i * CHUNK, nodes, constants)).collect();
-            for found in results {
-                *deficient += found?;
+            for tally in results {
+                let tally = tally?;
+                self.deficient += tally.deficient;
+                self.unreached += tally.unreached;
+                self.certificates.extend(tally.certificates);
             }
             progress(((round + 1) * ROUND).min(cells));
         }

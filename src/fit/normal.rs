@@ -1,5 +1,6 @@
 //! Normal equations `M k = b` of a least-squares fit: assembly by groups and solution.
 
+use super::dense::eliminate_row;
 use crate::scalar::Scalar;
 use nalgebra::{DMatrix, DVector};
 
@@ -92,17 +93,8 @@ impl<T: Scalar> Normal<T> {
         for s in 0..m {
             let (before, row) = gram.split_at_mut(s * m);
             let row = &mut row[..=s];
-            // L_st = (M_st − Σ_{r<t} L_sr D_r L_tr)/D_t; the row holds L_sr D_r until its pivot is known. Four entries
-            // at once: their sums are independent, where the terms of one must wait for each other.
-            let mut t = 0;
-            while t + 4 <= s {
-                eliminate::<T, 4>(row, before, m, t);
-                t += 4;
-            }
-            while t < s {
-                eliminate::<T, 1>(row, before, m, t);
-                t += 1;
-            }
+            // L_st = (M_st − Σ_{r<t} L_sr D_r L_tr)/D_t; the row holds L_sr D_r until its pivot is known.
+            eliminate_row(row, before, m, s);
             let mut pivot = row[s].clone();
             for t in 0..s {
                 let scaled = row[t].clone() * &inverse[t];
@@ -131,26 +123,6 @@ impl<T: Scalar> Normal<T> {
         }
         true
     }
-}
-
-/// Takes the terms of the columns before from the entries `t..t + B` of a row.
-#[inline(always)]
-fn eliminate<T: Scalar, const B: usize>(row: &mut [T], before: &[T], m: usize, t: usize) {
-    let (done, rest) = row.split_at_mut(t);
-    let entries = &mut rest[..B];
-    let mut sums: [T; B] = std::array::from_fn(|b| entries[b].clone());
-    let others: [&[T]; B] = std::array::from_fn(|b| &before[(t + b) * m..(t + b) * m + t + b]);
-    for r in 0..t {
-        for b in 0..B {
-            sums[b] = sums[b].clone().minus_product(&done[r], &others[b][r]);
-        }
-    }
-    for b in 1..B {
-        for c in 0..b {
-            sums[b] = sums[b].clone().minus_product(&sums[c], &others[b][t + c]);
-        }
-    }
-    entries.clone_from_slice(&sums);
 }
 
 impl Normal {

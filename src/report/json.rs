@@ -1,6 +1,6 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
-use crate::fit::Spread;
+use crate::fit::{Objective, Spread};
 use crate::solve::Standing;
 use crate::study::{FitOutcome, LoadOutcome, Outcome};
 use serde_json::{Value, json};
@@ -25,15 +25,21 @@ pub fn report(outcome: &Outcome) -> String {
 
 fn fit(outcome: &FitOutcome, elements: usize) -> Value {
     let fit = &outcome.fit.fit;
-    let higher = fit.objective.higher();
     json!({
         "name": outcome.fit.name,
         "objective": fit.objective.name(),
-        "higher": higher,
+        "weight": fit.objective.weight().map(|w| w.name()),
+        "higher": fit.objective.higher(),
+        "balance": if let Objective::Divergence { balance } = fit.objective { Some(balance) } else { None },
         "groups": outcome.fit.springs,
         "tied": fit.tied,
         "nonnegative": fit.nonnegative,
-        "solver": if fit.nonnegative { "block principal pivoting" } else { "normal equations" },
+        "solver": match (fit.objective, fit.nonnegative) {
+            (Objective::Frobenius(_), false) => "normal equations",
+            (Objective::Frobenius(_), true) => "block principal pivoting",
+            (Objective::Spectral(_), _) => "barrier",
+            (Objective::Divergence { .. }, _) => "newton",
+        },
         "status": status(outcome),
         "springs": outcome.network.len(),
         "seconds": outcome.seconds,
@@ -45,7 +51,10 @@ fn fit(outcome: &FitOutcome, elements: usize) -> Value {
         "undetermined_elements": outcome.deficient,
         "energy_ratio": outcome.stability.as_ref().map(|s| s.energy_ratio),
         "loose_nodes": outcome.loose_points,
-        "certificate_gap": Value::Null,
+        "certificate_gap": outcome.gap,
+        "ambiguous_elements": outcome.ambiguous,
+        "unreached_elements": outcome.unreached,
+        "energy_error_bound": outcome.energy_error,
         "loads": outcome.loads.iter().map(load).collect::<Vec<_>>(),
     })
 }

@@ -104,6 +104,19 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             fit.deficient
         ));
     }
+    if fit.unreached > 0 {
+        notes.push(format!("{name}: in {} elements the iteration stopped short of the optimum", fit.unreached));
+    }
+    if let Some(gap) = fit.gap {
+        let mut note = format!("{name}: certified, no constants do better by more than {gap:.1e} of the error");
+        if fit.ambiguous > 0 {
+            note += &format!("; in {} elements others do as well: the least Frobenius error decides", fit.ambiguous);
+        }
+        notes.push(note);
+    }
+    if let Some(epsilon) = fit.energy_error {
+        notes.push(format!("{name}: the energy of any deformation of the model is right to {:.1} %", 100.0 * epsilon));
+    }
     let Some(stability) = &fit.stability else { return notes };
     let points = points(outcome, &fit.loose_points);
     let [least, _] = stability.energy_ratio;

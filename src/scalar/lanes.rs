@@ -1,7 +1,7 @@
 //! As many numbers side by side as one register of the machine holds, found out at run time.
 
-use super::Scalar;
-use pulp::{Simd, bytemuck};
+use super::{Real, Scalar};
+use pulp::{Simd, WithSimd, bytemuck};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// One number per element, for [`Lanes::COUNT`] elements at once.
@@ -88,5 +88,34 @@ impl<S: Simd> Scalar for Lanes<S> {
         let above = self.simd.greater_than_f64s(self.values, other.values);
         let marks = self.simd.select_f64s(above, self.simd.splat_f64s(1.0), self.simd.splat_f64s(0.0));
         bytemuck::cast_slice::<S::f64s, f64>(&[marks]).iter().all(|mark| *mark == 1.0)
+    }
+}
+
+impl<S: Simd> Real for Lanes<S> {
+    #[inline(always)]
+    fn sqrt(self) -> Lanes<S> {
+        Lanes { simd: self.simd, values: self.simd.sqrt_f64s(self.values) }
+    }
+
+    #[inline(always)]
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.simd.vectorize(Work(work))
+    }
+
+    #[inline(always)]
+    fn choose(&self, yes: &Lanes<S>, no: &Lanes<S>) -> Lanes<S> {
+        let positive = self.simd.greater_than_f64s(self.values, self.simd.splat_f64s(0.0));
+        Lanes { simd: self.simd, values: self.simd.select_f64s(positive, yes.values, no.values) }
+    }
+}
+
+struct Work<F>(F);
+
+impl<R, F: FnOnce() -> R> WithSimd for Work<F> {
+    type Output = R;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> R {
+        (self.0)()
     }
 }

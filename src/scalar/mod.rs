@@ -67,6 +67,61 @@ pub fn zeros<T: Scalar, const D: usize>(zero: &T) -> [T; D] {
     std::array::from_fn(|_| zero.clone())
 }
 
+/// What the solvers need besides: roots and choices, lane by lane.
+pub trait Real: Scalar<Constant = f64> {
+    fn sqrt(self) -> Self;
+
+    /// Does the work in a function of its own that is compiled for the machine's instructions.
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R;
+
+    /// `yes` where `self > 0`, otherwise `no`; also where `self` is not a number.
+    fn choose(&self, yes: &Self, no: &Self) -> Self;
+
+    #[inline(always)]
+    fn least(&self, other: &Self) -> Self {
+        (other.clone() - self).choose(self, other)
+    }
+
+    #[inline(always)]
+    fn greatest(&self, other: &Self) -> Self {
+        (self.clone() - other).choose(self, other)
+    }
+
+    #[inline(always)]
+    fn negated(&self) -> Self {
+        self.zero() - self
+    }
+
+    #[inline(always)]
+    fn magnitude(&self) -> Self {
+        self.choose(self, &self.negated())
+    }
+
+    /// Whether `self > 0` in some lane.
+    #[inline(always)]
+    fn any(&self) -> bool {
+        let zero = self.zero();
+        !(self.choose(&zero, &self.one())).exceeds(&zero)
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        work()
+    }
+
+    #[inline(always)]
+    fn choose(&self, yes: &f64, no: &f64) -> f64 {
+        if *self > 0.0 { *yes } else { *no }
+    }
+}
+
 /// `Σ_k a_k b_k`.
 #[inline(always)]
 pub fn dot<T: Scalar, const D: usize>(a: &[T; D], b: &[T; D]) -> T {

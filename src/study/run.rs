@@ -3,7 +3,7 @@
 use super::metrics::{DisplacementError, displacement_error};
 use super::scene::{NamedFit, Scene};
 use crate::error::{Error, Result};
-use crate::fit::{CellFits, ElementErrors, Spread, element_errors, fit_cells};
+use crate::fit::{CellFits, ElementErrors, Objective, Spread, Weight, element_errors, fit_cells};
 use crate::material::{Material, Moduli};
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Network, Support, finite_elements, masses, nodal_forces, unheld_bodies};
@@ -38,6 +38,14 @@ pub struct FitOutcome {
     pub seconds_assembly: f64,
     /// Cells whose springs the objective does not determine.
     pub deficient: usize,
+    /// Cells whose iteration did not reach its end.
+    pub unreached: usize,
+    /// Cells whose spectral optimum is not unique.
+    pub ambiguous: usize,
+    /// The largest relative duality gap, where the objective has certificates.
+    pub gap: Option<f64>,
+    /// Where `(1 − ε) R ⪯ K ⪯ (1 + ε) R` holds in every cell with ε < 1: the relative error of the model's energy.
+    pub energy_error: Option<f64>,
     pub frobenius: Spread,
     pub spectral: Spread,
     /// With the support of the first load; `None` without loads.
@@ -173,12 +181,19 @@ pub fn fit_mesh(mesh: &Mesh, material: Material, named: &NamedFit, progress: &mu
     for (block, fit) in mesh.blocks.iter().zip(&fits) {
         errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit)?);
     }
+    let certificates = || fits.iter().flat_map(|f| &f.certificates);
+    let largest = certificates().map(|c| c.value).reduce(f64::max);
+    let relative = named.fit.objective == Objective::Spectral(Weight::Relative);
     Ok(FitOutcome {
         fit: named.clone(),
         network,
         seconds,
         seconds_assembly,
         deficient: fits.iter().map(|f| f.deficient).sum(),
+        unreached: fits.iter().map(|f| f.unreached).sum(),
+        ambiguous: certificates().filter(|c| c.ambiguous).count(),
+        gap: certificates().map(|c| c.gap()).reduce(f64::max),
+        energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
         frobenius: Spread::of(&errors.frobenius),
         spectral: Spread::of(&errors.spectral),
         stability: None,

@@ -39,3 +39,26 @@ pub fn materials(dimension: usize) -> Vec<Material> {
     let each = |plane: &Option<Plane>| ratios.map(|nu| Material::for_body(dimension, 1e4, nu, *plane, None).unwrap());
     planes.iter().flat_map(each).collect()
 }
+
+/// Translations and infinitesimal rotations, `[motions][nodes × dimension]`.
+pub fn rigid_motions(x: &[f64], d: usize) -> Vec<Vec<f64>> {
+    let field = |f: &dyn Fn(&[f64], usize) -> f64| -> Vec<f64> {
+        x.chunks_exact(d).flat_map(|x| (0..d).map(|k| f(x, k)).collect::<Vec<_>>()).collect()
+    };
+    let mut motions: Vec<Vec<f64>> = (0..d).map(|e| field(&|_, k| f64::from(u8::from(k == e)))).collect();
+    for i in 0..d {
+        for j in 0..i {
+            let turn = |x: &[f64], k: usize| {
+                if k == i {
+                    x[j]
+                } else if k == j {
+                    -x[i]
+                } else {
+                    0.0
+                }
+            };
+            motions.push(field(&turn));
+        }
+    }
+    motions
+}

@@ -2,7 +2,7 @@
 
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
-use crate::fit::{Fit, Objective};
+use crate::fit::{Choices, Fit, Objective};
 use crate::material::{Material, Plane, parse_pressure};
 use crate::model::Action;
 use serde::Deserialize;
@@ -78,7 +78,9 @@ pub struct MaterialEntry {
 pub struct FitEntry {
     pub name: Option<String>,
     pub objective: String,
+    pub weight: Option<String>,
     pub higher: Option<f64>,
+    pub balance: Option<f64>,
     pub springs: Option<Vec<String>>,
     #[serde(default)]
     pub tied: bool,
@@ -139,7 +141,8 @@ impl MaterialEntry {
 
 impl FitEntry {
     pub fn check(self) -> Result<NamedFit> {
-        let objective = Objective::named(&self.objective, self.higher)?;
+        let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
+        let objective = Objective::named(&self.objective, choices)?;
         let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative };
         let mut named = NamedFit::new(fit, self.springs);
         if let Some(name) = self.name {

@@ -180,10 +180,7 @@ impl NamedFit {
 }
 
 fn fit_name(fit: &Fit, springs: Option<&[String]>) -> String {
-    let mut name = fit.objective.name().to_string();
-    if let Some(higher) = fit.objective.higher() {
-        name += &format!(" {higher}");
-    }
+    let mut name = fit.objective.title();
     for group in springs.unwrap_or_default() {
         name += &format!(" +{group}");
     }

@@ -1,0 +1,130 @@
+//! Where the spectral optimum is not unique: the constants of least Frobenius error among the optima.
+//!
+//! With u the eigenvectors of `E = R̂ − K(κ)` at ±t, the optima differ from κ by the directions d with `K(d) u = 0`: such a d
+//! leaves the active eigenvalues, and has room until another eigenvalue reaches ±t.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Eigenvalues within this fraction of ±t are active; the solver leaves them there to about 1e-9.
+const ACTIVE: f64 = 1e-6;
+/// Singular values of `d ↦ K(d) u` below this fraction of the largest vanish.
+const FREE: f64 = 1e-5;
+/// Newton steps per weight of the barrier that keeps the other eigenvalues inside, and the weights.
+const STEPS: usize = 30;
+/// What the move may add to the value, of the 1e-8 that the gap may have.
+pub const KEPT: f64 = 2e-9;
+const WEIGHTS: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
+
+/// Moves κ, an optimum of value t, to the one of least `‖E‖_F`, to about 1e-6 of the way; `rows` are the h, `[springs ×
+/// order]`, `unknowns` the unknown of each. Returns false, κ unchanged, if the optimum is unique after all.
+pub fn least_frobenius(r: &DMatrix<f64>, rows: &[f64], unknowns: &[usize], t: f64, kappa: &mut [f64]) -> bool {
+    let p = r.nrows();
+    let mut springs = vec![DMatrix::zeros(p, p); kappa.len()];
+    for (h, &unknown) in rows.chunks_exact(p).zip(unknowns) {
+        let h = DVector::from_column_slice(h);
+        springs[unknown].ger(1.0, &h, &h, 1.0);
+    }
+    let mut e = r.clone();
+    springs.iter().zip(&*kappa).for_each(|(a, k)| e -= a * *k);
+    let eigen = e.clone().symmetric_eigen();
+    let (active, rest): (Vec<usize>, Vec<usize>) =
+        (0..p).partition(|&i| eigen.eigenvalues[i].abs() > t * (1.0 - ACTIVE));
+    let u = eigen.eigenvectors.select_columns(&active);
+    let columns: Vec<DVector<f64>> = springs.iter().map(|a| DVector::from_column_slice((a * &u).as_slice())).collect();
+    let svd = DMatrix::from_columns(&columns).svd(false, true);
+    let v = svd.v_t.expect("it was asked for");
+    let largest = svd.singular_values.max();
+    let rank = svd.singular_values.iter().filter(|s| **s > FREE * largest).count();
+    if rank == kappa.len() || rest.is_empty() {
+        return false;
+    }
+    // The right singular vectors beyond the rank, also those that a thin decomposition leaves out.
+    let range = v.rows(0, rank).transpose();
+    let projection = DMatrix::identity(kappa.len(), kappa.len()) - &range * range.transpose();
+    let free = projection.symmetric_eigen();
+    let directions: Vec<DVector<f64>> = (0..kappa.len())
+        .filter(|&i| free.eigenvalues[i] > 0.5)
+        .map(|i| free.eigenvectors.column(i).into_owned())
+        .collect();
+    // On the other eigenvectors alone: E_c(w) = Λ − Σ w_i D_i, ‖E_c‖_F least with −t < E_c < t.
+    let others = eigen.eigenvectors.select_columns(&rest);
+    let start = DMatrix::from_diagonal(&DVector::from_fn(rest.len(), |i, _| eigen.eigenvalues[rest[i]]));
+    let changes: Vec<DMatrix<f64>> = directions
+        .iter()
+        .map(|d| {
+            let mut change = DMatrix::zeros(p, p);
+            springs.iter().zip(d.iter()).for_each(|(a, d)| change += a * *d);
+            others.transpose() * change * &others
+        })
+        .collect();
+    let w = inner_optimum(&start, &changes, t);
+    let mut step = DVector::zeros(kappa.len());
+    directions.iter().zip(w.iter()).for_each(|(direction, w)| step += direction * *w);
+    // The directions are exact to rounding over `FREE`: as far as the value stays.
+    for length in [1.0, 0.99, 0.9, 0.5] {
+        let moved: Vec<f64> = kappa.iter().zip(step.iter()).map(|(k, d)| k + length * d).collect();
+        let mut e = r.clone();
+        springs.iter().zip(&moved).for_each(|(a, k)| e -= a * *k);
+        if e.symmetric_eigenvalues().amax() <= t * (1.0 + KEPT) {
+            kappa.copy_from_slice(&moved);
+            return true;
+        }
+    }
+    false
+}
+
+/// `min ‖Λ − Σ w_i D_i‖²_F` with all eigenvalues inside ±t: Newton's method with a barrier, from w = 0.
+fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVector<f64> {
+    let n = changes.len();
+    let identity = DMatrix::identity(start.nrows(), start.nrows());
+    let at = |w: &DVector<f64>| {
+        let mut e = start.clone();
+        changes.iter().zip(w.iter()).for_each(|(d, w)| e -= d * *w);
+        e
+    };
+    let sides = |e: &DMatrix<f64>| {
+        let above = (&identity * t - e).cholesky()?;
+        let below = (&identity * t + e).cholesky()?;
+        Some((above, below))
+    };
+    let value = |w: &DVector<f64>, weight: f64| {
+        let e = at(w);
+        let (above, below) = sides(&e)?;
+        let log = above.l().diagonal().map(f64::ln).sum() + below.l().diagonal().map(f64::ln).sum();
+        Some(0.5 * e.norm_squared() / (t * t) - 2.0 * weight * log)
+    };
+    let mut w = DVector::zeros(n);
+    for weight in WEIGHTS {
+        for _ in 0..STEPS {
+            let e = at(&w);
+            let Some((above, below)) = sides(&e) else { return w };
+            let (a, b) = (above.inverse(), below.inverse());
+            let images: Vec<_> = changes.iter().map(|d| (&a * d, &b * d)).collect();
+            let slope = DVector::from_fn(n, |i, _| {
+                -e.dot(&changes[i]) / (t * t) - weight * (images[i].0.trace() - images[i].1.trace())
+            });
+            let curvature = DMatrix::from_fn(n, n, |i, j| {
+                let barrier = images[i].0.dot(&images[j].0.transpose()) + images[i].1.dot(&images[j].1.transpose());
+                changes[i].dot(&changes[j]) / (t * t) + weight * barrier
+            });
+            let Some(factor) = curvature.cholesky() else { return w };
+            let step = -factor.solve(&slope);
+            let decrease = -slope.dot(&step);
+            let before = value(&w, weight).unwrap_or(f64::INFINITY);
+            let mut length = 1.0;
+            while length > 1e-10
+                && !value(&(&w + &step * length), weight).is_some_and(|v| v <= before - 0.1 * length * decrease)
+            {
+                length *= 0.5;
+            }
+            if length <= 1e-10 {
+                break;
+            }
+            w += &step * length;
+            if decrease < 1e-14 {
+                break;
+            }
+        }
+    }
+    w
+}

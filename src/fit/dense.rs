@@ -1,0 +1,306 @@
+//! Small dense matrices of any kind of number, row by row; of symmetric ones the lower triangle counts.
+
+use crate::scalar::{Real, Scalar};
+
+/// Takes the terms of the columns before from the entries `t..t + B` of a row, in an elimination of order m.
+///
+/// Several at once: their sums are independent, where the terms of one must wait for each other.
+#[inline(always)]
+fn eliminate<T: Scalar, const B: usize>(row: &mut [T], before: &[T], m: usize, t: usize) {
+    let (done, rest) = row.split_at_mut(t);
+    let entries = &mut rest[..B];
+    let mut sums: [T; B] = std::array::from_fn(|b| entries[b].clone());
+    let others: [&[T]; B] = std::array::from_fn(|b| &before[(t + b) * m..(t + b) * m + t + b]);
+    for r in 0..t {
+        for b in 0..B {
+            sums[b] = sums[b].clone().minus_product(&done[r], &others[b][r]);
+        }
+    }
+    for b in 1..B {
+        for c in 0..b {
+            sums[b] = sums[b].clone().minus_product(&sums[c], &others[b][t + c]);
+        }
+    }
+    entries.clone_from_slice(&sums);
+}
+
+/// Takes the terms of all columns before from the row of entry s, in an elimination of order m.
+#[inline(always)]
+pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], m: usize, s: usize) {
+    let mut t = 0;
+    while t + 4 <= s {
+        eliminate::<T, 4>(row, before, m, t);
+        t += 4;
+    }
+    match s - t {
+        1 => eliminate::<T, 1>(row, before, m, t),
+        2 => eliminate::<T, 2>(row, before, m, t),
+        3 => eliminate::<T, 3>(row, before, m, t),
+        _ => {}
+    }
+}
+
+/// Does `$body` with the order `$n` as a constant for those of the common elements: loops of known length unroll.
+macro_rules! known_order {
+    ($n:ident => $body:expr) => {
+        match $n {
+            3 => known_order!(@ $n, 3, $body),
+            5 => known_order!(@ $n, 5, $body),
+            6 => known_order!(@ $n, 6, $body),
+            7 => known_order!(@ $n, 7, $body),
+            _ => $body,
+        }
+    };
+    (@ $n:ident, $known:literal, $body:expr) => {{
+        let $n = $known;
+        $body
+    }};
+}
+
+/// `A = L D Lᵀ`: L in the strict lower triangle, `1/D` in `inverse`. Returns the least of the pivots, each divided by its
+/// diagonal entry; one not above `floor` is replaced by a huge one, which takes its direction out.
+pub fn factorize<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) -> T {
+    let any = a[0].clone();
+    any.vectorize(
+        #[inline(always)]
+        || known_order!(n => factorize_order(a, n, floor, inverse)),
+    )
+}
+
+#[inline(always)]
+fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) -> T {
+    let (a, inverse) = (&mut a[..n * n], &mut inverse[..n]);
+    let one = a[0].one();
+    let huge = one.constant(&1e30);
+    let mut least = one.clone();
+    for s in 0..n {
+        let (before, row) = a.split_at_mut(s * n);
+        let row = &mut row[..=s];
+        eliminate_row(row, before, n, s);
+        let mut pivot = row[s].clone();
+        for t in 0..s {
+            let scaled = row[t].clone() * &inverse[t];
+            pivot = pivot.minus_product(&row[t], &scaled);
+            row[t] = scaled;
+        }
+        let relative = pivot.clone() / &row[s].choose(&row[s], &one);
+        least = least.least(&relative);
+        let pivot = (relative - &one.constant(&floor)).choose(&pivot, &huge);
+        inverse[s] = one.clone() / &pivot;
+    }
+    least
+}
+
+/// `b ← A⁻¹ b` with the factors of [`factorize`].
+#[inline(always)]
+pub fn solve<T: Real>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {
+    for s in 1..n {
+        let mut sum = b[s].clone();
+        for t in 0..s {
+            sum = sum.minus_product(&a[s * n + t], &b[t]);
+        }
+        b[s] = sum;
+    }
+    for s in 0..n {
+        b[s] = b[s].clone() * &inverse[s];
+    }
+    for s in (1..n).rev() {
+        for t in 0..s {
+            b[t] = b[t].clone().minus_product(&a[s * n + t], &b[s]);
+        }
+    }
+}
+
+/// `A⁻¹`, both triangles, from the factors; `rows` is room of the same size.
+pub fn invert<T: Real>(a: &[T], n: usize, inverse: &[T], rows: &mut [T], out: &mut [T]) {
+    a[0].vectorize(
+        #[inline(always)]
+        || known_order!(n => invert_order(a, n, inverse, rows, out)),
+    );
+}
+
+#[inline(always)]
+fn invert_order<T: Real>(a: &[T], n: usize, inverse: &[T], rows: &mut [T], out: &mut [T]) {
+    let (a, inverse, rows, out) = (&a[..n * n], &inverse[..n], &mut rows[..n * n], &mut out[..n * n]);
+    let zero = a[0].zero();
+    // L⁻¹: row i = e_i − Σ_k L_ik row k
+    for i in 0..n {
+        let (before, row) = rows.split_at_mut(i * n);
+        for entry in &mut row[..i] {
+            *entry = zero.clone();
+        }
+        row[i] = zero.one();
+        for k in 0..i {
+            let factor = &a[i * n + k];
+            for j in 0..=k {
+                row[j] = row[j].clone().minus_product(factor, &before[k * n + j]);
+            }
+        }
+    }
+    // A⁻¹ = L⁻ᵀ D⁻¹ L⁻¹
+    for i in 0..n {
+        for entry in &mut out[i * n..=i * n + i] {
+            *entry = zero.clone();
+        }
+    }
+    for k in 0..n {
+        let row = &rows[k * n..=k * n + k];
+        for i in 0..=k {
+            let factor = row[i].clone() * &inverse[k];
+            for j in 0..=i {
+                out[i * n + j] = out[i * n + j].clone().plus_product(&factor, &row[j]);
+            }
+        }
+    }
+    mirror(out, n);
+}
+
+#[inline(always)]
+pub fn mirror<T: Scalar>(a: &mut [T], n: usize) {
+    for i in 0..n {
+        for j in 0..i {
+            a[j * n + i] = a[i * n + j].clone();
+        }
+    }
+}
+
+/// `out_st = a_s · b_t` for rows of length n; of a square result the lower triangle alone if `lower`.
+///
+/// Four rows by four, so that each number that is loaded serves four sums.
+pub fn row_products<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut [T]) {
+    a[0].vectorize(
+        #[inline(always)]
+        || known_order!(n => row_products_order(a, b, n, lower, out)),
+    );
+}
+
+#[inline(always)]
+fn row_products_order<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut [T]) {
+    let (rows, columns) = (a.len() / n, b.len() / n);
+    let mut s = 0;
+    while s + 4 <= rows {
+        row_block::<T, 4>(a, b, n, s, if lower { s + 4 } else { columns }, columns, out);
+        s += 4;
+    }
+    match rows - s {
+        1 => row_block::<T, 1>(a, b, n, s, columns, columns, out),
+        2 => row_block::<T, 2>(a, b, n, s, columns, columns, out),
+        3 => row_block::<T, 3>(a, b, n, s, columns, columns, out),
+        _ => {}
+    }
+}
+
+#[inline(always)]
+fn row_block<T: Scalar, const A: usize>(
+    a: &[T],
+    b: &[T],
+    n: usize,
+    s: usize,
+    last: usize,
+    columns: usize,
+    out: &mut [T],
+) {
+    let mut t = 0;
+    while t + 4 <= last {
+        products::<T, A, 4>(a, b, n, s, t, columns, out);
+        t += 4;
+    }
+    match last - t {
+        1 => products::<T, A, 1>(a, b, n, s, t, columns, out),
+        2 => products::<T, A, 2>(a, b, n, s, t, columns, out),
+        3 => products::<T, A, 3>(a, b, n, s, t, columns, out),
+        _ => {}
+    }
+}
+
+#[inline(always)]
+fn products<T: Scalar, const A: usize, const B: usize>(
+    a: &[T],
+    b: &[T],
+    n: usize,
+    s: usize,
+    t: usize,
+    columns: usize,
+    out: &mut [T],
+) {
+    let left: [&[T]; A] = std::array::from_fn(|i| &a[(s + i) * n..(s + i + 1) * n]);
+    let right: [&[T]; B] = std::array::from_fn(|j| &b[(t + j) * n..(t + j + 1) * n]);
+    let mut sums: [[T; B]; A] = std::array::from_fn(|_| std::array::from_fn(|_| a[0].zero()));
+    for k in 0..n {
+        for i in 0..A {
+            for j in 0..B {
+                sums[i][j] = sums[i][j].clone().plus_product(&left[i][k], &right[j][k]);
+            }
+        }
+    }
+    for i in 0..A {
+        for j in 0..B {
+            out[(s + i) * columns + t + j] = sums[i][j].clone();
+        }
+    }
+}
+
+/// `a · b`.
+#[inline(always)]
+pub fn inner<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let mut sum = a[0].zero();
+    for (a, b) in a.iter().zip(b) {
+        sum = sum.plus_product(a, b);
+    }
+    sum
+}
+
+/// `A ← A ± Σ_I c_I Σ_{s∈I} g_s g_sᵀ`, lower triangle, for rows g of the order n of A; `unknowns` gives each row's I.
+pub fn add_outers<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: &[usize], sign: f64) {
+    c[0].vectorize(
+        #[inline(always)]
+        || known_order!(n => add_outers_order(a, g, n, c, unknowns, sign)),
+    );
+}
+
+#[inline(always)]
+fn add_outers_order<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: &[usize], sign: f64) {
+    let a = &mut a[..n * n];
+    let rows = g.len() / n;
+    let mut s = 0;
+    while s + 4 <= rows {
+        let mut factors: [T; 4] = std::array::from_fn(|i| c[unknowns[s + i]].clone());
+        for factor in &mut factors {
+            *factor = factor.clone().scaled(&sign);
+        }
+        outers(a, g, n, s, factors);
+        s += 4;
+    }
+    while s < rows {
+        outers(a, g, n, s, [c[unknowns[s]].clone().scaled(&sign)]);
+        s += 1;
+    }
+}
+
+#[inline(always)]
+fn outers<T: Scalar, const A: usize>(a: &mut [T], g: &[T], n: usize, s: usize, c: [T; A]) {
+    let rows: [&[T]; A] = std::array::from_fn(|r| &g[(s + r) * n..(s + r + 1) * n]);
+    for i in 0..n {
+        let mut factors = c.clone();
+        for r in 0..A {
+            factors[r] = factors[r].clone() * &rows[r][i];
+        }
+        for j in 0..=i {
+            let mut sum = a[i * n + j].clone();
+            for r in 0..A {
+                sum = sum.plus_product(&factors[r], &rows[r][j]);
+            }
+            a[i * n + j] = sum;
+        }
+    }
+}
+
+/// The sum of the diagonal.
+#[inline(always)]
+pub fn trace<T: Scalar>(a: &[T], n: usize) -> T {
+    let mut sum = a[0].zero();
+    for i in 0..n {
+        sum = sum + &a[i * n + i];
+    }
+    sum
+}

@@ -1,0 +1,170 @@
+//! `min_κ tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R̂^(−1/2) K(κ) R̂^(−1/2)`: the springs' energy relative to the body's.
+//!
+//! Convex, and infinite where A is not positive: the springs of an element never lose their stand. c = 0 is Stein's loss
+//! (James and Stein 1961), which errs to the soft side; c = 1 is symmetric in A and A⁻¹. With h_s in units of R̂, Newton's
+//! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
+//! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
+
+use super::dense::{add_outers, factorize, inner, invert, row_products, solve, trace};
+use super::reduction::{Reduced, room_below, tie};
+use crate::scalar::Real;
+
+const STEPS: usize = 150;
+const FLOOR: f64 = 1e-14;
+/// The square of the Newton decrement at which the next step leaves 1e-10 of the scale of the problem.
+const CLOSE: f64 = 1e-10;
+/// Weight of the barrier that keeps constants positive, first and last.
+const BARRIER: [f64; 2] = [1e-1, 1e-9];
+
+/// Room for the solver, and its result.
+#[derive(Debug, Clone)]
+pub struct Divergence<T> {
+    /// κ, `[unknowns]`.
+    pub kappa: Vec<T>,
+    /// Positive where the optimum was reached.
+    pub reached: T,
+    balance: f64,
+    nonnegative: bool,
+    matrix: Vec<T>,
+    pivots: Vec<T>,
+    inverse: Vec<T>,
+    images: Vec<T>,
+    /// `h_s·A⁻¹h_t` and `h_s·A⁻²h_t`, lower triangles.
+    products: [Vec<T>; 2],
+    hessian: Vec<T>,
+    hessian_pivots: Vec<T>,
+    gradient: Vec<T>,
+    step: Vec<T>,
+    trial: Vec<T>,
+    room: Vec<T>,
+}
+
+impl<T: Real> Divergence<T> {
+    pub fn of_kind(any: &T, reduced: &Reduced<T>, balance: f64, nonnegative: bool) -> Divergence<T> {
+        let (p, m, c) = (reduced.order, reduced.unknowns.len(), reduced.scales.len());
+        let room = |size: usize| vec![any.zero(); size];
+        Divergence {
+            kappa: room(c),
+            reached: any.zero(),
+            balance,
+            nonnegative,
+            matrix: room(p * p),
+            pivots: room(p),
+            inverse: room(p * p),
+            images: room(m * p),
+            products: [room(m * m), room(m * m)],
+            hessian: room(c * c),
+            hessian_pivots: room(c),
+            gradient: room(c),
+            step: room(c),
+            trial: room(c),
+            room: room(p * p),
+        }
+    }
+
+    /// Solves for the element in `reduced`, which must be seen through the weight `relative`, in every lane.
+    #[inline(always)]
+    pub fn solve(&mut self, reduced: &Reduced<T>) {
+        let (p, m, c) = (reduced.order, reduced.unknowns.len(), self.kappa.len());
+        let h = reduced.rows();
+        let one = self.reached.one();
+        let zero = one.zero();
+        // All springs alike, with tr A = p.
+        let start = one.constant(&(p as f64)) / &inner(h, h);
+        for i in 0..c {
+            self.kappa[i] = start.clone();
+            self.step[i] = zero.clone();
+        }
+        let mut alpha = zero.clone();
+        let mut barrier = one.constant(if self.nonnegative { &BARRIER[0] } else { &0.0 });
+        let last = one.constant(if self.nonnegative { &BARRIER[1] } else { &0.0 });
+        self.reached = zero.clone() - &one;
+        // Stein's loss first: its Newton steps are long from far away, where those of tr A⁻¹ are not.
+        let full = one.constant(&self.balance);
+        let mut balance = zero.clone();
+        for _ in 0..STEPS {
+            let mut inside = one.clone();
+            for entry in &mut self.matrix {
+                *entry = zero.clone();
+            }
+            for i in 0..c {
+                self.trial[i] = self.kappa[i].clone().plus_product(&alpha, &self.step[i]);
+                if self.nonnegative {
+                    inside = inside.least(&self.trial[i]);
+                }
+            }
+            add_outers(&mut self.matrix, h, p, &self.trial, &reduced.unknowns, 1.0);
+            // A pivot that is only rounding is no stand.
+            let definite = factorize(&mut self.matrix, p, 0.0, &mut self.pivots) - &one.constant(&FLOOR);
+            inside = inside.least(&definite);
+            for i in 0..c {
+                self.kappa[i] = inside.choose(&self.trial[i], &self.kappa[i]);
+            }
+            invert(&self.matrix, p, &self.pivots, &mut self.room, &mut self.inverse);
+            row_products(h, &self.inverse, p, false, &mut self.images);
+            row_products(h, &self.images, p, true, &mut self.products[0]);
+            row_products(&self.images, &self.images, p, true, &mut self.products[1]);
+            let (log, inverse) = (one.clone() - &balance, balance.clone().scaled(&2.0));
+            tie(
+                &self.products[0],
+                &self.products[1],
+                &reduced.unknowns,
+                c,
+                c,
+                &mut self.hessian,
+                #[inline(always)]
+                |a, b| a.clone() * &(log.clone() * a).plus_product(&inverse, b),
+            );
+            for entry in &mut self.gradient {
+                *entry = zero.clone();
+            }
+            for (s, &unknown) in reduced.unknowns.iter().enumerate() {
+                let row = &h[s * p..(s + 1) * p];
+                let slope = inner(row, row).minus_product(&log, &self.products[0][s * m + s]);
+                let slope = slope.minus_product(&inverse.clone().scaled(&0.5), &self.products[1][s * m + s]);
+                self.gradient[unknown] = self.gradient[unknown].clone() + &slope;
+            }
+            if self.nonnegative {
+                for i in 0..c {
+                    let share = barrier.clone() / &self.trial[i];
+                    self.gradient[i] = self.gradient[i].clone() - &share;
+                    let diagonal = &mut self.hessian[i * c + i];
+                    *diagonal = diagonal.clone() + &(share / &self.trial[i]);
+                }
+            }
+            factorize(&mut self.hessian, c, FLOOR, &mut self.hessian_pivots);
+            for i in 0..c {
+                self.trial[i] = self.gradient[i].negated();
+            }
+            solve(&self.hessian, c, &self.hessian_pivots, &mut self.trial);
+            let decrement = inner(&self.trial, &self.gradient).negated();
+            // Relative to the objective, which is large where the body is next to flat.
+            let size = one.clone().plus_product(&balance, &trace(&self.inverse, p).scaled(&(1.0 / p as f64)));
+            let close = inside.choose(&(size.scaled(&CLOSE) - &decrement), &zero);
+            let ended = close.choose(&(last.clone().scaled(&1.001) - &barrier), &zero);
+            // Barrier gone (both zero) counts as ended, too.
+            let ended = if self.nonnegative { ended } else { close.clone() };
+            let ended = (full.clone() - &balance).choose(&zero, &ended);
+            let ended = self.reached.choose(&one, &ended);
+            // The step that is at hand once it is close enough leaves rounding alone.
+            let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
+            let mut length = (one.constant(&0.25) - &decrement).choose(&one, &length);
+            if self.nonnegative {
+                length = length.least(&room_below(&self.kappa, &self.trial));
+            }
+            let moving = self.reached.choose(&zero, &inside.choose(&length, &one));
+            for i in 0..c {
+                self.step[i] = inside.choose(&self.trial[i], &self.step[i]);
+            }
+            alpha = inside.choose(&moving, &alpha.clone().scaled(&0.5));
+            if self.reached.exceeds(&zero) {
+                break;
+            }
+            self.reached = ended.choose(&one, &self.reached);
+            let near = one.constant(&0.3) - &decrement;
+            let tighter = near.negated().choose(&barrier, &barrier.clone().scaled(&0.1).greatest(&last));
+            barrier = inside.choose(&tighter, &barrier);
+            balance = inside.choose(&near.choose(&full, &balance), &balance);
+        }
+    }
+}

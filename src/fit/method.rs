@@ -1,0 +1,161 @@
+//! The objectives that need R itself, on one element or on one per lane.
+
+use super::ambiguity::{KEPT, least_frobenius};
+use super::constrained::solve_nonnegative;
+use super::dense::row_products;
+use super::divergence::Divergence;
+use super::normal::{Normal, Rank};
+use super::reduction::{Reduced, tie};
+use super::spectral::{GAP, Spectral};
+use super::{Fit, Objective, Weight};
+use crate::material::Moduli;
+use crate::scalar::Real;
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+use nalgebra::DMatrix;
+
+/// Below this curvature of the barrier (see [`Spectral`]) the optimum may not be unique.
+const AMBIGUOUS: f64 = 1e6;
+
+/// Optimum and bound of a certified fit, in N/m (of the weighted matrix).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certificate {
+    /// `‖W (R − K) W‖₂` is at most this,
+    pub value: f64,
+    /// and for no constants less than this.
+    pub bound: f64,
+    /// Whether other constants reach the same value: then these have the least Frobenius error among them. Not looked
+    /// into where constants are bounded.
+    pub ambiguous: bool,
+    /// `‖R‖`, to which the gap of a value that is nearly zero is relative.
+    size: f64,
+}
+
+impl Certificate {
+    /// `(value − bound)/value`; relative to a millionth of ‖R‖ where the value is smaller.
+    pub fn gap(&self) -> f64 {
+        (self.value - self.bound) / self.value.max(super::spectral::EXACT * self.size)
+    }
+}
+
+/// The reduced element and the solver's room.
+#[derive(Debug, Clone)]
+pub struct Method<T> {
+    reduced: Reduced<T>,
+    weight: Weight,
+    nonnegative: bool,
+    solver: Solver<T>,
+}
+
+#[derive(Debug, Clone)]
+enum Solver<T> {
+    LeastSquares { normal: Normal<T>, products: Vec<T> },
+    Spectral(Spectral<T>),
+    Divergence(Divergence<T>),
+}
+
+/// What one cell got.
+#[derive(Debug, Clone, Copy)]
+pub struct Verdict {
+    pub certificate: Option<Certificate>,
+    pub rank: Rank,
+    /// The iteration reached what it was asked for.
+    pub reached: bool,
+}
+
+impl<T: Real> Method<T> {
+    /// None for the objectives that the closed form serves.
+    pub fn of_kind(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
+        let reduced = Reduced::of_kind(any, springs, fit.tied);
+        let m = springs.len();
+        let (weight, solver) = match fit.objective {
+            Objective::Frobenius(Weight::Relative) => {
+                let products = vec![any.zero(); m * m];
+                let normal = Normal::default();
+                (Weight::Relative, Solver::LeastSquares { normal, products })
+            }
+            Objective::Frobenius(_) => return None,
+            Objective::Spectral(weight) => {
+                (weight, Solver::Spectral(Spectral::of_kind(any, &reduced, fit.nonnegative)))
+            }
+            Objective::Divergence { balance } => {
+                let solver = Divergence::of_kind(any, &reduced, balance, fit.nonnegative);
+                (Weight::Relative, Solver::Divergence(solver))
+            }
+        };
+        Some(Method { reduced, weight, nonnegative: fit.nonnegative, solver })
+    }
+
+    /// Solves for the element with nodes at `x`.
+    #[inline(always)]
+    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli) {
+        self.reduced.set(self.weight, springs, x, geometry, moduli);
+        match &mut self.solver {
+            Solver::LeastSquares { normal, products, .. } => {
+                let (h, p, c) = (self.reduced.rows(), self.reduced.order, self.reduced.scales.len());
+                let zero = x[0].zero();
+                row_products(h, h, p, true, products);
+                normal.gram.resize(c * c, zero.clone());
+                normal.rhs.clear();
+                normal.rhs.resize(c, zero);
+                tie(
+                    products,
+                    products,
+                    &self.reduced.unknowns,
+                    c,
+                    c,
+                    &mut normal.gram,
+                    #[inline(always)]
+                    |a, b| a.clone() * b,
+                );
+                let m = springs.len();
+                for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
+                    normal.rhs[unknown] = normal.rhs[unknown].clone() + &products[s * m + s];
+                }
+            }
+            Solver::Spectral(solver) => solver.solve(&self.reduced),
+            Solver::Divergence(solver) => solver.solve(&self.reduced),
+        }
+    }
+
+    /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it.
+    pub fn finish(&mut self, lane: impl Fn(&T) -> f64, constants: &mut [f64]) -> Verdict {
+        let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true };
+        let kappa: Vec<f64> = match &self.solver {
+            Solver::LeastSquares { normal, .. } => {
+                let all = |values: &[T]| values.iter().map(&lane).collect();
+                let normal = Normal::new(all(&normal.gram), all(&normal.rhs));
+                let (kappa, rank) = if self.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
+                verdict.rank = rank;
+                kappa
+            }
+            Solver::Spectral(solver) => {
+                let size = lane(&self.reduced.size);
+                let value = size * lane(&solver.value);
+                let bound = size * lane(&solver.bound);
+                let mut kappa: Vec<f64> = solver.kappa.iter().map(&lane).collect();
+                // A nonnegative optimum stays in the middle of the optima, away from the bounds.
+                let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
+                let ambiguous = doubtful && {
+                    let p = self.reduced.order;
+                    let r = DMatrix::from_fn(p, p, |i, j| lane(&self.reduced.stiffness[i * p + j]));
+                    let rows: Vec<f64> = self.reduced.rows().iter().map(&lane).collect();
+                    least_frobenius(&r, &rows, &self.reduced.unknowns, lane(&solver.value), &mut kappa)
+                };
+                let value = if ambiguous { value * (1.0 + KEPT) } else { value };
+                let certificate = Certificate { value, bound, ambiguous, size };
+                verdict.reached = certificate.gap() <= GAP;
+                verdict.certificate = Some(certificate);
+                kappa
+            }
+            Solver::Divergence(solver) => {
+                verdict.reached = lane(&solver.reached) > 0.0;
+                solver.kappa.iter().map(&lane).collect()
+            }
+        };
+        for (constant, &unknown) in constants.iter_mut().zip(&self.reduced.unknowns) {
+            *constant = kappa[unknown] * lane(&self.reduced.scales[unknown]);
+        }
+        verdict
+    }
+}

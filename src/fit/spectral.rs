@@ -1,0 +1,390 @@
+//! `min_κ ‖E(κ)‖₂`, `E = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`: the least t with `A = tI − E ⪰ 0` and `B = tI + E ⪰ 0`.
+//!
+//! A barrier method that follows the minimisers of `t/μ − log det A − log det B − Σ log κ` (the last only for
+//! `κ ≥ 0`) to μ → 0 (Nesterov and Nemirovskii 1994). The springs are of rank one, so the Hessian needs no product of
+//! matrices: it is `(h_sᵀ A⁻¹ h_t)² + (h_sᵀ B⁻¹ h_t)²`, entry by entry.
+//!
+//! Any positive semidefinite X, Y with `⟨h_s h_sᵀ, X − Y⟩ = 0` bound the optimum from below by
+//! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair,
+//! `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, Y alike; [`Spectral::bound`] checks it from scratch.
+
+use super::dense::{add_outers, factorize, inner, invert, mirror, row_products, solve, trace};
+use super::reduction::{Reduced, room_below, tie};
+use crate::scalar::Real;
+
+/// The duality gap that is asked for, relative to t; relative to `EXACT ‖R‖` where t is smaller still.
+pub const GAP: f64 = 1e-8;
+/// Below this fraction of ‖R‖ rounding in R itself hides t.
+pub const EXACT: f64 = 1e-6;
+const STEPS: usize = 120;
+/// Relative pivots below this floor are rounding.
+const FLOOR: f64 = 1e-14;
+
+/// Room for the solver, and its result.
+#[derive(Debug, Clone)]
+pub struct Spectral<T> {
+    /// κ, `[unknowns]`.
+    pub kappa: Vec<T>,
+    /// `‖E‖₂ < t`.
+    pub value: T,
+    /// No κ does better than this.
+    pub bound: T,
+    /// Least curvature of the barrier over the unknowns, in units where an unknown that t does not depend on has about
+    /// one, and one that it depends on has more than a million.
+    pub curvature: T,
+    /// Newton steps taken.
+    pub steps: usize,
+    nonnegative: bool,
+    e: Vec<T>,
+    a: Side<T>,
+    b: Side<T>,
+    /// Hessian of the barrier in (κ, t), and gradient without `1/μ`.
+    hessian: Vec<T>,
+    gradient: Vec<T>,
+    pivots: Vec<T>,
+    newton: Vec<T>,
+    tangent: Vec<T>,
+    /// Factors of the Gram matrix of the springs' matrices.
+    gram: Vec<T>,
+    gram_pivots: Vec<T>,
+    room: Vec<T>,
+}
+
+/// One of the two matrices that stay positive.
+#[derive(Debug, Clone)]
+struct Side<T> {
+    matrix: Vec<T>,
+    pivots: Vec<T>,
+    inverse: Vec<T>,
+    /// `A⁻¹ h_s`, `[springs × order]`.
+    images: Vec<T>,
+    /// `h_sᵀ A⁻¹ h_t`, lower triangle.
+    products: Vec<T>,
+}
+
+impl<T: Real> Side<T> {
+    fn new(zero: &T, p: usize, m: usize) -> Side<T> {
+        let room = |size: usize| vec![zero.clone(); size];
+        Side { matrix: room(p * p), pivots: room(p), inverse: room(p * p), images: room(m * p), products: room(m * m) }
+    }
+
+    /// `tI ± E`, factorised; the least relative pivot.
+    #[inline(always)]
+    fn set(&mut self, e: &[T], p: usize, t: &T, sign: f64) -> T {
+        let sign = t.constant(&sign);
+        for i in 0..p {
+            for j in 0..=i {
+                self.matrix[i * p + j] = e[i * p + j].clone() * &sign;
+            }
+            self.matrix[i * p + i] = self.matrix[i * p + i].clone() + t;
+        }
+        factorize(&mut self.matrix, p, 0.0, &mut self.pivots)
+    }
+
+    #[inline(always)]
+    fn invert(&mut self, h: &[T], p: usize, room: &mut [T]) {
+        invert(&self.matrix, p, &self.pivots, room, &mut self.inverse);
+        row_products(h, &self.inverse, p, false, &mut self.images);
+        row_products(h, &self.images, p, true, &mut self.products);
+    }
+
+    /// `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, lower triangle, into `matrix`; ΔA with both triangles.
+    #[inline(always)]
+    fn dual(&mut self, change: &[T], mu: &T, p: usize, room: &mut [T]) {
+        let room = &mut room[..p * p];
+        row_products(&self.inverse, change, p, false, room);
+        row_products(room, &self.inverse, p, true, &mut self.matrix);
+        for (x, inverse) in self.matrix.iter_mut().zip(&self.inverse) {
+            *x = (inverse.clone() - &*x) * mu;
+        }
+    }
+}
+
+impl<T: Real> Spectral<T> {
+    pub fn of_kind(any: &T, reduced: &Reduced<T>, nonnegative: bool) -> Spectral<T> {
+        let (p, m, c) = (reduced.order, reduced.unknowns.len(), reduced.scales.len());
+        let zero = any.zero();
+        let room = |size: usize| vec![zero.clone(); size];
+        Spectral {
+            kappa: room(c),
+            value: zero.clone(),
+            bound: zero.clone(),
+            curvature: zero.clone(),
+            steps: 0,
+            nonnegative,
+            e: room(p * p),
+            a: Side::new(&zero, p, m),
+            b: Side::new(&zero, p, m),
+            hessian: room((c + 1) * (c + 1)),
+            gradient: room(c + 1),
+            pivots: room(c + 1),
+            newton: room(c + 1),
+            tangent: room(c + 1),
+            gram: room(m * m),
+            gram_pivots: room(c),
+            room: room((p * p).max(m * p).max((c + 1) * (c + 1))),
+        }
+    }
+
+    /// Solves for the element in `reduced`, in every lane.
+    #[inline(always)]
+    pub fn solve(&mut self, reduced: &Reduced<T>) {
+        let (p, c) = (reduced.order, self.kappa.len());
+        let zero = self.value.zero();
+        let one = zero.one();
+        self.start(reduced);
+        let floor = one.constant(&EXACT);
+        let complexity = (2 * p + if self.nonnegative { c } else { 0 }) as f64;
+        let mut mu = zero.clone();
+        let mut kappa = self.kappa.clone();
+        // The step under trial: z + α d, and μ (1 − α (1 − θ)).
+        let mut step: Vec<T> = self.newton.clone();
+        for entry in &mut step {
+            *entry = zero.clone();
+        }
+        let (mut alpha, mut reduction, mut theta) = (zero.clone(), zero.clone(), one.constant(&0.2));
+        let mut first = true;
+        for count in 0..STEPS {
+            self.steps = count;
+            let mut inside = one.clone();
+            for i in 0..c {
+                kappa[i] = self.kappa[i].clone().plus_product(&alpha, &step[i]);
+                if self.nonnegative {
+                    inside = inside.least(&kappa[i]);
+                }
+            }
+            let t = self.value.clone().plus_product(&alpha, &step[c]);
+            reduced.residual(&kappa, &mut self.e);
+            inside = inside.least(&self.a.set(&self.e, p, &t, -1.0));
+            inside = inside.least(&self.b.set(&self.e, p, &t, 1.0));
+            for i in 0..c {
+                self.kappa[i] = inside.choose(&kappa[i], &self.kappa[i]);
+            }
+            self.value = inside.choose(&t, &self.value);
+            self.derivatives(reduced, &kappa);
+            if first {
+                mu = one.clone() / &self.gradient[c].negated();
+                first = false;
+            } else {
+                let followed = mu.clone() * &(one.clone() - &(alpha.clone() * &reduction));
+                mu = inside.choose(&followed, &mu);
+            }
+            let decrement = self.directions(&mu);
+            let end = self.value.greatest(&floor).scaled(&(0.4 * GAP / complexity));
+            // Centred and at the end: stay.
+            let centred = one.constant(&0.2) - &decrement;
+            let done = (end.clone().scaled(&1.001) - &mu).choose(&centred, &zero.clone().scaled(&-1.0));
+            let done = inside.choose(&done, &(zero.clone() - &one));
+            if done.exceeds(&zero) {
+                break;
+            }
+            // Follow the path if close to it, otherwise step back to it.
+            let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
+            let length = (one.constant(&0.5) - &decrement).choose(&one, &length);
+            let faster = theta.clone().squared().greatest(&one.constant(&1e-3));
+            let slower = theta.clone().sqrt().least(&one.constant(&0.8));
+            let next = (one.constant(&0.3) - &decrement).choose(&faster, &theta);
+            let next = (decrement.clone() - &one).choose(&slower, &next);
+            theta = inside.choose(&next, &slower);
+            let least = (end / &mu).least(&one);
+            let target = (one.constant(&0.5) - &decrement).choose(&theta.greatest(&least), &one);
+            let remaining = one.clone() - &target;
+            let pull = remaining.clone() / &mu;
+            for i in 0..=c {
+                let along = (self.newton[i].clone() * &length).minus_product(&pull, &self.tangent[i]);
+                let along = done.choose(&zero, &along);
+                step[i] = inside.choose(&along, &step[i]);
+            }
+            reduction = inside.choose(&done.choose(&zero, &remaining), &reduction);
+            let whole = if self.nonnegative { one.least(&room_below(&self.kappa, &step[..c])) } else { one.clone() };
+            alpha = inside.choose(&whole, &alpha.clone().scaled(&0.5));
+        }
+        self.measure_curvature();
+        self.bound = self.bound(reduced, &mu);
+    }
+
+    /// κ of the least-squares fit, and a t above its error.
+    #[inline(always)]
+    fn start(&mut self, reduced: &Reduced<T>) {
+        let (p, c) = (reduced.order, self.kappa.len());
+        let zero = self.value.zero();
+        let h = reduced.rows();
+        let m = reduced.unknowns.len();
+        row_products(h, h, p, true, &mut self.gram);
+        tie(
+            &self.gram,
+            &self.gram,
+            &reduced.unknowns,
+            c,
+            c,
+            &mut self.hessian,
+            #[inline(always)]
+            |a, b| a.clone() * b,
+        );
+        row_products(h, &reduced.stiffness[..p * p], p, false, &mut self.room[..m * p]);
+        for entry in &mut self.kappa {
+            *entry = zero.clone();
+        }
+        for (s, &unknown) in reduced.unknowns.iter().enumerate() {
+            let row = s * p..(s + 1) * p;
+            self.kappa[unknown] = self.kappa[unknown].clone() + &inner(&h[row.clone()], &self.room[row]);
+        }
+        // Kept for the repair of the bound: the Gram matrix of the springs' matrices.
+        self.gram[..c * c].clone_from_slice(&self.hessian[..c * c]);
+        factorize(&mut self.gram[..c * c], c, FLOOR, &mut self.gram_pivots);
+        solve(&self.gram[..c * c], c, &self.gram_pivots, &mut self.kappa);
+        if self.nonnegative {
+            let mut mean = zero.clone();
+            for entry in &self.kappa {
+                mean = mean + &entry.magnitude().scaled(&(0.1 / c as f64));
+            }
+            for entry in &mut self.kappa {
+                *entry = entry.greatest(&mean);
+            }
+        }
+        reduced.residual(&self.kappa, &mut self.e);
+        let mut square = zero.clone();
+        for i in 0..p {
+            for j in 0..=i {
+                let entry = &self.e[i * p + j];
+                let twice = entry.clone().squared().scaled(if i == j { &1.0 } else { &2.0 });
+                square = square + &twice;
+            }
+        }
+        self.value = square.sqrt().scaled(&1.05) + &zero.constant(&EXACT);
+    }
+
+    /// Gradient and Hessian of the barrier at the trial point, whose sides are factorised.
+    #[inline(always)]
+    fn derivatives(&mut self, reduced: &Reduced<T>, kappa: &[T]) {
+        let (p, c) = (reduced.order, self.kappa.len());
+        let zero = self.value.zero();
+        self.a.invert(reduced.rows(), p, &mut self.room);
+        self.b.invert(reduced.rows(), p, &mut self.room);
+        let width = c + 1;
+        for entry in self.gradient.iter_mut().chain(&mut self.hessian[c * width..]) {
+            *entry = zero.clone();
+        }
+        let (a, b) = (&self.a, &self.b);
+        tie(
+            &a.products,
+            &b.products,
+            &reduced.unknowns,
+            c,
+            width,
+            &mut self.hessian,
+            #[inline(always)]
+            |a, b| a.clone().squared().plus_product(b, b),
+        );
+        let m = reduced.unknowns.len();
+        for (s, &unknown) in reduced.unknowns.iter().enumerate() {
+            let change = b.products[s * m + s].clone() - &a.products[s * m + s];
+            self.gradient[unknown] = self.gradient[unknown].clone() + &change;
+            let row = s * p..(s + 1) * p;
+            let bend =
+                inner(&a.images[row.clone()], &a.images[row.clone()]) - &inner(&b.images[row.clone()], &b.images[row]);
+            let mixed = &mut self.hessian[c * width + unknown];
+            *mixed = mixed.clone() + &bend;
+        }
+        self.gradient[c] = zero.clone() - &trace(&a.inverse, p) - &trace(&b.inverse, p);
+        self.hessian[c * width + c] = inner(&a.inverse, &a.inverse) + &inner(&b.inverse, &b.inverse);
+        if self.nonnegative {
+            for i in 0..c {
+                let inverse = zero.one() / &kappa[i];
+                self.gradient[i] = self.gradient[i].clone() - &inverse;
+                let diagonal = &mut self.hessian[i * width + i];
+                *diagonal = diagonal.clone().plus_product(&inverse, &inverse);
+            }
+        }
+    }
+
+    /// The Newton step for this μ, and the tangent of the path, `H⁻¹ e_t`; returns the square of the Newton decrement.
+    #[inline(always)]
+    fn directions(&mut self, mu: &T) -> T {
+        let c = self.kappa.len();
+        let zero = mu.zero();
+        for i in 0..=c {
+            self.newton[i] = self.gradient[i].negated();
+            self.tangent[i] = if i == c { zero.one() } else { zero.clone() };
+        }
+        self.newton[c] = self.newton[c].clone() - &(zero.one() / mu);
+        self.room[..=c].clone_from_slice(&self.newton);
+        factorize(&mut self.hessian, c + 1, FLOOR, &mut self.pivots);
+        solve(&self.hessian, c + 1, &self.pivots, &mut self.newton);
+        solve(&self.hessian, c + 1, &self.pivots, &mut self.tangent);
+        inner(&self.newton, &self.room[..=c])
+    }
+
+    /// The least ratio of the Hessian's pivots to those of the Gram matrix, in units of `1/t²`.
+    #[inline(always)]
+    fn measure_curvature(&mut self) {
+        let mut least = self.value.constant(&f64::MAX);
+        for (gram, hessian) in self.gram_pivots.iter().zip(&self.pivots) {
+            least = least.least(&(gram.clone() / hessian));
+        }
+        self.curvature = least * &self.value.clone().squared();
+    }
+
+    /// The bound of the pair (X, Y) that the last Newton step gives, with every condition checked here: X and Y are
+    /// factorised, and what is left of `⟨h_s h_sᵀ, X − Y⟩` is moved into them.
+    #[inline(always)]
+    fn bound(&mut self, reduced: &Reduced<T>, mu: &T) -> T {
+        let (p, c) = (reduced.order, self.kappa.len());
+        let m = reduced.unknowns.len();
+        let h = reduced.rows();
+        let zero = mu.zero();
+        // ΔK
+        for entry in &mut self.e {
+            *entry = zero.clone();
+        }
+        add_outers(&mut self.e, h, p, &self.newton, &reduced.unknowns, 1.0);
+        mirror(&mut self.e, p);
+        for i in 0..p {
+            self.e[i * p + i] = self.e[i * p + i].clone() + &self.newton[c];
+        }
+        self.a.dual(&self.e, mu, p, &mut self.room);
+        for i in 0..p * p {
+            self.e[i] = self.e[i].negated();
+        }
+        for i in 0..p {
+            self.e[i * p + i] = self.e[i * p + i].clone() + &self.newton[c].clone().scaled(&2.0);
+        }
+        self.b.dual(&self.e, mu, p, &mut self.room);
+        // Z = X − Y, both triangles
+        for i in 0..p {
+            for j in 0..=i {
+                self.e[i * p + j] = self.a.matrix[i * p + j].clone() - &self.b.matrix[i * p + j];
+            }
+        }
+        mirror(&mut self.e, p);
+        let mut size = trace(&self.a.matrix, p) + &trace(&self.b.matrix, p);
+        let definite = factorize(&mut self.a.matrix, p, 0.0, &mut self.a.pivots);
+        let definite = definite.least(&factorize(&mut self.b.matrix, p, 0.0, &mut self.b.pivots));
+        // y = N⁻¹ r, r_I = Σ hᵀ Z h; only what exceeds zero where κ ≥ 0
+        let y = &mut self.newton[..c];
+        for entry in y.iter_mut() {
+            *entry = zero.clone();
+        }
+        row_products(h, &self.e, p, false, &mut self.a.images);
+        for (s, &unknown) in reduced.unknowns.iter().enumerate() {
+            let row = s * p..(s + 1) * p;
+            y[unknown] = y[unknown].clone() + &inner(&h[row.clone()], &self.a.images[row]);
+        }
+        if self.nonnegative {
+            for entry in y.iter_mut() {
+                *entry = entry.greatest(&zero);
+            }
+        }
+        solve(&self.gram, c, &self.gram_pivots, y);
+        let mut value = inner(&reduced.stiffness[..p * p], &self.e);
+        row_products(h, &reduced.stiffness[..p * p], p, false, &mut self.a.images);
+        for s in 0..m {
+            let y = &self.newton[reduced.unknowns[s]];
+            let row = s * p..(s + 1) * p;
+            let h = &h[row.clone()];
+            value = value.minus_product(y, &inner(h, &self.a.images[row]));
+            size = size.plus_product(&y.magnitude(), &inner(h, h));
+        }
+        definite.choose(&(value / &size).greatest(&zero), &zero)
+    }
+}
