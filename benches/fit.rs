@@ -59,7 +59,7 @@ fn main() {
             Objective::Frobenius(Weight::Modal { higher: 0.316 }),
         ] {
             for nonnegative in [false, true] {
-                let (_, seconds) = one.install(|| timed(&mesh, Fit { objective, tied: false, nonnegative }));
+                let (_, seconds) = one.install(|| timed(&mesh, Fit { nonnegative, ..Fit::new(objective) }));
                 let each = seconds / mesh.cell_count() as f64;
                 let name = format!("{}{}", objective.name(), if nonnegative { ", k >= 0" } else { "" });
                 println!("{:10} {name:20} {:14.0} {:16.0}", shipped.name, 1e9 * each, 1.0 / each);

@@ -63,7 +63,7 @@ fn candidates(lengths: &[String], all: &[String]) -> Vec<NamedFit> {
             let mut objectives = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
             objectives.extend([0.7, 0.5, 0.316, 0.2, 0.1].map(|higher| Objective::Frobenius(Weight::Modal { higher })));
             for objective in objectives {
-                let fit = Fit { objective, tied: false, nonnegative };
+                let fit = Fit { nonnegative, ..Fit::new(objective) };
                 let mut named = NamedFit::new(fit, None);
                 named.name += bulk;
                 named.springs = Some(groups.to_vec());

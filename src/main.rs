@@ -164,7 +164,8 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     });
     let material = Material::for_body(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)
         .map_err(Error::of_option)?;
-    let fit = Fit { objective, tied: arguments.tied, nonnegative: arguments.nonnegative || chosen.is_none() };
+    let nonnegative = arguments.nonnegative || chosen.is_none();
+    let fit = Fit { tied: arguments.tied, nonnegative, ..Fit::new(objective) };
     let mut bar = Bar::new();
     let named = NamedFit::new(fit, arguments.springs.clone());
     let outcome = fit_mesh(&mesh, material, &named, &mut |stage, done, total| bar.show(stage, done, total))?;

@@ -284,7 +284,7 @@ fn spectral_optima_are_certified() {
         for (weight, nonnegative, tied) in
             SPECTRAL.into_iter().flat_map(|w| [(w, false, false), (w, true, false), (w, false, true), (w, true, true)])
         {
-            let fit = Fit { objective: Objective::Spectral(weight), nonnegative, tied };
+            let fit = Fit { nonnegative, tied, ..Fit::new(Objective::Spectral(weight)) };
             let fits = case.certified(fit);
             let certificate = fits.certificates[0];
             let name = format!("{} {weight:?} nonnegative {nonnegative} tied {tied}", case.name);
@@ -295,7 +295,7 @@ fn spectral_optima_are_certified() {
             assert!(value <= certificate.value + rounding, "{name}: {value} {certificate:?}");
             assert!(value >= certificate.bound - rounding, "{name}: {value} {certificate:?}");
             assert!(!nonnegative || fits.constants.iter().all(|k| *k >= 0.0), "{name}");
-            let least_squares = case.fit(Fit { objective: Objective::Frobenius(weight), nonnegative, tied });
+            let least_squares = case.fit(Fit { nonnegative, tied, ..Fit::new(Objective::Frobenius(weight)) });
             assert!(case.largest_eigenvalue(weight, &least_squares) >= certificate.bound - rounding, "{name}");
             if !nonnegative && !tied {
                 for size in [1e-6, 1e-3, 0.1] {

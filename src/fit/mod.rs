@@ -4,6 +4,7 @@ mod ambiguity;
 mod batch;
 mod constrained;
 mod dense;
+mod descent;
 mod divergence;
 mod least_squares;
 mod method;
@@ -13,6 +14,7 @@ mod reduction;
 mod residual;
 mod spectral;
 
+pub use descent::{Search, Solver};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use normal::Rank;
@@ -40,11 +42,12 @@ pub struct Fit {
     pub tied: bool,
     /// No constant below zero.
     pub nonnegative: bool,
+    pub solver: Solver,
 }
 
 impl Fit {
     pub fn new(objective: Objective) -> Fit {
-        Fit { objective, tied: false, nonnegative: false }
+        Fit { objective, tied: false, nonnegative: false, solver: Solver::Native }
     }
 }
 
@@ -112,7 +115,18 @@ impl CellFits {
             return Ok(());
         }
         let springs = &*springs;
+        if fit.solver != Solver::Native && fit.objective == Objective::Frobenius(Weight::OffDiagonal) {
+            let expected = "\"native\": the blocks of different nodes leave no choice to search";
+            return Err(Error::expected("solver", expected, format!("\"{}\"", fit.solver.name())));
+        }
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
+            if let Solver::General { method, iterations } = fit.solver {
+                each_cell(element, points, connectivity, first, |cell, x, geometry| {
+                    let found = descent::search(springs, x, geometry, &moduli, fit, method, iterations);
+                    constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
+                })?;
+                return Ok(Tally::default());
+            }
             let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants };
             batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
         };

@@ -318,6 +318,13 @@ impl<T: Real> Reduced<T> {
         add_outers(e, self.rows(), p, kappa, &self.unknowns, -1.0);
     }
 
+    /// All springs alike, as stiff on average as the body.
+    pub fn positive_start(&self) -> Vec<T> {
+        let rows = self.rows();
+        let start = trace(&self.stiffness, self.order) / &inner(rows, rows);
+        vec![start; self.scales.len()]
+    }
+
     /// `h_s`, `[springs × order]`.
     #[inline(always)]
     pub fn rows(&self) -> &[T] {

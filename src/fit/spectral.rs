@@ -17,6 +17,8 @@ pub const GAP: f64 = 1e-8;
 /// Below this fraction of ‖R‖ rounding in R itself hides t.
 pub const EXACT: f64 = 1e-6;
 const STEPS: usize = 120;
+/// How often a step is halved at once.
+const SHORTER: usize = 4;
 /// Relative pivots below this floor are rounding.
 const FLOOR: f64 = 1e-14;
 
@@ -146,17 +148,16 @@ impl<T: Real> Spectral<T> {
         let mut first = true;
         for count in 0..STEPS {
             self.steps = count;
-            let mut inside = one.clone();
-            for i in 0..c {
-                kappa[i] = self.kappa[i].clone().plus_product(&alpha, &step[i]);
-                if self.nonnegative {
-                    inside = inside.least(&kappa[i]);
+            // Shorten the step where it leaves the domain; what is still outside after that waits for the next turn.
+            let mut inside = self.enter(reduced, &mut kappa, &alpha, &step);
+            for _ in 0..SHORTER {
+                if inside.exceeds(&zero) {
+                    break;
                 }
+                alpha = inside.choose(&alpha, &alpha.clone().scaled(&0.5));
+                inside = self.enter(reduced, &mut kappa, &alpha, &step);
             }
             let t = self.value.clone().plus_product(&alpha, &step[c]);
-            reduced.residual(&kappa, &mut self.e);
-            inside = inside.least(&self.a.set(&self.e, p, &t, -1.0));
-            inside = inside.least(&self.b.set(&self.e, p, &t, 1.0));
             for i in 0..c {
                 self.kappa[i] = inside.choose(&kappa[i], &self.kappa[i]);
             }
@@ -201,6 +202,23 @@ impl<T: Real> Spectral<T> {
         }
         self.measure_curvature();
         self.bound = self.bound(reduced, &mu);
+    }
+
+    /// Both sides at the trial point, which goes into `kappa`; positive where it is inside the domain.
+    #[inline(always)]
+    fn enter(&mut self, reduced: &Reduced<T>, kappa: &mut [T], alpha: &T, step: &[T]) -> T {
+        let (p, c) = (reduced.order, kappa.len());
+        let mut inside = alpha.one();
+        for i in 0..c {
+            kappa[i] = self.kappa[i].clone().plus_product(alpha, &step[i]);
+            if self.nonnegative {
+                inside = inside.least(&kappa[i]);
+            }
+        }
+        let t = self.value.clone().plus_product(alpha, &step[c]);
+        reduced.residual(kappa, &mut self.e);
+        inside = inside.least(&self.a.set(&self.e, p, &t, -1.0));
+        inside.least(&self.b.set(&self.e, p, &t, 1.0))
     }
 
     /// κ of the least-squares fit, and a t above its error.

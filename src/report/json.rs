@@ -1,6 +1,6 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
-use crate::fit::{Objective, Spread};
+use crate::fit::{Objective, Solver, Spread};
 use crate::solve::Standing;
 use crate::study::{FitOutcome, LoadOutcome, Outcome};
 use serde_json::{Value, json};
@@ -35,6 +35,7 @@ fn fit(outcome: &FitOutcome, elements: usize) -> Value {
         "tied": fit.tied,
         "nonnegative": fit.nonnegative,
         "solver": match (fit.objective, fit.nonnegative) {
+            _ if fit.solver != Solver::Native => fit.solver.name(),
             (Objective::Frobenius(_), false) => "normal equations",
             (Objective::Frobenius(_), true) => "block principal pivoting",
             (Objective::Spectral(_), _) => "barrier",

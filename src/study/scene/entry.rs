@@ -2,7 +2,7 @@
 
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective};
+use crate::fit::{Choices, Fit, Objective, Solver};
 use crate::material::{Material, Plane, parse_pressure};
 use crate::model::Action;
 use serde::Deserialize;
@@ -86,6 +86,9 @@ pub struct FitEntry {
     pub tied: bool,
     #[serde(default)]
     pub nonnegative: bool,
+    pub solver: Option<String>,
+    /// Of a general solver.
+    pub iterations: Option<u64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -143,7 +146,8 @@ impl FitEntry {
     pub fn check(self) -> Result<NamedFit> {
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         let objective = Objective::named(&self.objective, choices)?;
-        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative };
+        let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
+        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver };
         let mut named = NamedFit::new(fit, self.springs);
         if let Some(name) = self.name {
             named.name = name;

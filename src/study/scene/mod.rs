@@ -7,7 +7,7 @@ pub use entry::{BoxEntry, MeshInput, Output};
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::fit::Fit;
+use crate::fit::{Fit, Solver};
 use crate::material::Material;
 use crate::mesh::{BoxMesh, Mesh, MeshSource, Selection};
 use crate::model::Action;
@@ -183,6 +183,9 @@ fn fit_name(fit: &Fit, springs: Option<&[String]>) -> String {
     let mut name = fit.objective.title();
     for group in springs.unwrap_or_default() {
         name += &format!(" +{group}");
+    }
+    if fit.solver != Solver::Native {
+        name += &format!(" by {}", fit.solver.name());
     }
     if fit.tied {
         name += " tied";
