@@ -62,6 +62,10 @@ fn candidates(lengths: &[String], all: &[String]) -> Vec<NamedFit> {
         for nonnegative in [false, true] {
             let mut objectives = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
             objectives.extend([0.7, 0.5, 0.316, 0.2, 0.1].map(|higher| Objective::Frobenius(Weight::Modal { higher })));
+            objectives.push(Objective::Frobenius(Weight::Relative));
+            objectives
+                .extend([Weight::None, Weight::Modal { higher: 0.316 }, Weight::Relative].map(Objective::Spectral));
+            objectives.extend([0.0, 0.1, 0.25, 0.5, 1.0].map(|balance| Objective::Divergence { balance }));
             for objective in objectives {
                 let fit = Fit { nonnegative, ..Fit::new(objective) };
                 let mut named = NamedFit::new(fit, None);

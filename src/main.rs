@@ -2,10 +2,12 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use springfit::element::Element;
 use springfit::error::{Error, Result};
-use springfit::fit::{Choices, Fit, Objective};
+use springfit::fit::{Choices, Fit, Objective, Solver};
 use springfit::material::{Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, vtk};
+use springfit::report::Comparison;
 use springfit::study::{NamedFit, Scene, fit_mesh, load_elements, run, stages};
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
@@ -27,6 +29,26 @@ enum Command {
     Run(RunArguments),
     /// Fit the springs of a mesh, without a scene
     Fit(FitArguments),
+    /// Objectives and solvers side by side: error against run time, on random shapes of an element or on a scene
+    Compare(CompareArguments),
+}
+
+#[derive(Args)]
+struct CompareArguments {
+    /// A shipped element's name, an element file, or a scene
+    what: String,
+    /// Random shapes of an element
+    #[arg(long, default_value_t = 100)]
+    shapes: usize,
+    /// Iterations of the general optimisers
+    #[arg(long, default_value_t = Solver::DEFAULT_ITERATIONS)]
+    iterations: u64,
+    /// Poisson's ratio, for an element
+    #[arg(long, default_value_t = 0.3, allow_hyphen_values = true)]
+    poisson: f64,
+    /// Where table.csv and plot.svg go [default: out/compare-NAME]
+    #[arg(long)]
+    out: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -103,6 +125,7 @@ fn main() -> ExitCode {
     let result = match command {
         Command::Run(arguments) => run_scene(&arguments),
         Command::Fit(arguments) => fit(&arguments),
+        Command::Compare(arguments) => compare(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -179,6 +202,45 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let outcome = study::Outcome::of_fit(arguments.mesh.display().to_string(), mesh, material, masses, outcome);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
     print(&format!("written: {}\n", arguments.output.display()))
+}
+
+fn compare(arguments: &CompareArguments) -> Result<()> {
+    let path = Path::new(&arguments.what);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("compare-{stem}")));
+    springfit::check_folder(&folder)?;
+    let mut bar = Bar::new();
+    let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    let comparison = if is_scene(path) {
+        Comparison::of_scene(&study::compare_scene(&Scene::load(path)?, &mut progress)?)
+    } else {
+        let element = Element::load(&arguments.what)?;
+        let material =
+            Material::for_body(element.dimension(), 10e3, arguments.poisson, None, None).map_err(Error::of_option)?;
+        if arguments.iterations == 0 {
+            return Err(Error::expected("--iterations", "a number above 0", 0));
+        }
+        let (shapes, iterations) = (arguments.shapes, arguments.iterations);
+        let outcomes = study::compare_element(&element, material, shapes, iterations, &mut progress)
+            .map_err(|e| e.placed(Error::of_option))?;
+        let title = format!("{}: {shapes} random shapes, nu = {}, one thread", element.name, arguments.poisson);
+        Comparison::of_element(title, &outcomes)
+    };
+    bar.clear();
+    print(&comparison.table())?;
+    for (name, text) in [("table.csv", comparison.csv()), ("plot.svg", comparison.plot()?)] {
+        let path = folder.join(name);
+        springfit::create_folder(&folder)?;
+        write(&path, &text)?;
+        print(&format!("written: {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+/// Whether a file is a scene: it has a `[mesh]`, where an element has nodes. What cannot be read is told as an element.
+fn is_scene(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    text.lines().any(|line| line.trim_start().starts_with("[mesh]") || line.trim_start().starts_with("mesh."))
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {

@@ -1230,3 +1230,24 @@ fn options_by_their_names() {
     }
     refusals.finish();
 }
+
+#[test]
+fn comparisons() {
+    let mut refusals = Refusals::default();
+    let unloaded = BRICK.split("[[load]]").next().unwrap();
+    for (file, arguments, message) in [
+        (
+            BRICK,
+            &["tet9"][..],
+            "element: expected one of hex8, quad4, tet4, tri3, or a path that ends in .toml, found \"tet9\"",
+        ),
+        (BRICK, &["tet4", "--shapes", "0"], "--shapes: expected a number from 1 to 1000000, found 0"),
+        (BRICK, &["tet4", "--iterations", "0"], "--iterations: expected a number above 0, found 0"),
+        (BRICK, &["tet4", "--poisson", "0.5"], "--poisson: expected a ratio above -1 and below 0.5, found 0.5"),
+        (unloaded, &["scene.toml"], "scene.toml: load: expected at least one [[load]] to compare under, found none"),
+    ] {
+        let arguments = [&["compare"], arguments].concat();
+        refusals.expect(&[("scene.toml", file.as_bytes())], &arguments, message);
+    }
+    refusals.finish();
+}

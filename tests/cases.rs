@@ -1,8 +1,11 @@
 //! The reference figures of whole bodies, %e_rms / %e_max, and how networks that do not stand are told.
 
+use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight};
+use springfit::material::Material;
+use springfit::report::Comparison;
 use springfit::solve::Standing;
-use springfit::study::{FitOutcome, NamedFit, Scene, run};
+use springfit::study::{FitOutcome, NamedFit, Scene, compare_element, run};
 use std::path::Path;
 
 /// One fit of a scene in place of those it lists; `bulk` adds the optional groups.
@@ -123,4 +126,26 @@ fn a_scene_without_loads_solves_nothing() {
     let outcome = run(&scene, &mut |stage, _, _| assert_ne!(stage, "finite elements")).unwrap();
     assert!(outcome.fem.is_empty() && outcome.fits.iter().all(|f| f.loads.is_empty() && f.stability.is_none()));
     assert!(outcome.left_out.iter().any(|l| l.starts_with("finite element solution")));
+}
+
+/// The certified optimum is at least as good in the 2-norm as what any other objective or solver finds, on the mean of the
+/// shapes; and the table, the CSV file and the plot name every method.
+#[test]
+fn comparisons_show_every_method() {
+    let element = Element::load("tri3").unwrap();
+    let material = Material::for_body(2, 1e4, 0.3, None, None).unwrap();
+    let outcomes = compare_element(&element, material, 5, 50, &mut |_, _, _| {}).unwrap();
+    let certified = outcomes.iter().find(|o| o.name == "spectral" && o.solver == "native").unwrap();
+    assert!(certified.gap.unwrap() <= 1e-8);
+    assert_eq!(outcomes.iter().filter(|o| o.solver != "native").count(), 3);
+    for outcome in &outcomes {
+        assert!(outcome.spectral.mean >= certified.spectral.mean * (1.0 - 1e-8), "{outcome:?}");
+    }
+    let comparison = Comparison::of_element("three".into(), &outcomes);
+    let plot = comparison.plot().unwrap();
+    for outcome in &outcomes {
+        assert!(comparison.csv().contains(&outcome.name) && comparison.table().contains(&outcome.name));
+        assert!(plot.contains(&outcome.name), "{} is not in the plot", outcome.name);
+    }
+    assert!(plot.starts_with("<svg") && plot.trim_end().ends_with("</svg>"));
 }

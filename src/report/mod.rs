@@ -1,10 +1,12 @@
 //! What a person or a program reads of an outcome.
 
+mod comparison;
 mod json;
 mod network;
 mod pictures;
 mod table;
 
+pub use comparison::Comparison;
 pub use json::report;
 pub use network::{network_csv, network_json};
 pub use pictures::{displacement_grid, network_grid};

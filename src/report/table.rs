@@ -115,7 +115,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         notes.push(note);
     }
     if let Some(epsilon) = fit.energy_error {
-        notes.push(format!("{name}: the energy of any deformation of the model is right to {:.1} %", 100.0 * epsilon));
+        notes.push(format!("{name}: the energy of every deformation is within {:.1} % of the body's", 100.0 * epsilon));
     }
     let Some(stability) = &fit.stability else { return notes };
     let points = points(outcome, &fit.loose_points);

@@ -1,9 +1,11 @@
 //! Whole studies: a scene from its file to the errors and times of each fit.
 
+mod comparison;
 mod metrics;
 mod run;
 mod scene;
 
+pub use comparison::{MethodOutcome, compare_element, compare_scene};
 pub use metrics::{DisplacementError, displacement_error};
 pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
 pub use scene::{BoxEntry, LoadCase, MeshInput, NamedFit, Output, Part, Scene, load_elements};

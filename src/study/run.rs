@@ -156,6 +156,8 @@ pub fn fit_mesh(mesh: &Mesh, material: Material, named: &NamedFit, progress: &mu
     let moduli = material.moduli();
     let total = mesh.cell_count();
     let mut done = 0;
+    // Threads start before the clock does.
+    rayon::broadcast(|_| ());
     let start = Instant::now();
     let mut fits: Vec<CellFits> = Vec::new();
     for block in &mesh.blocks {

@@ -8,9 +8,12 @@
 //! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair,
 //! `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, Y alike; [`Spectral::bound`] checks it from scratch.
 
-use super::dense::{add_outers, factorize, inner, invert, mirror, row_products, solve, trace};
+mod side;
+
+use super::dense::{add_outers, factorize, inner, mirror, row_products, solve, trace};
 use super::reduction::{Reduced, room_below, tie};
 use crate::scalar::Real;
+use side::Side;
 
 /// The duality gap that is asked for, relative to t; relative to `EXACT ‖R‖` where t is smaller still.
 pub const GAP: f64 = 1e-8;
@@ -50,56 +53,6 @@ pub struct Spectral<T> {
     gram: Vec<T>,
     gram_pivots: Vec<T>,
     room: Vec<T>,
-}
-
-/// One of the two matrices that stay positive.
-#[derive(Debug, Clone)]
-struct Side<T> {
-    matrix: Vec<T>,
-    pivots: Vec<T>,
-    inverse: Vec<T>,
-    /// `A⁻¹ h_s`, `[springs × order]`.
-    images: Vec<T>,
-    /// `h_sᵀ A⁻¹ h_t`, lower triangle.
-    products: Vec<T>,
-}
-
-impl<T: Real> Side<T> {
-    fn new(zero: &T, p: usize, m: usize) -> Side<T> {
-        let room = |size: usize| vec![zero.clone(); size];
-        Side { matrix: room(p * p), pivots: room(p), inverse: room(p * p), images: room(m * p), products: room(m * m) }
-    }
-
-    /// `tI ± E`, factorised; the least relative pivot.
-    #[inline(always)]
-    fn set(&mut self, e: &[T], p: usize, t: &T, sign: f64) -> T {
-        let sign = t.constant(&sign);
-        for i in 0..p {
-            for j in 0..=i {
-                self.matrix[i * p + j] = e[i * p + j].clone() * &sign;
-            }
-            self.matrix[i * p + i] = self.matrix[i * p + i].clone() + t;
-        }
-        factorize(&mut self.matrix, p, 0.0, &mut self.pivots)
-    }
-
-    #[inline(always)]
-    fn invert(&mut self, h: &[T], p: usize, room: &mut [T]) {
-        invert(&self.matrix, p, &self.pivots, room, &mut self.inverse);
-        row_products(h, &self.inverse, p, false, &mut self.images);
-        row_products(h, &self.images, p, true, &mut self.products);
-    }
-
-    /// `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, lower triangle, into `matrix`; ΔA with both triangles.
-    #[inline(always)]
-    fn dual(&mut self, change: &[T], mu: &T, p: usize, room: &mut [T]) {
-        let room = &mut room[..p * p];
-        row_products(&self.inverse, change, p, false, room);
-        row_products(room, &self.inverse, p, true, &mut self.matrix);
-        for (x, inverse) in self.matrix.iter_mut().zip(&self.inverse) {
-            *x = (inverse.clone() - &*x) * mu;
-        }
-    }
 }
 
 impl<T: Real> Spectral<T> {
@@ -181,12 +134,16 @@ impl<T: Real> Spectral<T> {
             }
             // Follow the path if close to it, otherwise step back to it.
             let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
-            let length = (one.constant(&0.5) - &decrement).choose(&one, &length);
+            // Next to the boundary each side adds at most one to the decrement, and a whole step doubles the distance: only
+            // beyond that many can it be too long.
+            let length = (one.constant(&complexity) - &decrement).choose(&one, &length);
             let faster = theta.clone().squared().greatest(&one.constant(&1e-3));
             let slower = theta.clone().sqrt().least(&one.constant(&0.8));
             let next = (one.constant(&0.3) - &decrement).choose(&faster, &theta);
             let next = (decrement.clone() - &one).choose(&slower, &next);
-            theta = inside.choose(&next, &slower);
+            // Twice halved: the path is followed too fast. (No step was tried yet where α is zero.)
+            let halved = (one.constant(&0.3) - &alpha).choose(&alpha, &zero);
+            theta = inside.choose(&halved.choose(&slower, &next), &slower);
             let least = (end / &mu).least(&one);
             let target = (one.constant(&0.5) - &decrement).choose(&theta.greatest(&least), &one);
             let remaining = one.clone() - &target;

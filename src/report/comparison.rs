@@ -1,0 +1,210 @@
+//! Tables, CSV and a work-precision plot of a comparison.
+
+use crate::error::{Error, Result};
+use crate::study::{MethodOutcome, Outcome};
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
+use plotters::prelude::*;
+
+/// Rows of text with a header: the columns of a table and of its CSV file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    pub title: String,
+    pub header: Vec<String>,
+    pub rows: Vec<Vec<String>>,
+    /// What the plot shows: a name per point, seconds per element, and the error.
+    pub points: Vec<(String, f64, f64)>,
+    /// What the error is.
+    pub error: String,
+}
+
+impl Comparison {
+    /// Every method on random shapes of one element; the plot has the relative 2-norm error.
+    pub fn of_element(title: String, outcomes: &[MethodOutcome]) -> Comparison {
+        let header = [
+            "objective",
+            "solver",
+            "median us",
+            "least us",
+            "largest us",
+            "Frobenius mean",
+            "Frobenius max",
+            "2-norm mean",
+            "2-norm max",
+            "gap",
+            "k < 0",
+        ];
+        let row = |o: &MethodOutcome| {
+            let [least, median, largest] = o.seconds.map(|s| format!("{:.3}", 1e6 * s));
+            let share = |v: f64| format!("{v:.4}");
+            vec![
+                o.name.clone(),
+                o.solver.to_string(),
+                median,
+                least,
+                largest,
+                share(o.frobenius.mean),
+                share(o.frobenius.max),
+                share(o.spectral.mean),
+                share(o.spectral.max),
+                o.gap.map_or("-".into(), |gap| format!("{gap:.1e}")),
+                format!("{:.1}%", 100.0 * o.negative),
+            ]
+        };
+        let name = |o: &MethodOutcome| {
+            if o.solver == "native" { o.name.clone() } else { format!("{} by {}", o.name, o.solver) }
+        };
+        Comparison {
+            title,
+            header: header.map(String::from).into(),
+            rows: outcomes.iter().map(row).collect(),
+            points: outcomes.iter().map(|o| (name(o), o.seconds[1], o.spectral.mean)).collect(),
+            error: "mean |R-K|/|R|, 2-norm".into(),
+        }
+    }
+
+    /// Every fit of a scene; the plot has the geometric mean of %e_rms over the loads. Networks that do not stand have no
+    /// point.
+    pub fn of_scene(outcome: &Outcome) -> Comparison {
+        let elements = outcome.mesh.cell_count().max(1) as f64;
+        let mut header: Vec<String> = vec!["fit".into(), "us/element".into()];
+        if let Some(fit) = outcome.fits.first() {
+            for load in &fit.loads {
+                header.extend([format!("{} %e_rms", load.name), format!("{} %e_max", load.name)]);
+            }
+        }
+        header.extend(["springs".into(), "k < 0".into(), "network".into()]);
+        let (mut rows, mut points) = (Vec::new(), Vec::new());
+        for fit in &outcome.fits {
+            let seconds = fit.seconds / elements;
+            let mut row = vec![fit.fit.name.clone(), format!("{:.3}", 1e6 * seconds)];
+            for load in &fit.loads {
+                let percent = |value: Option<f64>| value.map_or("-".into(), |v| format!("{v:.2}"));
+                row.extend([percent(load.error.map(|e| e.rms)), percent(load.error.map(|e| e.max))]);
+            }
+            row.push(fit.network.len().to_string());
+            row.push(fit.network.negative().to_string());
+            row.push(super::json::status(fit).into());
+            rows.push(row);
+            let errors: Option<Vec<f64>> = fit.loads.iter().map(|l| l.error.map(|e| e.rms)).collect();
+            if let Some(errors) = errors.filter(|errors| !errors.is_empty()) {
+                let mean = errors.iter().map(|e| e.max(1e-12).ln()).sum::<f64>() / errors.len() as f64;
+                points.push((fit.fit.name.clone(), seconds, mean.exp()));
+            }
+        }
+        let error = "%e_rms, geometric mean of the loads".into();
+        Comparison { title: outcome.scene.clone(), header, rows, points, error }
+    }
+
+    pub fn table(&self) -> String {
+        let mut table = Table::new();
+        table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
+        table.set_content_arrangement(ContentArrangement::Disabled).set_header(&self.header);
+        self.rows.iter().for_each(|row| {
+            table.add_row(row);
+        });
+        for (column, name) in table.column_iter_mut().zip(&self.header) {
+            let text = ["objective", "solver", "fit", "network"].contains(&name.as_str());
+            column.set_cell_alignment(if text { CellAlignment::Left } else { CellAlignment::Right });
+        }
+        let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_string()).collect();
+        format!("{}\n\n{}\n", self.title, lines.join("\n"))
+    }
+
+    pub fn csv(&self) -> String {
+        let line = |cells: &[String]| {
+            let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
+                true => format!("\"{}\"", cell.replace('"', "\"\"")),
+                false => cell.clone(),
+            };
+            cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
+        };
+        std::iter::once(line(&self.header)).chain(self.rows.iter().map(|row| line(row))).collect()
+    }
+
+    /// Error against seconds per element, both logarithmic; an SVG file's text.
+    ///
+    /// # Errors
+    /// No method has a time and an error above zero.
+    pub fn plot(&self) -> Result<String> {
+        let shown: Vec<_> = self.points.iter().filter(|(_, s, e)| *s > 0.0 && *e > 0.0).collect();
+        if shown.is_empty() {
+            return Err(Error::new("nothing to plot: no fit has an error above zero"));
+        }
+        let range = |values: &dyn Fn(&(String, f64, f64)) -> f64| {
+            let least = shown.iter().map(|p| values(p)).fold(f64::INFINITY, f64::min);
+            let largest = shown.iter().map(|p| values(p)).fold(0.0, f64::max);
+            // Whole decades, so that the axis has at least two numbers.
+            10f64.powf((least / 1.3).log10().floor())..10f64.powf((largest * 1.3).log10().ceil())
+        };
+        let mut text = String::new();
+        draw(&mut text, self, &shown, range(&|p| 1e6 * p.1), range(&|p| p.2))
+            .map_err(|e| Error::new(format!("the plot cannot be drawn: {e}")))?;
+        Ok(text)
+    }
+}
+
+/// Okabe and Ito (2008): told apart by all eyes and on paper. Each eight methods share a mark.
+const COLORS: [RGBColor; 8] = [
+    RGBColor(0, 0, 0),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 158, 115),
+    RGBColor(180, 170, 30),
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(204, 121, 167),
+];
+
+fn draw(
+    text: &mut String,
+    comparison: &Comparison,
+    points: &[&(String, f64, f64)],
+    seconds: std::ops::Range<f64>,
+    errors: std::ops::Range<f64>,
+) -> std::result::Result<(), Box<dyn std::error::Error>> {
+    const HEIGHT: i32 = 520;
+    let legend = 22 * points.len() as i32;
+    let area = SVGBackend::with_string(text, (980, HEIGHT.max(legend + 80) as u32)).into_drawing_area();
+    area.fill(&WHITE)?;
+    let (plot, names) = area.split_horizontally(640);
+    let mut chart = ChartBuilder::on(&plot)
+        .margin(16)
+        .caption(&comparison.title, ("sans-serif", 17))
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d(seconds.log_scale(), errors.log_scale())?;
+    let number =
+        |v: &f64| if *v >= 0.01 && *v < 1e5 { format!("{}", (v * 1e4).round() / 1e4) } else { format!("{v:.0e}") };
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .x_desc("fit, microseconds per element")
+        .y_desc(&comparison.error)
+        .x_label_formatter(&number)
+        .y_label_formatter(&number)
+        .label_style(("sans-serif", 13))
+        .draw()?;
+    for (i, (name, s, e)) in points.iter().enumerate() {
+        let color = COLORS[i % COLORS.len()];
+        let at = (1e6 * s, *e);
+        let label = 30 + 22 * i as i32;
+        match i / COLORS.len() % 3 {
+            0 => {
+                chart.draw_series([Circle::new(at, 5, color.filled())])?;
+                names.draw(&Circle::new((14, label + 7), 5, color.filled()))?;
+            }
+            1 => {
+                chart.draw_series([TriangleMarker::new(at, 7, color.filled())])?;
+                names.draw(&TriangleMarker::new((14, label + 7), 7, color.filled()))?;
+            }
+            _ => {
+                chart.draw_series([Cross::new(at, 5, color.stroke_width(3))])?;
+                names.draw(&Cross::new((14, label + 7), 5, color.stroke_width(3)))?;
+            }
+        }
+        names.draw(&Text::new(name.clone(), (30, label), ("sans-serif", 14)))?;
+    }
+    area.present()?;
+    Ok(())
+}

@@ -1,0 +1,157 @@
+//! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
+
+use super::run::{Outcome, Progress, run};
+use super::scene::{NamedFit, Scene};
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
+use crate::material::Material;
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+use std::time::Instant;
+
+/// How often a fit is timed, unless once takes longer than `PATIENCE` seconds.
+const RUNS: usize = 5;
+const PATIENCE: f64 = 0.5;
+/// How far the nodes of a random shape are moved, in units of the reference cell.
+const JITTER: f64 = 0.15;
+
+/// One method on the random shapes of an element.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MethodOutcome {
+    pub name: String,
+    pub solver: &'static str,
+    /// Seconds per element over the runs: least, median, largest.
+    pub seconds: [f64; 3],
+    pub frobenius: Spread,
+    pub spectral: Spread,
+    /// The largest relative duality gap, where there is one.
+    pub gap: Option<f64>,
+    /// Constants below zero, as a share of all.
+    pub negative: f64,
+}
+
+/// The objectives that are compared; `modal` where the element has motions beyond constant strain.
+fn objectives(higher_modes: bool) -> Vec<Objective> {
+    let modal = Weight::Modal { higher: Objective::DEFAULT_HIGHER };
+    let mut all = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
+    all.extend(higher_modes.then_some(Objective::Frobenius(modal)));
+    all.extend([Objective::Frobenius(Weight::Relative), Objective::Spectral(Weight::None)]);
+    all.extend(higher_modes.then_some(Objective::Spectral(modal)));
+    all.push(Objective::Spectral(Weight::Relative));
+    all.push(Objective::Divergence { balance: Objective::DEFAULT_BALANCE });
+    all
+}
+
+/// Fits `shapes` random shapes of the element with every objective, and the spectral one with every solver, on one thread.
+///
+/// # Errors
+/// `shapes` is 0 or so large that the shapes do not fit, or no valid shape is found.
+pub fn compare_element(
+    element: &Element,
+    material: Material,
+    shapes: usize,
+    iterations: u64,
+    progress: &mut Progress,
+) -> Result<Vec<MethodOutcome>> {
+    if !(1..=1_000_000).contains(&shapes) {
+        return Err(Error::expected("shapes", "a number from 1 to 1000000", shapes));
+    }
+    let springs = Springs::select(element, None)?;
+    let points = random_shapes(element, shapes)?;
+    let cells: Vec<usize> = (0..shapes * element.nodes()).collect();
+    let mut fits: Vec<Fit> = objectives(!element.cell.is_simplex()).into_iter().map(Fit::new).collect();
+    for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
+        let solver = Solver::General { method, iterations };
+        fits.push(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) });
+    }
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let one = one.map_err(|e| Error::new(format!("no thread can be started: {e}")))?;
+    let moduli = material.moduli();
+    let mut outcomes = Vec::new();
+    for (done, fit) in fits.iter().enumerate() {
+        progress(&format!("{} by {}", fit.objective.title(), fit.solver.name()), done, fits.len());
+        let mut seconds = Vec::new();
+        let fitted = loop {
+            let start = Instant::now();
+            let fitted = one.install(|| fit_cells(element, &springs, &points, &cells, moduli, fit, &mut |_| {}))?;
+            seconds.push(start.elapsed().as_secs_f64() / shapes as f64);
+            if seconds.len() == RUNS || seconds[0] * shapes as f64 > PATIENCE {
+                break fitted;
+            }
+        };
+        seconds.sort_by(f64::total_cmp);
+        let errors = element_errors(element, &points, &cells, moduli, &fitted)?;
+        let negative = fitted.constants.iter().filter(|k| **k < 0.0).count();
+        outcomes.push(MethodOutcome {
+            name: fit.objective.title(),
+            solver: fit.solver.name(),
+            seconds: [seconds[0], seconds[seconds.len() / 2], seconds[seconds.len() - 1]],
+            frobenius: Spread::of(&errors.frobenius),
+            spectral: Spread::of(&errors.spectral),
+            gap: fitted.certificates.iter().map(|c| c.gap()).reduce(f64::max),
+            negative: negative as f64 / fitted.constants.len().max(1) as f64,
+        });
+    }
+    progress("", fits.len(), fits.len());
+    Ok(outcomes)
+}
+
+/// Runs the scene with every objective in place of its own fits; with the content spring where the elements have one.
+///
+/// # Errors
+/// Those of [`run`], and a scene without loads.
+pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
+    if scene.loads.is_empty() {
+        let problem = "expected at least one [[load]] to compare under, found none";
+        return Err(Error::at("load", problem).in_file(&scene.path));
+    }
+    let mesh = scene.build_mesh()?;
+    let higher_modes = mesh.blocks.iter().any(|block| !block.element.cell.is_simplex());
+    let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
+    let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
+    let mut scene = scene.clone();
+    scene.fits = Vec::new();
+    for groups in [None, optional.then_some(every)] {
+        if groups.is_none() && !scene.fits.is_empty() {
+            continue;
+        }
+        for objective in objectives(higher_modes) {
+            let mut named = NamedFit::new(Fit::new(objective), None);
+            if let Some(groups) = &groups {
+                named.name += " + all";
+                named.springs = Some(groups.clone());
+            }
+            scene.fits.push(named);
+        }
+    }
+    run(&scene, progress)
+}
+
+/// Reference cells under random affine maps, each node moved a little; those that tangle are drawn again.
+fn random_shapes(element: &Element, count: usize) -> Result<Vec<f64>> {
+    let d = element.dimension();
+    let mut state = 2010u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let mut points = Vec::with_capacity(count * element.positions.len());
+    let mut geometry = Geometry::new(&element.tabulation);
+    for _ in 0..100 * count {
+        let map: Vec<f64> = (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.4 * random()).collect();
+        let mut shape = Vec::new();
+        for at in element.positions.chunks_exact(d) {
+            for k in 0..d {
+                shape.push((0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>() + JITTER * random());
+            }
+        }
+        if geometry.set(&element.tabulation, &shape).is_ok() {
+            points.extend(shape);
+        }
+        if points.len() == count * element.positions.len() {
+            return Ok(points);
+        }
+    }
+    Err(Error::new(format!("{}: nearly every random shape tangles", element.name)))
+}
