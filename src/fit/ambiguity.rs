@@ -29,13 +29,17 @@ pub fn least_frobenius(r: &DMatrix<f64>, rows: &[f64], unknowns: &[usize], t: f6
     let eigen = e.clone().symmetric_eigen();
     let (active, rest): (Vec<usize>, Vec<usize>) =
         (0..p).partition(|&i| eigen.eigenvalues[i].abs() > t * (1.0 - ACTIVE));
+    // All of them are, or none where t is only the rounding of an exact fit.
+    if active.is_empty() || rest.is_empty() {
+        return false;
+    }
     let u = eigen.eigenvectors.select_columns(&active);
     let columns: Vec<DVector<f64>> = springs.iter().map(|a| DVector::from_column_slice((a * &u).as_slice())).collect();
     let svd = DMatrix::from_columns(&columns).svd(false, true);
     let v = svd.v_t.expect("it was asked for");
     let largest = svd.singular_values.max();
     let rank = svd.singular_values.iter().filter(|s| **s > FREE * largest).count();
-    if rank == kappa.len() || rest.is_empty() {
+    if rank == kappa.len() {
         return false;
     }
     // The right singular vectors beyond the rank, also those that a thin decomposition leaves out.

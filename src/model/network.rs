@@ -3,9 +3,10 @@
 use super::Entries;
 use super::system::{dofs, each_cell};
 use crate::fit::CellFits;
-use crate::mesh::Mesh;
+use crate::mesh::{CellBlock, Mesh};
 use crate::springs::distance;
 use faer::sparse::Triplet;
+use rayon::prelude::*;
 
 /// A spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,42 +106,84 @@ impl Network {
     }
 }
 
-/// Gathers the length springs of each point's higher neighbours in one counted list, then adds equal ones within it.
+/// Points whose springs one thread merges in one go.
+const CHUNK: usize = 2048;
+
+/// Adds up the length springs between the same two points. Each point goes through the cells around it and gathers the
+/// springs to its higher neighbours in a list of its own, which is short: nothing is sorted or hashed as a whole.
 fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
-    let springs_of_cells = || {
-        mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| {
-            let constants = fit.constants.chunks_exact(fit.springs.len().max(1));
-            block.cells().zip(constants).flat_map(move |(nodes, k)| {
-                fit.springs.pairs.iter().zip(k).map(move |(&[a, b], &k)| {
-                    let (i, j) = (nodes[a], nodes[b]);
-                    (i.min(j), i.max(j), k)
-                })
-            })
-        })
-    };
-    let mut starts = vec![0; mesh.point_count() + 1];
-    springs_of_cells().for_each(|(i, ..)| starts[i + 1] += 1);
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let mut next = starts.clone();
-    let mut neighbours = vec![(0, 0.0); starts[mesh.point_count()]];
-    for (i, j, k) in springs_of_cells() {
-        neighbours[next[i]] = (j, k);
-        next[i] += 1;
-    }
-    let mut merged = Vec::new();
-    for i in 0..mesh.point_count() {
-        let list = &mut neighbours[starts[i]..starts[i + 1]];
-        list.sort_by_key(|(j, _)| *j);
-        for same in list.chunk_by(|a, b| a.0 == b.0) {
-            let constant: f64 = same.iter().map(|(_, k)| k).sum();
-            let j = same[0].0;
-            if constant != 0.0 {
+    let stars: Vec<Star> = mesh.blocks.iter().zip(fits).map(|(block, fit)| Star::new(mesh, block, fit)).collect();
+    let count = mesh.point_count();
+    let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
+    let part = |first: &usize| {
+        let mut springs = Vec::new();
+        let mut neighbours: Vec<(usize, f64)> = Vec::new();
+        for i in *first..(first + CHUNK).min(count) {
+            neighbours.clear();
+            for star in &stars {
+                star.gather(i, &mut neighbours);
+            }
+            neighbours.sort_unstable_by_key(|(j, _)| *j);
+            for &(j, constant) in neighbours.iter().filter(|(_, k)| *k != 0.0) {
                 let rest = distance(mesh.point(i), mesh.point(j));
-                merged.push(LengthSpring { points: [i, j], constant, rest });
+                springs.push(LengthSpring { points: [i, j], constant, rest });
+            }
+        }
+        springs
+    };
+    let parts: Vec<Vec<LengthSpring>> = firsts.par_iter().map(part).collect();
+    parts.concat()
+}
+
+/// The cells of one block around each point.
+struct Star<'a> {
+    block: &'a CellBlock,
+    fit: &'a CellFits,
+    /// Where the places of each point begin, `[points + 1]`.
+    starts: Vec<usize>,
+    /// Positions in the connectivity, grouped by the point that stands there.
+    places: Vec<usize>,
+    /// For each node of the cell its length springs: spring and node at the other end.
+    springs: Vec<Vec<(usize, usize)>>,
+}
+
+impl<'a> Star<'a> {
+    fn new(mesh: &Mesh, block: &'a CellBlock, fit: &'a CellFits) -> Star<'a> {
+        let mut starts = vec![0; mesh.point_count() + 1];
+        block.connectivity.iter().for_each(|&point| starts[point + 1] += 1);
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut places = vec![0; block.connectivity.len()];
+        for (place, &point) in block.connectivity.iter().enumerate() {
+            places[next[point]] = place;
+            next[point] += 1;
+        }
+        let mut springs = vec![Vec::new(); block.element.nodes()];
+        for (s, &[a, b]) in fit.springs.pairs.iter().enumerate() {
+            springs[a].push((s, b));
+            springs[b].push((s, a));
+        }
+        Star { block, fit, starts, places, springs }
+    }
+
+    /// Adds the springs from point i to higher points; each point appears once in `neighbours`.
+    fn gather(&self, i: usize, neighbours: &mut Vec<(usize, f64)>) {
+        let (n, m) = (self.springs.len(), self.fit.springs.len());
+        for &place in &self.places[self.starts[i]..self.starts[i + 1]] {
+            let (cell, node) = (place / n, place % n);
+            let nodes = &self.block.connectivity[cell * n..(cell + 1) * n];
+            let constants = &self.fit.constants[cell * m..(cell + 1) * m];
+            for &(s, other) in &self.springs[node] {
+                let j = nodes[other];
+                if j > i {
+                    match neighbours.iter_mut().find(|(point, _)| *point == j) {
+                        Some((_, sum)) => *sum += constants[s],
+                        None => neighbours.push((j, constants[s])),
+                    }
+                }
             }
         }
     }
-    merged
 }
