@@ -8,6 +8,7 @@ use shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::Element;
 use springfit::fit::{CellFits, Fit, Objective, Weight, constants_in, fit_cells, fit_element};
 use springfit::material::{Material, Moduli};
+use springfit::mesh::BoxMesh;
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
@@ -402,5 +403,40 @@ fn certified_fits_know_no_scale() {
                 }
             }
         }
+    }
+}
+
+/// Cells of a regular box are of one shape (or few, where a box is cut into simplices), those of a jittered one are not; what
+/// is taken over is what a fit of each cell alone gives, to the rounding of their positions.
+#[test]
+fn congruent_cells_are_fitted_once() {
+    for element in elements().into_iter().map(Arc::new) {
+        let d = element.dimension();
+        let spec = BoxMesh { element: element.clone(), size: vec![0.3; d], cells: vec![3; d], origin: vec![0.1; d] };
+        let mut mesh = spec.build().unwrap();
+        let springs = Springs::select(&element, None).unwrap();
+        let moduli = materials(d)[2].moduli();
+        for objective in [Objective::Spectral(Weight::None), Objective::Divergence { balance: 0.25 }] {
+            let fit = Fit::new(objective);
+            let nodes = mesh.blocks[0].connectivity.clone();
+            let fits = fit_cells(&element, &springs, &mesh.points, &nodes, moduli, &fit, &mut |_| {}).unwrap();
+            let cells = mesh.cell_count();
+            assert!(fits.reused > cells / 2, "{}: {} of {cells}", element.name, fits.reused);
+            for (cell, nodes) in nodes.chunks_exact(element.nodes()).enumerate() {
+                let alone = fit_cells(&element, &springs, &mesh.points, nodes, moduli, &fit, &mut |_| {}).unwrap();
+                let shared = &fits.constants[cell * springs.len()..(cell + 1) * springs.len()];
+                let size = shared.iter().fold(0.0f64, |a, k| a.max(k.abs()));
+                for (a, b) in shared.iter().zip(&alone.constants) {
+                    // Flat optimum: the root of the gap.
+                    assert!((a - b).abs() < 1e-3 * size, "{}: {a} {b}", element.name);
+                }
+            }
+        }
+        let mut random = Random(8);
+        mesh.points.iter_mut().for_each(|x| *x += 1e-3 * random.next());
+        let fit = Fit::new(Objective::Spectral(Weight::None));
+        let nodes = &mesh.blocks[0].connectivity;
+        let fits = fit_cells(&element, &springs, &mesh.points, nodes, moduli, &fit, &mut |_| {}).unwrap();
+        assert_eq!(fits.reused, 0, "{}", element.name);
     }
 }

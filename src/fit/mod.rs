@@ -2,6 +2,7 @@
 
 mod ambiguity;
 mod batch;
+mod congruence;
 mod constrained;
 mod dense;
 mod descent;
@@ -27,6 +28,7 @@ use crate::material::Moduli;
 use crate::springs::Springs;
 use crate::stiffness::{self, Fault, Geometry};
 use batch::{Batch, Tally};
+use congruence::Congruence;
 use rayon::prelude::*;
 
 /// Cells that one thread fits in one go.
@@ -49,6 +51,12 @@ impl Fit {
     pub fn new(objective: Objective) -> Fit {
         Fit { objective, tied: false, nonnegative: false, solver: Solver::Native }
     }
+
+    /// Whether a cell takes microseconds instead of nanoseconds.
+    fn is_costly(&self) -> bool {
+        let closed = matches!(self.objective, Objective::Frobenius(weight) if weight != Weight::Relative);
+        !closed || self.solver != Solver::Native
+    }
 }
 
 /// The constants of all cells of one element type.
@@ -59,8 +67,10 @@ pub struct CellFits {
     pub constants: Vec<f64>,
     /// Cells whose normal equations were singular, see [`Rank::Deficient`].
     pub deficient: usize,
-    /// Cells whose iteration did not reach its end.
+    /// Cells whose iteration did not reach its end; of cells of one shape only the fitted one counts.
     pub unreached: usize,
+    /// Cells that have the shape of another and took its constants over; where the objective has no closed form.
+    pub reused: usize,
     /// `[cells]` for the spectral objective, otherwise empty.
     pub certificates: Vec<Certificate>,
 }
@@ -85,6 +95,7 @@ pub fn fit_cells(
         constants: Vec::new(),
         deficient: 0,
         unreached: 0,
+        reused: 0,
         certificates: Vec::new(),
     };
     fits.refit(element, points, connectivity, moduli, fit, progress)?;
@@ -105,15 +116,21 @@ impl CellFits {
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
-        let CellFits { springs, constants, .. } = self;
-        let (n, m) = (element.nodes(), springs.len());
+        let (n, m) = (element.nodes(), self.springs.len());
         let cells = connectivity.len() / n;
-        constants.resize(cells * m, 0.0);
-        (self.deficient, self.unreached) = (0, 0);
+        self.constants.resize(cells * m, 0.0);
+        (self.deficient, self.unreached, self.reused) = (0, 0, 0);
         self.certificates.clear();
         if m == 0 {
             return Ok(());
         }
+        if fit.is_costly() && cells > 1 {
+            let congruence = Congruence::of(element, points, connectivity)?;
+            if congruence.representatives.len() < cells {
+                return self.refit_shapes(element, points, connectivity, moduli, fit, &congruence, progress);
+            }
+        }
+        let CellFits { springs, constants, .. } = self;
         let springs = &*springs;
         if fit.solver != Solver::Native && fit.objective == Objective::Frobenius(Weight::OffDiagonal) {
             let expected = "\"native\": the blocks of different nodes leave no choice to search";
@@ -143,6 +160,36 @@ impl CellFits {
             }
             progress(((round + 1) * ROUND).min(cells));
         }
+        Ok(())
+    }
+
+    /// Fits one cell of each shape and copies.
+    #[allow(clippy::too_many_arguments)]
+    fn refit_shapes(
+        &mut self,
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        moduli: Moduli,
+        fit: &Fit,
+        congruence: &Congruence,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<()> {
+        let (n, m) = (element.nodes(), self.springs.len());
+        let cells = congruence.shapes.len();
+        let nodes = |cell: usize| connectivity[cell * n..(cell + 1) * n].iter().copied();
+        let few: Vec<usize> = congruence.representatives.iter().flat_map(|&cell| nodes(cell)).collect();
+        let shapes = congruence.representatives.len();
+        let mut share = |done: usize| progress(done * cells / shapes);
+        let fitted = fit_cells(element, &self.springs, points, &few, moduli, fit, &mut share)?;
+        for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(&congruence.shapes) {
+            constants.copy_from_slice(&fitted.constants[shape * m..(shape + 1) * m]);
+        }
+        if !fitted.certificates.is_empty() {
+            self.certificates = congruence.shapes.iter().map(|&shape| fitted.certificates[shape]).collect();
+        }
+        (self.deficient, self.unreached) = (fitted.deficient, fitted.unreached);
+        self.reused = cells - shapes;
         Ok(())
     }
 }

@@ -53,6 +53,7 @@ fn fit(outcome: &FitOutcome, elements: usize) -> Value {
         "energy_ratio": outcome.stability.as_ref().map(|s| s.energy_ratio),
         "loose_nodes": outcome.loose_points,
         "certificate_gap": outcome.gap,
+        "reused_elements": outcome.reused,
         "ambiguous_elements": outcome.ambiguous,
         "unreached_elements": outcome.unreached,
         "energy_error_bound": outcome.energy_error,

@@ -104,6 +104,9 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             fit.deficient
         ));
     }
+    if fit.reused > 0 {
+        notes.push(format!("{name}: {} elements have the shape of another and took its constants over", fit.reused));
+    }
     if fit.unreached > 0 {
         notes.push(format!("{name}: in {} elements the iteration stopped short of the optimum", fit.unreached));
     }

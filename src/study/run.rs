@@ -40,6 +40,8 @@ pub struct FitOutcome {
     pub deficient: usize,
     /// Cells whose iteration did not reach its end.
     pub unreached: usize,
+    /// Cells that took over the constants of one of the same shape.
+    pub reused: usize,
     /// Cells whose spectral optimum is not unique.
     pub ambiguous: usize,
     /// The largest relative duality gap, where the objective has certificates.
@@ -193,6 +195,7 @@ pub fn fit_mesh(mesh: &Mesh, material: Material, named: &NamedFit, progress: &mu
         seconds_assembly,
         deficient: fits.iter().map(|f| f.deficient).sum(),
         unreached: fits.iter().map(|f| f.unreached).sum(),
+        reused: fits.iter().map(|f| f.reused).sum(),
         ambiguous: certificates().filter(|c| c.ambiguous).count(),
         gap: certificates().map(|c| c.gap()).reduce(f64::max),
         energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
