@@ -7,7 +7,7 @@ use super::normal::{Normal, Rank};
 use super::{Certificate, Fit, Weight};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::Lanes;
+use crate::scalar::{Lanes, Real, Scalar};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 use pulp::{Simd, WithSimd};
@@ -132,7 +132,11 @@ impl<'a, S: Simd> Room<'a, S> {
             return false;
         }
         if let Some(method) = &mut self.method {
-            method.solve(self.springs, &self.x, &self.geometry, &self.moduli);
+            let zero = self.x[0].zero();
+            zero.vectorize(
+                #[inline(always)]
+                || method.solve(self.springs, &self.x, &self.geometry, &self.moduli),
+            );
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 tally.add(method.finish(|value| value.as_slice()[lane], constants));
             }
