@@ -37,8 +37,6 @@ pub struct Spectral<T> {
     /// Least curvature of the barrier over the unknowns, in units where an unknown that t does not depend on has about
     /// one, and one that it depends on has more than a million.
     pub curvature: T,
-    /// Newton steps taken.
-    pub steps: usize,
     nonnegative: bool,
     e: Vec<T>,
     a: Side<T>,
@@ -65,7 +63,6 @@ impl<T: Real> Spectral<T> {
             value: zero.clone(),
             bound: zero.clone(),
             curvature: zero.clone(),
-            steps: 0,
             nonnegative,
             e: room(p * p),
             a: Side::new(&zero, p, m),
@@ -99,8 +96,7 @@ impl<T: Real> Spectral<T> {
         }
         let (mut alpha, mut reduction, mut theta) = (zero.clone(), zero.clone(), one.constant(&0.2));
         let mut first = true;
-        for count in 0..STEPS {
-            self.steps = count;
+        for _ in 0..STEPS {
             // Shorten the step where it leaves the domain; what is still outside after that waits for the next turn.
             let mut inside = self.enter(reduced, &mut kappa, &alpha, &step);
             for _ in 0..SHORTER {
