@@ -24,9 +24,10 @@ fn eliminate<T: Scalar, const B: usize>(row: &mut [T], before: &[T], m: usize, t
     entries.clone_from_slice(&sums);
 }
 
-/// Takes the terms of all columns before from the row of entry s, in an elimination of order m.
+/// Row s of `A = L D Lᵀ` of order m, from the rows before it and their `1/D` in `inverse`: leaves `L_st` in the row and
+/// returns the pivot `D_s`. `L_st = (A_st − Σ_{r<t} L_sr D_r L_tr)/D_t`; the row holds `L_sr D_r` until its pivot is known.
 #[inline(always)]
-pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], m: usize, s: usize) {
+pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], inverse: &[T], m: usize, s: usize) -> T {
     let mut t = 0;
     while t + 4 <= s {
         eliminate::<T, 4>(row, before, m, t);
@@ -38,6 +39,13 @@ pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], m: usize, s: usize)
         3 => eliminate::<T, 3>(row, before, m, t),
         _ => {}
     }
+    let mut pivot = row[s].clone();
+    for t in 0..s {
+        let scaled = row[t].clone() * &inverse[t];
+        pivot = pivot.minus_product(&row[t], &scaled);
+        row[t] = scaled;
+    }
+    pivot
 }
 
 /// Does `$body` with the order `$n` as a constant for those of the common elements: loops of known length unroll.
@@ -76,13 +84,7 @@ fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]
     for s in 0..n {
         let (before, row) = a.split_at_mut(s * n);
         let row = &mut row[..=s];
-        eliminate_row(row, before, n, s);
-        let mut pivot = row[s].clone();
-        for t in 0..s {
-            let scaled = row[t].clone() * &inverse[t];
-            pivot = pivot.minus_product(&row[t], &scaled);
-            row[t] = scaled;
-        }
+        let pivot = eliminate_row(row, before, inverse, n, s);
         let relative = pivot.clone() / &row[s].choose(&row[s], &one);
         least = least.least(&relative);
         let pivot = (relative - &one.constant(&floor)).choose(&pivot, &huge);
@@ -93,7 +95,7 @@ fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]
 
 /// `b ← A⁻¹ b` with the factors of [`factorize`].
 #[inline(always)]
-pub fn solve<T: Real>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {
+pub fn solve<T: Scalar>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {
     for s in 1..n {
         let mut sum = b[s].clone();
         for t in 0..s {
@@ -303,4 +305,31 @@ pub fn trace<T: Scalar>(a: &[T], n: usize) -> T {
         sum = sum + &a[i * n + i];
     }
     sum
+}
+
+/// Sums `term(a_st, b_st)` over the springs of each pair of unknowns, lower triangle of width `width`.
+#[inline(always)]
+pub fn tie<T: Scalar>(
+    a: &[T],
+    b: &[T],
+    unknowns: &[usize],
+    count: usize,
+    width: usize,
+    out: &mut [T],
+    term: impl Fn(&T, &T) -> T,
+) {
+    let m = unknowns.len();
+    let zero = a[0].zero();
+    for i in 0..count {
+        for j in 0..=i {
+            out[i * width + j] = zero.clone();
+        }
+    }
+    for (s, &i) in unknowns.iter().enumerate() {
+        for (t, &j) in unknowns[..=s].iter().enumerate() {
+            let term = term(&a[s * m + t], &b[s * m + t]);
+            let sum = &mut out[i.max(j) * width + i.min(j)];
+            *sum = if i == j && s != t { sum.clone() + &term + &term } else { sum.clone() + &term };
+        }
+    }
 }

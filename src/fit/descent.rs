@@ -21,7 +21,7 @@ pub enum Solver {
     /// Normal equations, pivoting, the barrier or Newton's method, as the objective needs.
     #[default]
     Native,
-    /// A general optimiser with at most so many iterations, from the least-squares constants.
+    /// A general optimiser with at most so many iterations, from constants all alike.
     General { method: Search, iterations: u64 },
 }
 
@@ -139,8 +139,8 @@ pub fn search(
 ) -> Vec<f64> {
     let mut reduced = Reduced::of_kind(&0.0, springs, fit.tied);
     reduced.set(fit.objective.weight().unwrap_or(Weight::Relative), springs, x, geometry, moduli);
-    let start = reduced.positive_start();
-    let count = start.len();
+    let count = reduced.scales.len();
+    let start = vec![reduced.uniform(); count];
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;
     let random = Mutex::new(StdRng::seed_from_u64(1));
     let raw = Raw { reduced: &reduced, objective: fit.objective, nonnegative: fit.nonnegative, stride, random };

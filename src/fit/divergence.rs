@@ -5,8 +5,8 @@
 //! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
 //! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
 
-use super::dense::{add_outers, factorize, inner, invert, row_products, solve, trace};
-use super::reduction::{Reduced, room_below, tie};
+use super::dense::{add_outers, factorize, inner, invert, row_products, solve, tie, trace};
+use super::reduction::{Reduced, room_below};
 use crate::scalar::Real;
 
 const STEPS: usize = 150;
@@ -69,8 +69,7 @@ impl<T: Real> Divergence<T> {
         let h = reduced.rows();
         let one = self.reached.one();
         let zero = one.zero();
-        // All springs alike, with tr A = p.
-        let start = one.constant(&(p as f64)) / &inner(h, h);
+        let start = reduced.uniform();
         for i in 0..c {
             self.kappa[i] = start.clone();
             self.step[i] = zero.clone();

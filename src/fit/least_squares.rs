@@ -292,7 +292,7 @@ fn scales<T: Scalar>(zero: &T, higher: f64) -> (T, T) {
 
 /// `S⁻¹`, `S = Σ_a r_a r_aᵀ` about the mean of the nodes.
 #[inline(always)]
-fn inverse_spread<T: Scalar, const D: usize>(x: &[[T; D]]) -> [[T; D]; D] {
+pub fn inverse_spread<T: Scalar, const D: usize>(x: &[[T; D]]) -> [[T; D]; D] {
     let zero = x[0][0].zero();
     let share = zero.one() / &zero.constant(&T::exact(x.len() as f64));
     let mut mean: [T; D] = zeros(&zero);

@@ -2,10 +2,9 @@
 
 use super::ambiguity::{KEPT, least_frobenius};
 use super::constrained::solve_nonnegative;
-use super::dense::row_products;
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
-use super::reduction::{Reduced, tie};
+use super::reduction::Reduced;
 use super::spectral::{GAP, Spectral};
 use super::{Fit, Objective, Weight};
 use crate::material::Moduli;
@@ -91,23 +90,12 @@ impl<T: Real> Method<T> {
     pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli) {
         self.reduced.set(self.weight, springs, x, geometry, moduli);
         match &mut self.solver {
-            Solver::LeastSquares { normal, products, .. } => {
-                let (h, p, c) = (self.reduced.rows(), self.reduced.order, self.reduced.scales.len());
-                let zero = x[0].zero();
-                row_products(h, h, p, true, products);
+            Solver::LeastSquares { normal, products } => {
+                let (c, zero) = (self.reduced.scales.len(), x[0].zero());
                 normal.gram.resize(c * c, zero.clone());
+                self.reduced.gram(products, &mut normal.gram);
                 normal.rhs.clear();
                 normal.rhs.resize(c, zero);
-                tie(
-                    products,
-                    products,
-                    &self.reduced.unknowns,
-                    c,
-                    c,
-                    &mut normal.gram,
-                    #[inline(always)]
-                    |a, b| a.clone() * b,
-                );
                 let m = springs.len();
                 for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
                     normal.rhs[unknown] = normal.rhs[unknown].clone() + &products[s * m + s];

@@ -90,19 +90,16 @@ pub fn fit_cells(
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
-    let mut fits = CellFits {
-        springs: springs.clone(),
-        constants: Vec::new(),
-        deficient: 0,
-        unreached: 0,
-        reused: 0,
-        certificates: Vec::new(),
-    };
+    let mut fits = CellFits::new(springs.clone());
     fits.refit(element, points, connectivity, moduli, fit, progress)?;
     Ok(fits)
 }
 
 impl CellFits {
+    fn new(springs: Springs) -> CellFits {
+        CellFits { springs, constants: Vec::new(), deficient: 0, unreached: 0, reused: 0, certificates: Vec::new() }
+    }
+
     /// [`fit_cells`] into the memory of an earlier fit.
     ///
     /// # Errors
@@ -124,18 +121,41 @@ impl CellFits {
         if m == 0 {
             return Ok(());
         }
-        if fit.is_costly() && cells > 1 {
-            let congruence = Congruence::of(element, points, connectivity)?;
-            if congruence.representatives.len() < cells {
-                return self.refit_shapes(element, points, connectivity, moduli, fit, &congruence, progress);
-            }
-        }
-        let CellFits { springs, constants, .. } = self;
-        let springs = &*springs;
         if fit.solver != Solver::Native && fit.objective == Objective::Frobenius(Weight::OffDiagonal) {
             let expected = "\"native\": the blocks of different nodes leave no choice to search";
             return Err(Error::expected("solver", expected, format!("\"{}\"", fit.solver.name())));
         }
+        if fit.is_costly() && cells > 1 {
+            let congruence = Congruence::of(element, points, connectivity)?;
+            let shapes = congruence.representatives.len();
+            if shapes < cells {
+                let nodes = |&cell: &usize| &connectivity[cell * n..(cell + 1) * n];
+                let few: Vec<usize> = congruence.representatives.iter().flat_map(nodes).copied().collect();
+                let mut fitted = CellFits::new(self.springs.clone());
+                fitted.constants.resize(shapes * m, 0.0);
+                let mut share = |done: usize| progress(done * cells / shapes);
+                fitted.fit_each(element, points, &few, moduli, fit, &mut share)?;
+                self.take_over(&fitted, &congruence.shapes);
+                return Ok(());
+            }
+        }
+        self.fit_each(element, points, connectivity, moduli, fit, progress)
+    }
+
+    /// Fits every cell by itself; the constants have room for them.
+    fn fit_each(
+        &mut self,
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        moduli: Moduli,
+        fit: &Fit,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<()> {
+        let CellFits { springs, constants, .. } = self;
+        let springs = &*springs;
+        let (n, m) = (element.nodes(), springs.len());
+        let cells = connectivity.len() / n;
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
             if let Solver::General { method, iterations } = fit.solver {
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
@@ -163,34 +183,17 @@ impl CellFits {
         Ok(())
     }
 
-    /// Fits one cell of each shape and copies.
-    #[allow(clippy::too_many_arguments)]
-    fn refit_shapes(
-        &mut self,
-        element: &Element,
-        points: &[f64],
-        connectivity: &[usize],
-        moduli: Moduli,
-        fit: &Fit,
-        congruence: &Congruence,
-        progress: &mut dyn FnMut(usize),
-    ) -> Result<()> {
-        let (n, m) = (element.nodes(), self.springs.len());
-        let cells = congruence.shapes.len();
-        let nodes = |cell: usize| connectivity[cell * n..(cell + 1) * n].iter().copied();
-        let few: Vec<usize> = congruence.representatives.iter().flat_map(|&cell| nodes(cell)).collect();
-        let shapes = congruence.representatives.len();
-        let mut share = |done: usize| progress(done * cells / shapes);
-        let fitted = fit_cells(element, &self.springs, points, &few, moduli, fit, &mut share)?;
-        for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(&congruence.shapes) {
+    /// The constants of one cell of each shape for all cells; `shapes` gives the shape of each.
+    fn take_over(&mut self, fitted: &CellFits, shapes: &[usize]) {
+        let m = self.springs.len();
+        for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(shapes) {
             constants.copy_from_slice(&fitted.constants[shape * m..(shape + 1) * m]);
         }
         if !fitted.certificates.is_empty() {
-            self.certificates = congruence.shapes.iter().map(|&shape| fitted.certificates[shape]).collect();
+            self.certificates = shapes.iter().map(|&shape| fitted.certificates[shape]).collect();
         }
         (self.deficient, self.unreached) = (fitted.deficient, fitted.unreached);
-        self.reused = cells - shapes;
-        Ok(())
+        self.reused = shapes.len() - fitted.constants.len() / m;
     }
 }
 

@@ -1,6 +1,6 @@
 //! Normal equations `M k = b` of a least-squares fit: assembly by groups and solution.
 
-use super::dense::eliminate_row;
+use super::dense::{eliminate_row, solve as substitute, tie};
 use crate::scalar::Scalar;
 use nalgebra::{DMatrix, DVector};
 
@@ -51,21 +51,22 @@ impl<T: Scalar> Normal<T> {
     /// The equations of one constant per group: `M_IJ = Σ_{s∈I, t∈J} M_st`, `b_I = Σ_{s∈I} b_s`.
     #[inline(always)]
     pub fn tied(&self, groups: &[usize], count: usize, tied: &mut Normal<T>) {
-        let (m, zero) = (self.size(), self.rhs[0].zero());
-        for (room, size) in [(&mut tied.gram, count * count), (&mut tied.rhs, count)] {
-            room.clear();
-            room.resize(size, zero.clone());
-        }
+        let zero = self.rhs[0].zero();
+        tied.gram.resize(count * count, zero.clone());
+        tie(
+            &self.gram,
+            &self.gram,
+            groups,
+            count,
+            count,
+            &mut tied.gram,
+            #[inline(always)]
+            |entry, _| entry.clone(),
+        );
+        tied.rhs.clear();
+        tied.rhs.resize(count, zero);
         for (s, &i) in groups.iter().enumerate() {
             tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
-            for (t, &j) in groups[..=s].iter().enumerate() {
-                let entry = &self.gram[s * m + t];
-                let sum = &mut tied.gram[i.max(j) * count + i.min(j)];
-                *sum = sum.clone() + entry;
-                if i == j && s != t {
-                    *sum = sum.clone() + entry;
-                }
-            }
         }
     }
 
@@ -93,34 +94,13 @@ impl<T: Scalar> Normal<T> {
         for s in 0..m {
             let (before, row) = gram.split_at_mut(s * m);
             let row = &mut row[..=s];
-            // L_st = (M_st − Σ_{r<t} L_sr D_r L_tr)/D_t; the row holds L_sr D_r until its pivot is known.
-            eliminate_row(row, before, m, s);
-            let mut pivot = row[s].clone();
-            for t in 0..s {
-                let scaled = row[t].clone() * &inverse[t];
-                pivot = pivot.minus_product(&row[t], &scaled);
-                row[t] = scaled;
-            }
+            let pivot = eliminate_row(row, before, inverse, m, s);
             if !pivot.exceeds(&row[s].clone().scaled(&least)) {
                 return false;
             }
             inverse[s] = pivot.one() / &pivot;
         }
-        for s in 1..m {
-            let mut sum = rhs[s].clone();
-            for t in 0..s {
-                sum = sum.minus_product(&gram[s * m + t], &rhs[t]);
-            }
-            rhs[s] = sum;
-        }
-        for s in 0..m {
-            rhs[s] = rhs[s].clone() * &inverse[s];
-        }
-        for s in (1..m).rev() {
-            for t in 0..s {
-                rhs[t] = rhs[t].clone().minus_product(&gram[s * m + t], &rhs[s]);
-            }
-        }
+        substitute(gram, m, inverse, rhs);
         true
     }
 }

@@ -2,12 +2,12 @@
 //! regular, weighted and scaled to sizes of one.
 
 use super::Weight;
-use super::dense::{add_outers, factorize, inner, trace};
+use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
+use super::least_squares::inverse_spread;
 use crate::material::Moduli;
-use crate::scalar::{Real, Scalar, adjugate, difference, dot, multiple, plus_multiple, product, zeros};
+use crate::scalar::{Real, Scalar, difference, dot, multiple, plus_multiple, product, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
-use std::array::from_fn;
 
 /// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`: one unknown κ_I per spring, or per group if tied.
 #[derive(Debug, Clone)]
@@ -79,7 +79,7 @@ impl<T: Real> Reduced<T> {
         self.set_mix(weight, x);
         self.set_stiffness::<D>(n, geometry, moduli);
         self.set_gradients(springs, x, geometry);
-        self.take_out_rotations(n, x);
+        self.take_out_rotations::<D>(n);
         if weight == Weight::Relative {
             self.divide_by_stiffness();
         }
@@ -103,15 +103,7 @@ impl<T: Real> Reduced<T> {
             }
         }
         let Weight::Modal { higher } = weight else { return };
-        let mut spread: [[T; D]; D] = from_fn(|_| zeros(&zero));
-        for r in &*positions {
-            for k in 0..D {
-                spread[k] = plus_multiple(&spread[k], &r[k], r);
-            }
-        }
-        let (adjugate, determinant) = adjugate(&spread);
-        let rest = zero.constant(&(1.0 - higher));
-        let inverse = multiple(&(rest / &determinant), &adjugate);
+        let inverse = multiple(&zero.constant(&(1.0 - higher)), &inverse_spread(x));
         for (row, r) in self.mix.chunks_exact_mut(n).zip(&*positions) {
             let image = product(&inverse, r);
             for entry in row.iter_mut() {
@@ -183,24 +175,20 @@ impl<T: Real> Reduced<T> {
 
     /// Householder reflections that move each rotation into the last coordinate left, which is then dropped.
     #[inline(always)]
-    fn take_out_rotations<const D: usize>(&mut self, n: usize, x: &[[T; D]]) {
+    fn take_out_rotations<const D: usize>(&mut self, n: usize) {
         let full = (n - 1) * D;
-        let zero = x[0][0].zero();
-        let (rotations, work) = self.work.split_at_mut(full * D * (D - 1) / 2);
-        let mut planes = [(0, 0); 3];
-        let count = D * (D - 1) / 2;
-        for (plane, kl) in planes.iter_mut().zip([(0, 1), (0, 2), (1, 2)]) {
-            *plane = kl;
-        }
+        let zero = self.size.zero();
+        let planes = &[(0, 1), (0, 2), (1, 2)][..D * (D - 1) / 2];
+        let (rotations, work) = self.work.split_at_mut(full * planes.len());
         let positions = self.nodal.as_chunks::<D>().0;
-        for (rotation, &(k, l)) in rotations.chunks_exact_mut(full).zip(&planes[..count]) {
+        for (rotation, &(k, l)) in rotations.chunks_exact_mut(full).zip(planes) {
             for (u, x) in rotation.as_chunks_mut::<D>().0.iter_mut().zip(positions) {
                 *u = zeros(&zero);
                 u[k] = x[l].negated();
                 u[l] = x[k].clone();
             }
         }
-        for done in 0..count {
+        for done in 0..planes.len() {
             let active = full - done;
             let (axis, rest) = rotations[done * full..].split_at_mut(full);
             let v = &mut axis[..active];
@@ -219,11 +207,7 @@ impl<T: Real> Reduced<T> {
             // R ← R − v wᵀ − w vᵀ, w = β R v − (β² vᵀ R v/2) v
             let w = &mut work[..active];
             let r = &mut self.stiffness;
-            for i in 0..active {
-                for j in 0..i {
-                    r[j * full + i] = r[i * full + j].clone();
-                }
-            }
+            mirror(r, full);
             for i in 0..active {
                 w[i] = inner(&r[i * full..i * full + active], v) * &beta;
             }
@@ -318,11 +302,29 @@ impl<T: Real> Reduced<T> {
         add_outers(e, self.rows(), p, kappa, &self.unknowns, -1.0);
     }
 
-    /// All springs alike, as stiff on average as the body.
-    pub fn positive_start(&self) -> Vec<T> {
+    /// The Gram matrix of the springs' matrices, `Σ_{s∈I, t∈J} (h_s·h_t)²`, lower triangle of order `[unknowns]`;
+    /// `products` takes the `h_s·h_t`, `[springs × springs]`.
+    #[inline(always)]
+    pub fn gram(&self, products: &mut [T], out: &mut [T]) {
+        let (h, count) = (self.rows(), self.scales.len());
+        row_products(h, h, self.order, true, products);
+        tie(
+            products,
+            products,
+            &self.unknowns,
+            count,
+            count,
+            out,
+            #[inline(always)]
+            |a, b| a.clone() * b,
+        );
+    }
+
+    /// The κ that, the same for all springs, makes them as stiff on average as the body.
+    #[inline(always)]
+    pub fn uniform(&self) -> T {
         let rows = self.rows();
-        let start = trace(&self.stiffness, self.order) / &inner(rows, rows);
-        vec![start; self.scales.len()]
+        trace(&self.stiffness, self.order) / &inner(rows, rows)
     }
 
     /// `h_s`, `[springs × order]`.
@@ -352,33 +354,6 @@ fn differences(nodes: usize) -> Vec<f64> {
         row[i] = -(i as f64) * scale;
     }
     rows
-}
-
-/// Sums `term(a_st, b_st)` over the springs of each pair of unknowns, lower triangle of width `width`.
-#[inline(always)]
-pub fn tie<T: Real>(
-    a: &[T],
-    b: &[T],
-    unknowns: &[usize],
-    count: usize,
-    width: usize,
-    out: &mut [T],
-    term: impl Fn(&T, &T) -> T,
-) {
-    let m = unknowns.len();
-    let zero = a[0].zero();
-    for i in 0..count {
-        for j in 0..=i {
-            out[i * width + j] = zero.clone();
-        }
-    }
-    for (s, &i) in unknowns.iter().enumerate() {
-        for (t, &j) in unknowns[..=s].iter().enumerate() {
-            let term = term(&a[s * m + t], &b[s * m + t]);
-            let sum = &mut out[i.max(j) * width + i.min(j)];
-            *sum = if i == j && s != t { sum.clone() + &term + &term } else { sum.clone() + &term };
-        }
-    }
 }
 
 /// Nine tenths of the longest step that keeps every κ positive.

@@ -96,13 +96,6 @@ pub trait Real: Scalar<Constant = f64> {
     fn magnitude(&self) -> Self {
         self.choose(self, &self.negated())
     }
-
-    /// Whether `self > 0` in some lane.
-    #[inline(always)]
-    fn any(&self) -> bool {
-        let zero = self.zero();
-        !(self.choose(&zero, &self.one())).exceeds(&zero)
-    }
 }
 
 impl Real for f64 {

@@ -10,8 +10,8 @@
 
 mod side;
 
-use super::dense::{add_outers, factorize, inner, mirror, row_products, solve, trace};
-use super::reduction::{Reduced, room_below, tie};
+use super::dense::{add_outers, factorize, inner, mirror, row_products, solve, tie, trace};
+use super::reduction::{Reduced, room_below};
 use crate::scalar::Real;
 use side::Side;
 
@@ -181,17 +181,7 @@ impl<T: Real> Spectral<T> {
         let zero = self.value.zero();
         let h = reduced.rows();
         let m = reduced.unknowns.len();
-        row_products(h, h, p, true, &mut self.gram);
-        tie(
-            &self.gram,
-            &self.gram,
-            &reduced.unknowns,
-            c,
-            c,
-            &mut self.hessian,
-            #[inline(always)]
-            |a, b| a.clone() * b,
-        );
+        reduced.gram(&mut self.gram, &mut self.hessian);
         row_products(h, &reduced.stiffness[..p * p], p, false, &mut self.room[..m * p]);
         for entry in &mut self.kappa {
             *entry = zero.clone();
