@@ -228,10 +228,7 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
     };
     bar.clear();
     print(&comparison.table())?;
-    for (name, text) in [("table.csv", comparison.csv()), ("plot.svg", comparison.plot()?)] {
-        let path = folder.join(name);
-        springfit::create_folder(&folder)?;
-        write(&path, &text)?;
+    for path in comparison.write(&folder)? {
         print(&format!("written: {}\n", path.display()))?;
     }
     Ok(())

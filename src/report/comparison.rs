@@ -1,10 +1,11 @@
 //! Tables, CSV and a work-precision plot of a comparison.
 
+use super::table::aligned;
 use crate::error::{Error, Result};
+use crate::file::{create_folder, write_whole};
 use crate::study::{MethodOutcome, Outcome};
-use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
 use plotters::prelude::*;
+use std::path::{Path, PathBuf};
 
 /// Rows of text with a header: the columns of a table and of its CSV file.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,18 +98,7 @@ impl Comparison {
     }
 
     pub fn table(&self) -> String {
-        let mut table = Table::new();
-        table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
-        table.set_content_arrangement(ContentArrangement::Disabled).set_header(&self.header);
-        self.rows.iter().for_each(|row| {
-            table.add_row(row);
-        });
-        for (column, name) in table.column_iter_mut().zip(&self.header) {
-            let text = ["objective", "solver", "fit", "network"].contains(&name.as_str());
-            column.set_cell_alignment(if text { CellAlignment::Left } else { CellAlignment::Right });
-        }
-        let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_string()).collect();
-        format!("{}\n\n{}\n", self.title, lines.join("\n"))
+        format!("{}\n\n{}", self.title, aligned(&self.header, &self.rows))
     }
 
     pub fn csv(&self) -> String {
@@ -120,6 +110,21 @@ impl Comparison {
             cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
         };
         std::iter::once(line(&self.header)).chain(self.rows.iter().map(|row| line(row))).collect()
+    }
+
+    /// Writes `table.csv` and `plot.svg` into `folder`, and returns the paths.
+    ///
+    /// # Errors
+    /// Nothing can be plotted; the folder or a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+        let files = [("table.csv", self.csv()), ("plot.svg", self.plot()?)];
+        create_folder(folder)?;
+        let write = |(name, text): (&str, String)| {
+            let path = folder.join(name);
+            write_whole(&path, text.as_bytes())?;
+            Ok(path)
+        };
+        files.into_iter().map(write).collect()
     }
 
     /// Error against seconds per element, both logarithmic; an SVG file's text.

@@ -42,18 +42,20 @@ pub fn table(outcome: &Outcome) -> String {
     if !loads.is_empty() {
         header.push("network".into());
     }
+    let rows: Vec<_> = outcome.fits.iter().map(|fit| row(fit, outcome.mesh.cell_count())).collect();
+    aligned(&header, &rows) + &times(outcome)
+}
+
+/// Rows under a header: columns of words to the left, of numbers to the right.
+pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
-    table.set_content_arrangement(ContentArrangement::Disabled).set_header(header);
-    for fit in &outcome.fits {
-        table.add_row(row(fit, outcome.mesh.cell_count()));
+    table.set_content_arrangement(ContentArrangement::Disabled).set_header(header).add_rows(rows);
+    for (column, name) in table.column_iter_mut().zip(header) {
+        let words = ["objective", "solver", "fit", "network"].contains(&name.as_str());
+        column.set_cell_alignment(if words { CellAlignment::Left } else { CellAlignment::Right });
     }
-    for (index, column) in table.column_iter_mut().enumerate() {
-        let text = index == 0 || index == 6 + loads.len();
-        column.set_cell_alignment(if text { CellAlignment::Left } else { CellAlignment::Right });
-    }
-    let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_string()).collect();
-    lines.join("\n") + "\n" + &times(outcome)
+    table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }
 
 fn row(fit: &FitOutcome, elements: usize) -> Vec<String> {

@@ -5,7 +5,7 @@ mod metrics;
 mod run;
 mod scene;
 
-pub use comparison::{MethodOutcome, compare_element, compare_scene};
+pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
 pub use metrics::{DisplacementError, displacement_error};
 pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
 pub use scene::{BoxEntry, LoadCase, MeshInput, NamedFit, Output, Part, Scene, load_elements};
