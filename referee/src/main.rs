@@ -11,40 +11,12 @@ use springfit::fit::{Fit, Objective, Search, Solver, Weight, fit_cells};
 use springfit::material::{Material, Moduli};
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
+use springfit::study::random_shapes;
 use std::process::ExitCode;
 use std::time::Instant;
 
 #[link(name = "openblas")]
 unsafe extern "C" {}
-
-/// A repeatable source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
-/// Node positions of `count` elements: the reference cell under random affine maps, each node moved by up to 7 % of the
-/// size; those that tangle are drawn again.
-fn shapes(element: &Element, count: usize) -> Vec<f64> {
-    let d = element.dimension();
-    let mut random = Random(2026);
-    let mut all = Vec::new();
-    let mut geometry = Geometry::new(&element.tabulation);
-    while all.len() < count * element.positions.len() {
-        let map = DMatrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)) + 0.4 * random.next());
-        let place = |at: &[f64]| (&map * DVector::from_column_slice(at)).as_slice().to_vec();
-        let mut x: Vec<f64> = element.positions.chunks_exact(d).flat_map(place).collect();
-        x.iter_mut().for_each(|x| *x += 0.15 * random.next());
-        if geometry.set(&element.tabulation, &x).is_ok() {
-            all.extend(x);
-        }
-    }
-    all
-}
 
 /// R and the g_s on an orthonormal basis of the deformations, from the eigenvectors of R.
 fn reduced(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli) -> (DMatrix<f64>, Vec<DVector<f64>>) {
@@ -140,7 +112,7 @@ fn main() -> ExitCode {
 
 /// Prints one row; false where the two disagree, or something beats the certified bound.
 fn compare(element: &Element, springs: &Springs, moduli: Moduli, nonnegative: bool, count: usize) -> bool {
-    let x = shapes(element, count);
+    let x = random_shapes(element, count, 2026).expect("few shapes tangle");
     let size = element.positions.len();
     let cells: Vec<usize> = (0..count * element.nodes()).collect();
     let fit = Fit { nonnegative, ..Fit::new(Objective::Spectral(Weight::None)) };

@@ -24,6 +24,10 @@ const STEPS: usize = 120;
 const SHORTER: usize = 4;
 /// Relative pivots below this floor are rounding.
 const FLOOR: f64 = 1e-14;
+/// A step keeps at least this share of the distance to the boundary that the path would keep.
+const KEPT: f64 = 0.3;
+/// Newton steps at one μ crawl if the square of the decrement stays above the first, and above this share of the last.
+const STALLED: [f64; 2] = [1.5, 0.9];
 
 /// Room for the solver, and its result.
 #[derive(Debug, Clone)]
@@ -95,17 +99,24 @@ impl<T: Real> Spectral<T> {
             *entry = zero.clone();
         }
         let (mut alpha, mut reduction, mut theta) = (zero.clone(), zero.clone(), one.constant(&0.2));
+        // Least distance of a trial from the boundary, and the decrement where μ was the same.
+        let (mut kept, mut previous) = (zero.clone(), one.constant(&f64::MAX));
         let mut first = true;
         for _ in 0..STEPS {
             // Shorten the step where it leaves the domain; what is still outside after that waits for the next turn.
-            let mut inside = self.enter(reduced, &mut kappa, &alpha, &step);
-            for _ in 0..SHORTER {
+            let (mut inside, mut distance) = (zero.clone(), zero.clone());
+            for trial in 0..=SHORTER {
+                if trial > 0 {
+                    alpha = inside.choose(&alpha, &alpha.clone().scaled(&0.5));
+                }
+                distance = self.enter(reduced, &mut kappa, &alpha, &step);
+                let followed = one.clone().minus_product(&alpha, &reduction);
+                inside = distance.clone().minus_product(&kept, &followed);
                 if inside.exceeds(&zero) {
                     break;
                 }
-                alpha = inside.choose(&alpha, &alpha.clone().scaled(&0.5));
-                inside = self.enter(reduced, &mut kappa, &alpha, &step);
             }
+            kept = inside.choose(&distance.scaled(&KEPT), &kept);
             let t = self.value.clone().plus_product(&alpha, &step[c]);
             for i in 0..c {
                 self.kappa[i] = inside.choose(&kappa[i], &self.kappa[i]);
@@ -119,7 +130,7 @@ impl<T: Real> Spectral<T> {
                 let followed = mu.clone() * &(one.clone() - &(alpha.clone() * &reduction));
                 mu = inside.choose(&followed, &mu);
             }
-            let decrement = self.directions(&mu);
+            let decrement = self.directions(&mut mu, &previous);
             let end = self.value.greatest(&floor).scaled(&(0.4 * GAP / complexity));
             // Centred and at the end: stay.
             let centred = one.constant(&0.2) - &decrement;
@@ -144,6 +155,8 @@ impl<T: Real> Spectral<T> {
             let target = (one.constant(&0.5) - &decrement).choose(&theta.greatest(&least), &one);
             let remaining = one.clone() - &target;
             let pull = remaining.clone() / &mu;
+            let same = remaining.choose(&one.constant(&f64::MAX), &decrement);
+            previous = inside.choose(&same, &previous);
             for i in 0..=c {
                 let along = (self.newton[i].clone() * &length).minus_product(&pull, &self.tangent[i]);
                 let along = done.choose(&zero, &along);
@@ -260,20 +273,33 @@ impl<T: Real> Spectral<T> {
     }
 
     /// The Newton step for this μ, and the tangent of the path, `H⁻¹ e_t`; returns the square of the Newton decrement.
+    ///
+    /// Where the steps crawl, the decrement being hardly less than the `previous` one, μ first rises to that of the nearest
+    /// point of the path: the square of the decrement, `|H^-½ (g + e_t/μ)|²`, is quadratic in 1/μ.
     #[inline(always)]
-    fn directions(&mut self, mu: &T) -> T {
+    fn directions(&mut self, mu: &mut T, previous: &T) -> T {
         let c = self.kappa.len();
         let zero = mu.zero();
         for i in 0..=c {
             self.newton[i] = self.gradient[i].negated();
             self.tangent[i] = if i == c { zero.one() } else { zero.clone() };
         }
-        self.newton[c] = self.newton[c].clone() - &(zero.one() / mu);
-        self.room[..=c].clone_from_slice(&self.newton);
         factorize(&mut self.hessian, c + 1, FLOOR, &mut self.pivots);
         solve(&self.hessian, c + 1, &self.pivots, &mut self.newton);
         solve(&self.hessian, c + 1, &self.pivots, &mut self.tangent);
-        inner(&self.newton, &self.room[..=c])
+        let square = inner(&self.newton, &self.gradient).negated();
+        let (mixed, bend) = (self.newton[c].clone(), self.tangent[c].clone());
+        let pull = zero.one() / &*mu;
+        let nearest = (mixed.clone() / &bend).greatest(&pull.clone().scaled(&1e-2)).least(&pull);
+        let decrement = quadratic(&square, &mixed, &bend, &pull);
+        let least = previous.clone().scaled(&STALLED[1]).greatest(&mu.constant(&STALLED[0]));
+        let stalled = decrement - &least;
+        let pull = stalled.choose(&nearest, &pull);
+        *mu = stalled.choose(&(zero.one() / &pull), mu);
+        for i in 0..=c {
+            self.newton[i] = self.newton[i].clone().minus_product(&pull, &self.tangent[i]);
+        }
+        quadratic(&square, &mixed, &bend, &pull)
     }
 
     /// The least ratio of the Hessian's pivots to those of the Gram matrix, in units of `1/t²`.
@@ -348,4 +374,10 @@ impl<T: Real> Spectral<T> {
         }
         definite.choose(&(value / &size).greatest(&zero), &zero)
     }
+}
+
+/// `a − 2 b x + c x²`.
+#[inline(always)]
+fn quadratic<T: Real>(a: &T, b: &T, c: &T, x: &T) -> T {
+    a.clone().plus_product(&(c.clone() * x - &b.clone().scaled(&2.0)), x)
 }
