@@ -30,6 +30,8 @@ pub struct Geometry<T = f64> {
     pub gradients: Vec<T>,
     /// `w_q |J_q|`, `[points]`, m³ (m² in two dimensions).
     pub volumes: Vec<T>,
+    /// The same for the term λ (div u)²; empty where that has the same quadrature.
+    pub volumetric: Vec<T>,
 }
 
 impl<T: Scalar> Geometry<T> {
@@ -40,6 +42,7 @@ impl<T: Scalar> Geometry<T> {
             nodes: table.nodes,
             gradients: vec![any.zero(); table.gradients.len()],
             volumes: vec![any.zero(); table.points()],
+            volumetric: vec![any.zero(); table.volumetric.len()],
         }
     }
 
@@ -66,7 +69,9 @@ impl<T: Scalar> Geometry<T> {
         let flat = T::exact((FLAT * T::epsilon()).powi(2));
         let reference = table.gradients.chunks_exact(n * D);
         let physical = self.gradients.chunks_exact_mut(n * D);
-        for (((dn, grad), volume), w) in reference.zip(physical).zip(&mut self.volumes).zip(&table.weights) {
+        for (q, (((dn, grad), volume), w)) in
+            reference.zip(physical).zip(&mut self.volumes).zip(&table.weights).enumerate()
+        {
             let (dn, grad) = (&dn.as_chunks::<D>().0[..n], &mut grad.as_chunks_mut::<D>().0[..n]);
             let j = jacobian(x, dn);
             let (adjugate, determinant) = adjugate(&j);
@@ -74,6 +79,9 @@ impl<T: Scalar> Geometry<T> {
             positive &= determinant.exceeds(&determinant.zero()) && determinant.clone().squared().exceeds(&least);
             // ∂N_a/∂x_k = Σ_l ∂N_a/∂ξ_l (J⁻¹)_lk
             let inverse = multiple(&(determinant.one() / &determinant), &adjugate);
+            if let (Some(volume), Some(w)) = (self.volumetric.get_mut(q), table.volumetric.get(q)) {
+                *volume = determinant.clone().scaled(w);
+            }
             *volume = determinant.scaled(w);
             for (ga, dna) in grad.iter_mut().zip(dn) {
                 for k in 0..D {
@@ -89,6 +97,14 @@ impl<T: Scalar> Geometry<T> {
 
     pub fn points(&self) -> usize {
         self.volumes.len()
+    }
+
+    /// `∂N_a/∂x_k`, the volume, and the volume for the term λ (div u)², at every quadrature point.
+    #[inline(always)]
+    pub fn each_point(&self) -> impl Iterator<Item = (&[T], &T, &T)> {
+        let volumetric = if self.volumetric.is_empty() { &self.volumes } else { &self.volumetric };
+        let gradients = self.gradients.chunks_exact(self.nodes * self.dimension);
+        gradients.zip(&self.volumes).zip(volumetric).map(|((grad, v), w)| (grad, v, w))
     }
 
     /// Length, area or volume of the element, `Σ_q w_q |J_q|`.
@@ -163,7 +179,11 @@ impl Geometry {
     }
 
     fn tangled(&self, table: &Tabulation) -> Fault {
-        let determinants = || self.volumes.iter().zip(&table.weights).map(|(v, w)| v / w);
+        let at = |q: usize| {
+            let w = table.weights[q];
+            if w == 0.0 { self.volumetric[q] / table.volumetric[q] } else { self.volumes[q] / w }
+        };
+        let determinants = || (0..table.points()).map(at);
         let least = determinants().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
         let (point, determinant) = least.unwrap_or((0, 0.0));
         Fault::Tangled { point, determinant, largest: determinants().fold(f64::NEG_INFINITY, f64::max) }
@@ -175,7 +195,8 @@ impl Geometry {
     pub fn stiffness(&self, Moduli { lambda, mu }: Moduli) -> DMatrix<f64> {
         let (n, d) = (self.nodes, self.dimension);
         let mut r = DMatrix::zeros(n * d, n * d);
-        for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes) {
+        for (grad, v, w) in self.each_point() {
+            let (lambda, mu) = (w * lambda, v * mu);
             for a in 0..n {
                 for b in 0..=a {
                     let (ga, gb) = (&grad[a * d..(a + 1) * d], &grad[b * d..(b + 1) * d]);
@@ -183,7 +204,7 @@ impl Geometry {
                     for k in 0..d {
                         for l in 0..d {
                             let diagonal = if k == l { mu * dot } else { 0.0 };
-                            r[(a * d + k, b * d + l)] += v * (lambda * ga[k] * gb[l] + mu * gb[k] * ga[l] + diagonal);
+                            r[(a * d + k, b * d + l)] += lambda * ga[k] * gb[l] + mu * gb[k] * ga[l] + diagonal;
                         }
                     }
                 }

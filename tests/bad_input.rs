@@ -601,7 +601,9 @@ fn boxes() {
             (
                 "\"tet4\"",
                 "\"tet5\"",
-                "scene.toml: mesh.box.element: expected one of hex8, quad4, tet4, tri3, or a path that ends in .toml, \
+                "scene.toml: mesh.box.element: expected one of bar2, bar3, hex20, hex27, hex8, \
+             pentagon5, pyramid13, pyramid5, quad12, quad4, quad8, quad9, tet10, tet20, tet4, tri10, tri3, tri6, wedge15, wedge6, \
+             or a path that ends in .toml, \
                  found \"tet5\"",
             ),
             (size, "size = [0, 1, 1]", "scene.toml: mesh.box.size: expected positive lengths in m, found 0"),
@@ -686,9 +688,9 @@ fn shape_functions() {
         ),
         (
             "\"tetrahedron\" ",
-            "\"wedge\" ",
-            "own.toml:4: cell: unknown variant \"wedge\", expected one of \"interval\", \"triangle\", \
-             \"quadrilateral\", \"tetrahedron\", \"hexahedron\"",
+            "\"prism\" ",
+            "own.toml:4: cell: unknown variant \"prism\", expected one of \"interval\", \"triangle\", \
+             \"quadrilateral\", \"pentagon\", \"tetrahedron\", \"hexahedron\", \"wedge\", \"pyramid\"",
         ),
     ]);
     // The sum is still one, but ξ is not reproduced.
@@ -738,7 +740,7 @@ fn expressions() {
         ("xi^2^2", "expected parentheses in a power of a power"),
         ("xii", "expected one of xi, eta, zeta, found the name \"xii\""),
         ("sin", "column 4: expected '(' after sin, found the end"),
-        ("sinh(xi)", "expected an operator, or a function of sqrt, exp, ln, sin, cos, tan, abs, found \"sinh(\""),
+        ("sinh(xi)", "expected an operator, or a function of sqrt, exp, ln, sin, cos, tan, asin, acos, atan, abs, found \"sinh(\""),
         ("ξ", "column 1: expected a number, a name or '(', found 'ξ'"),
         ("xi = 1", "column 4: expected one of <, <=, >, >=, ==, !=, &&, ||, found '='"),
         ("xi; 1", "column 3: expected an operator, found ';'"),
@@ -795,13 +797,13 @@ fn quadrature() {
         (
             rule,
             "rule = \"gauss-legendre\"\npoints = 2",
-            "own.toml: quadrature.rule: expected \"simplex\" or \"explicit\" on a simplex, found \"gauss-legendre\"",
+            "own.toml: quadrature.rule: expected \"simplex\", \"degree\" or \"explicit\" on a simplex, found \"gauss-legendre\"",
         ),
         (
             "\"simplex\"",
             "\"simpson\"",
             "own.toml:15: quadrature.rule: unknown variant \"simpson\", expected one of \"gauss-legendre\", \
-             \"simplex\", \"explicit\"",
+             \"simplex\", \"degree\", \"explicit\"",
         ),
     ]);
 }
@@ -822,12 +824,66 @@ fn springs_and_formats() {
         (
             "\"volume\"",
             "\"area\"",
-            "own.toml: springs[1].kind: expected \"volume\" in a solid, \"area\" in a plane cell, found \"area\"",
+            "own.toml: springs[1].kind: expected \"volume\" for the content of a solid, \"area\" with nodes or in a plane \
+             cell, found \"area\"",
         ),
         (
             "\"volume\"",
-            "\"angle\"",
-            "own.toml:25: springs[1].kind: unknown variant \"angle\", expected one of \"length\", \"area\", \"volume\"",
+            "\"mass\"",
+            "own.toml:25: springs[1].kind: unknown variant \"mass\", expected one of \"length\", \"angle\", \"area\", \
+             \"volume\", \"coupling\", \"measure\"",
+        ),
+        ("\"volume\"", "\"angle\"", "own.toml: springs[1].nodes: expected lists of nodes, found none"),
+        (
+            "kind  = \"length\"",
+            "kind = \"length\"\nmeasure = \"x0\"",
+            "own.toml: springs[0].measure: belongs to the kind \"measure\", found with \"length\"",
+        ),
+        (
+            "kind  = \"length\"",
+            "kind = \"measure\"",
+            "own.toml: springs[0].measure: expected an expression of x0, y0, x1, …, found none",
+        ),
+        (
+            "kind  = \"length\"",
+            "kind = \"measure\"\nmeasure = \"x0 - x2\"",
+            "own.toml: springs[0].measure: expected one of x0, y0, z0, x1, y1, z1, found the name \"x2\" in \"x0 - x2\"",
+        ),
+        (
+            "kind  = \"length\"",
+            "kind = \"angle\"",
+            "own.toml: springs[0].nodes[0]: expected three nodes, found 2",
+        ),
+        (
+            "kind  = \"length\"",
+            "kind = \"area\"",
+            "own.toml: springs[0].nodes[0]: expected three to eight nodes, found 2",
+        ),
+        (
+            "kind  = \"length\"",
+            "kind = \"length\"\nclass = \"all\"",
+            "own.toml:21: springs[0].class: unknown variant \"all\", expected \"auto\"",
+        ),
+        (
+            "kind     = \"volume\"",
+            "kind = \"coupling\"\nnodes = [[0, 1, 1, 0]]",
+            "own.toml: springs[1].nodes[0]: expected two different pairs of different nodes below 4, found [0, 1, 1, 0]",
+        ),
+        (
+            "kind     = \"volume\"",
+            "kind = \"angle\"\nnodes = [[0, 1, 2], [2, 1, 0]]",
+            "own.toml: springs[1].nodes[1]: the list [2, 1, 0] has a spring already",
+        ),
+        (
+            "kind     = \"volume\"",
+            "kind = \"length\"\nnodes = \"complete\"",
+            "own.toml: springs[1].nodes: expected pairs that have no spring yet, found none",
+        ),
+        (
+            "kind     = \"volume\"",
+            "kind = \"angle\"\nnodes = \"complete\"",
+            "own.toml: springs[1].nodes: expected lists of nodes, or \"complete\" with the kind \"length\", found \
+             \"complete\"",
         ),
         (
             "{ type = 4 }",
@@ -845,9 +901,10 @@ fn meshes() {
     let mut refusals = Refusals::default();
     for (mesh, message) in [
         (
-            msh(&wedge, &["6 2 0 1 1 2 3 4 5 6"]),
-            "mesh.msh: cells: expected cells of hex8, quad4, tet4, tri3 or of an element file you name, found 1 cells \
-             of Gmsh type 6 with 6 nodes",
+            msh(&wedge, &["14 2 0 1 1 2 3 4 5 6 1 2 3 4 5 6 1 2"]),
+            "mesh.msh: cells: expected cells of bar2, bar3, hex20, hex27, hex8, pentagon5, \
+             pyramid13, pyramid5, quad12, quad4, quad8, quad9, tet10, tet20, tet4, tri10, tri3, tri6, wedge15, wedge6 or of an element file you name, found 1 cells \
+             of Gmsh type 14 with 14 nodes",
         ),
         (
             msh(&with_last("1 1 0"), &tetrahedron),
@@ -1185,7 +1242,9 @@ fn messages_in_the_words_of_the_file() {
     ]);
     refusals.expect_of_scene(
         &edited(FROM_FILES, "own.toml", "tet9"),
-        "scene.toml: mesh.elements[0]: expected one of hex8, quad4, tet4, tri3, or a path that ends in .toml, found \
+        "scene.toml: mesh.elements[0]: expected one of bar2, bar3, hex20, hex27, hex8, \
+             pentagon5, pyramid13, pyramid5, quad12, quad4, quad8, quad9, tet10, tet20, tet4, tri10, tri3, tri6, wedge15, wedge6, \
+             or a path that ends in .toml, found \
          \"tet9\"",
     );
     refusals.finish();
@@ -1221,7 +1280,9 @@ fn options_by_their_names() {
             "1kPa",
             "0.3",
             &["--element", "tet9"],
-            "--element: expected one of hex8, quad4, tet4, tri3, or a path that ends in .toml, found \"tet9\"".into(),
+            "--element: expected one of bar2, bar3, hex20, hex27, hex8, \
+             pentagon5, pyramid13, pyramid5, quad12, quad4, quad8, quad9, tet10, tet20, tet4, tri10, tri3, tri6, wedge15, wedge6, \
+             or a path that ends in .toml, found \"tet9\"".into(),
         ),
     ] {
         let arguments = ["fit", "mesh.msh", "--young", young, "--poisson", poisson, "-o", "springs.csv"];
@@ -1239,7 +1300,9 @@ fn comparisons() {
         (
             BRICK,
             &["tet9"][..],
-            "element: expected one of hex8, quad4, tet4, tri3, or a path that ends in .toml, found \"tet9\"",
+            "element: expected one of bar2, bar3, hex20, hex27, hex8, \
+             pentagon5, pyramid13, pyramid5, quad12, quad4, quad8, quad9, tet10, tet20, tet4, tri10, tri3, tri6, wedge15, wedge6, \
+             or a path that ends in .toml, found \"tet9\"",
         ),
         (BRICK, &["tet4", "--shapes", "0"], "--shapes: expected a number from 1 to 1000000, found 0"),
         (BRICK, &["tet4", "--iterations", "0"], "--iterations: expected a number above 0, found 0"),

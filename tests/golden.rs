@@ -185,7 +185,8 @@ fn simplex_closed_form_off_the_diagonal() {
     let mut geometry = Geometry::new(&element.tabulation);
     geometry.set(&element.tabulation, &x).unwrap();
     let k = constants("tet4", &x, material, Objective::Frobenius(Weight::OffDiagonal));
-    for (k, &[i, j]) in k.iter().zip(&element.springs[0].pairs) {
+    for (k, nodes) in k.iter().zip(&element.springs[0].nodes) {
+        let (i, j) = (nodes[0], nodes[1]);
         let dot: f64 = (0..3).map(|c| geometry.gradients[3 * i + c] * geometry.gradients[3 * j + c]).sum();
         let square: f64 = (0..3).map(|c| (x[3 * j + c] - x[3 * i + c]).powi(2)).sum();
         close(*k, geometry.content() * ((l + m) / square - m * dot), 1e-12);

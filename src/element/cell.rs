@@ -3,16 +3,28 @@
 use serde::Deserialize;
 
 /// A reference cell. Intervals, squares and cubes span [-1, 1] in each coordinate; simplices are the corner at the
-/// origin with unit legs.
+/// origin with unit legs. A wedge is the triangle times [-1, 1]; a pyramid stands on the square, its apex at (0, 0, 1); the
+/// corners of the pentagon are rational points of the unit circle, nearly evenly spaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cell {
     Interval,
     Triangle,
     Quadrilateral,
+    Pentagon,
     Tetrahedron,
     Hexahedron,
+    Wedge,
+    Pyramid,
 }
+
+const PENTAGON: [&[f64]; 5] = [
+    &[3. / 5., -4. / 5.],
+    &[176. / 185., 57. / 185.],
+    &[0., 1.],
+    &[-176. / 185., 57. / 185.],
+    &[-3. / 5., -4. / 5.],
+];
 
 /// A side of a cell: its own shape, and where its corners stand in the cell.
 #[derive(Debug, Clone, Copy)]
@@ -21,17 +33,29 @@ pub struct Side {
     pub corners: &'static [usize],
 }
 
-const fn side(cell: Cell, corners: &'static [usize]) -> Side {
-    Side { cell, corners }
-}
-
 impl Cell {
+    pub const ALL: [Cell; 8] = [
+        Cell::Interval,
+        Cell::Triangle,
+        Cell::Quadrilateral,
+        Cell::Pentagon,
+        Cell::Tetrahedron,
+        Cell::Hexahedron,
+        Cell::Wedge,
+        Cell::Pyramid,
+    ];
+
     pub fn dimension(self) -> usize {
         match self {
             Cell::Interval => 1,
-            Cell::Triangle | Cell::Quadrilateral => 2,
-            Cell::Tetrahedron | Cell::Hexahedron => 3,
+            Cell::Triangle | Cell::Quadrilateral | Cell::Pentagon => 2,
+            Cell::Tetrahedron | Cell::Hexahedron | Cell::Wedge | Cell::Pyramid => 3,
         }
+    }
+
+    /// Whether it is a product of intervals.
+    pub fn is_box(self) -> bool {
+        matches!(self, Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron)
     }
 
     pub fn is_simplex(self) -> bool {
@@ -44,8 +68,12 @@ impl Cell {
             Cell::Interval => 2.0,
             Cell::Triangle => 1.0 / 2.0,
             Cell::Quadrilateral => 4.0,
+            // Half the cross products of successive corners.
+            Cell::Pentagon => 2199.0 / 925.0,
             Cell::Tetrahedron => 1.0 / 6.0,
             Cell::Hexahedron => 8.0,
+            Cell::Wedge => 1.0,
+            Cell::Pyramid => 4.0 / 3.0,
         }
     }
 
@@ -55,7 +83,17 @@ impl Cell {
             Cell::Interval => &[&[-1.], &[1.]],
             Cell::Triangle => &[&[0., 0.], &[1., 0.], &[0., 1.]],
             Cell::Quadrilateral => &[&[-1., -1.], &[1., -1.], &[1., 1.], &[-1., 1.]],
+            Cell::Pentagon => &PENTAGON,
             Cell::Tetrahedron => &[&[0., 0., 0.], &[1., 0., 0.], &[0., 1., 0.], &[0., 0., 1.]],
+            Cell::Wedge => &[
+                &[0., 0., -1.],
+                &[1., 0., -1.],
+                &[0., 1., -1.],
+                &[0., 0., 1.],
+                &[1., 0., 1.],
+                &[0., 1., 1.],
+            ],
+            Cell::Pyramid => &[&[-1., -1., 0.], &[1., -1., 0.], &[1., 1., 0.], &[-1., 1., 0.], &[0., 0., 1.]],
             Cell::Hexahedron => &[
                 &[-1., -1., -1.],
                 &[1., -1., -1.],
@@ -72,41 +110,41 @@ impl Cell {
     /// The sides of one dimension less.
     pub fn sides(self) -> &'static [Side] {
         use Cell::{Interval, Quadrilateral, Triangle};
+        macro_rules! sides {
+            ($($cell:ident $corners:expr),*) => { const { &[$(Side { cell: $cell, corners: &$corners }),*] } };
+        }
         match self {
             Cell::Interval => &[],
-            Cell::Triangle => const { &[side(Interval, &[0, 1]), side(Interval, &[1, 2]), side(Interval, &[2, 0])] },
-            Cell::Quadrilateral => {
-                const {
-                    &[
-                        side(Interval, &[0, 1]),
-                        side(Interval, &[1, 2]),
-                        side(Interval, &[2, 3]),
-                        side(Interval, &[3, 0]),
-                    ]
-                }
+            Cell::Triangle => sides![Interval [0, 1], Interval [1, 2], Interval [2, 0]],
+            Cell::Quadrilateral => sides![Interval [0, 1], Interval [1, 2], Interval [2, 3], Interval [3, 0]],
+            Cell::Pentagon => {
+                sides![Interval [0, 1], Interval [1, 2], Interval [2, 3], Interval [3, 4], Interval [4, 0]]
             }
             Cell::Tetrahedron => {
-                const {
-                    &[
-                        side(Triangle, &[0, 2, 1]),
-                        side(Triangle, &[0, 1, 3]),
-                        side(Triangle, &[1, 2, 3]),
-                        side(Triangle, &[0, 3, 2]),
-                    ]
-                }
+                sides![Triangle [0, 2, 1], Triangle [0, 1, 3], Triangle [1, 2, 3], Triangle [0, 3, 2]]
             }
-            Cell::Hexahedron => {
-                const {
-                    &[
-                        side(Quadrilateral, &[0, 3, 2, 1]),
-                        side(Quadrilateral, &[4, 5, 6, 7]),
-                        side(Quadrilateral, &[0, 1, 5, 4]),
-                        side(Quadrilateral, &[1, 2, 6, 5]),
-                        side(Quadrilateral, &[2, 3, 7, 6]),
-                        side(Quadrilateral, &[3, 0, 4, 7]),
-                    ]
-                }
-            }
+            Cell::Hexahedron => sides![
+                Quadrilateral [0, 3, 2, 1],
+                Quadrilateral [4, 5, 6, 7],
+                Quadrilateral [0, 1, 5, 4],
+                Quadrilateral [1, 2, 6, 5],
+                Quadrilateral [2, 3, 7, 6],
+                Quadrilateral [3, 0, 4, 7]
+            ],
+            Cell::Wedge => sides![
+                Triangle [0, 2, 1],
+                Triangle [3, 4, 5],
+                Quadrilateral [0, 1, 4, 3],
+                Quadrilateral [1, 2, 5, 4],
+                Quadrilateral [2, 0, 3, 5]
+            ],
+            Cell::Pyramid => sides![
+                Quadrilateral [0, 3, 2, 1],
+                Triangle [0, 1, 4],
+                Triangle [1, 2, 4],
+                Triangle [2, 3, 4],
+                Triangle [3, 0, 4]
+            ],
         }
     }
 }

@@ -19,6 +19,8 @@ pub struct Definition {
     pub definitions: toml::Table,
     pub nodes: Vec<NodeEntry>,
     pub quadrature: Rule,
+    /// The rule of the term λ (div u)²; the same as of all others if absent.
+    pub volumetric_quadrature: Option<Rule>,
     #[serde(default)]
     pub springs: Vec<SpringEntry>,
     #[serde(default)]
@@ -37,19 +39,39 @@ pub struct NodeEntry {
 pub enum Rule {
     GaussLegendre { points: usize },
     Simplex { degree: usize },
+    Degree { degree: usize },
     Explicit { points: Vec<Vec<Constant>>, weights: Vec<Constant> },
 }
 
 /// What a spring measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringKind {
-    /// The distance of two nodes.
+    /// The distance of two nodes, m.
     Length,
-    /// The area of the whole cell, in two dimensions.
+    /// The angle at the second of three nodes, rad.
+    Angle,
+    /// The area of a polygon of nodes, or of the whole cell in two dimensions, m².
     Area,
-    /// The volume of the whole cell, in three dimensions.
+    /// The volume of a tetrahedron of nodes, or of the whole cell in three dimensions, m³.
     Volume,
+    /// The sum of the distances a-b and c-d of four nodes, m, whose square holds the product of the two elongations.
+    Coupling,
+    /// An expression of the nodes' coordinates.
+    Measure,
+}
+
+impl SpringKind {
+    pub fn name(self) -> &'static str {
+        match self {
+            SpringKind::Length => "length",
+            SpringKind::Angle => "angle",
+            SpringKind::Area => "area",
+            SpringKind::Volume => "volume",
+            SpringKind::Coupling => "coupling",
+            SpringKind::Measure => "measure",
+        }
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -57,11 +79,29 @@ pub enum SpringKind {
 pub struct SpringEntry {
     pub group: String,
     pub kind: SpringKind,
-    /// Node pairs of length springs.
-    pub nodes: Option<Vec<Vec<usize>>>,
+    /// The nodes of each spring; none where the whole cell is measured.
+    pub nodes: Option<NodeLists>,
+    /// Of the kind `measure`: a function of the coordinates `x0, y0, z0, x1, …` of the nodes of one spring.
+    pub measure: Option<String>,
+    /// `auto` divides the springs into classes that the cell's symmetry takes into each other, a group for each.
+    pub class: Option<SpringClass>,
     /// Used only where a fit names the group.
     #[serde(default)]
     pub optional: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpringClass {
+    Auto,
+}
+
+/// Lists of nodes, or `"complete"`: all pairs that have no spring yet.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "lists of nodes, or \"complete\"")]
+pub enum NodeLists {
+    Named(String),
+    Given(Vec<Vec<usize>>),
 }
 
 /// What mesh files call the element.

@@ -4,13 +4,16 @@ mod catalogue;
 mod cell;
 mod constant;
 mod definition;
+mod groups;
 mod proof;
 mod quadrature;
+mod symmetry;
 mod tabulation;
 
 pub use catalogue::{SHIPPED, Shipped};
 pub use cell::{Cell, Side};
 pub use definition::{FormatEntry, Formats, SpringKind};
+pub use groups::{SpringGroup, coordinate_names};
 pub use quadrature::Quadrature;
 pub use tabulation::{ShapeFunctions, Tabulation};
 
@@ -18,6 +21,7 @@ use crate::error::{Error, Result};
 use crate::file;
 use crate::symbolic::{Polynomial, Scope};
 use definition::Definition;
+use groups::spring_groups;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -40,16 +44,6 @@ pub struct Element {
     /// The order of nodes that turns the element inside out, if it has one.
     pub reflection: Option<Vec<usize>>,
     sides: OnceLock<Vec<SideTable>>,
-}
-
-/// Springs that are equivalent under the cell's symmetry.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpringGroup {
-    pub name: String,
-    pub kind: SpringKind,
-    /// Node pairs of length springs; empty where the whole cell is measured.
-    pub pairs: Vec<[usize; 2]>,
-    pub optional: bool,
 }
 
 /// A side of the element: its nodes, and the shape functions along it.
@@ -101,14 +95,16 @@ impl Element {
             values.push(scope.expression(&node.shape).map_err(|e| e.under(format!("nodes[{a}].shape")))?);
         }
         proof::nodal(&definition, &values)?;
-        let rule = proof::quadrature(&definition)?;
-        let springs = proof::springs(&definition)?;
+        let rule = proof::quadrature(&definition, &definition.quadrature, "quadrature")?;
+        let volumetric = definition.volumetric_quadrature.as_ref();
+        let volumetric = volumetric.map(|r| proof::quadrature(&definition, r, "volumetric_quadrature")).transpose()?;
+        let positions: Vec<f64> = definition.nodes.iter().flat_map(|n| n.at.iter().map(|c| c.value())).collect();
+        let springs = spring_groups(&definition, &positions)?;
         proof::formats(&definition)?;
 
         let functions = ShapeFunctions::new(values, dimension);
-        let tabulation = Tabulation::new(&functions, &rule);
+        let tabulation = Tabulation::new(&functions, &rule, volumetric.as_ref());
         proof::finite(&tabulation)?;
-        let positions: Vec<f64> = definition.nodes.iter().flat_map(|n| n.at.iter().map(|c| c.value())).collect();
         Ok(Element {
             reflection: reflection(&positions, dimension),
             name: definition.name,
@@ -131,6 +127,11 @@ impl Element {
 
     pub fn nodes(&self) -> usize {
         self.functions.values.len()
+    }
+
+    /// Whether it has motions beyond those of constant strain.
+    pub fn has_higher_modes(&self) -> bool {
+        self.nodes() > self.dimension() + 1
     }
 
     /// One table per side of the cell, in the cell's order, exact for a traction that is constant on flat sides.
@@ -158,7 +159,7 @@ impl Element {
             values: nodes.iter().map(|&a| self.functions.values[a].clone()).collect(),
             gradients: nodes.iter().map(|&a| self.functions.gradients[a].clone()).collect(),
         };
-        SideTable { nodes, tabulation: Tabulation::new(&functions, &rule).along(&tangents) }
+        SideTable { nodes, tabulation: Tabulation::new(&functions, &rule, None).along(&tangents) }
     }
 
     /// The largest degree of a shape function; for one that is no polynomial, the number of nodes stands in.
@@ -203,16 +204,24 @@ fn off_plane(x: &[f64], origin: &[f64], tangents: &[Vec<f64>]) -> f64 {
     }
 }
 
-/// Swapping the first two reference coordinates maps every cell onto itself and turns it inside out.
+/// Swapping the first two reference coordinates, or else mirroring the first, maps every cell onto itself and turns it
+/// inside out.
 fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
     let nodes: Vec<&[f64]> = positions.chunks_exact(dimension).collect();
-    if dimension < 2 {
-        return None;
-    }
-    let image = |at: &[f64]| {
-        let mut swapped = at.to_vec();
-        swapped.swap(0, 1);
-        nodes.iter().position(|other| other.iter().zip(&swapped).all(|(a, b)| (a - b).abs() < 1e-9))
+    let swapped = |at: &[f64]| {
+        let mut image = at.to_vec();
+        if dimension > 1 {
+            image.swap(0, 1);
+        }
+        image
     };
-    nodes.iter().map(|at| image(at)).collect()
+    let mirrored = |at: &[f64]| {
+        let mut image = at.to_vec();
+        image[0] = -image[0];
+        image
+    };
+    let find = |image: Vec<f64>| nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < 1e-9));
+    let first: Option<Vec<usize>> = nodes.iter().map(|at| find(swapped(at))).collect();
+    let turns = |order: &Vec<usize>| order.iter().enumerate().any(|(a, b)| a != *b);
+    first.filter(turns).or_else(|| nodes.iter().map(|at| find(mirrored(at))).collect())
 }

@@ -2,9 +2,10 @@
 //! coefficients are decided exactly; those of other functions are sampled in floating point.
 
 use super::constant::Constant;
-use super::definition::{Definition, FormatEntry, Rule, SpringKind};
+use super::cell::Cell;
+use super::definition::{Definition, FormatEntry, Rule};
 use super::quadrature::{MOST_POINTS, Quadrature};
-use super::{SpringGroup, Tabulation};
+use super::Tabulation;
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;
@@ -13,6 +14,8 @@ use num_traits::Zero;
 const MOST_NODES: usize = 512;
 /// Sampled identities hold to this; a few roundings of numbers of size one.
 const ROUNDING: f64 = 1e-12;
+/// How far inside the cell, as a share of the way to its centre, a function is looked at that has no value at a node.
+const CONTINUED: f64 = 1e-5;
 
 pub fn coordinates(definition: &Definition) -> Result<()> {
     let d = definition.cell.dimension();
@@ -41,7 +44,7 @@ pub fn nodal(definition: &Definition, shapes: &[Expr]) -> Result<()> {
     for (a, shape) in shapes.iter().enumerate() {
         for (b, node) in definition.nodes.iter().enumerate() {
             let expected = i64::from(a == b);
-            let (holds, found) = compare(shape, &node.at, expected);
+            let (holds, found) = compare(definition.cell, shape, &node.at, expected);
             if !holds {
                 let problem = format!("is {found} at nodes[{b}], expected {expected}");
                 return Err(Error::at(format!("nodes[{a}].shape"), problem));
@@ -67,13 +70,26 @@ fn number(c: &Constant) -> Expr {
     Expr::Number(exact.unwrap_or_else(BigRational::zero))
 }
 
-fn compare(shape: &Expr, at: &[Constant], expected: i64) -> (bool, String) {
+fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, String) {
     let exact: Option<Vec<BigRational>> = at.iter().map(Constant::exact).collect();
     if let Some(value) = exact.and_then(|at| shape.value(&at)) {
         return (value == BigRational::from_integer(expected.into()), value.to_string());
     }
-    let value = shape.evaluate(&at.iter().map(Constant::value).collect::<Vec<_>>());
-    ((value - expected as f64).abs() <= ROUNDING, value.to_string())
+    let at: Vec<f64> = at.iter().map(Constant::value).collect();
+    let value = shape.evaluate(&at);
+    if value.is_finite() {
+        return ((value - expected as f64).abs() <= ROUNDING, value.to_string());
+    }
+    // At the apex of a pyramid a rational function is continued from inside, linearly from two points.
+    let corners = cell.corners();
+    let centre = |k: usize| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64;
+    let inside = |share: f64| {
+        let at: Vec<f64> = at.iter().enumerate().map(|(k, x)| x + share * (centre(k) - x)).collect();
+        shape.evaluate(&at)
+    };
+    let (near, far) = (inside(CONTINUED), inside(2.0 * CONTINUED));
+    let value = if (far - near).abs() < 1e3 * CONTINUED { 2.0 * near - far } else { f64::NAN };
+    ((value - expected as f64).abs() <= 1e3 * CONTINUED * CONTINUED, value.to_string())
 }
 
 /// Whether the defect is zero everywhere; if not, its value somewhere, as text.
@@ -95,41 +111,49 @@ fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), St
     if holds { Ok(()) } else { Err(format!("{worst:+.3e} at {at:.3?}")) }
 }
 
-pub fn quadrature(definition: &Definition) -> Result<Quadrature> {
+/// The quadrature rule called `name` in the file.
+pub fn quadrature(definition: &Definition, rule: &Rule, name: &str) -> Result<Quadrature> {
     let cell = definition.cell;
     let d = cell.dimension();
-    let limited = |key: &str, n: usize| {
+    let key = |rest: &str| format!("{name}.{rest}");
+    let limited = |rest: &str, n: usize| {
         if (1..=MOST_POINTS).contains(&n) {
             Ok(())
         } else {
-            Err(Error::expected(format!("quadrature.{key}"), format!("1 to {MOST_POINTS}"), n))
+            Err(Error::expected(key(rest), format!("1 to {MOST_POINTS}"), n))
         }
     };
-    match &definition.quadrature {
-        Rule::GaussLegendre { points } if !cell.is_simplex() => {
+    let simplex = matches!(cell, Cell::Triangle | Cell::Tetrahedron);
+    match rule {
+        Rule::GaussLegendre { points } if cell.is_box() => {
             limited("points", *points)?;
             Ok(Quadrature::gauss_legendre(d, *points))
         }
         Rule::GaussLegendre { .. } => {
-            Err(Error::expected("quadrature.rule", "\"simplex\" or \"explicit\" on a simplex", "\"gauss-legendre\""))
+            let expected = if simplex {
+                "\"simplex\", \"degree\" or \"explicit\" on a simplex"
+            } else {
+                "\"degree\" or \"explicit\" on this cell"
+            };
+            Err(Error::expected(key("rule"), expected, "\"gauss-legendre\""))
         }
-        Rule::Simplex { degree } if cell.is_simplex() => {
+        Rule::Simplex { .. } if !simplex => {
+            Err(Error::expected(key("rule"), "\"degree\" or \"explicit\" on this cell", "\"simplex\""))
+        }
+        Rule::Simplex { degree } | Rule::Degree { degree } => {
             limited("degree", *degree)?;
             Ok(Quadrature::of_degree(cell, *degree))
         }
-        Rule::Simplex { .. } => {
-            Err(Error::expected("quadrature.rule", "\"gauss-legendre\" or \"explicit\" on this cell", "\"simplex\""))
-        }
         Rule::Explicit { points, weights } => {
             if points.is_empty() {
-                return Err(Error::expected("quadrature.points", "at least one point", "none"));
+                return Err(Error::expected(key("points"), "at least one point", "none"));
             }
             if points.len() != weights.len() {
                 let expected = format!("one weight for each of the {} points", points.len());
-                return Err(Error::expected("quadrature.weights", expected, weights.len()));
+                return Err(Error::expected(key("weights"), expected, weights.len()));
             }
             if let Some(q) = points.iter().position(|p| p.len() != d) {
-                let key = format!("quadrature.points[{q}]");
+                let key = key(&format!("points[{q}]"));
                 return Err(Error::expected(key, format!("{d} coordinates"), points[q].len()));
             }
             let rule = Quadrature {
@@ -140,71 +164,11 @@ pub fn quadrature(definition: &Definition) -> Result<Quadrature> {
             let sum: f64 = rule.weights.iter().sum();
             if (sum - cell.content()).abs() > ROUNDING * cell.content() {
                 let expected = format!("weights that sum to the cell's content {}", cell.content());
-                return Err(Error::expected("quadrature.weights", expected, sum));
+                return Err(Error::expected(key("weights"), expected, sum));
             }
             Ok(rule)
         }
     }
-}
-
-pub fn springs(definition: &Definition) -> Result<Vec<SpringGroup>> {
-    let nodes = definition.nodes.len();
-    let mut groups: Vec<SpringGroup> = Vec::new();
-    for (i, entry) in definition.springs.iter().enumerate() {
-        let key = |rest: &str| format!("springs[{i}].{rest}");
-        if groups.iter().any(|g| g.name == entry.group) {
-            return Err(Error::expected(key("group"), "a name used once", format!("\"{}\" again", entry.group)));
-        }
-        let pairs = match (entry.kind, &entry.nodes) {
-            (SpringKind::Length, Some(lists)) if !lists.is_empty() => node_pairs(i, lists)?,
-            (SpringKind::Length, _) => return Err(Error::expected(key("nodes"), "pairs of nodes", "none")),
-            (SpringKind::Area, None) if definition.cell.dimension() == 2 => Vec::new(),
-            (SpringKind::Volume, None) if definition.cell.dimension() == 3 => Vec::new(),
-            (SpringKind::Area, None) => {
-                return Err(Error::expected(
-                    key("kind"),
-                    "\"volume\" in a solid, \"area\" in a plane cell",
-                    "\"area\"",
-                ));
-            }
-            (SpringKind::Volume, None) => {
-                return Err(Error::expected(
-                    key("kind"),
-                    "\"area\" in a plane cell, \"volume\" in a solid",
-                    "\"volume\"",
-                ));
-            }
-            (_, Some(_)) => {
-                return Err(Error::at(
-                    key("nodes"),
-                    "expected no nodes: an area or volume spring measures the whole cell",
-                ));
-            }
-        };
-        for (p, &[a, b]) in pairs.iter().enumerate() {
-            let key = format!("springs[{i}].nodes[{p}]");
-            if a.max(b) >= nodes || a == b {
-                return Err(Error::expected(key, format!("two different nodes below {nodes}"), format!("[{a}, {b}]")));
-            }
-            let same = |&[c, d]: &[usize; 2]| (c, d) == (a, b) || (d, c) == (a, b);
-            if groups.iter().flat_map(|g| &g.pairs).chain(&pairs[..p]).any(same) {
-                return Err(Error::at(key, format!("the pair [{a}, {b}] has a spring already")));
-            }
-        }
-        if pairs.is_empty() && groups.iter().any(|g| g.pairs.is_empty()) {
-            return Err(Error::at(key("kind"), "the cell's content has a spring already"));
-        }
-        groups.push(SpringGroup { name: entry.group.clone(), kind: entry.kind, pairs, optional: entry.optional });
-    }
-    Ok(groups)
-}
-
-fn node_pairs(group: usize, lists: &[Vec<usize>]) -> Result<Vec<[usize; 2]>> {
-    let pair = |(p, list): (usize, &Vec<usize>)| {
-        <[usize; 2]>::try_from(list.as_slice())
-            .map_err(|_| Error::expected(format!("springs[{group}].nodes[{p}]"), "two nodes", list.len()))
-    };
-    lists.iter().enumerate().map(pair).collect()
 }
 
 pub fn formats(definition: &Definition) -> Result<()> {

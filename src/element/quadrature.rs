@@ -19,14 +19,65 @@ pub const MOST_POINTS: usize = 32;
 
 impl Quadrature {
     /// Exact for polynomials up to `degree` on the cell: Gauss–Legendre products, and on simplices the centroid,
-    /// the d + 1 point rule of degree 2 (Hammer and Stroud 1956), or the conical product (Stroud 1971).
+    /// the d + 1 point rule of degree 2 (Hammer and Stroud 1956), or the conical product (Stroud 1971), of which the other
+    /// cells are made up.
     pub fn of_degree(cell: Cell, degree: usize) -> Quadrature {
-        match (cell.is_simplex(), degree) {
-            (false, _) => Quadrature::gauss_legendre(cell.dimension(), degree / 2 + 1),
-            (true, 0 | 1) => Quadrature::centroid(cell),
-            (true, 2) => Quadrature::hammer_stroud(cell),
-            (true, _) => Quadrature::conical(cell.dimension(), degree),
+        match cell {
+            Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron => {
+                Quadrature::gauss_legendre(cell.dimension(), degree / 2 + 1)
+            }
+            Cell::Triangle | Cell::Tetrahedron => match degree {
+                0 | 1 => Quadrature::centroid(cell),
+                2 => Quadrature::hammer_stroud(cell),
+                _ => Quadrature::conical(cell.dimension(), degree),
+            },
+            Cell::Pentagon => Quadrature::fan(cell, degree),
+            Cell::Wedge => Quadrature::of_degree(Cell::Triangle, degree).times_interval(degree),
+            Cell::Pyramid => Quadrature::pyramid(degree),
         }
+    }
+
+    /// The rule of the triangle on each triangle between the origin and two neighbouring corners.
+    fn fan(cell: Cell, degree: usize) -> Quadrature {
+        let local = Quadrature::of_degree(Cell::Triangle, degree);
+        let mut rule = Quadrature { dimension: 2, points: Vec::new(), weights: Vec::new() };
+        let corners = cell.corners();
+        for (i, a) in corners.iter().enumerate() {
+            let b = corners[(i + 1) % corners.len()];
+            for (s, w) in local.points.chunks_exact(2).zip(&local.weights) {
+                rule.points.extend((0..2).map(|k| s[0] * a[k] + s[1] * b[k]));
+                rule.weights.push(w * (a[0] * b[1] - a[1] * b[0]));
+            }
+        }
+        rule
+    }
+
+    /// The points of a plane rule at each Gauss–Legendre point of the third coordinate.
+    fn times_interval(self, degree: usize) -> Quadrature {
+        let line = Quadrature::gauss_legendre(1, degree / 2 + 1);
+        let mut rule = Quadrature { dimension: self.dimension + 1, points: Vec::new(), weights: Vec::new() };
+        for (z, wz) in line.points.iter().zip(&line.weights) {
+            for (at, w) in self.points.chunks_exact(self.dimension).zip(&self.weights) {
+                rule.points.extend(at.iter().chain([z]));
+                rule.weights.push(w * wz);
+            }
+        }
+        rule
+    }
+
+    /// A square rule in every plane of constant ζ, squeezed by 1 − ζ; its area adds two to the degree along ζ.
+    fn pyramid(degree: usize) -> Quadrature {
+        let square = Quadrature::gauss_legendre(2, degree / 2 + 1);
+        let line = Quadrature::gauss_legendre(1, (degree + 2) / 2 + 1);
+        let mut rule = Quadrature { dimension: 3, points: Vec::new(), weights: Vec::new() };
+        for (s, ws) in line.points.iter().zip(&line.weights) {
+            let (z, scale) = ((1.0 + s) / 2.0, (1.0 - s) / 2.0);
+            for (at, w) in square.points.chunks_exact(2).zip(&square.weights) {
+                rule.points.extend([scale * at[0], scale * at[1], z]);
+                rule.weights.push(w * ws / 2.0 * scale * scale);
+            }
+        }
+        rule
     }
 
     /// The product rule with `points` Gauss–Legendre points per direction on [-1, 1]^dimension.
@@ -103,26 +154,51 @@ mod tests {
         (1..=n).map(|i| i as f64).product()
     }
 
-    /// `∫ x^a y^b z^c` is `a! b! c! / (a+b+c+d)!` over the simplex, and a product of `2/(e+1)` (0 for odd e) over the
-    /// cube. Sums of a few thousand terms of size one round to 1e-13.
+    /// `∫ x^a y^b z^c`: `a! b! c!/(a+b+c+d)!` over the simplex, a product of `2/(e+1)` (0 for odd e) over the cube, their
+    /// product over the wedge; over the pyramid `∫ (1−z)^(a+b+2) z^c dz`, a beta function, times the square's; over the
+    /// pentagon by Green's theorem `Σ_edges ∫ x^(a+1)/(a+1) y^b dy`, here with a rule of the line that is tested too.
+    fn integral(cell: Cell, e: &[usize]) -> f64 {
+        let line = |e: usize| if e % 2 == 0 { 2.0 / (e + 1) as f64 } else { 0.0 };
+        let simplex = |e: &[usize]| {
+            e.iter().map(|e| factorial(*e)).product::<f64>() / factorial(e.iter().sum::<usize>() + e.len())
+        };
+        match cell {
+            Cell::Triangle | Cell::Tetrahedron => simplex(e),
+            Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron => e.iter().map(|e| line(*e)).product(),
+            Cell::Wedge => simplex(&e[..2]) * line(e[2]),
+            Cell::Pyramid => {
+                let n = e[0] + e[1] + 2;
+                line(e[0]) * line(e[1]) * factorial(n) * factorial(e[2]) / factorial(n + e[2] + 1)
+            }
+            Cell::Pentagon => {
+                let rule = Quadrature::gauss_legendre(1, (e[0] + e[1]) / 2 + 2);
+                let corners = cell.corners();
+                let edge = |i: usize| -> f64 {
+                    let (a, b) = (corners[i], corners[(i + 1) % 5]);
+                    let at = |s: f64, k: usize| a[k] + (1.0 + s) / 2.0 * (b[k] - a[k]);
+                    let value = |s: f64| at(s, 0).powi(e[0] as i32 + 1) / (e[0] + 1) as f64 * at(s, 1).powi(e[1] as i32);
+                    rule.points.iter().zip(&rule.weights).map(|(s, w)| w * value(*s) * (b[1] - a[1]) / 2.0).sum()
+                };
+                (0..5).map(edge).sum()
+            }
+        }
+    }
+
+    /// Sums of a few thousand terms of size one round to 1e-13.
     #[test]
     fn rules_integrate_every_monomial_of_their_degree() {
-        for cell in [Cell::Interval, Cell::Triangle, Cell::Quadrilateral, Cell::Tetrahedron, Cell::Hexahedron] {
+        for cell in Cell::ALL {
             let d = cell.dimension();
+            assert!((integral(cell, &vec![0; d]) - cell.content()).abs() < 1e-15, "{cell:?}");
             for degree in 0..=20 {
                 let rule = Quadrature::of_degree(cell, degree);
                 assert!(rule.weights.iter().all(|w| *w > 0.0));
                 for code in 0..(degree + 1).pow(d as u32) {
                     let e: Vec<usize> = (0..d).map(|k| code / (degree + 1).pow(k as u32) % (degree + 1)).collect();
-                    let total: usize = e.iter().sum();
-                    if total > degree {
+                    if e.iter().sum::<usize>() > degree {
                         continue;
                     }
-                    let exact: f64 = if cell.is_simplex() {
-                        e.iter().map(|e| factorial(*e)).product::<f64>() / factorial(total + d)
-                    } else {
-                        e.iter().map(|e| if e % 2 == 0 { 2.0 / (e + 1) as f64 } else { 0.0 }).product()
-                    };
+                    let exact = integral(cell, &e);
                     let monomial = |x: &[f64]| x.iter().zip(&e).map(|(x, e)| x.powi(*e as i32)).product::<f64>();
                     let sum: f64 = rule.points.chunks_exact(d).zip(&rule.weights).map(|(x, w)| w * monomial(x)).sum();
                     assert!((sum - exact).abs() < 1e-13, "{cell:?} degree {degree} exponents {e:?}: {sum} {exact}");

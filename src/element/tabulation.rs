@@ -10,6 +10,9 @@ pub struct Tabulation<C = f64> {
     pub dimension: usize,
     /// `[points]`.
     pub weights: Vec<C>,
+    /// Weights of the term λ (div u)², `[points]`; empty where they are the same. A point that serves one term alone has
+    /// no weight in the other.
+    pub volumetric: Vec<C>,
     /// `[points × nodes]`.
     pub values: Vec<C>,
     /// `[points × nodes × dimension]`, with respect to the reference coordinates.
@@ -17,15 +20,23 @@ pub struct Tabulation<C = f64> {
 }
 
 impl Tabulation {
-    pub fn new(functions: &ShapeFunctions, rule: &Quadrature) -> Tabulation {
+    /// At the points of `rule`, and of `volumetric` where the term λ (div u)² has a rule of its own.
+    pub fn new(functions: &ShapeFunctions, rule: &Quadrature, volumetric: Option<&Quadrature>) -> Tabulation {
         let mut table = Tabulation {
             nodes: functions.values.len(),
             dimension: rule.dimension,
             weights: rule.weights.clone(),
+            volumetric: Vec::new(),
             values: Vec::new(),
             gradients: Vec::new(),
         };
-        for point in rule.points.chunks_exact(rule.dimension) {
+        if let Some(other) = volumetric {
+            table.volumetric = vec![0.0; rule.weights.len()];
+            table.volumetric.extend(&other.weights);
+            table.weights.extend(vec![0.0; other.weights.len()]);
+        }
+        let points = rule.points.iter().chain(volumetric.iter().flat_map(|other| &other.points));
+        for point in points.copied().collect::<Vec<f64>>().chunks_exact(rule.dimension) {
             table.values.extend(functions.values.iter().map(|n| n.evaluate(point)));
             table.gradients.extend(functions.gradients.iter().flatten().map(|dn| dn.evaluate(point)));
         }
@@ -50,6 +61,7 @@ impl Tabulation {
             nodes: self.nodes,
             dimension: self.dimension,
             weights: all(&self.weights),
+            volumetric: all(&self.volumetric),
             values: all(&self.values),
             gradients: all(&self.gradients),
         }

@@ -1,10 +1,11 @@
 //! Fits of many cells, one cell per lane of the machine's registers.
 
 use super::constrained::solve_nonnegative;
-use super::least_squares::normal_equations;
+use super::least_squares::{normal_equations, off_diagonal_equations};
 use super::method::{Method, Verdict};
+use super::nodal::{Nodal, is_shorter};
 use super::normal::{Normal, Rank};
-use super::{Certificate, Fit, Weight};
+use super::{Certificate, Fit, Objective, Weight};
 use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::{Lanes, Real, Scalar};
@@ -95,7 +96,12 @@ struct Room<'a, S: Simd> {
     /// Of the others.
     method: Option<Method<Lanes<S>>>,
     x: Vec<Lanes<S>>,
+    /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
+    measured: Vec<Lanes<S>>,
     geometry: Geometry<Lanes<S>>,
+    /// Whether the constants are found by way of the nodes.
+    by_nodes: bool,
+    nodal: Nodal<Lanes<S>>,
     normal: Normal<Lanes<S>>,
     tied: Normal<Lanes<S>>,
     /// The equations of a single cell whose constants are bounded.
@@ -116,7 +122,10 @@ impl<'a, S: Simd> Room<'a, S> {
             weight: fit.objective.weight().unwrap_or(Weight::None),
             method: Method::of_kind(&zero, springs, &fit),
             x: vec![zero; element.nodes() * element.dimension()],
+            measured: vec![zero; springs.functions.len() * element.nodes() * element.dimension()],
             geometry: Geometry::of_kind(&zero, &element.tabulation),
+            by_nodes: fit.objective == Objective::Frobenius(Weight::None) && !fit.tied && is_shorter(springs),
+            nodal: Nodal::default(),
             normal: Normal::default(),
             tied: Normal::default(),
             single: Normal::default(),
@@ -127,20 +136,33 @@ impl<'a, S: Simd> Room<'a, S> {
     /// Jacobian of one is not safely positive or its equations are not regular.
     #[inline(always)]
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
+        if self.weight == Weight::OffDiagonal && !self.springs.functions.is_empty() {
+            return false;
+        }
         self.gather(nodes);
         if !self.geometry.update(&self.element.tabulation, &self.x) {
             return false;
         }
+        self.measure(nodes.len() / self.element.nodes());
         if let Some(method) = &mut self.method {
             let zero = self.x[0].zero();
             zero.vectorize(
                 #[inline(always)]
-                || method.solve(self.springs, &self.x, &self.geometry, &self.moduli),
+                || method.solve(self.springs, &self.x, &self.geometry, &self.moduli, &self.measured),
             );
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 tally.add(method.finish(|value| value.as_slice()[lane], constants));
             }
             return true;
+        }
+        if self.by_nodes {
+            if !self.nodal.solve(self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal) {
+                return false;
+            }
+            self.write(constants);
+            if !self.fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
+                return true;
+            }
         }
         normal_equations(self.weight, self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal);
         let equations = if self.fit.tied {
@@ -154,14 +176,8 @@ impl<'a, S: Simd> Room<'a, S> {
         if !equations.solve_regular() {
             return false;
         }
+        self.write(constants);
         let m = self.springs.len();
-        let cells = constants.len() / m;
-        for s in 0..m {
-            let k = equations.rhs[if self.fit.tied { self.springs.groups[s] } else { s }].as_slice();
-            for cell in 0..cells {
-                constants[cell * m + s] = k[cell];
-            }
-        }
         if let Some(kept) = kept {
             for (lane, constants) in constants.chunks_exact_mut(m).enumerate() {
                 if constants.iter().all(|k| *k >= 0.0) {
@@ -178,6 +194,19 @@ impl<'a, S: Simd> Room<'a, S> {
         true
     }
 
+    /// The solution of the equations as the constants of the cells, one per lane.
+    #[inline(always)]
+    fn write(&self, constants: &mut [f64]) {
+        let m = self.springs.len();
+        let cells = constants.len() / m;
+        for s in 0..m {
+            let k = if self.fit.tied { &self.tied.rhs[self.springs.groups[s]] } else { &self.normal.rhs[s] };
+            for cell in 0..cells {
+                constants[cell * m + s] = k.as_slice()[cell];
+            }
+        }
+    }
+
     /// A single cell, with all care.
     fn fit_singular(&mut self, nodes: &[usize], constants: &mut [f64]) -> Result<Verdict, Fault> {
         let mut x = vec![0.0; self.x.len()];
@@ -185,11 +214,17 @@ impl<'a, S: Simd> Room<'a, S> {
         let mut geometry = Geometry::new(&self.element.tabulation);
         geometry.set(&self.element.tabulation, &x)?;
         if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
-            method.solve(self.springs, &x, &geometry, &self.moduli);
+            let mut measured = vec![0.0; self.measured.len()];
+            self.springs.function_gradients(&x, &mut measured);
+            method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
             return Ok(method.finish(|value| *value, constants));
         }
         let mut normal = Normal::default();
-        normal_equations(self.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
+        if self.springs.functions.is_empty() {
+            normal_equations(self.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
+        } else {
+            normal = off_diagonal_equations(self.springs, &x, &geometry, self.moduli);
+        }
         if self.fit.tied {
             let mut tied = Normal::default();
             normal.tied(&self.springs.groups, self.springs.names.len(), &mut tied);
@@ -200,10 +235,26 @@ impl<'a, S: Simd> Room<'a, S> {
         Ok(Verdict { certificate: None, rank, reached: true })
     }
 
+    /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first.
+    fn measure(&mut self, cells: usize) {
+        if self.measured.is_empty() {
+            return;
+        }
+        let mut rows = vec![0.0; self.measured.len()];
+        for lane in (0..Lanes::<S>::COUNT).rev() {
+            let from = if lane < cells { lane } else { 0 };
+            let x: Vec<f64> = self.x.iter().map(|x| x.as_slice()[from]).collect();
+            rows.fill(0.0);
+            self.springs.function_gradients(&x, &mut rows);
+            self.measured.iter_mut().zip(&rows).for_each(|(lanes, value)| lanes.as_mut_slice()[lane] = *value);
+        }
+    }
+
     /// The coordinates of the cells' nodes, one cell per lane; lanes without a cell repeat the first.
     #[inline(always)]
     fn gather(&mut self, nodes: &[usize]) {
         match self.element.dimension() {
+            1 => self.gather_in::<1>(nodes),
             2 => self.gather_in::<2>(nodes),
             _ => self.gather_in::<3>(nodes),
         }

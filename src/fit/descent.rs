@@ -138,7 +138,9 @@ pub fn search(
     iterations: u64,
 ) -> Vec<f64> {
     let mut reduced = Reduced::of_kind(&0.0, springs, fit.tied);
-    reduced.set(fit.objective.weight().unwrap_or(Weight::Relative), springs, x, geometry, moduli);
+    let mut measured = vec![0.0; springs.functions.len() * x.len()];
+    springs.function_gradients(x, &mut measured);
+    reduced.set(fit.objective.weight().unwrap_or(Weight::Relative), springs, x, geometry, moduli, &measured);
     let count = reduced.scales.len();
     let start = vec![reduced.uniform(); count];
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;

@@ -20,7 +20,7 @@ use std::array::from_fn;
 
 /// The constants of one element in any kind of number, such as `f32` or exact rationals; nodes at `x`,
 /// `[nodes × dimension]`. None if the Jacobian is not positive everywhere or the springs are linearly dependent, and for the
-/// weight `relative`, which needs roots.
+/// weight `relative` and springs on functions, which need roots.
 pub fn constants_in<T: Scalar>(
     weight: Weight,
     springs: &Springs,
@@ -28,7 +28,7 @@ pub fn constants_in<T: Scalar>(
     x: &[T],
     moduli: &Moduli<T::Constant>,
 ) -> Option<Vec<T>> {
-    if weight == Weight::Relative {
+    if weight == Weight::Relative || !springs.functions.is_empty() {
         return None;
     }
     let mut geometry = Geometry::of_kind(x.first()?, table);
@@ -57,6 +57,7 @@ pub fn normal_equations<T: Scalar>(
         (3, 4) => equations::<T, 3>(4, weight, springs, x, geometry, moduli, normal),
         (3, 8) => equations::<T, 3>(8, weight, springs, x, geometry, moduli, normal),
         (2, n) => equations::<T, 2>(n, weight, springs, x, geometry, moduli, normal),
+        (1, n) => equations::<T, 1>(n, weight, springs, x, geometry, moduli, normal),
         (_, n) => equations::<T, 3>(n, weight, springs, x, geometry, moduli, normal),
     }
 }
@@ -73,35 +74,18 @@ fn equations<T: Scalar, const D: usize>(
 ) {
     let x = &x.as_chunks::<D>().0[..n];
     let zero = x[0][0].zero();
-    let (lambda, mu) = (zero.constant(&moduli.lambda), zero.constant(&moduli.mu));
     let (m, lengths) = (springs.len(), springs.pairs.len());
     let pairs = &springs.pairs[..];
     let Normal { gram, rhs, edges, inverse_squares: q, images, .. } = normal;
-    rhs.clear();
-    rhs.resize(m, zero.clone());
     gram.resize(m * m, zero.clone());
-    edges.resize(lengths * D, zero.clone());
     images.resize(lengths * D, zero.clone());
-    q.resize(lengths, zero.clone());
-    let (edges, images) = (edges.as_chunks_mut::<D>().0, images.as_chunks_mut::<D>().0);
-    // d_s = x_j − x_i and 1/‖d_s‖²
-    for ((d, q), &[i, j]) in edges.iter_mut().zip(&mut *q).zip(pairs) {
-        *d = difference(&x[j], &x[i]);
-        *q = zero.one() / &dot(d, d);
-    }
-    let (edges, q) = (&*edges, &q[..lengths]);
-    let cell = Cell { springs, x, edges, q, geometry, lambda, mu };
+    let images = images.as_chunks_mut::<D>().0;
+    let cell = Cell::new(springs, x, geometry, moduli, edges, q, rhs);
+    let edges = cell.edges;
     let two = zero.one() + &zero.one();
     match weight {
         Weight::None => {
-            cell.energies(
-                rhs,
-                #[inline(always)]
-                |s, grad: &[[T; D]]| {
-                    let w = difference(&grad[pairs[s][1]], &grad[pairs[s][0]]);
-                    (dot(&edges[s], &w).squared(), dot(&w, &w))
-                },
-            );
+            cell.plain_energies(rhs);
             clear(gram, m, &zero);
             for &(s, t) in &springs.touching {
                 gram[t * m + s] = cell.cosine_squared(s, t);
@@ -163,24 +147,87 @@ fn equations<T: Scalar, const D: usize>(
         }
     }
     if springs.content.is_some() {
-        cell.content(weight, gram, rhs);
+        cell.content(weight, &mut gram[(m - 1) * m..m * m], rhs);
     }
 }
 
+/// The equations of the blocks of different nodes where springs measure functions, of which only g is known:
+/// `M_st = (g_s·g_t)² − Σ_a (g_sa·g_ta)²`, `b_s = g_sᵀ R g_s − Σ_a g_saᵀ R_aa g_sa`.
+pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, moduli: Moduli) -> Normal {
+    let (d, m, size) = (springs.dimension, springs.len(), x.len());
+    let r = geometry.stiffness(moduli);
+    let mut g = Vec::new();
+    springs.gradients(x, geometry, &mut g);
+    let row = |s: usize| &g[s * size..(s + 1) * size];
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut normal = Normal::new(vec![0.0; m * m], vec![0.0; m]);
+    for s in 0..m {
+        for t in 0..=s {
+            let alone = row(s).chunks_exact(d).zip(row(t).chunks_exact(d)).map(|(a, b)| dot(a, b).powi(2));
+            normal.gram[s * m + t] = dot(row(s), row(t)).powi(2) - alone.sum::<f64>();
+        }
+        for i in 0..size {
+            let others = (0..size).filter(|j| j / d != i / d);
+            normal.rhs[s] += row(s)[i] * others.map(|j| r[(i, j)] * row(s)[j]).sum::<f64>();
+        }
+    }
+    normal
+}
+
 /// One element, or one per lane.
-struct Cell<'a, T, const D: usize> {
+pub struct Cell<'a, T, const D: usize> {
     springs: &'a Springs,
     x: &'a [[T; D]],
-    /// `d_s`
-    edges: &'a [[T; D]],
+    /// `d_s = x_j − x_i`
+    pub edges: &'a [[T; D]],
     /// `1/‖d_s‖²`
-    q: &'a [T],
+    pub q: &'a [T],
     geometry: &'a Geometry<T>,
     lambda: T,
     mu: T,
 }
 
-impl<T: Scalar, const D: usize> Cell<'_, T, D> {
+impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
+    /// Fills the room for the edges with those of the element, and `rhs` with zeros.
+    #[inline(always)]
+    pub fn new(
+        springs: &'a Springs,
+        x: &'a [[T; D]],
+        geometry: &'a Geometry<T>,
+        moduli: &Moduli<T::Constant>,
+        edges: &'a mut Vec<T>,
+        q: &'a mut Vec<T>,
+        rhs: &mut Vec<T>,
+    ) -> Cell<'a, T, D> {
+        let zero = x[0][0].zero();
+        let lengths = springs.pairs.len();
+        rhs.clear();
+        rhs.resize(springs.len(), zero.clone());
+        edges.resize(lengths * D, zero.clone());
+        q.resize(lengths, zero.clone());
+        let edges = edges.as_chunks_mut::<D>().0;
+        for ((d, q), &[i, j]) in edges.iter_mut().zip(&mut *q).zip(&springs.pairs) {
+            *d = difference(&x[j], &x[i]);
+            *q = zero.one() / &dot(d, d);
+        }
+        let (lambda, mu) = (zero.constant(&moduli.lambda), zero.constant(&moduli.mu));
+        Cell { springs, x, edges, q: &q[..lengths], geometry, lambda, mu }
+    }
+
+    /// `b_s = g_sᵀ R g_s` of the length springs.
+    #[inline(always)]
+    pub fn plain_energies(&self, rhs: &mut [T]) {
+        let (edges, pairs) = (self.edges, &self.springs.pairs[..]);
+        self.energies(
+            rhs,
+            #[inline(always)]
+            |s, grad: &[[T; D]]| {
+                let w = difference(&grad[pairs[s][1]], &grad[pairs[s][0]]);
+                (dot(&edges[s], &w).squared(), dot(&w, &w))
+            },
+        );
+    }
+
     /// `(n_s·n_t)²`.
     #[inline(always)]
     fn cosine_squared(&self, s: usize, t: usize) -> T {
@@ -192,10 +239,10 @@ impl<T: Scalar, const D: usize> Cell<'_, T, D> {
     #[inline(always)]
     fn energies(&self, rhs: &mut [T], terms: impl Fn(usize, &[[T; D]]) -> (T, T)) {
         let (n, rhs) = (self.x.len(), &mut rhs[..self.q.len()]);
-        let sum = self.lambda.clone() + &self.mu;
-        for (grad, v) in self.geometry.gradients.chunks_exact(n * D).zip(&self.geometry.volumes) {
+        for (grad, v, w) in self.geometry.each_point() {
             let grad = &grad.as_chunks::<D>().0[..n];
-            let (along, across) = (sum.clone() * v, self.mu.clone() * v);
+            let across = self.mu.clone() * v;
+            let along = (self.lambda.clone() * w) + &across;
             for (s, b) in rhs.iter_mut().enumerate() {
                 let (squared, plain) = terms(s, grad);
                 let energy = b.clone().plus_product(&across, &plain);
@@ -207,9 +254,8 @@ impl<T: Scalar, const D: usize> Cell<'_, T, D> {
     /// The last row of `M` and entry of `b`: the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V the
     /// content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
     #[inline(always)]
-    fn content(&self, weight: Weight, gram: &mut [T], rhs: &mut [T]) {
-        let m = self.springs.len();
-        let last = m - 1;
+    pub fn content(&self, weight: Weight, row: &mut [T], rhs: &mut [T]) {
+        let last = self.springs.len() - 1;
         let zero = self.lambda.zero();
         let two = zero.one() + &zero.one();
         let gradient = self.geometry.content_gradient();
@@ -231,7 +277,7 @@ impl<T: Scalar, const D: usize> Cell<'_, T, D> {
         };
         for (s, &[i, j]) in self.springs.pairs.iter().enumerate() {
             let d = &self.edges[s];
-            gram[last * m + s] = match weight {
+            row[s] = match weight {
                 Weight::OffDiagonal => zero.clone() - &(two.clone() * &self.q[s] * &dot(d, &c[i]) * &dot(d, &c[j])),
                 _ => {
                     let along = h2.clone() * &dot(d, &difference(&c[j], &c[i]));
@@ -239,7 +285,7 @@ impl<T: Scalar, const D: usize> Cell<'_, T, D> {
                 }
             };
         }
-        gram[last * m + last] = match weight {
+        row[last] = match weight {
             Weight::OffDiagonal => cc.squared() - &fourth,
             _ => {
                 let mut trace = linear[0][0].clone();
@@ -249,8 +295,9 @@ impl<T: Scalar, const D: usize> Cell<'_, T, D> {
                 (h2.clone() * &cc).plus_product(&trace, &volume).squared()
             }
         };
-        for (grad, v) in self.geometry.gradients.chunks_exact(c.len() * D).zip(&self.geometry.volumes) {
+        for (grad, v, w) in self.geometry.each_point() {
             let grad = grad.as_chunks::<D>().0;
+            let (lambda, mu) = (self.lambda.clone() * w, self.mu.clone() * v);
             let mut h = linear.clone();
             let mut alone = zero.clone();
             for (c, g) in c.iter().zip(grad) {
@@ -262,10 +309,10 @@ impl<T: Scalar, const D: usize> Cell<'_, T, D> {
                     }
                 }
                 if weight == Weight::OffDiagonal {
-                    alone = alone + &density(&outer, &self.lambda, &self.mu);
+                    alone = alone + &density(&outer, &lambda, &mu);
                 }
             }
-            rhs[last] = rhs[last].clone().plus_product(v, &(density(&h, &self.lambda, &self.mu) - &alone));
+            rhs[last] = rhs[last].clone() + &(density(&h, &lambda, &mu) - &alone);
         }
     }
 }

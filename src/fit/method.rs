@@ -2,6 +2,7 @@
 
 use super::ambiguity::{KEPT, least_frobenius};
 use super::constrained::solve_nonnegative;
+use super::dense::{inner, row_products};
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
 use super::reduction::Reduced;
@@ -68,10 +69,12 @@ impl<T: Real> Method<T> {
         let reduced = Reduced::of_kind(any, springs, fit.tied);
         let m = springs.len();
         let (weight, solver) = match fit.objective {
-            Objective::Frobenius(Weight::Relative) => {
-                let products = vec![any.zero(); m * m];
+            // The closed form knows length springs and the content; of what else is measured only the gradient is known.
+            Objective::Frobenius(Weight::OffDiagonal) => return None,
+            Objective::Frobenius(weight) if weight == Weight::Relative || !springs.functions.is_empty() => {
+                let products = vec![any.zero(); m * m.max(reduced.order)];
                 let normal = Normal::default();
-                (Weight::Relative, Solver::LeastSquares { normal, products })
+                (weight, Solver::LeastSquares { normal, products })
             }
             Objective::Frobenius(_) => return None,
             Objective::Spectral(weight) => {
@@ -85,10 +88,10 @@ impl<T: Real> Method<T> {
         Some(Method { reduced, weight, nonnegative: fit.nonnegative, solver })
     }
 
-    /// Solves for the element with nodes at `x`.
+    /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] needs it.
     #[inline(always)]
-    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli) {
-        self.reduced.set(self.weight, springs, x, geometry, moduli);
+    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli, measured: &[T]) {
+        self.reduced.set(self.weight, springs, x, geometry, moduli, measured);
         match &mut self.solver {
             Solver::LeastSquares { normal, products } => {
                 let (c, zero) = (self.reduced.scales.len(), x[0].zero());
@@ -96,9 +99,11 @@ impl<T: Real> Method<T> {
                 self.reduced.gram(products, &mut normal.gram);
                 normal.rhs.clear();
                 normal.rhs.resize(c, zero);
-                let m = springs.len();
+                let (p, h) = (self.reduced.order, self.reduced.rows());
+                row_products(h, &self.reduced.stiffness[..p * p], p, false, products);
                 for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
-                    normal.rhs[unknown] = normal.rhs[unknown].clone() + &products[s * m + s];
+                    let row = s * p..(s + 1) * p;
+                    normal.rhs[unknown] = normal.rhs[unknown].clone() + &inner(&h[row.clone()], &products[row]);
                 }
             }
             Solver::Spectral(solver) => solver.solve(&self.reduced),

@@ -9,6 +9,7 @@ mod descent;
 mod divergence;
 mod least_squares;
 mod method;
+mod nodal;
 mod normal;
 mod objective;
 mod reduction;

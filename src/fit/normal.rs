@@ -19,7 +19,7 @@ pub struct Normal<T = f64> {
     pub(super) images: Vec<T>,
     /// Room for their inverse squares, `[springs]`.
     pub(super) inverse_squares: Vec<T>,
-    pivots: Vec<T>,
+    pub(super) pivots: Vec<T>,
 }
 
 /// How the constants were determined.

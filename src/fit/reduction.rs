@@ -56,12 +56,22 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// Fills in the element with nodes at `x`, `[nodes × dimension]`.
+    /// Fills in the element with nodes at `x`, `[nodes × dimension]`; `measured` are the gradients of the springs that
+    /// measure a function, `[springs × nodes·dimension]`.
     #[inline(always)]
-    pub fn set(&mut self, weight: Weight, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli) {
+    pub fn set(
+        &mut self,
+        weight: Weight,
+        springs: &Springs,
+        x: &[T],
+        geometry: &Geometry<T>,
+        moduli: &Moduli,
+        measured: &[T],
+    ) {
         match springs.dimension {
-            2 => self.set_in::<2>(weight, springs, x, geometry, moduli),
-            _ => self.set_in::<3>(weight, springs, x, geometry, moduli),
+            1 => self.set_in::<1>(weight, springs, x, geometry, moduli, measured),
+            2 => self.set_in::<2>(weight, springs, x, geometry, moduli, measured),
+            _ => self.set_in::<3>(weight, springs, x, geometry, moduli, measured),
         }
     }
 
@@ -73,12 +83,13 @@ impl<T: Real> Reduced<T> {
         x: &[T],
         geometry: &Geometry<T>,
         moduli: &Moduli,
+        measured: &[T],
     ) {
         let n = springs.nodes;
         let x = &x.as_chunks::<D>().0[..n];
         self.set_mix(weight, x);
         self.set_stiffness::<D>(n, geometry, moduli);
-        self.set_gradients(springs, x, geometry);
+        self.set_gradients(springs, x, geometry, measured);
         self.take_out_rotations::<D>(n);
         if weight == Weight::Relative {
             self.divide_by_stiffness();
@@ -128,9 +139,9 @@ impl<T: Real> Reduced<T> {
             *entry = zero.clone();
         }
         let differences = self.work[..full].as_chunks_mut::<D>().0;
-        for (grad, v) in geometry.gradients.chunks_exact(n * D).zip(&geometry.volumes) {
+        for (grad, v, w) in geometry.each_point() {
             mixed(&self.mix, grad.as_chunks::<D>().0, differences);
-            let (lambda, mu) = (v.clone().scaled(&moduli.lambda), v.clone().scaled(&moduli.mu));
+            let (lambda, mu) = (w.clone().scaled(&moduli.lambda), v.clone().scaled(&moduli.mu));
             for a in 0..n - 1 {
                 let ga = &differences[a];
                 let (lambda_a, mu_a): ([T; D], [T; D]) =
@@ -152,7 +163,7 @@ impl<T: Real> Reduced<T> {
     }
 
     #[inline(always)]
-    fn set_gradients<const D: usize>(&mut self, springs: &Springs, x: &[[T; D]], geometry: &Geometry<T>) {
+    fn set_gradients<const D: usize>(&mut self, springs: &Springs, x: &[[T; D]], geometry: &Geometry<T>, measured: &[T]) {
         let n = x.len();
         let full = (n - 1) * D;
         for ((g, norm), &[i, j]) in self.gradients.chunks_exact_mut(full).zip(&mut self.norms).zip(&springs.pairs) {
@@ -164,6 +175,10 @@ impl<T: Real> Reduced<T> {
                     g[k] = d[k].clone() * &factor;
                 }
             }
+        }
+        for (s, g) in (springs.pairs.len()..).zip(measured.chunks_exact(n * D)) {
+            mixed(&self.mix, g.as_chunks::<D>().0, self.gradients[s * full..][..full].as_chunks_mut::<D>().0);
+            self.norms[s] = self.size.one();
         }
         if springs.content.is_some() {
             let last = springs.len() - 1;

@@ -10,7 +10,8 @@ const MOST_CELLS: usize = 2_000_000;
 
 /// A box of `cells` equal cells per direction, `size` m long, with its least corner at `origin` m.
 ///
-/// A simplex divides each square or cube into d! simplices along its main diagonal (Kuhn 1960). The groups are
+/// A simplex divides each square or cube into d! simplices along its main diagonal (Kuhn 1960), a wedge into two, a
+/// pyramid into six around the centre. The groups are
 /// `xmin`, `xmax`, `ymin`, … for the faces and `body` for the cells.
 #[derive(Debug, Clone)]
 pub struct BoxMesh {
@@ -73,6 +74,9 @@ impl BoxMesh {
     fn check(&self, d: usize) -> Result<()> {
         if d < 2 {
             return Err(Error::expected("element", "an element of two or three dimensions", &self.element.name));
+        }
+        if parts(self.element.cell).is_empty() {
+            return Err(Error::expected("element", "an element whose cells fill a box", &self.element.name));
         }
         let lengths = [("size", self.size.len()), ("cells", self.cells.len()), ("origin", self.origin.len())];
         if let Some((key, found)) = lengths.iter().find(|(_, found)| *found != d) {
@@ -138,17 +142,11 @@ impl Part {
     }
 }
 
+/// Cells that fill the unit cube; none for a cell that fills no box.
 fn parts(cell: Cell) -> Vec<Part> {
     let d = cell.dimension();
     let unit = |k: usize, length: f64| (0..d).map(|i| if i == k { length } else { 0.0 }).collect::<Vec<_>>();
-    if !cell.is_simplex() {
-        return vec![Part { origin: vec![0.5; d], edges: (0..d).map(|k| unit(k, 0.5)).collect() }];
-    }
-    // The simplex 0, e_p, e_p + e_q, … for every order p, q, … of the directions.
-    let orders: &[&[usize]] = match d {
-        2 => &[&[0, 1], &[1, 0]],
-        _ => &[&[0, 1, 2], &[0, 2, 1], &[1, 0, 2], &[1, 2, 0], &[2, 0, 1], &[2, 1, 0]],
-    };
+    // The simplex 0, e_p, e_p + e_q, … for an order p, q, … of the directions.
     let walk = |order: &&[usize]| {
         let mut corner = vec![0.0; d];
         let step = |&k: &usize| {
@@ -157,5 +155,30 @@ fn parts(cell: Cell) -> Vec<Part> {
         };
         Part { origin: vec![0.0; d], edges: order.iter().map(step).collect() }
     };
-    orders.iter().map(walk).collect()
+    let plane: &[&[usize]] = &[&[0, 1], &[1, 0]];
+    let space: &[&[usize]] = &[&[0, 1, 2], &[0, 2, 1], &[1, 0, 2], &[1, 2, 0], &[2, 0, 1], &[2, 1, 0]];
+    match cell {
+        Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron => {
+            vec![Part { origin: vec![0.5; d], edges: (0..d).map(|k| unit(k, 0.5)).collect() }]
+        }
+        Cell::Triangle => plane.iter().map(walk).collect(),
+        Cell::Tetrahedron => space.iter().map(walk).collect(),
+        Cell::Wedge => {
+            let raise = |mut part: Part| {
+                part.origin[2] = 0.5;
+                part.edges.push(unit(2, 0.5));
+                part
+            };
+            plane.iter().map(walk).map(raise).collect()
+        }
+        // Each stands on a face, its apex in the centre.
+        Cell::Pyramid => {
+            let stand = |k: usize, at: f64| {
+                let origin: Vec<f64> = (0..3).map(|i| if i == k { at } else { 0.5 }).collect();
+                Part { origin, edges: vec![unit((k + 1) % 3, 0.5), unit((k + 2) % 3, 0.5), unit(k, 0.5 - at)] }
+            };
+            (0..3).flat_map(|k| [stand(k, 0.0), stand(k, 1.0)]).collect()
+        }
+        Cell::Pentagon => Vec::new(),
+    }
 }

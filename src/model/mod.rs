@@ -6,7 +6,7 @@ mod support;
 mod system;
 
 pub use load::{Action, nodal_forces};
-pub use network::{ContentSpring, LengthSpring, Network};
+pub use network::{LengthSpring, MeasureSpring, Network};
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};
 

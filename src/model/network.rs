@@ -1,10 +1,12 @@
 //! The mass-spring model: the springs of all cells, those between the same two points added up.
 
 use super::Entries;
-use super::system::{dofs, each_cell};
+use super::system::dofs;
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
-use crate::springs::distance;
+use crate::element::SpringKind;
+use crate::springs::{Measure, distance};
+use crate::stiffness::gather;
 use faer::sparse::Triplet;
 use rayon::prelude::*;
 
@@ -19,25 +21,26 @@ pub struct LengthSpring {
     pub rest: f64,
 }
 
-/// A spring on the area or volume of one cell.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContentSpring {
+/// A spring that measures something else of a few points: an angle, an area, a volume, a coupling, a user's measure.
+#[derive(Debug, Clone)]
+pub struct MeasureSpring {
+    pub kind: SpringKind,
     pub points: Vec<usize>,
-    /// N/m⁵; in two dimensions N/m³.
+    /// In J per square of the measure's unit: of an area N/m³, of a volume N/m⁵, of an angle N·m.
     pub constant: f64,
-    /// Volume at rest, m³; in two dimensions the area, m².
+    /// The measure at rest, m², m³, rad, …
     pub rest: f64,
-    /// Gradient of the volume with respect to the points, `[points × dimension]`, m² (m).
-    pub gradient: Vec<f64>,
+    pub measure: Measure,
 }
 
 /// Springs on the points of a mesh. Springs whose constant is zero are not in it.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Network {
     pub dimension: usize,
     /// Sorted by their points.
     pub lengths: Vec<LengthSpring>,
-    pub contents: Vec<ContentSpring>,
+    /// Cell after cell.
+    pub others: Vec<MeasureSpring>,
 }
 
 impl Network {
@@ -45,19 +48,7 @@ impl Network {
     pub fn assemble(mesh: &Mesh, fits: &[CellFits]) -> Network {
         let mut network = Network { dimension: mesh.dimension, ..Network::default() };
         network.lengths = merge(mesh, fits);
-        if fits.iter().any(|f| f.springs.content.is_some()) {
-            each_cell(mesh, |cell, nodes, geometry| {
-                let springs = &fits[cell.block].springs;
-                if springs.content.is_none() {
-                    return;
-                }
-                let constant = fits[cell.block].constants[(cell.cell + 1) * springs.len() - 1];
-                if constant != 0.0 {
-                    let (rest, gradient) = (geometry.content(), geometry.content_gradient());
-                    network.contents.push(ContentSpring { points: nodes.to_vec(), constant, rest, gradient });
-                }
-            });
-        }
+        network.others = mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| others(mesh, block, fit)).collect();
         network
     }
 
@@ -79,9 +70,12 @@ impl Network {
                 }
             }
         }
-        for spring in &self.contents {
-            for (row, g) in dofs(&spring.points, d).zip(&spring.gradient) {
-                for (column, h) in dofs(&spring.points, d).zip(&spring.gradient) {
+        for spring in &self.others {
+            let mut x = vec![0.0; spring.points.len() * d];
+            gather(points, d, &spring.points, &mut x);
+            let gradient = spring.measure.gradient(&x, d);
+            for (row, g) in dofs(&spring.points, d).zip(&gradient) {
+                for (column, h) in dofs(&spring.points, d).zip(&gradient) {
                     if row >= column {
                         entries.push(Triplet::new(row, column, spring.constant * g * h));
                     }
@@ -92,7 +86,7 @@ impl Network {
     }
 
     pub fn len(&self) -> usize {
-        self.lengths.len() + self.contents.len()
+        self.lengths.len() + self.others.len()
     }
 
     pub fn is_empty(&self) -> bool {
@@ -102,8 +96,35 @@ impl Network {
     /// How many constants are below zero.
     pub fn negative(&self) -> usize {
         let lengths = self.lengths.iter().map(|s| s.constant);
-        lengths.chain(self.contents.iter().map(|s| s.constant)).filter(|k| *k < 0.0).count()
+        lengths.chain(self.others.iter().map(|s| s.constant)).filter(|k| *k < 0.0).count()
     }
+}
+
+/// The springs of one block that measure more than a length, each cell's for itself.
+fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> {
+    let (d, springs) = (mesh.dimension, &fit.springs);
+    let (m, first) = (springs.len(), springs.pairs.len());
+    let every: Vec<usize> = (0..springs.nodes).collect();
+    let functions = springs.functions.iter().map(|f| (f.kind, &f.nodes, Measure::Function(f.function.clone())));
+    let content = springs.content.map(|kind| (kind, &every, Measure::Content(block.element.clone())));
+    let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(content).collect();
+    let mut all = Vec::new();
+    if kinds.is_empty() {
+        return all;
+    }
+    for (nodes, constants) in block.cells().zip(fit.constants.chunks_exact(m)) {
+        for ((kind, places, measure), &constant) in kinds.iter().zip(&constants[first..]) {
+            if constant == 0.0 {
+                continue;
+            }
+            let points: Vec<usize> = places.iter().map(|&a| nodes[a]).collect();
+            let mut x = vec![0.0; points.len() * d];
+            gather(&mesh.points, d, &points, &mut x);
+            let rest = measure.value(&x, d);
+            all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone() });
+        }
+    }
+    all
 }
 
 /// Points whose springs one thread merges in one go.

@@ -35,16 +35,16 @@ pub fn displacement_grid(outcome: &Outcome) -> Grid {
     grid
 }
 
-/// The springs as lines with their constants and rest lengths, with the displacements of both models. A spring on an
-/// area or volume is the set of its points.
+/// The springs as lines with their constants and rest lengths, with the displacements of both models. A spring that
+/// measures something else is the set of its points.
 pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: &[Vec<f64>]) -> Grid {
     let network = &fit.network;
     let mut grid = Grid { points: spatial(&mesh.points, mesh.dimension), ..Grid::default() };
     network.lengths.iter().for_each(|s| grid.push_cell(LINE, &s.points));
-    network.contents.iter().for_each(|s| grid.push_cell(POINTS, &s.points));
+    network.others.iter().for_each(|s| grid.push_cell(POINTS, &s.points));
     let per_spring = |length: fn(&crate::model::LengthSpring) -> f64,
-                      content: fn(&crate::model::ContentSpring) -> f64| {
-        network.lengths.iter().map(length).chain(network.contents.iter().map(content)).collect()
+                      other: fn(&crate::model::MeasureSpring) -> f64| {
+        network.lengths.iter().map(length).chain(network.others.iter().map(other)).collect()
     };
     let scalar = |name: &str, values| Array { name: name.into(), components: 1, values };
     grid.cell_data = vec![

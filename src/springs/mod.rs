@@ -2,17 +2,26 @@
 //!
 //! At rest the tangent stiffness is `K(k) = Σ_s k_s g_s g_sᵀ`, so a fit needs nothing of a spring but g.
 
-use crate::element::{Element, SpringKind};
-use crate::error::Result;
-use crate::stiffness::Geometry;
+mod measure;
 
-/// The springs of one element type that a fit uses: length springs first, then at most one on the cell's content.
+pub use measure::{Measure, Response};
+
+use crate::element::{Element, SpringKind};
+use crate::error::{Error, Result};
+use crate::stiffness::Geometry;
+use crate::symbolic::{Expr, Jet};
+use std::sync::Arc;
+
+/// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
+/// nodes, then at most one on the cell's content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Springs {
     pub dimension: usize,
     pub nodes: usize,
     /// Node pairs of the length springs.
     pub pairs: Vec<[usize; 2]>,
+    /// Angles, areas, volumes, couplings and users' own.
+    pub functions: Vec<FunctionSpring>,
     /// Whether the last spring measures the cell's area or volume.
     pub content: Option<SpringKind>,
     /// The group of each spring, as an index into `names`.
@@ -24,6 +33,16 @@ pub struct Springs {
     pub(crate) parallel: Vec<(usize, usize)>,
 }
 
+/// A spring on a function of the positions of some nodes of the element.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FunctionSpring {
+    pub kind: SpringKind,
+    /// Nodes of the element.
+    pub nodes: Vec<usize>,
+    /// Of their coordinates, in this order.
+    pub function: Arc<Expr>,
+}
+
 impl Springs {
     /// The named groups of the element, or all that are not optional.
     ///
@@ -31,11 +50,12 @@ impl Springs {
     /// A name is no group of this element.
     pub fn select(element: &Element, names: Option<&[String]>) -> Result<Springs> {
         let mut chosen = element.select_groups(names)?;
-        chosen.sort_by_key(|g| g.kind != SpringKind::Length);
+        chosen.sort_by_key(|g| (g.kind != SpringKind::Length, g.is_content()));
         let mut springs = Springs {
             dimension: element.dimension(),
             nodes: element.nodes(),
             pairs: Vec::new(),
+            functions: Vec::new(),
             content: None,
             groups: Vec::new(),
             names: chosen.iter().map(|g| g.name.clone()).collect(),
@@ -43,15 +63,28 @@ impl Springs {
             parallel: Vec::new(),
         };
         for (index, group) in chosen.iter().enumerate() {
-            match group.kind {
-                SpringKind::Length => {
-                    springs.pairs.extend(&group.pairs);
-                    springs.groups.extend(group.pairs.iter().map(|_| index));
-                }
-                kind => {
-                    springs.content = Some(kind);
-                    springs.groups.push(index);
-                }
+            if group.is_content() {
+                springs.content = Some(group.kind);
+                springs.groups.push(index);
+                continue;
+            }
+            springs.groups.extend(group.nodes.iter().map(|_| index));
+            if group.kind == SpringKind::Length {
+                springs.pairs.extend(group.nodes.iter().map(|nodes| [nodes[0], nodes[1]]));
+                continue;
+            }
+            for nodes in &group.nodes {
+                let function = match (&group.measure, springs.functions.last()) {
+                    (Some(measure), _) => Arc::new(measure.clone()),
+                    (_, Some(last)) if last.kind == group.kind && last.nodes.len() == nodes.len() => {
+                        last.function.clone()
+                    }
+                    _ => {
+                        let known = Measure::of_kind(group.kind, nodes.len(), springs.dimension);
+                        Arc::new(known.map_err(|e| Error::at(format!("springs.{}", group.name), e.problem()))?)
+                    }
+                };
+                springs.functions.push(FunctionSpring { kind: group.kind, nodes: nodes.clone(), function });
             }
         }
         springs.touching = sharing(&springs.pairs, 1);
@@ -85,8 +118,22 @@ impl Springs {
                 row[j * d + k] = n;
             }
         }
+        self.function_gradients(x, &mut g[self.pairs.len() * size..]);
         if self.content.is_some() {
-            g[self.pairs.len() * size..].copy_from_slice(&geometry.content_gradient());
+            g[(self.len() - 1) * size..].copy_from_slice(&geometry.content_gradient());
+        }
+    }
+
+    /// The rows of the springs on functions alone, `[functions × nodes·dimension]`, into rows of zeros.
+    pub fn function_gradients(&self, x: &[f64], rows: &mut [f64]) {
+        let d = self.dimension;
+        let size = self.nodes * d;
+        for (row, spring) in rows.chunks_exact_mut(size).zip(&self.functions) {
+            let at: Vec<f64> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).copied().collect();
+            let gradient = Jet::gradient(&spring.function, &at);
+            for (&a, g) in spring.nodes.iter().zip(gradient.chunks_exact(d)) {
+                row[a * d..(a + 1) * d].copy_from_slice(g);
+            }
         }
     }
 }

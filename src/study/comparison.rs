@@ -61,7 +61,7 @@ pub fn compare_element(
     let springs = Springs::select(element, None)?;
     let points = random_shapes(element, shapes, SEED)?;
     let cells: Vec<usize> = (0..shapes * element.nodes()).collect();
-    let mut fits: Vec<Fit> = objectives(!element.cell.is_simplex()).into_iter().map(Fit::new).collect();
+    let mut fits: Vec<Fit> = objectives(element.has_higher_modes()).into_iter().map(Fit::new).collect();
     for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
         let solver = Solver::General { method, iterations };
         fits.push(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) });
@@ -108,7 +108,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
         return Err(Error::at("load", problem).in_file(&scene.path));
     }
     let mesh = scene.build_mesh()?;
-    let higher_modes = mesh.blocks.iter().any(|block| !block.element.cell.is_simplex());
+    let higher_modes = mesh.blocks.iter().any(|block| block.element.has_higher_modes());
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
     let mut scene = scene.clone();

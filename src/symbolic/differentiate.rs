@@ -29,10 +29,22 @@ impl Expr {
                     Function::Tan => {
                         Expr::sum([Expr::integer(1), Expr::power(self.clone(), BigRational::from_integer(2.into()))])
                     }
+                    Function::Asin => root_of_complement(x),
+                    Function::Acos => root_of_complement(x).negated(),
+                    Function::Atan => Expr::power(
+                        Expr::sum([Expr::integer(1), Expr::power(x, BigRational::from_integer(2.into()))]),
+                        -BigRational::one(),
+                    ),
                     Function::Abs => Expr::product([x.clone(), Expr::power(self.clone(), -BigRational::one())]),
                 };
                 Expr::product([outer, inner])
             }
         }
     }
+}
+
+/// `(1 − x²)^(−1/2)`.
+fn root_of_complement(x: Expr) -> Expr {
+    let square = Expr::power(x, BigRational::from_integer(2.into()));
+    Expr::power(Expr::sum([Expr::integer(1), square.negated()]), BigRational::new((-1).into(), 2.into()))
 }

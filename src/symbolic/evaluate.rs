@@ -36,6 +36,9 @@ impl Value for f64 {
             Function::Sin => self.sin(),
             Function::Cos => self.cos(),
             Function::Tan => self.tan(),
+            Function::Asin => self.asin(),
+            Function::Acos => self.acos(),
+            Function::Atan => self.atan(),
             Function::Abs => self.abs(),
         })
     }

@@ -4,11 +4,13 @@
 
 mod differentiate;
 mod evaluate;
+mod jet;
 mod parse;
 mod polynomial;
 mod predicate;
 mod print;
 
+pub use jet::Jet;
 pub use parse::{Scope, parse_rational};
 pub use polynomial::Polynomial;
 pub use predicate::Predicate;
@@ -35,16 +37,22 @@ pub enum Function {
     Sin,
     Cos,
     Tan,
+    Asin,
+    Acos,
+    Atan,
     Abs,
 }
 
 impl Function {
-    pub const ALL: [(&'static str, Function); 6] = [
+    pub const ALL: [(&'static str, Function); 9] = [
         ("exp", Function::Exp),
         ("ln", Function::Ln),
         ("sin", Function::Sin),
         ("cos", Function::Cos),
         ("tan", Function::Tan),
+        ("asin", Function::Asin),
+        ("acos", Function::Acos),
+        ("atan", Function::Atan),
         ("abs", Function::Abs),
     ];
 

@@ -1,0 +1,229 @@
+//! Groups of springs from the entries of an element file.
+
+use super::definition::{Definition, NodeLists, SpringEntry, SpringKind};
+use super::symmetry::permutations;
+use crate::error::{Error, Result};
+use crate::symbolic::{Expr, Scope};
+use std::collections::{BTreeMap, HashSet};
+
+/// Springs that are equivalent under the cell's symmetry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpringGroup {
+    pub name: String,
+    pub kind: SpringKind,
+    /// The nodes of each spring; empty where the whole cell is measured.
+    pub nodes: Vec<Vec<usize>>,
+    /// Of the kind `measure`: what it measures, in the coordinates of the nodes of one spring.
+    pub measure: Option<Expr>,
+    pub optional: bool,
+}
+
+impl SpringGroup {
+    /// Whether it is the one spring on the area or volume of the whole cell.
+    pub fn is_content(&self) -> bool {
+        self.nodes.is_empty()
+    }
+}
+
+/// The longest list of nodes of a spring.
+const MOST_NODES: usize = 8;
+
+/// The groups of a file.
+///
+/// # Errors
+/// Names the entry that is wrong.
+pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<SpringGroup>> {
+    let mut groups: Vec<SpringGroup> = Vec::new();
+    // What is measured already.
+    let mut taken = HashSet::new();
+    for (i, entry) in definition.springs.iter().enumerate() {
+        let key = |rest: &str| format!("springs[{i}].{rest}");
+        let nodes = nodes_of(i, entry, definition, &taken)?;
+        for (p, list) in nodes.iter().enumerate() {
+            if !taken.insert(identity(entry, list)) {
+                let what = if entry.kind == SpringKind::Length { "pair" } else { "list" };
+                let problem = format!("the {what} {list:?} has a spring already");
+                return Err(Error::at(key(&format!("nodes[{p}]")), problem));
+            }
+        }
+        if nodes.is_empty() && groups.iter().any(SpringGroup::is_content) {
+            return Err(Error::at(key("kind"), "the cell's content has a spring already"));
+        }
+        let measure = measure_of(i, entry, definition, &nodes)?;
+        let classes = match entry.class {
+            Some(_) => classes(entry, &nodes, &permutations(definition.cell, positions)),
+            None => vec![nodes],
+        };
+        let several = classes.len() > 1;
+        for (number, nodes) in classes.into_iter().enumerate() {
+            let name = if several { format!("{} {}", entry.group, number + 1) } else { entry.group.clone() };
+            if groups.iter().any(|g| g.name == name) {
+                return Err(Error::expected(key("group"), "a name used once", format!("\"{name}\" again")));
+            }
+            let measure = measure.clone();
+            groups.push(SpringGroup { name, kind: entry.kind, nodes, measure, optional: entry.optional });
+        }
+    }
+    Ok(groups)
+}
+
+/// The node lists of an entry; none for the whole cell.
+fn nodes_of(
+    i: usize,
+    entry: &SpringEntry,
+    definition: &Definition,
+    taken: &HashSet<(SpringKind, String, Vec<usize>)>,
+) -> Result<Vec<Vec<usize>>> {
+    let key = |rest: &str| format!("springs[{i}].{rest}");
+    let (count, d) = (definition.nodes.len(), definition.cell.dimension());
+    let lists = match (&entry.nodes, entry.kind) {
+        (Some(NodeLists::Named(name)), SpringKind::Length) if name == "complete" => {
+            let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| vec![a, b]));
+            let free: Vec<Vec<usize>> = pairs.filter(|pair| !taken.contains(&identity(entry, pair))).collect();
+            if free.is_empty() {
+                return Err(Error::expected(key("nodes"), "pairs that have no spring yet", "none"));
+            }
+            return Ok(free);
+        }
+        (Some(NodeLists::Named(name)), _) => {
+            let expected = "lists of nodes, or \"complete\" with the kind \"length\"";
+            return Err(Error::expected(key("nodes"), expected, format!("\"{name}\"")));
+        }
+        (Some(NodeLists::Given(lists)), _) => lists,
+        (None, SpringKind::Area) if d == 2 => return Ok(Vec::new()),
+        (None, SpringKind::Volume) if d == 3 => return Ok(Vec::new()),
+        (None, SpringKind::Area) => {
+            return Err(Error::expected(
+                key("kind"),
+                "\"volume\" for the content of a solid, \"area\" with nodes or in a plane cell",
+                "\"area\"",
+            ));
+        }
+        (None, SpringKind::Volume) => {
+            return Err(Error::expected(
+                key("kind"),
+                "\"area\" for the content of a plane cell, \"volume\" in a solid",
+                "\"volume\"",
+            ));
+        }
+        (None, kind) => {
+            let expected = if kind == SpringKind::Length { "pairs of nodes" } else { "lists of nodes" };
+            return Err(Error::expected(key("nodes"), expected, "none"));
+        }
+    };
+    if lists.is_empty() {
+        return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
+    }
+    let range = match entry.kind {
+        SpringKind::Length => 2..=2,
+        SpringKind::Angle => 3..=3,
+        SpringKind::Area => 3..=MOST_NODES,
+        SpringKind::Volume | SpringKind::Coupling => 4..=4,
+        SpringKind::Measure => 1..=MOST_NODES,
+    };
+    let smallest = match entry.kind {
+        SpringKind::Volume => 3,
+        SpringKind::Angle | SpringKind::Area => 2,
+        _ => 1,
+    };
+    if d < smallest {
+        let expected = format!("a cell of at least {smallest} dimensions");
+        return Err(Error::expected(key("kind"), expected, format!("\"{}\" in {d}", entry.kind.name())));
+    }
+    for (p, list) in lists.iter().enumerate() {
+        let key = key(&format!("nodes[{p}]"));
+        if !range.contains(&list.len()) {
+            let words = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
+            let (least, most) = (words[*range.start()], words[*range.end()]);
+            let expected = if least == most { format!("{least} nodes") } else { format!("{least} to {most} nodes") };
+            return Err(Error::expected(key, expected, list.len()));
+        }
+        let different = match entry.kind {
+            SpringKind::Coupling => list[0] != list[1] && list[2] != list[3] && pair(&list[..2]) != pair(&list[2..]),
+            _ => (0..list.len()).all(|j| !list[..j].contains(&list[j])),
+        };
+        if list.iter().any(|a| *a >= count) || !different {
+            let what = match entry.kind {
+                SpringKind::Coupling => "two different pairs of different".to_string(),
+                SpringKind::Length => "two different".to_string(),
+                _ => "different".to_string(),
+            };
+            return Err(Error::expected(key, format!("{what} nodes below {count}"), format!("{list:?}")));
+        }
+    }
+    Ok(lists.clone())
+}
+
+/// The user's measure, and that no other kind has one.
+fn measure_of(i: usize, entry: &SpringEntry, definition: &Definition, nodes: &[Vec<usize>]) -> Result<Option<Expr>> {
+    let key = format!("springs[{i}].measure");
+    match (&entry.measure, entry.kind) {
+        (None, SpringKind::Measure) => Err(Error::expected(key, "an expression of x0, y0, x1, …", "none")),
+        (None, _) => Ok(None),
+        (Some(text), SpringKind::Measure) => {
+            let count = nodes[0].len();
+            if let Some(p) = nodes.iter().position(|list| list.len() != count) {
+                let expected = format!("{count} nodes as in the first list");
+                return Err(Error::expected(format!("springs[{i}].nodes[{p}]"), expected, nodes[p].len()));
+            }
+            let scope = Scope::new(&coordinate_names(count, definition.cell.dimension()));
+            Ok(Some(scope.expression(text).map_err(|e| e.under(key))?))
+        }
+        (Some(_), kind) => {
+            Err(Error::at(key, format!("belongs to the kind \"measure\", found with \"{}\"", kind.name())))
+        }
+    }
+}
+
+/// The names of the coordinates of a few nodes: `x0, y0, z0, x1, …`.
+pub fn coordinate_names(nodes: usize, dimension: usize) -> Vec<String> {
+    let axes = &["x", "y", "z"][..dimension];
+    (0..nodes).flat_map(|a| axes.iter().map(move |axis| format!("{axis}{a}"))).collect()
+}
+
+/// What two springs that measure the same have in common.
+fn identity(entry: &SpringEntry, nodes: &[usize]) -> (SpringKind, String, Vec<usize>) {
+    let nodes = match entry.kind {
+        SpringKind::Angle => {
+            let ends = pair(&[nodes[0], nodes[2]]);
+            vec![nodes[1], ends[0], ends[1]]
+        }
+        SpringKind::Coupling => {
+            let mut pairs = [pair(&nodes[..2]), pair(&nodes[2..])];
+            pairs.sort_unstable();
+            pairs.concat()
+        }
+        SpringKind::Measure => nodes.to_vec(),
+        _ => {
+            let mut sorted = nodes.to_vec();
+            sorted.sort_unstable();
+            sorted
+        }
+    };
+    (entry.kind, entry.measure.clone().unwrap_or_default(), nodes)
+}
+
+fn pair(nodes: &[usize]) -> [usize; 2] {
+    [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])]
+}
+
+/// The orbits of the springs under the permutations of the nodes, in the order of their first springs.
+fn classes(entry: &SpringEntry, nodes: &[Vec<usize>], permutations: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
+    let place: BTreeMap<_, usize> = nodes.iter().enumerate().map(|(p, list)| (identity(entry, list), p)).collect();
+    let mut class = vec![usize::MAX; nodes.len()];
+    let mut classes: Vec<Vec<Vec<usize>>> = Vec::new();
+    for first in 0..nodes.len() {
+        if class[first] != usize::MAX {
+            continue;
+        }
+        for permutation in permutations {
+            let image: Vec<usize> = nodes[first].iter().map(|&a| permutation[a]).collect();
+            if let Some(&p) = place.get(&identity(entry, &image)) {
+                class[p] = classes.len();
+            }
+        }
+        let members = (0..nodes.len()).filter(|&p| class[p] == classes.len()).map(|p| nodes[p].clone());
+        classes.push(members.collect());
+    }
+    classes
+}

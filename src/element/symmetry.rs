@@ -1,0 +1,85 @@
+//! The symmetry of an element: the affine maps of its cell onto itself, as permutations of the nodes.
+
+use super::cell::Cell;
+use nalgebra::{DMatrix, DVector};
+
+/// Coordinates of reference cells that differ by less are the same.
+const SAME: f64 = 1e-9;
+
+/// For each affine map of the cell onto itself that takes nodes to nodes, where each node goes; the identity among them.
+pub fn permutations(cell: Cell, positions: &[f64]) -> Vec<Vec<usize>> {
+    let d = cell.dimension();
+    let corners: Vec<DVector<f64>> = cell.corners().iter().map(|c| DVector::from_column_slice(c)).collect();
+    let nodes: Vec<DVector<f64>> = positions.chunks_exact(d).map(DVector::from_column_slice).collect();
+    let frame = frame(&corners, d);
+    let Some(inverse) = edges(&corners, &frame).try_inverse() else { return vec![(0..nodes.len()).collect()] };
+    let mut found = Vec::new();
+    for image in arrangements(corners.len(), d + 1) {
+        let linear = edges(&corners, &image) * &inverse;
+        let map = |x: &DVector<f64>| &corners[image[0]] + &linear * (x - &corners[frame[0]]);
+        let permute = |points: &[DVector<f64>]| -> Option<Vec<usize>> {
+            let place = |x: &DVector<f64>| {
+                let y = map(x);
+                points.iter().position(|other| (other - &y).amax() < SAME)
+            };
+            points.iter().map(place).collect()
+        };
+        if permute(&corners).is_some_and(|p| is_permutation(&p)) {
+            found.extend(permute(&nodes));
+        }
+    }
+    found
+}
+
+/// The first corners that span the cell.
+fn frame(corners: &[DVector<f64>], d: usize) -> Vec<usize> {
+    let mut frame = vec![0];
+    for next in 1..corners.len() {
+        let tried: Vec<usize> = frame.iter().copied().chain([next]).collect();
+        let edges = edges(corners, &tried);
+        if frame.len() <= d && (edges.tr_mul(&edges)).determinant() > SAME {
+            frame = tried;
+        }
+    }
+    frame
+}
+
+/// The vectors from the first of `chosen` to the others, as columns.
+fn edges(corners: &[DVector<f64>], chosen: &[usize]) -> DMatrix<f64> {
+    let columns: Vec<DVector<f64>> = chosen[1..].iter().map(|&i| &corners[i] - &corners[chosen[0]]).collect();
+    DMatrix::from_columns(&columns)
+}
+
+/// Every choice of `length` different numbers below `count`, in order.
+fn arrangements(count: usize, length: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new()];
+    for _ in 0..length {
+        let extend = |part: &Vec<usize>| {
+            let part = part.clone();
+            (0..count).filter(|i| !part.contains(i)).map(|i| [&part[..], &[i]].concat()).collect::<Vec<_>>()
+        };
+        all = all.iter().flat_map(extend).collect();
+    }
+    all
+}
+
+fn is_permutation(p: &[usize]) -> bool {
+    let mut sorted = p.to_vec();
+    sorted.sort_unstable();
+    sorted.into_iter().eq(0..p.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The orders of the groups: 2, 6, 8, 24, 48, the wedge's 6 · 2, the pyramid's 8; of the rational pentagon its mirror.
+    #[test]
+    fn cells_have_the_symmetry_of_their_shape() {
+        let orders = Cell::ALL.map(|cell| {
+            let corners = cell.corners().concat();
+            permutations(cell, &corners).len()
+        });
+        assert_eq!(orders, [2, 6, 8, 2, 24, 48, 12, 8]);
+    }
+}

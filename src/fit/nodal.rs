@@ -1,0 +1,190 @@
+//! The plain Frobenius fit of elements with many springs, by way of their nodes.
+//!
+//! Two length springs have something in common only in the diagonal blocks of the nodes that they share:
+//! `M = 2I + V W Vᵀ`, where row s of V holds the entries on and below the diagonal of `n_s n_sᵀ` once for each end of the
+//! spring, and W counts those below twice. With d(d+1)/2 entries per node that is of lower rank than the number of springs
+//! from about eight nodes on, and `M⁻¹ b = ½ (b − V S⁻¹ Vᵀ b)`, `S = 2W⁻¹ + VᵀV` (Woodbury 1950).
+
+use super::Weight;
+use super::dense::solve as substitute;
+use super::least_squares::Cell;
+use super::normal::Normal;
+use crate::material::Moduli;
+use crate::scalar::Scalar;
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+
+/// Room for the nodes' equations.
+#[derive(Debug, Clone)]
+pub struct Nodal<T> {
+    /// `S`, and `Vᵀ b` in its place for the right-hand side.
+    small: Normal<T>,
+    /// `V`, `[springs × d(d+1)/2]`: the entries, the same at both ends.
+    entries: Vec<T>,
+    /// The row of the content in M, then its image `A⁻¹ c`.
+    border: Vec<T>,
+    image: Vec<T>,
+}
+
+impl<T> Default for Nodal<T> {
+    fn default() -> Nodal<T> {
+        Nodal { small: Normal::default(), entries: Vec::new(), border: Vec::new(), image: Vec::new() }
+    }
+}
+
+/// Whether this way is the shorter one.
+pub fn is_shorter(springs: &Springs) -> bool {
+    let small = springs.nodes * springs.dimension * (springs.dimension + 1) / 2;
+    springs.functions.is_empty() && springs.parallel.is_empty() && 5 * small < 4 * springs.pairs.len()
+}
+
+impl<T: Scalar> Nodal<T> {
+    /// Writes the constants of the element with nodes at `x`, `[nodes × dimension]`, into `normal.rhs`; false if a pivot
+    /// vanishes.
+    #[inline(always)]
+    pub fn solve(
+        &mut self,
+        springs: &Springs,
+        x: &[T],
+        geometry: &Geometry<T>,
+        moduli: &Moduli<T::Constant>,
+        normal: &mut Normal<T>,
+    ) -> bool {
+        match springs.dimension {
+            2 => self.solve_in::<2>(springs, x, geometry, moduli, normal),
+            _ => self.solve_in::<3>(springs, x, geometry, moduli, normal),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_in<const D: usize>(
+        &mut self,
+        springs: &Springs,
+        x: &[T],
+        geometry: &Geometry<T>,
+        moduli: &Moduli<T::Constant>,
+        normal: &mut Normal<T>,
+    ) -> bool {
+        let (n, m, lengths) = (springs.nodes, springs.len(), springs.pairs.len());
+        let x = &x.as_chunks::<D>().0[..n];
+        let Normal { rhs, edges, inverse_squares, .. } = normal;
+        let cell = Cell::<T, D>::new(springs, x, geometry, moduli, edges, inverse_squares, rhs);
+        cell.plain_energies(rhs);
+        let zero = x[0][0].zero();
+        self.border.clear();
+        self.border.resize(m, zero.clone());
+        if springs.content.is_some() {
+            cell.content(Weight::None, &mut self.border, rhs);
+        }
+        self.set_entries(&cell);
+        self.set_small::<D>(springs, &zero);
+        // k = A⁻¹ b of the length springs alone
+        self.gather::<D>(springs, rhs);
+        if !self.small.solve_regular() {
+            return false;
+        }
+        self.scatter::<D>(springs, rhs);
+        if springs.content.is_none() {
+            return true;
+        }
+        // M = [A c; cᵀ e]: the content's constant is (b_e − cᵀ A⁻¹ b)/(e − cᵀ A⁻¹ c)
+        self.image.clone_from(&self.border);
+        let mut image = std::mem::take(&mut self.image);
+        self.gather::<D>(springs, &image);
+        let Normal { gram, rhs: small, pivots, .. } = &mut self.small;
+        substitute(gram, small.len(), pivots, small);
+        self.scatter::<D>(springs, &mut image);
+        let (mut above, mut below) = (rhs[lengths].clone(), self.border[lengths].clone());
+        for s in 0..lengths {
+            above = above.minus_product(&self.border[s], &rhs[s]);
+            below = below.minus_product(&self.border[s], &image[s]);
+        }
+        let regular = below.exceeds(&self.border[lengths].clone().scaled(&T::exact(1e3 * T::epsilon())));
+        let constant = above / &below;
+        for s in 0..lengths {
+            rhs[s] = rhs[s].clone().minus_product(&constant, &image[s]);
+        }
+        rhs[lengths] = constant;
+        self.image = image;
+        regular
+    }
+
+    /// `n_k n_l`, l ≤ k, of every length spring.
+    #[inline(always)]
+    fn set_entries<const D: usize>(&mut self, cell: &Cell<T, D>) {
+        self.entries.clear();
+        for (d, q) in cell.edges.iter().zip(cell.q) {
+            for k in 0..D {
+                let scaled = d[k].clone() * q;
+                for l in 0..=k {
+                    self.entries.push(scaled.clone() * &d[l]);
+                }
+            }
+        }
+    }
+
+    /// The lower triangle of S: blocks of two nodes from the one spring between them, of one node from all of its springs.
+    #[inline(always)]
+    fn set_small<const D: usize>(&mut self, springs: &Springs, zero: &T) {
+        let width = D * (D + 1) / 2;
+        let size = springs.nodes * width;
+        let gram = &mut self.small.gram;
+        gram.clear();
+        gram.resize(size * size, zero.clone());
+        for a in 0..springs.nodes {
+            let mut entry = 0;
+            for k in 0..D {
+                for l in 0..=k {
+                    let at = a * width + entry;
+                    gram[at * size + at] = zero.constant(&T::exact(if k == l { 2.0 } else { 1.0 }));
+                    entry += 1;
+                }
+            }
+        }
+        for (v, &[i, j]) in self.entries.chunks_exact(width).zip(&springs.pairs) {
+            let (low, high) = (i.min(j), i.max(j));
+            for k in 0..width {
+                for l in 0..width {
+                    let product = v[k].clone() * &v[l];
+                    for (row, column) in [(low, low), (high, high), (high, low)] {
+                        if row != column || l <= k {
+                            let place = &mut gram[(row * width + k) * size + column * width + l];
+                            *place = place.clone() + &product;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// `Vᵀ b` into the small right-hand side.
+    #[inline(always)]
+    fn gather<const D: usize>(&mut self, springs: &Springs, b: &[T]) {
+        let width = D * (D + 1) / 2;
+        let small = &mut self.small.rhs;
+        small.clear();
+        small.resize(springs.nodes * width, b[0].zero());
+        for ((v, b), pair) in self.entries.chunks_exact(width).zip(b).zip(&springs.pairs) {
+            for &a in pair {
+                for (sum, v) in small[a * width..(a + 1) * width].iter_mut().zip(v) {
+                    *sum = sum.clone().plus_product(v, b);
+                }
+            }
+        }
+    }
+
+    /// `b ← ½ (b − V y)`, y in the small right-hand side.
+    #[inline(always)]
+    fn scatter<const D: usize>(&self, springs: &Springs, b: &mut [T]) {
+        let width = D * (D + 1) / 2;
+        let half = T::exact(0.5);
+        for ((v, b), pair) in self.entries.chunks_exact(width).zip(b).zip(&springs.pairs) {
+            for &a in pair {
+                for (y, v) in self.small.rhs[a * width..(a + 1) * width].iter().zip(v) {
+                    *b = b.clone().minus_product(v, y);
+                }
+            }
+            *b = b.clone().scaled(&half);
+        }
+    }
+}

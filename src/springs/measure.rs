@@ -1,0 +1,224 @@
+//! What a spring measures, c(x), with its first and second derivatives: all that its force and its tangent need.
+
+use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
+use crate::error::{Error, Result};
+use crate::symbolic::{Expr, Jet, Scope};
+use std::sync::Arc;
+
+/// One number c of the positions of some points.
+#[derive(Debug, Clone)]
+pub enum Measure {
+    /// The distance of two points, m.
+    Length,
+    /// The area (m²) or volume (m³) of a cell, by its quadrature.
+    Content(Arc<Element>),
+    /// A function of the points' coordinates, in the order x₀, y₀, (z₀,) x₁, …
+    Function(Arc<Expr>),
+}
+
+/// A spring's pull at given positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response {
+    /// `½ k (c − c₀)²`, J.
+    pub energy: f64,
+    /// On its points, `−k (c − c₀) ∇c`, `[points × dimension]`, N.
+    pub force: Vec<f64>,
+    /// `k (∇c ∇cᵀ + (c − c₀) ∇∇c)`, `[points·dimension × points·dimension]`, N/m.
+    pub tangent: Vec<f64>,
+}
+
+impl Measure {
+    /// The function that a kind measures on `nodes` points of `dimension` coordinates, for the kinds that have a formula.
+    ///
+    /// # Errors
+    /// The kind has no formula for so many points.
+    pub fn of_kind(kind: SpringKind, nodes: usize, dimension: usize) -> Result<Expr> {
+        let formula = Formula::new(nodes, dimension);
+        let text = match (kind, nodes, dimension) {
+            (SpringKind::Length, 2, _) => formula.distance(0, 1),
+            (SpringKind::Angle, 3, 2 | 3) => formula.angle(),
+            (SpringKind::Area, 3.., 2 | 3) => formula.area(),
+            (SpringKind::Volume, 4, 3) => formula.volume(),
+            (SpringKind::Coupling, 4, _) => format!("{} + {}", formula.distance(0, 1), formula.distance(2, 3)),
+            _ => {
+                let problem = format!("no {} of {nodes} nodes in {dimension} dimensions is known", kind.name());
+                return Err(Error::new(problem));
+            }
+        };
+        formula.scope.expression(&text)
+    }
+
+    /// c and its derivatives at the positions `x`, `[points × dimension]`, m.
+    pub fn jet(&self, x: &[f64], dimension: usize) -> Jet {
+        match self {
+            Measure::Length => length(x, dimension),
+            Measure::Content(element) => content(&element.tabulation, x),
+            Measure::Function(function) => Jet::evaluate(function, x),
+        }
+    }
+
+    /// c at the positions `x`, `[points × dimension]`, m.
+    pub fn value(&self, x: &[f64], dimension: usize) -> f64 {
+        match self {
+            Measure::Length => super::distance(&x[..dimension], &x[dimension..]),
+            Measure::Content(element) => {
+                let table = &element.tabulation;
+                let jacobians = table.gradients.chunks_exact(x.len()).map(|dn| rows(dn, x, dimension));
+                jacobians.zip(&table.weights).map(|([a, b, c], w)| w * triple(a, b, c)).sum()
+            }
+            Measure::Function(function) => function.evaluate(x),
+        }
+    }
+
+    /// `∇c` at the positions `x`.
+    pub fn gradient(&self, x: &[f64], dimension: usize) -> Vec<f64> {
+        match self {
+            Measure::Function(function) => Jet::gradient(function, x),
+            Measure::Length => self.jet(x, dimension).gradient,
+            Measure::Content(element) => content_gradient(&element.tabulation, x),
+        }
+    }
+
+    /// The pull of a spring with this constant and rest measure at the positions `x`, `[points × dimension]`, m.
+    pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> Response {
+        let Jet { value, gradient, hessian } = self.jet(x, dimension);
+        let (n, pull) = (gradient.len(), constant * (value - rest));
+        let entry = |(i, h): (usize, f64)| constant * gradient[i / n] * gradient[i % n] + pull * h;
+        Response {
+            energy: pull * (value - rest) / 2.0,
+            force: gradient.iter().map(|g| -pull * g).collect(),
+            tangent: hessian.into_iter().enumerate().map(entry).collect(),
+        }
+    }
+}
+
+/// `ℓ = ‖d‖`, `∇ℓ = (−n, n)`, `∇∇ℓ = ±(I − n nᵀ)/ℓ`.
+fn length(x: &[f64], d: usize) -> Jet {
+    let (a, b) = x.split_at(d);
+    let value = super::distance(a, b);
+    let n: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / value).collect();
+    let gradient = n.iter().map(|n| -n).chain(n.iter().copied()).collect();
+    let entry = |i: usize| {
+        let (row, column) = (i / (2 * d), i % (2 * d));
+        let sign = if (row < d) == (column < d) { 1.0 } else { -1.0 };
+        let identity = f64::from(u8::from(row % d == column % d));
+        sign * (identity - n[row % d] * n[column % d]) / value
+    };
+    Jet { value, gradient, hessian: (0..4 * d * d).map(entry).collect() }
+}
+
+/// `Σ_q w_q det J_q`: a polynomial in the positions, of degree d; det is linear in each row J_k of the Jacobian, so that in
+/// its derivatives ∇N_a and ∇N_b take the places of J_k and J_m.
+fn content(table: &Tabulation, x: &[f64]) -> Jet {
+    let (size, d) = (x.len(), table.dimension);
+    let (mut value, mut hessian) = (0.0, vec![0.0; size * size]);
+    for (dn, w) in table.gradients.chunks_exact(size).zip(&table.weights) {
+        let j = rows(dn, x, d);
+        value += w * triple(j[0], j[1], j[2]);
+        for (i, row) in hessian.chunks_exact_mut(size).enumerate() {
+            let (k, a) = (i % d, node(dn, i / d, d));
+            let (second, third) = (j[(k + 1) % 3], j[(k + 2) % 3]);
+            for (m, entry) in row.iter_mut().enumerate() {
+                *entry += match (m % d + 3 - k) % 3 {
+                    1 => w * triple(a, node(dn, m / d, d), third),
+                    2 => w * triple(a, second, node(dn, m / d, d)),
+                    _ => 0.0,
+                };
+            }
+        }
+    }
+    Jet { value, gradient: content_gradient(table, x), hessian }
+}
+
+fn content_gradient(table: &Tabulation, x: &[f64]) -> Vec<f64> {
+    let (size, d) = (x.len(), table.dimension);
+    let mut gradient = vec![0.0; size];
+    for (dn, w) in table.gradients.chunks_exact(size).zip(&table.weights) {
+        let j = rows(dn, x, d);
+        for (i, entry) in gradient.iter_mut().enumerate() {
+            let k = i % d;
+            *entry += w * triple(node(dn, i / d, d), j[(k + 1) % 3], j[(k + 2) % 3]);
+        }
+    }
+    gradient
+}
+
+/// The rows `J_k = Σ_a x_ak ∇N_a` of the Jacobian, filled up with those of the identity to three dimensions.
+fn rows(dn: &[f64], x: &[f64], d: usize) -> [[f64; 3]; 3] {
+    let mut rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for (k, row) in rows.iter_mut().enumerate().take(d) {
+        for (l, entry) in row.iter_mut().enumerate().take(d) {
+            *entry = x.chunks_exact(d).zip(dn.chunks_exact(d)).map(|(x, dn)| x[k] * dn[l]).sum();
+        }
+    }
+    rows
+}
+
+/// `∇N_a` in three dimensions.
+fn node(dn: &[f64], a: usize, d: usize) -> [f64; 3] {
+    std::array::from_fn(|l| if l < d { dn[a * d + l] } else { 0.0 })
+}
+
+/// `a · (b × c)`.
+fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+    (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
+}
+
+/// Builds formulas in the coordinates of a few points.
+struct Formula {
+    names: Vec<String>,
+    scope: Scope,
+    nodes: usize,
+    dimension: usize,
+}
+
+impl Formula {
+    fn new(nodes: usize, dimension: usize) -> Formula {
+        let names = coordinate_names(nodes, dimension);
+        Formula { scope: Scope::new(&names), names, nodes, dimension }
+    }
+
+    /// The vector from point a to point b.
+    fn vector(&self, a: usize, b: usize) -> Vec<String> {
+        let name = |point: usize, k: usize| &self.names[point * self.dimension + k];
+        (0..self.dimension).map(|k| format!("({} - {})", name(b, k), name(a, k))).collect()
+    }
+
+    fn distance(&self, a: usize, b: usize) -> String {
+        let u = self.vector(a, b);
+        format!("sqrt({})", dot(&u, &u))
+    }
+
+    /// `θ = 2 atan(|u × v|/(|u||v| + u·v))`, which loses no digits at any angle (Kahan 2006).
+    fn angle(&self) -> String {
+        let (u, v) = (self.vector(1, 0), self.vector(1, 2));
+        let across: Vec<String> = cross(&u, &v);
+        let (uu, vv, uv) = (dot(&u, &u), dot(&v, &v), dot(&u, &v));
+        format!("2*atan(sqrt({})/(sqrt(({uu})*({vv})) + {uv}))", dot(&across, &across))
+    }
+
+    /// Half the cross products of the fan from the first point: their sum in the plane, its length in space.
+    fn area(&self) -> String {
+        let fan = |i: usize| cross(&self.vector(0, i), &self.vector(0, i + 1));
+        let parts: Vec<Vec<String>> = (1..self.nodes - 1).map(fan).collect();
+        let sum = |k: usize| parts.iter().map(|p| p[k].clone()).collect::<Vec<_>>().join(" + ");
+        if self.dimension == 2 {
+            return format!("({})/2", sum(0));
+        }
+        format!("sqrt(({})^2 + ({})^2 + ({})^2)/2", sum(0), sum(1), sum(2))
+    }
+
+    fn volume(&self) -> String {
+        format!("({})/6", dot(&self.vector(0, 1), &cross(&self.vector(0, 2), &self.vector(0, 3))))
+    }
+}
+
+fn dot(u: &[String], v: &[String]) -> String {
+    u.iter().zip(v).map(|(a, b)| format!("{a}*{b}")).collect::<Vec<_>>().join(" + ")
+}
+
+/// The cross product; in the plane its one component.
+fn cross(u: &[String], v: &[String]) -> Vec<String> {
+    let part = |k: usize, l: usize| format!("({}*{} - {}*{})", u[k], v[l], u[l], v[k]);
+    if u.len() == 2 { vec![part(0, 1)] } else { vec![part(1, 2), part(2, 0), part(0, 1)] }
+}
