@@ -94,12 +94,15 @@ struct FitArguments {
     /// No constant below zero
     #[arg(long)]
     nonnegative: bool,
-    /// Plane mesh: stress or strain [default: stress]
+    /// Plane mesh or surface: stress or strain [default: stress]
     #[arg(long)]
     plane: Option<PlaneArgument>,
-    /// Plane mesh: thickness in m [default: 1]
+    /// Plane mesh or surface: thickness in m [default: 1]
     #[arg(long, allow_hyphen_values = true)]
     thickness: Option<f64>,
+    /// Mesh of lines: cross-section in m² [default: 1]
+    #[arg(long, allow_hyphen_values = true)]
+    area: Option<f64>,
     /// In kg/m³; gives the points masses
     #[arg(long, allow_hyphen_values = true)]
     density: Option<f64>,
@@ -185,7 +188,8 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         PlaneArgument::Stress => Plane::Stress,
         PlaneArgument::Strain => Plane::Strain,
     });
-    let material = Material::for_body(mesh.dimension, young, arguments.poisson, plane, arguments.thickness)
+    let material = Material::for_body(mesh.cell_dimension(), young, arguments.poisson, plane, arguments.thickness)
+        .and_then(|m| arguments.area.map_or(Ok(m), |area| m.with_area(area)))
         .map_err(Error::of_option)?;
     let nonnegative = arguments.nonnegative || chosen.is_none();
     let fit = Fit { tied: arguments.tied, nonnegative, ..Fit::new(objective) };

@@ -149,14 +149,29 @@ fn the_reflection_turns_an_element_inside_out() {
     }
 }
 
-/// None for an element whose cells fill no box.
+/// A box of cells with straight edges whose inner corners are moved; none for an element whose cells fill no box.
 fn patch(element: Element, random: &mut Random) -> Option<Mesh> {
     let d = element.dimension();
+    let corners = ["tri3", "quad4", "tet4", "hex8", "wedge6", "pyramid5"].map(|name| Element::load(name).unwrap());
+    let linear = Arc::new(corners.into_iter().find(|e| e.cell == element.cell)?);
     let spec = BoxMesh { element: Arc::new(element), size: vec![1.0; d], cells: vec![3; d], origin: vec![0.0; d] };
     let mut mesh = spec.build().ok()?;
-    for p in 0..mesh.point_count() {
-        if mesh.point(p).iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9) {
-            (0..d).for_each(|k| mesh.points[p * d + k] += 0.05 * random.next());
+    let mut coarse = BoxMesh { element: linear.clone(), ..spec }.build().unwrap();
+    for p in 0..coarse.point_count() {
+        if coarse.point(p).iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9) {
+            (0..d).for_each(|k| coarse.points[p * d + k] += 0.04 * random.next());
+        }
+    }
+    let element = mesh.blocks[0].element.clone();
+    for (fine, corners) in mesh.blocks[0].cells().zip(coarse.blocks[0].cells()) {
+        for (&p, at) in fine.iter().zip(element.positions.chunks_exact(d)) {
+            // At the apex the functions of a pyramid have only a limit.
+            let at: Vec<f64> = at.iter().map(|x| x * (1.0 - 1e-15)).collect();
+            let weights: Vec<f64> = linear.functions.values.iter().map(|n| n.evaluate(&at)).collect();
+            for k in 0..d {
+                let place = weights.iter().zip(corners).map(|(n, &c)| n * coarse.point(c)[k]);
+                mesh.points[p * d + k] = place.sum();
+            }
         }
     }
     Some(mesh)

@@ -378,8 +378,8 @@ fn vtk_errors_say_what_was_expected_and_found() {
     assert_eq!(legacy("CELLS 1 4\n3 0 1 4\nCELL_TYPES 1\n5\n"), "cell 0: expected point indices below 4, found 4");
     let count = "cell 0: expected 4 nodes for VTK cell type 10, found 3";
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n"), count);
-    let shape = "cell 0: VTK cell type 7 has no fixed shape or is unknown";
-    assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n7\n"), shape);
+    let shape = "cell 0: VTK cell type 6 has no fixed shape or is unknown";
+    assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n6\n"), shape);
     assert_eq!(legacy("CELLS 1 4\n3 0 x 2\n"), "line 9: CELLS: expected a whole number, found \"x\"");
     assert_eq!(legacy("CELLS 2 8\n3 0 1 2\n"), "the file ends inside CELLS: expected 2 cells, found 1");
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\n"), "the file ends before CELL_TYPES");

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// An element that has been proved consistent.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Element {
     pub name: String,
     pub title: String,
@@ -129,6 +129,17 @@ impl Element {
         self.functions.values.len()
     }
 
+    /// Coordinates of a node; more than the dimension for a cell of a surface or curve.
+    pub fn space(&self) -> usize {
+        self.tabulation.space
+    }
+
+    /// The same element as a piece of a surface or curve in a space of more dimensions.
+    pub fn in_space(mut self, space: usize) -> Element {
+        self.tabulation.space = space.max(self.dimension());
+        self
+    }
+
     /// Whether it has motions beyond those of constant strain.
     pub fn has_higher_modes(&self) -> bool {
         self.nodes() > self.dimension() + 1
@@ -220,7 +231,8 @@ fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
         image[0] = -image[0];
         image
     };
-    let find = |image: Vec<f64>| nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < 1e-9));
+    let find =
+        |image: Vec<f64>| nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < 1e-9));
     let first: Option<Vec<usize>> = nodes.iter().map(|at| find(swapped(at))).collect();
     let turns = |order: &Vec<usize>| order.iter().enumerate().any(|(a, b)| a != *b);
     first.filter(turns).or_else(|| nodes.iter().map(|at| find(mirrored(at))).collect())

@@ -1,11 +1,11 @@
 //! What an element file must satisfy before a number is computed from it. Identities of polynomials with rational
 //! coefficients are decided exactly; those of other functions are sampled in floating point.
 
-use super::constant::Constant;
+use super::Tabulation;
 use super::cell::Cell;
+use super::constant::Constant;
 use super::definition::{Definition, FormatEntry, Rule};
 use super::quadrature::{MOST_POINTS, Quadrature};
-use super::Tabulation;
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;

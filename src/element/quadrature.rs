@@ -158,7 +158,7 @@ mod tests {
     /// product over the wedge; over the pyramid `∫ (1−z)^(a+b+2) z^c dz`, a beta function, times the square's; over the
     /// pentagon by Green's theorem `Σ_edges ∫ x^(a+1)/(a+1) y^b dy`, here with a rule of the line that is tested too.
     fn integral(cell: Cell, e: &[usize]) -> f64 {
-        let line = |e: usize| if e % 2 == 0 { 2.0 / (e + 1) as f64 } else { 0.0 };
+        let line = |e: usize| if e.is_multiple_of(2) { 2.0 / (e + 1) as f64 } else { 0.0 };
         let simplex = |e: &[usize]| {
             e.iter().map(|e| factorial(*e)).product::<f64>() / factorial(e.iter().sum::<usize>() + e.len())
         };
@@ -176,7 +176,8 @@ mod tests {
                 let edge = |i: usize| -> f64 {
                     let (a, b) = (corners[i], corners[(i + 1) % 5]);
                     let at = |s: f64, k: usize| a[k] + (1.0 + s) / 2.0 * (b[k] - a[k]);
-                    let value = |s: f64| at(s, 0).powi(e[0] as i32 + 1) / (e[0] + 1) as f64 * at(s, 1).powi(e[1] as i32);
+                    let value =
+                        |s: f64| at(s, 0).powi(e[0] as i32 + 1) / (e[0] + 1) as f64 * at(s, 1).powi(e[1] as i32);
                     rule.points.iter().zip(&rule.weights).map(|(s, w)| w * value(*s) * (b[1] - a[1]) / 2.0).sum()
                 };
                 (0..5).map(edge).sum()

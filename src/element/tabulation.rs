@@ -8,6 +8,8 @@ use crate::symbolic::Expr;
 pub struct Tabulation<C = f64> {
     pub nodes: usize,
     pub dimension: usize,
+    /// Coordinates of a node; more than the dimension for a cell of a surface or curve.
+    pub space: usize,
     /// `[points]`.
     pub weights: Vec<C>,
     /// Weights of the term λ (div u)², `[points]`; empty where they are the same. A point that serves one term alone has
@@ -25,6 +27,7 @@ impl Tabulation {
         let mut table = Tabulation {
             nodes: functions.values.len(),
             dimension: rule.dimension,
+            space: rule.dimension,
             weights: rule.weights.clone(),
             volumetric: Vec::new(),
             values: Vec::new(),
@@ -60,6 +63,7 @@ impl Tabulation {
         Tabulation {
             nodes: self.nodes,
             dimension: self.dimension,
+            space: self.space,
             weights: all(&self.weights),
             volumetric: all(&self.volumetric),
             values: all(&self.values),

@@ -10,7 +10,7 @@ use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::{Lanes, Real, Scalar};
 use crate::springs::Springs;
-use crate::stiffness::{Fault, Geometry, gather};
+use crate::stiffness::{Fault, Geometry, Placement};
 use pulp::{Simd, WithSimd};
 
 /// The cells of one block and where their constants go.
@@ -98,6 +98,7 @@ struct Room<'a, S: Simd> {
     x: Vec<Lanes<S>>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
     measured: Vec<Lanes<S>>,
+    placement: Placement,
     geometry: Geometry<Lanes<S>>,
     /// Whether the constants are found by way of the nodes.
     by_nodes: bool,
@@ -123,6 +124,7 @@ impl<'a, S: Simd> Room<'a, S> {
             method: Method::of_kind(&zero, springs, &fit),
             x: vec![zero; element.nodes() * element.dimension()],
             measured: vec![zero; springs.functions.len() * element.nodes() * element.dimension()],
+            placement: Placement::new(&element.tabulation),
             geometry: Geometry::of_kind(&zero, &element.tabulation),
             by_nodes: fit.objective == Objective::Frobenius(Weight::None) && !fit.tied && is_shorter(springs),
             nodal: Nodal::default(),
@@ -139,7 +141,9 @@ impl<'a, S: Simd> Room<'a, S> {
         if self.weight == Weight::OffDiagonal && !self.springs.functions.is_empty() {
             return false;
         }
-        self.gather(nodes);
+        if !self.gather(nodes) {
+            return false;
+        }
         if !self.geometry.update(&self.element.tabulation, &self.x) {
             return false;
         }
@@ -210,7 +214,7 @@ impl<'a, S: Simd> Room<'a, S> {
     /// A single cell, with all care.
     fn fit_singular(&mut self, nodes: &[usize], constants: &mut [f64]) -> Result<Verdict, Fault> {
         let mut x = vec![0.0; self.x.len()];
-        gather(self.points, self.element.dimension(), nodes, &mut x);
+        self.placement.place(&self.element.tabulation, self.points, nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
         geometry.set(&self.element.tabulation, &x)?;
         if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
@@ -250,14 +254,33 @@ impl<'a, S: Simd> Room<'a, S> {
         }
     }
 
-    /// The coordinates of the cells' nodes, one cell per lane; lanes without a cell repeat the first.
+    /// The coordinates of the cells' nodes, one cell per lane; lanes without a cell repeat the first. False if a cell of a
+    /// surface or curve has no tangents.
     #[inline(always)]
-    fn gather(&mut self, nodes: &[usize]) {
+    fn gather(&mut self, nodes: &[usize]) -> bool {
+        if self.element.space() > self.element.dimension() {
+            return self.lay_out(nodes);
+        }
         match self.element.dimension() {
             1 => self.gather_in::<1>(nodes),
             2 => self.gather_in::<2>(nodes),
             _ => self.gather_in::<3>(nodes),
         }
+        true
+    }
+
+    /// The same for cells of surfaces and curves, in their own planes and lines; false if one has none.
+    fn lay_out(&mut self, nodes: &[usize]) -> bool {
+        let n = self.element.nodes();
+        let mut x = vec![0.0; self.x.len()];
+        for lane in 0..Lanes::<S>::COUNT {
+            let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
+            if self.placement.place(&self.element.tabulation, self.points, cell, &mut x).is_err() {
+                return false;
+            }
+            self.x.iter_mut().zip(&x).for_each(|(lanes, x)| lanes.as_mut_slice()[lane] = *x);
+        }
+        true
     }
 
     #[inline(always)]

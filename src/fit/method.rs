@@ -96,11 +96,12 @@ impl<T: Real> Method<T> {
             Solver::LeastSquares { normal, products } => {
                 let (c, zero) = (self.reduced.scales.len(), x[0].zero());
                 normal.gram.resize(c * c, zero.clone());
-                self.reduced.gram(products, &mut normal.gram);
+                let m = springs.len();
+                self.reduced.gram(&mut products[..m * m], &mut normal.gram);
                 normal.rhs.clear();
                 normal.rhs.resize(c, zero);
                 let (p, h) = (self.reduced.order, self.reduced.rows());
-                row_products(h, &self.reduced.stiffness[..p * p], p, false, products);
+                row_products(h, &self.reduced.stiffness[..p * p], p, false, &mut products[..m * p]);
                 for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
                     let row = s * p..(s + 1) * p;
                     normal.rhs[unknown] = normal.rhs[unknown].clone() + &inner(&h[row.clone()], &products[row]);

@@ -163,7 +163,13 @@ impl<T: Real> Reduced<T> {
     }
 
     #[inline(always)]
-    fn set_gradients<const D: usize>(&mut self, springs: &Springs, x: &[[T; D]], geometry: &Geometry<T>, measured: &[T]) {
+    fn set_gradients<const D: usize>(
+        &mut self,
+        springs: &Springs,
+        x: &[[T; D]],
+        geometry: &Geometry<T>,
+        measured: &[T],
+    ) {
         let n = x.len();
         let full = (n - 1) * D;
         for ((g, norm), &[i, j]) in self.gradients.chunks_exact_mut(full).zip(&mut self.norms).zip(&springs.pairs) {

@@ -3,9 +3,11 @@
 use crate::error::{Error, Result};
 use serde::Deserialize;
 
-/// How a plane body relates to the solid it stands for.
+/// How a body of fewer dimensions relates to the solid it stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
+    /// A rod of that cross-section (m²), with no stress across it.
+    Rod { area: f64 },
     /// Three dimensions.
     Solid,
     /// No stress through the thickness (m).
@@ -56,7 +58,7 @@ impl Material {
         };
         positive("young", young, "Pa")?;
         let in_range = match state {
-            State::PlaneStress { .. } => poisson > -1.0 && poisson <= 0.5,
+            State::PlaneStress { .. } | State::Rod { .. } => poisson > -1.0 && poisson <= 0.5,
             _ => poisson > -1.0 && poisson < 0.5,
         };
         if !in_range {
@@ -65,13 +67,17 @@ impl Material {
         if let State::PlaneStress { thickness } | State::PlaneStrain { thickness } = state {
             positive("thickness", thickness, "m")?;
         }
+        if let State::Rod { area } = state {
+            positive("area", area, "m²")?;
+        }
         Ok(Material { young, poisson, state })
     }
 
-    /// The material of a body of that dimension; in the plane `plane` defaults to stress and `thickness` to 1 m.
+    /// The material of a body of that dimension; in the plane `plane` defaults to stress and `thickness` to 1 m, a rod has a
+    /// cross-section of 1 m².
     ///
     /// # Errors
-    /// A constant is out of range, or a plane state or thickness is given for a solid.
+    /// A constant is out of range, or a plane state or thickness is given for a solid or a rod.
     pub fn for_body(
         dimension: usize,
         young: f64,
@@ -87,13 +93,28 @@ impl Material {
                     _ => State::PlaneStress { thickness },
                 }
             }
-            (_, Some(_)) => return Err(Error::at("plane", "expected a plane mesh, found a solid one")),
-            (_, None) if thickness.is_some() => {
-                return Err(Error::at("thickness", "expected a plane mesh, found a solid one"));
+            (_, Some(_)) => {
+                return Err(Error::at("plane", format!("expected a plane mesh, found {}", body(dimension))));
             }
+            (_, None) if thickness.is_some() => {
+                return Err(Error::at("thickness", format!("expected a plane mesh, found {}", body(dimension))));
+            }
+            (1, _) => State::Rod { area: 1.0 },
             _ => State::Solid,
         };
         Material::new(young, poisson, state)
+    }
+
+    /// The same rod with that cross-section, m².
+    ///
+    /// # Errors
+    /// The body is no rod, or the area is not positive.
+    pub fn with_area(self, area: f64) -> Result<Material> {
+        match self.state {
+            State::Rod { .. } => Material::new(self.young, self.poisson, State::Rod { area }),
+            State::Solid => Err(Error::at("area", "expected a mesh of lines, found a solid one")),
+            _ => Err(Error::at("area", "expected a mesh of lines, found a plane one")),
+        }
     }
 
     pub fn young(&self) -> f64 {
@@ -108,10 +129,11 @@ impl Material {
         self.state
     }
 
-    /// The thickness in m; 1 for a solid.
+    /// What makes the cells' content a volume: the thickness in m, of a rod its cross-section in m²; 1 for a solid.
     pub fn thickness(&self) -> f64 {
         match self.state {
             State::Solid => 1.0,
+            State::Rod { area } => area,
             State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
         }
     }
@@ -119,11 +141,17 @@ impl Material {
     pub fn moduli(&self) -> Moduli {
         let (e, nu, t) = (self.young, self.poisson, self.thickness());
         let lambda = match self.state {
+            // Of λ + 2μ = E A it does not matter which is which.
+            State::Rod { area } => return Moduli { lambda: 0.0, mu: area * e / 2.0 },
             State::PlaneStress { .. } => e * nu / ((1.0 + nu) * (1.0 - nu)),
             _ => e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         };
         Moduli { lambda: t * lambda, mu: t * e / (2.0 * (1.0 + nu)) }
     }
+}
+
+fn body(dimension: usize) -> &'static str {
+    if dimension == 1 { "one of lines" } else { "a solid one" }
 }
 
 /// A pressure such as `10e3`, `10kPa` or `"0.2 MPa"`, in Pa.

@@ -14,14 +14,14 @@ pub use source::{Format, MeshSource, SourceBlock};
 
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, Result};
-use crate::stiffness::{Fault, Geometry, gather};
+use crate::stiffness::{Fault, Geometry, Placement};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Cells of proved elements. Every point belongs to a cell, and every cell has a positive volume.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// 2 or 3.
+    /// Of the space: 2 or 3. The cells of a surface or curve have fewer.
     pub dimension: usize,
     /// `[points × dimension]`, m.
     pub points: Vec<f64>,
@@ -63,15 +63,13 @@ impl Mesh {
     /// Coordinates are multiplied by `scale`.
     ///
     /// # Errors
-    /// No element serves a cell type, a plane mesh is not in a plane of constant z, or a cell is tangled or flat.
+    /// No element serves a cell type, or a cell is tangled or flat.
     pub fn resolve(source: &MeshSource, own: &[Arc<Element>], scale: f64) -> Result<Mesh> {
         let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
-        if dimension < 2 {
-            return Err(Error::expected("cells", "surface or solid cells", "none"));
+        if dimension == 0 {
+            return Err(Error::expected("cells", "lines, surface or solid cells", "none"));
         }
-        if dimension == 2 {
-            in_one_plane(source)?;
-        }
+        let space = if dimension < 3 && in_one_plane(source) { 2 } else { 3 };
         let lengths = || source.points.iter().flatten().map(|x| (x * scale).abs());
         let largest = lengths().fold(0.0, f64::max);
         if !(1e-30..=1e30).contains(&largest) {
@@ -79,8 +77,8 @@ impl Mesh {
             return Err(Error::expected("points", expected, format!("{largest:?} m")));
         }
         let mut mesh = Mesh {
-            dimension,
-            points: source.points.iter().flat_map(|p| p[..dimension].iter().map(|x| x * scale)).collect(),
+            dimension: space,
+            points: source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect(),
             blocks: Vec::new(),
             groups: BTreeMap::new(),
             reversed: 0,
@@ -91,7 +89,10 @@ impl Mesh {
             let index = match served.get(&block.cell_type) {
                 Some(&index) => index,
                 None => {
-                    let element = element_for(source.format, block, own)?;
+                    let mut element = element_for(source.format, block, own)?;
+                    if element.dimension() < space {
+                        element = Arc::new(Element::clone(&element).in_space(space));
+                    }
                     mesh.blocks.push(CellBlock { element, connectivity: Vec::new() });
                     served.insert(block.cell_type, mesh.blocks.len() - 1);
                     mesh.blocks.len() - 1
@@ -163,23 +164,26 @@ impl Mesh {
         let d = self.dimension;
         for block in &mut self.blocks {
             let element = block.element.clone();
-            let mut geometry = Geometry::new(&element.tabulation);
-            let mut x = vec![0.0; element.nodes() * d];
+            let table = &element.tabulation;
+            let mut geometry = Geometry::new(table);
+            let mut placement = Placement::new(table);
+            let mut x = vec![0.0; element.nodes() * element.dimension()];
+            let mut set = |points: &[f64], nodes: &[usize]| {
+                placement.place(table, points, nodes, &mut x).and_then(|()| geometry.set(table, &x))
+            };
             for (cell, nodes) in block.connectivity.chunks_exact_mut(element.nodes()).enumerate() {
-                gather(&self.points, d, nodes, &mut x);
-                let fault = match (geometry.set(&element.tabulation, &x), &element.reflection) {
+                let fault = match (set(&self.points, nodes), &element.reflection) {
                     (Ok(()), _) => continue,
                     (Err(Fault::Reversed), Some(reflection)) => {
                         let turned: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();
                         nodes.copy_from_slice(&turned);
-                        gather(&self.points, d, nodes, &mut x);
                         self.reversed += 1;
-                        geometry.set(&element.tabulation, &x).err()
+                        set(&self.points, nodes).err()
                     }
                     (Err(fault), _) => Some(fault),
                 };
                 if let Some(fault) = fault {
-                    let first = &x[..d];
+                    let first = &self.points[nodes[0] * d..][..d];
                     let key = format!("{} cell {} at {first:?} m", element.name, cell + 1);
                     return Err(Error::at(key, fault.to_string()));
                 }
@@ -194,6 +198,11 @@ impl Mesh {
 
     pub fn cell_count(&self) -> usize {
         self.blocks.iter().map(|b| b.cells().len()).sum()
+    }
+
+    /// Of the cells: 3 for solids, 2 for surfaces, 1 for curves.
+    pub fn cell_dimension(&self) -> usize {
+        self.blocks.first().map_or(self.dimension, |b| b.element.dimension())
     }
 
     /// The coordinates of one point, m.
@@ -244,14 +253,11 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
     Ok(element)
 }
 
-fn in_one_plane(source: &MeshSource) -> Result<()> {
+/// Whether all points that are used have the same z.
+fn in_one_plane(source: &MeshSource) -> bool {
     let used = || source.blocks.iter().flat_map(|b| &b.connectivity).map(|&p| source.points[p]);
     let range = |k: usize| used().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));
     let (lo, hi) = range(2);
     let extent = (0..2).map(|k| range(k).1 - range(k).0).fold(0.0, f64::max);
-    if hi - lo > 1e-9 * extent {
-        let found = format!("z from {lo} to {hi}");
-        return Err(Error::expected("points", "a plane mesh at constant z, or solid cells", found));
-    }
-    Ok(())
+    hi - lo <= 1e-9 * extent
 }

@@ -2,13 +2,15 @@
 
 use super::Entries;
 use super::system::dofs;
+use crate::element::SpringKind;
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
-use crate::element::SpringKind;
 use crate::springs::{Measure, distance};
 use crate::stiffness::gather;
+use crate::symbolic::Expr;
 use faer::sparse::Triplet;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// A spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,8 +107,14 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
     let (d, springs) = (mesh.dimension, &fit.springs);
     let (m, first) = (springs.len(), springs.pairs.len());
     let every: Vec<usize> = (0..springs.nodes).collect();
-    let functions = springs.functions.iter().map(|f| (f.kind, &f.nodes, Measure::Function(f.function.clone())));
-    let content = springs.content.map(|kind| (kind, &every, Measure::Content(block.element.clone())));
+    let in_space = |kind: SpringKind, nodes: usize, function: Option<&Arc<Expr>>| match function {
+        Some(function) if springs.space == springs.dimension => Measure::Function(function.clone()),
+        None if springs.space == springs.dimension => Measure::Content(block.element.clone()),
+        _ => Measure::Function(Arc::new(Measure::of_kind(kind, nodes, d).expect("a kind has a formula in any space"))),
+    };
+    let functions =
+        springs.functions.iter().map(|f| (f.kind, &f.nodes, in_space(f.kind, f.nodes.len(), Some(&f.function))));
+    let content = springs.content.map(|kind| (kind, &every, in_space(kind, springs.nodes, None)));
     let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(content).collect();
     let mut all = Vec::new();
     if kinds.is_empty() {

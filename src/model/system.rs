@@ -1,10 +1,12 @@
 //! The finite element model.
 
 use super::Entries;
+use crate::element::Tabulation;
 use crate::material::Moduli;
 use crate::mesh::{CellIndex, Mesh};
-use crate::stiffness::{self, Geometry};
+use crate::stiffness::{self, Geometry, Placement};
 use faer::sparse::Triplet;
+use nalgebra::DMatrix;
 
 /// Calls `visit(cell, nodes, geometry)` for every cell of the mesh.
 pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], &Geometry)) {
@@ -22,8 +24,12 @@ pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], 
 pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
     let d = mesh.dimension;
     let mut entries = Entries::new();
-    each_cell(mesh, |_, nodes, geometry| {
-        let r = geometry.stiffness(moduli);
+    each_cell(mesh, |cell, nodes, geometry| {
+        let mut r = geometry.stiffness(moduli);
+        let table = &mesh.blocks[cell.block].element.tabulation;
+        if table.dimension < d {
+            r = in_space(table, &mesh.points, nodes, &r);
+        }
         for (i, row) in dofs(nodes, d).enumerate() {
             for (j, column) in dofs(nodes, d).enumerate() {
                 if row >= column {
@@ -33,6 +39,18 @@ pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
         }
     });
     entries
+}
+
+/// `Q R Qᵀ` of a cell of a surface or curve: Q takes the displacements in its own plane or line into space.
+fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, d, space) = (table.nodes, table.dimension, table.space);
+    let mut placement = Placement::new(table);
+    placement.place(table, points, nodes, &mut vec![0.0; n * d]).expect("a mesh holds only cells with tangents");
+    let mut q = DMatrix::zeros(n * space, n * d);
+    for (a, k, l) in (0..n).flat_map(|a| (0..space).flat_map(move |k| (0..d).map(move |l| (a, k, l)))) {
+        q[(a * space + k, a * d + l)] = placement.frame[l * space + k];
+    }
+    &q * r * q.transpose()
 }
 
 /// The degrees of freedom of `nodes`, in order.

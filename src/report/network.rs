@@ -28,9 +28,10 @@ pub fn network_json(mesh: &Mesh, masses: Option<&[f64]>, network: &Network) -> S
         .lengths
         .iter()
         .map(|s| json!({ "kind": "length", "points": s.points, "constant": s.constant, "rest": s.rest }));
-    let others = network.others.iter().map(
-        |s| json!({ "kind": s.kind.name(), "points": s.points, "constant": s.constant, "rest": s.rest }),
-    );
+    let others = network
+        .others
+        .iter()
+        .map(|s| json!({ "kind": s.kind.name(), "points": s.points, "constant": s.constant, "rest": s.rest }));
     let value = json!({
         "units": { "length": "m", "mass": "kg", "length spring": "N/m", "area spring": "N/m^3", "volume spring": "N/m^5", "angle spring": "N*m" },
         "points": mesh.points.chunks_exact(mesh.dimension).collect::<Vec<_>>(),

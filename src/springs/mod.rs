@@ -16,7 +16,10 @@ use std::sync::Arc;
 /// nodes, then at most one on the cell's content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Springs {
+    /// Of the cell.
     pub dimension: usize,
+    /// Coordinates of a node, more than the dimension on surfaces and curves.
+    pub space: usize,
     pub nodes: usize,
     /// Node pairs of the length springs.
     pub pairs: Vec<[usize; 2]>,
@@ -47,12 +50,13 @@ impl Springs {
     /// The named groups of the element, or all that are not optional.
     ///
     /// # Errors
-    /// A name is no group of this element.
+    /// A name is no group of this element, or a group needs a cell that fills its space.
     pub fn select(element: &Element, names: Option<&[String]>) -> Result<Springs> {
         let mut chosen = element.select_groups(names)?;
         chosen.sort_by_key(|g| (g.kind != SpringKind::Length, g.is_content()));
         let mut springs = Springs {
             dimension: element.dimension(),
+            space: element.space(),
             nodes: element.nodes(),
             pairs: Vec::new(),
             functions: Vec::new(),
@@ -63,6 +67,13 @@ impl Springs {
             parallel: Vec::new(),
         };
         for (index, group) in chosen.iter().enumerate() {
+            let embedded = element.space() > element.dimension();
+            let bent = group.is_content() && element.nodes() > element.cell.corners().len();
+            if embedded && (bent || group.kind == SpringKind::Measure) {
+                let problem =
+                    "cannot be used on a surface or curve in space: its measure is known in the cell's plane only";
+                return Err(Error::at(format!("springs.{}", group.name), problem));
+            }
             if group.is_content() {
                 springs.content = Some(group.kind);
                 springs.groups.push(index);
@@ -132,7 +143,8 @@ impl Springs {
             let at: Vec<f64> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).copied().collect();
             let gradient = Jet::gradient(&spring.function, &at);
             for (&a, g) in spring.nodes.iter().zip(gradient.chunks_exact(d)) {
-                row[a * d..(a + 1) * d].copy_from_slice(g);
+                // Added: a coupling may name a node twice.
+                row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row += g);
             }
         }
     }

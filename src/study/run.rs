@@ -114,7 +114,7 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
 /// An input is wrong: a group, a support, a load, the mesh. A network that does not stand is no error.
 pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     let mesh = scene.build_mesh()?;
-    let material = scene.material(mesh.dimension)?;
+    let material = scene.material(mesh.cell_dimension())?;
     drawable(scene, &mesh)?;
     let cases = load_cases(scene, &mesh, material)?;
     let mut outcome = Outcome {
@@ -301,10 +301,10 @@ impl Body {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?;
                 let factor = system.factorize().filter(Factor::is_positive_definite).ok_or_else(|| {
-                    Error::at(
-                        "mesh",
-                        "the finite element stiffness is not positive definite: some motion has no stiffness",
-                    )
+                    let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
+                    let bending = "; surfaces and curves resist no bending, so hold their points across them";
+                    let embedded = mesh.cell_dimension() < mesh.dimension;
+                    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" }))
                 })?;
                 body.systems.push((system, factor));
                 body.system_of.push(body.systems.len() - 1);

@@ -27,14 +27,15 @@ pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
         14 => (3, 5),
         27 => (3, 13),
         68 => return Some((1, None)),
-        69 | 70 => return Some((2, None)),
+        7 | 69 | 70 => return Some((2, None)),
         71..=74 => return Some((3, None)),
         _ => return None,
     };
     Some((dimension, Some(nodes)))
 }
 
-/// Turns a pixel or a voxel, whose nodes run along the axes, into the quadrangle or hexahedron they are.
+/// Turns a pixel or a voxel, whose nodes run along the axes, into the quadrangle or hexahedron they are, and a polygon of
+/// three or four nodes into the triangle or quadrangle it is.
 pub(super) fn without_raster(cell_type: u8, nodes: &mut [usize]) -> u8 {
     match cell_type {
         8 => {
@@ -46,6 +47,8 @@ pub(super) fn without_raster(cell_type: u8, nodes: &mut [usize]) -> u8 {
             nodes.swap(6, 7);
             12
         }
+        7 if nodes.len() == 3 => 5,
+        7 if nodes.len() == 4 => 9,
         other => other,
     }
 }

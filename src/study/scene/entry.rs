@@ -70,6 +70,8 @@ pub struct MaterialEntry {
     pub poisson: f64,
     pub plane: Option<Plane>,
     pub thickness: Option<f64>,
+    /// The cross-section of rods, m².
+    pub area: Option<f64>,
     pub density: Option<f64>,
 }
 

@@ -140,7 +140,9 @@ impl Scene {
     /// A constant is out of range, or the plane state does not go with the dimension.
     pub fn material(&self, dimension: usize) -> Result<Material> {
         let entry = &self.material;
-        Material::for_body(dimension, entry.young.0, entry.poisson, entry.plane, entry.thickness)
+        let material = Material::for_body(dimension, entry.young.0, entry.poisson, entry.plane, entry.thickness);
+        material
+            .and_then(|m| entry.area.map_or(Ok(m), |area| m.with_area(area)))
             .map_err(|e| e.under("material").in_file(&self.path))
     }
 

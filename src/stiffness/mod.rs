@@ -1,5 +1,9 @@
 //! The stiffness of one element: its geometry at the quadrature points, the strain energy, and R.
 
+mod placement;
+
+pub use placement::{Placement, gather};
+
 use crate::element::Tabulation;
 use crate::material::Moduli;
 use crate::scalar::{Scalar, adjugate, multiple, zeros};
@@ -215,8 +219,8 @@ impl Geometry {
     }
 }
 
-/// Calls `visit(cell, x, geometry)` for every cell: `connectivity` is `[cells × nodes]` into `points`,
-/// `[points × dimension]`, m; `x` the positions of the cell's nodes.
+/// Calls `visit(cell, x, geometry)` for every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × space]`,
+/// m; `x` the positions of the cell's nodes, in its own plane or line where it is less than its space.
 ///
 /// # Errors
 /// The first cell that is reversed, tangled or flat, counted from 0.
@@ -227,27 +231,14 @@ pub fn each_cell(
     mut visit: impl FnMut(usize, &[f64], &Geometry),
 ) -> Result<(), (usize, Fault)> {
     let mut geometry = Geometry::new(table);
+    let mut placement = Placement::new(table);
     let mut x = vec![0.0; table.nodes * table.dimension];
     for (cell, nodes) in connectivity.chunks_exact(table.nodes).enumerate() {
-        gather(points, table.dimension, nodes, &mut x);
-        geometry.set(table, &x).map_err(|fault| (cell, fault))?;
+        let placed = placement.place(table, points, nodes, &mut x);
+        placed.and_then(|()| geometry.set(table, &x)).map_err(|fault| (cell, fault))?;
         visit(cell, &x, &geometry);
     }
     Ok(())
-}
-
-/// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
-pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
-    match dimension {
-        2 => gather_in::<2>(points, nodes, x),
-        3 => gather_in::<3>(points, nodes, x),
-        _ => gather_in::<1>(points, nodes, x),
-    }
-}
-
-fn gather_in<const D: usize>(points: &[f64], nodes: &[usize], x: &mut [f64]) {
-    let points = points.as_chunks::<D>().0;
-    x.as_chunks_mut::<D>().0.iter_mut().zip(nodes).for_each(|(x, &node)| *x = points[node]);
 }
 
 /// `J_kl = ∂x_k/∂ξ_l = Σ_a x_ak ∂N_a/∂ξ_l`.

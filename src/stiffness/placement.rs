@@ -1,0 +1,88 @@
+//! Where the nodes of a cell are: in space, or in the cell's own plane or line where it is less than its space.
+
+use super::Fault;
+use crate::element::Tabulation;
+
+/// Room to place the nodes of one cell after the other.
+///
+/// A cell of a surface or a curve is laid into the mean of its tangent planes, orthogonally: exact for lines and flat
+/// cells, and for a slightly bent one the facet that stands for it.
+#[derive(Debug, Clone)]
+pub struct Placement {
+    /// Orthonormal vectors along the cell, `[dimension × space]`; empty where the cell fills its space.
+    pub frame: Vec<f64>,
+    spatial: Vec<f64>,
+}
+
+impl Placement {
+    pub fn new(table: &Tabulation) -> Placement {
+        let embedded = table.dimension < table.space;
+        let room = |size: usize| vec![0.0; if embedded { size } else { 0 }];
+        Placement { frame: room(table.dimension * table.space), spatial: room(table.nodes * table.space) }
+    }
+
+    /// Writes the positions of `nodes` among `points`, `[points × space]`, into `x`, `[nodes × dimension]`.
+    ///
+    /// # Errors
+    /// A cell of a surface or curve has no tangents.
+    pub fn place(&mut self, table: &Tabulation, points: &[f64], nodes: &[usize], x: &mut [f64]) -> Result<(), Fault> {
+        let (d, space) = (table.dimension, table.space);
+        if self.frame.is_empty() {
+            gather(points, d, nodes, x);
+            return Ok(());
+        }
+        gather(points, space, nodes, &mut self.spatial);
+        self.set_frame(table)?;
+        let origin = &self.spatial[..space];
+        for (local, at) in x.chunks_exact_mut(d).zip(self.spatial.chunks_exact(space)) {
+            for (local, e) in local.iter_mut().zip(self.frame.chunks_exact(space)) {
+                *local = e.iter().zip(at.iter().zip(origin)).map(|(e, (x, o))| e * (x - o)).sum();
+            }
+        }
+        Ok(())
+    }
+
+    /// The mean tangents `Σ_q w_q ∂x/∂ξ_l`, made orthonormal.
+    fn set_frame(&mut self, table: &Tabulation) -> Result<(), Fault> {
+        let (d, space) = (table.dimension, table.space);
+        for l in 0..d {
+            let (done, rest) = self.frame.split_at_mut(l * space);
+            let tangent = &mut rest[..space];
+            tangent.fill(0.0);
+            for (dn, w) in table.gradients.chunks_exact(table.nodes * d).zip(&table.weights) {
+                for (dn, x) in dn.chunks_exact(d).zip(self.spatial.chunks_exact(space)) {
+                    tangent.iter_mut().zip(x).for_each(|(t, x)| *t += w * dn[l] * x);
+                }
+            }
+            let size = norm(tangent);
+            for e in done.chunks_exact(space) {
+                let along: f64 = e.iter().zip(&*tangent).map(|(e, t)| e * t).sum();
+                tangent.iter_mut().zip(e).for_each(|(t, e)| *t -= along * e);
+            }
+            let left = norm(tangent);
+            if left.is_nan() || left <= 1e-12 * size {
+                return Err(Fault::Flat);
+            }
+            tangent.iter_mut().for_each(|t| *t /= left);
+        }
+        Ok(())
+    }
+}
+
+fn norm(vector: &[f64]) -> f64 {
+    vector.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
+pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
+    match dimension {
+        2 => gather_in::<2>(points, nodes, x),
+        3 => gather_in::<3>(points, nodes, x),
+        _ => gather_in::<1>(points, nodes, x),
+    }
+}
+
+fn gather_in<const D: usize>(points: &[f64], nodes: &[usize], x: &mut [f64]) {
+    let points = points.as_chunks::<D>().0;
+    x.as_chunks_mut::<D>().0.iter_mut().zip(nodes).for_each(|(x, &node)| *x = points[node]);
+}

@@ -1,0 +1,209 @@
+//! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
+
+mod shapes;
+
+use shapes::{Random, distorted, elements, materials};
+use springfit::element::{Element, SpringKind};
+use springfit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_cells};
+use springfit::material::{Material, Plane};
+use springfit::springs::{Measure, Springs};
+use std::path::Path;
+use std::sync::Arc;
+
+fn example(name: &str) -> Element {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/elements/{name}.toml"));
+    Element::load(path.to_str().unwrap()).unwrap()
+}
+
+/// Central differences of step 1e-5 of functions of size one err by 1e-10, and the forces' own rounding is as large.
+fn check_derivatives(measure: &Measure, x: &[f64], rest: f64, d: usize, name: &str) {
+    let k = 3.0;
+    let response = measure.respond(k, rest, x, d);
+    assert!((measure.value(x, d) - measure.jet(x, d).value).abs() < 1e-14 * (1.0 + rest.abs()), "{name}");
+    let size = response.tangent.iter().fold(0.0f64, |a, t| a.max(t.abs()));
+    for i in 0..x.len() {
+        let moved = |h: f64| {
+            let mut x = x.to_vec();
+            x[i] += h;
+            measure.respond(k, rest, &x, d)
+        };
+        let (ahead, behind) = (moved(1e-5), moved(-1e-5));
+        let slope = (ahead.energy - behind.energy) / 2e-5;
+        assert!((slope + response.force[i]).abs() < 1e-7 * size, "{name}: force {i}");
+        for j in 0..x.len() {
+            let slope = (ahead.force[j] - behind.force[j]) / 2e-5;
+            let tangent = response.tangent[j * x.len() + i];
+            assert!((slope + tangent).abs() < 1e-7 * size, "{name}: tangent {j} {i}: {slope} {tangent}");
+        }
+    }
+}
+
+/// At rest, and where every length has changed by up to half.
+#[test]
+fn forces_and_tangents_are_those_of_differences() {
+    let examples = ["tri3_coupled", "tet4_coupled"].map(example);
+    let mut kinds = Vec::new();
+    for element in elements().into_iter().chain(examples).map(Arc::new) {
+        let d = element.dimension();
+        let every: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
+        let springs = Springs::select(&element, Some(&every)).unwrap();
+        let mut random = Random(21);
+        let x = distorted(&element, &mut random);
+        let stretched: Vec<f64> = x.iter().enumerate().map(|(i, x)| x * [1.5, 0.7, 1.2][i % d]).collect();
+        let at =
+            |x: &[f64], nodes: &[usize]| -> Vec<f64> { nodes.iter().flat_map(|a| x[a * d..][..d].to_vec()).collect() };
+        let mut measures: Vec<(SpringKind, Vec<usize>, Measure)> = springs
+            .functions
+            .iter()
+            .map(|f| (f.kind, f.nodes.clone(), Measure::Function(f.function.clone())))
+            .collect();
+        measures.push((SpringKind::Length, springs.pairs[0].to_vec(), Measure::Length));
+        // 81 coordinates, each moved, take a while.
+        if let Some(kind) = springs.content.filter(|_| element.nodes() < 20) {
+            measures.push((kind, (0..element.nodes()).collect(), Measure::Content(element.clone())));
+        }
+        for (kind, nodes, measure) in measures {
+            let rest = measure.value(&at(&x, &nodes), d);
+            for x in [&x, &stretched] {
+                check_derivatives(&measure, &at(x, &nodes), rest, d, &format!("{} {kind:?}", element.name));
+            }
+            kinds.push(kind);
+        }
+    }
+    for kind in [SpringKind::Angle, SpringKind::Area, SpringKind::Volume, SpringKind::Coupling, SpringKind::Measure] {
+        assert!(kinds.contains(&kind), "{kind:?}");
+    }
+}
+
+/// Formulas of the same thing agree: a length as a formula, the volume of a tetrahedron as its content.
+#[test]
+fn formulas_agree_with_closed_forms() {
+    let tetrahedron = Arc::new(Element::load("tet4").unwrap());
+    let mut random = Random(3);
+    for _ in 0..10 {
+        let x = distorted(&tetrahedron, &mut random);
+        let volume = Measure::Function(Measure::of_kind(SpringKind::Volume, 4, 3).unwrap().into());
+        let length = Measure::Function(Measure::of_kind(SpringKind::Length, 2, 3).unwrap().into());
+        for (formula, closed, x) in
+            [(volume, Measure::Content(tetrahedron.clone()), &x[..]), (length, Measure::Length, &x[..6])]
+        {
+            let (a, b) = (formula.jet(x, 3), closed.jet(x, 3));
+            assert!((a.value - b.value).abs() < 1e-14);
+            assert!(a.gradient.iter().zip(&b.gradient).all(|(a, b)| (a - b).abs() < 1e-13));
+            assert!(a.hessian.iter().zip(&b.hessian).all(|(a, b)| (a - b).abs() < 1e-12));
+        }
+        let angle = Measure::Function(Measure::of_kind(SpringKind::Angle, 3, 3).unwrap().into());
+        let (u, v) = ([x[0] - x[3], x[1] - x[4], x[2] - x[5]], [x[6] - x[3], x[7] - x[4], x[8] - x[5]]);
+        let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let cosine = dot(u, v) / (dot(u, u) * dot(v, v)).sqrt();
+        assert!((angle.value(&x[..9], 3) - cosine.acos()).abs() < 1e-12);
+    }
+}
+
+fn fitted(element: &Element, names: &[&str], x: &[f64], material: Material, fit: Fit) -> (CellFits, f64, f64) {
+    let names: Vec<String> = names.iter().map(|n| n.to_string()).collect();
+    let springs = Springs::select(element, Some(&names)).unwrap();
+    let cells: Vec<usize> = (0..element.nodes()).collect();
+    let fits = fit_cells(element, &springs, x, &cells, material.moduli(), &fit, &mut |_| {}).unwrap();
+    let errors = element_errors(element, x, &cells, material.moduli(), &fits).unwrap();
+    (fits, errors.frobenius[0], errors.spectral[0])
+}
+
+const NORMS: [Objective; 3] = [
+    Objective::Frobenius(Weight::None),
+    Objective::Frobenius(Weight::OffDiagonal),
+    Objective::Frobenius(Weight::Modal { higher: 0.316 }),
+];
+
+/// With products of elongations springs are the finite element, on any triangle and tetrahedron: the residual is rounding,
+/// as much as the condition of the springs of a distorted element makes of it.
+#[test]
+fn couplings_make_simplices_exact() {
+    for (name, groups) in
+        [("tri3_coupled", &["edge", "corner"][..]), ("tet4_coupled", &["edge", "coupling 1", "coupling 2"][..])]
+    {
+        let element = example(name);
+        let mut random = Random(5);
+        for _ in 0..20 {
+            let x = distorted(&element, &mut random);
+            for material in materials(element.dimension()) {
+                for objective in NORMS {
+                    let (_, frobenius, _) = fitted(&element, groups, &x, material, Fit::new(objective));
+                    assert!(frobenius < 1e-10, "{name} {objective:?}: {frobenius}");
+                }
+                let spectral = Fit::new(Objective::Spectral(Weight::None));
+                let (fits, _, error) = fitted(&element, groups, &x, material, spectral);
+                // The bound is zero too, and the gap relative to a millionth of R.
+                assert!(error < 1e-9 && fits.certificates[0].gap() < 1e-5, "{name}: {error} {:?}", fits.certificates);
+                let balance = Objective::Divergence { balance: 0.25 };
+                let (_, frobenius, _) = fitted(&element, groups, &x, material, Fit::new(balance));
+                assert!(frobenius < 1e-3, "{name}: divergence {frobenius}");
+            }
+        }
+    }
+}
+
+/// One area spring makes the equilateral triangle exact for every ν in plane stress; method's figures for the regular
+/// tetrahedron with a volume spring.
+#[test]
+fn area_and_volume_springs_hold_the_ratio_of_poisson() {
+    let root = 3f64.sqrt();
+    let triangle = Element::load("tri3").unwrap();
+    let x = [0.0, 0.0, 1.0, 0.0, 0.5, root / 2.0];
+    for nu in [0.0, 0.2, 0.3, 1.0 / 3.0, 0.45, 0.49, 0.4999] {
+        let material = Material::for_body(2, 1e4, nu, Some(Plane::Stress), None).unwrap();
+        for objective in NORMS {
+            let (_, error, _) = fitted(&triangle, &["edge", "bulk"], &x, material, Fit::new(objective));
+            assert!(error < 1e-12, "{nu} {objective:?}: {error}");
+        }
+    }
+    let tetrahedron = Element::load("tet4").unwrap();
+    let x = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, root / 2.0, 0.0, 0.5, root / 6.0, (2.0f64 / 3.0).sqrt()];
+    for (nu, without, with) in [(0.3, 0.235, 0.166), (0.45, 0.570, 0.045), (0.49, 0.662, 0.009)] {
+        let material = Material::for_body(3, 1e4, nu, None, None).unwrap();
+        for (groups, expected) in [(&["edge"][..], without), (&["edge", "bulk"][..], with)] {
+            let (_, error, _) = fitted(&tetrahedron, groups, &x, material, Fit::new(NORMS[0]));
+            assert!((error - expected).abs() < 5e-4, "{nu} {groups:?}: {error}");
+        }
+    }
+}
+
+/// The classes of the cube's 28 pairs are its edges, face diagonals and body diagonals.
+#[test]
+fn the_cells_symmetry_divides_springs_into_classes() {
+    let element = example("hex8_selective");
+    let sizes: Vec<usize> = element.springs.iter().map(|g| g.nodes.len()).collect();
+    assert_eq!(sizes, [12, 12, 4, 0]);
+    assert_eq!(element.springs[1].name, "springs 2");
+    let sizes: Vec<usize> = example("tet4_coupled").springs.iter().map(|g| g.nodes.len()).collect();
+    assert_eq!(&sizes[..3], [6, 12, 3]);
+}
+
+/// Near incompressibility the fully integrated cube locks, the selectively integrated one does not: the energy of a
+/// bending motion, u = xy, v = −x²/2 at the nodes, stays bounded.
+#[test]
+fn selective_integration_does_not_lock() {
+    let full = Element::load("hex8").unwrap();
+    let selective = example("hex8_selective");
+    let bending = |element: &Element, nu: f64| {
+        let x = element.positions.clone();
+        let u: Vec<f64> = x.chunks_exact(3).flat_map(|x| [x[0] * x[1], -x[0] * x[0] / 2.0, 0.0]).collect();
+        let moduli = Material::for_body(3, 1.0, nu, None, None).unwrap().moduli();
+        let mut geometry = springfit::stiffness::Geometry::new(&element.tabulation);
+        geometry.set(&element.tabulation, &x).unwrap();
+        let u = nalgebra::DVector::from_vec(u);
+        (geometry.stiffness(moduli) * &u).dot(&u)
+    };
+    assert!((bending(&full, 0.0) - bending(&selective, 0.0)).abs() < 1e-13);
+    assert!(bending(&full, 0.49999) > 1e4);
+    assert!(bending(&selective, 0.49999) < 4.0);
+    // A uniform strain has the same energy in both.
+    let moduli = Material::for_body(3, 1.0, 0.49, None, None).unwrap().moduli();
+    let energy = |element: &Element| {
+        let mut geometry = springfit::stiffness::Geometry::new(&element.tabulation);
+        geometry.set(&element.tabulation, &element.positions).unwrap();
+        let u = nalgebra::DVector::from_column_slice(&element.positions);
+        (geometry.stiffness(moduli) * &u).dot(&u)
+    };
+    assert!((energy(&full) / energy(&selective) - 1.0).abs() < 1e-13);
+}
