@@ -2,10 +2,12 @@
 
 mod comparison;
 mod metrics;
+mod moduli;
 mod run;
 mod scene;
 
 pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
 pub use metrics::{DisplacementError, displacement_error};
+pub use moduli::{EffectiveModuli, Lattice};
 pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
 pub use scene::{BoxEntry, LoadCase, MeshInput, NamedFit, Output, Part, Scene, load_elements};

@@ -1,4 +1,5 @@
 //! Random shapes and materials of every shipped element.
+#![allow(dead_code)] // not every test needs all of it
 
 use nalgebra::{DMatrix, DVector};
 use springfit::element::{Element, SHIPPED};
@@ -40,7 +41,6 @@ pub fn materials(dimension: usize) -> Vec<Material> {
     planes.iter().flat_map(each).collect()
 }
 
-#[allow(dead_code)] // not every test needs them
 /// Translations and infinitesimal rotations, `[motions][nodes × dimension]`.
 pub fn rigid_motions(x: &[f64], d: usize) -> Vec<Vec<f64>> {
     let field = |f: &dyn Fn(&[f64], usize) -> f64| -> Vec<f64> {

@@ -1,0 +1,164 @@
+//! The elastic moduli that a network of springs has as a material, measured on a box that is repeated without end.
+
+use crate::element::Element;
+use crate::error::Result;
+use crate::fit::{CellFits, Fit, fit_cells};
+use crate::material::Material;
+use crate::mesh::{BoxMesh, Mesh};
+use crate::model::{Entries, Network, finite_elements};
+use crate::springs::Springs;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// Moduli of a homogenised material, that of the axes if it is not the same in all directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectiveModuli {
+    /// C, `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane N/m.
+    pub stiffness: DMatrix<f64>,
+    /// Young's modulus, the mean of the axes.
+    pub young: f64,
+    /// Poisson's ratio, the mean over all pairs of axes.
+    pub poisson: f64,
+    /// `2 C_shear/(C₁₁ − C₁₂)`, means over the axes: one where the material is isotropic (Zener 1948).
+    pub zener: f64,
+}
+
+/// What one box of cells is made of.
+#[derive(Debug)]
+pub struct Lattice {
+    mesh: Mesh,
+    fits: CellFits,
+}
+
+impl Lattice {
+    /// Fits the springs of `element` in a box of one cell per direction (for a simplex, of the d! that fill it), each
+    /// `size` long.
+    ///
+    /// # Errors
+    /// The element's cells fill no box.
+    pub fn fit(
+        element: &Arc<Element>,
+        springs: &Springs,
+        size: &[f64],
+        material: Material,
+        fit: &Fit,
+    ) -> Result<Lattice> {
+        let d = element.dimension();
+        let spec = BoxMesh { element: element.clone(), size: size.to_vec(), cells: vec![1; d], origin: vec![0.0; d] };
+        let mesh = spec.build()?;
+        let cells = &mesh.blocks[0].connectivity;
+        let fits = fit_cells(element, springs, &mesh.points, cells, material.moduli(), fit, &mut |_| {})?;
+        Ok(Lattice { mesh, fits })
+    }
+
+    /// The same springs with other constants, `[cells × springs]`.
+    pub fn with_constants(mut self, constants: Vec<f64>) -> Lattice {
+        self.fits.constants = constants;
+        self
+    }
+
+    /// The moduli of the springs; `None` where some strain meets no resistance.
+    pub fn of_springs(&self) -> Option<EffectiveModuli> {
+        let network = Network::assemble(&self.mesh, std::slice::from_ref(&self.fits));
+        homogenise(&self.mesh, &network.stiffness(&self.mesh.points))
+    }
+
+    /// The moduli of the finite elements, which are the material's.
+    pub fn of_elements(&self, material: Material) -> Option<EffectiveModuli> {
+        homogenise(&self.mesh, &finite_elements(&self.mesh, material.moduli()))
+    }
+}
+
+/// Displacements `u = ε x + ũ` with ũ the same at opposite points: `C_ij = (u_iᵀ K u_j)/V`, each ũ being the one of least
+/// energy.
+fn homogenise(mesh: &Mesh, entries: &Entries) -> Option<EffectiveModuli> {
+    let d = mesh.dimension;
+    let (image, count) = images(mesh);
+    let size = mesh.points.len();
+    let mut k = DMatrix::zeros(size, size);
+    for e in entries {
+        k[(e.row, e.col)] += e.val;
+        if e.row != e.col {
+            k[(e.col, e.row)] += e.val;
+        }
+    }
+    let mut periodic = DMatrix::zeros(size, count * d);
+    for (p, &class) in image.iter().enumerate() {
+        (0..d).for_each(|c| periodic[(p * d + c, class * d + c)] = 1.0);
+    }
+    let strains = strains(d);
+    let affine = DMatrix::from_fn(size, strains.len(), |row, case| {
+        let x = mesh.point(row / d);
+        (0..d).map(|l| strains[case][(row % d, l)] * x[l]).sum()
+    });
+    // ũ = −(PᵀKP)⁺ PᵀK ε x, the pseudoinverse for the translations.
+    let inner = periodic.transpose() * &k * &periodic;
+    let eigen = inner.symmetric_eigen();
+    let floor = 1e-10 * eigen.eigenvalues.amax();
+    let inverse = eigen.eigenvalues.map(|e| if e.abs() > floor { 1.0 / e } else { 0.0 });
+    let forces = periodic.transpose() * &k * &affine;
+    let relaxed = &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.tr_mul(&forces);
+    let u = affine - periodic * relaxed;
+    let stiffness = u.transpose() * k * &u / volume(mesh);
+    moduli(stiffness, d)
+}
+
+/// Points at opposite places of the box are images of each other.
+fn images(mesh: &Mesh) -> (Vec<usize>, usize) {
+    let d = mesh.dimension;
+    let extent: Vec<f64> =
+        (0..d).map(|k| mesh.points.iter().skip(k).step_by(d).fold(0.0, |a: f64, x| a.max(*x))).collect();
+    let mut classes: Vec<Vec<f64>> = Vec::new();
+    let place = |p: usize| -> Vec<f64> {
+        let wrap = |(x, size): (&f64, &f64)| if (x / size - 1.0).abs() < 1e-9 { 0.0 } else { x / size };
+        mesh.point(p).iter().zip(&extent).map(wrap).collect()
+    };
+    let mut class = |p: usize| {
+        let at = place(p);
+        let same = |other: &Vec<f64>| other.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
+        classes.iter().position(same).unwrap_or_else(|| {
+            classes.push(at.clone());
+            classes.len() - 1
+        })
+    };
+    let image = (0..mesh.point_count()).map(&mut class).collect();
+    (image, classes.len())
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let d = mesh.dimension;
+    (0..d).map(|k| mesh.points.iter().skip(k).step_by(d).fold(0.0, |a: f64, x| a.max(*x))).product()
+}
+
+/// The unit strains, first along the axes, then the shears.
+fn strains(d: usize) -> Vec<DMatrix<f64>> {
+    let unit = |k: usize, l: usize| {
+        let mut strain = DMatrix::zeros(d, d);
+        strain[(k, l)] += 0.5;
+        strain[(l, k)] += 0.5;
+        strain
+    };
+    let shears = (0..d).flat_map(|k| (k + 1..d).map(move |l| (k, l)));
+    (0..d).map(|k| (k, k)).chain(shears).map(|(k, l)| unit(k, l)).collect()
+}
+
+fn moduli(stiffness: DMatrix<f64>, d: usize) -> Option<EffectiveModuli> {
+    let compliance = stiffness.clone().try_inverse()?;
+    if stiffness.clone().symmetric_eigenvalues().min() < 1e-9 * stiffness.amax() {
+        return None;
+    }
+    let mean = |values: DVector<f64>| values.mean();
+    let pairs: Vec<(usize, usize)> = (0..d).flat_map(|k| (0..d).map(move |l| (k, l))).filter(|(k, l)| k != l).collect();
+    let over_pairs =
+        |f: &dyn Fn(usize, usize) -> f64| pairs.iter().map(|&(k, l)| f(k, l)).sum::<f64>() / pairs.len() as f64;
+    let along = mean(DVector::from_fn(d, |k, _| stiffness[(k, k)]));
+    let across = over_pairs(&|k, l| stiffness[(k, l)]);
+    let shears = stiffness.nrows() - d;
+    let shear = mean(DVector::from_fn(shears, |s, _| stiffness[(d + s, d + s)]));
+    Some(EffectiveModuli {
+        young: mean(DVector::from_fn(d, |k, _| 1.0 / compliance[(k, k)])),
+        poisson: over_pairs(&|k, l| -compliance[(k, l)] / compliance[(k, k)]),
+        zener: 2.0 * shear / (along - across),
+        stiffness,
+    })
+}

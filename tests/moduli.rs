@@ -1,0 +1,104 @@
+//! Moduli that networks have as materials, against published and derived figures.
+
+mod shapes;
+
+use shapes::{elements, materials};
+use springfit::element::Element;
+use springfit::fit::{Fit, Objective, Weight};
+use springfit::material::{Material, Plane};
+use springfit::springs::Springs;
+use springfit::study::{EffectiveModuli, Lattice};
+use std::sync::Arc;
+
+const FROBENIUS: Fit = Fit {
+    objective: Objective::Frobenius(Weight::None),
+    tied: false,
+    nonnegative: false,
+    solver: springfit::fit::Solver::Native,
+};
+
+fn lattice(name: &str, material: Material) -> Lattice {
+    let element = Arc::new(Element::load(name).unwrap());
+    let springs = Springs::select(&element, None).unwrap();
+    Lattice::fit(&element, &springs, &vec![1.0; element.dimension()], material, &FROBENIUS).unwrap()
+}
+
+fn close(moduli: &EffectiveModuli, young: f64, poisson: f64, zener: f64, digits: f64) {
+    let found = [moduli.young, moduli.poisson, moduli.zener];
+    for (a, b) in found.iter().zip([young, poisson, zener]) {
+        assert!((a - b).abs() < digits, "{found:?}, expected {:?}", [young, poisson, zener]);
+    }
+}
+
+/// The finite elements of every file that fills boxes are the material asked for; the condition of a box near
+/// incompressibility costs three digits.
+#[test]
+fn finite_elements_have_the_moduli_of_the_material() {
+    let mut seen = 0;
+    for element in elements().into_iter().map(Arc::new) {
+        let springs = Springs::select(&element, None).unwrap();
+        let d = element.dimension();
+        for material in materials(d) {
+            let size = [1.0, 1.3, 0.7];
+            let Ok(lattice) = Lattice::fit(&element, &springs, &size[..d], material, &FROBENIUS) else { continue };
+            let moduli = lattice.of_elements(material).unwrap();
+            let (e, nu) = (material.young(), material.poisson());
+            // Plane strain is the plane stress of E/(1 − ν²), ν/(1 − ν).
+            let plane_strain = matches!(material.state(), springfit::material::State::PlaneStrain { .. });
+            let (e, nu) = if plane_strain { (e / (1.0 - nu * nu), nu / (1.0 - nu)) } else { (e, nu) };
+            close(&moduli, e, nu, 1.0, 1e-8 * e);
+            assert!((moduli.poisson - nu).abs() < 1e-11 && (moduli.zener - 1.0).abs() < 1e-11, "{}", element.name);
+            seen += 1;
+        }
+    }
+    assert!(seen > 80, "{seen}");
+}
+
+/// A square in plane stress at ν = 1/3: the Frobenius fit, Lloyd's 5/16 and 7/16, and Baudet's constants, which hold both
+/// moduli; their diagonals 1/(2(1 + ν)), sides (1 + 3ν)/(4(1 + ν)) at l = h.
+#[test]
+fn squares_have_the_published_moduli() {
+    let third = 1.0 / 3.0;
+    let material = Material::for_body(2, 1.0, third, Some(Plane::Stress), None).unwrap();
+    let springs = Springs::select(&Element::load("quad4").unwrap(), None).unwrap();
+    let found = lattice("quad4", material).of_springs().unwrap();
+    assert!((found.young - 0.852).abs() < 5e-4 && (found.poisson - 0.404).abs() < 5e-4, "{found:?}");
+    let with = |edge: f64, diagonal: f64| {
+        let side = |&[a, b]: &[usize; 2]| (a + b) % 2 == 1;
+        let constants = springs.pairs.iter().map(|pair| if side(pair) { edge } else { diagonal }).collect();
+        lattice("quad4", material).with_constants(constants).of_springs().unwrap()
+    };
+    let lloyd = with(5.0 / 16.0, 7.0 / 16.0);
+    assert!((lloyd.young - 0.882).abs() < 5e-4 && (lloyd.poisson - 0.412).abs() < 5e-4, "{lloyd:?}");
+    let baudet = with((1.0 + 3.0 * third) / (4.0 * (1.0 + third)), 1.0 / (2.0 * (1.0 + third)));
+    close(&baudet, 1.0, third, 1.0, 1e-12);
+}
+
+/// A cube at ν = 1/4: the Frobenius fit, and Baudet's constants, E and G of which are the material's.
+#[test]
+fn cubes_have_the_published_moduli() {
+    let material = Material::for_body(3, 1.0, 0.25, None, None).unwrap();
+    let found = lattice("hex8", material).of_springs().unwrap();
+    assert!((found.young - 0.726).abs() < 5e-4 && (found.poisson - 0.273).abs() < 5e-4, "{found:?}");
+    assert!((found.zener - 1.20).abs() < 5e-3, "{found:?}");
+    let element = Element::load("hex8").unwrap();
+    let springs = Springs::select(&element, None).unwrap();
+    let [edge, diagonal] = [(4.0 * 0.25 + 1.0) / (8.0 * 1.25), 3.0 / (8.0 * 1.25)];
+    let constant = |&[a, b]: &[usize; 2]| {
+        let differ = (0..3).filter(|k| element.positions[3 * a + k] != element.positions[3 * b + k]).count();
+        [edge, 0.0, diagonal][differ - 1]
+    };
+    let constants = springs.pairs.iter().map(constant).collect();
+    let baudet = lattice("hex8", material).with_constants(constants).of_springs().unwrap();
+    close(&baudet, 1.0, 0.25, 1.0, 1e-12);
+}
+
+/// Springs that span every stiffness of their element are the material.
+#[test]
+fn exact_springs_have_the_moduli_of_the_material() {
+    for name in ["tri3_coupled", "tet4_coupled"] {
+        let path = format!("{}/examples/elements/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let material = Material::for_body(if name.starts_with("tri") { 2 } else { 3 }, 1.0, 0.3, None, None).unwrap();
+        close(&lattice(&path, material).of_springs().unwrap(), 1.0, 0.3, 1.0, 1e-10);
+    }
+}
