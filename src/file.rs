@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use std::fs;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The file's bytes.
 ///
@@ -51,6 +51,23 @@ pub fn check_folder(path: &Path) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// The files in `folder` that end in `.ending`, by name.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn files_in(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
+    let failed = |e: std::io::Error| Error::new(format!("cannot be read: {e}")).in_file(folder);
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_some_and(|e| e == ending) && path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
 }
 
 /// Creates the folder and those above it.

@@ -15,4 +15,4 @@ pub mod stiffness;
 pub mod study;
 pub mod symbolic;
 
-pub use file::{check_folder, write_whole};
+pub use file::{check_folder, files_in, write_whole};

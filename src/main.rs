@@ -29,8 +29,20 @@ enum Command {
     Run(RunArguments),
     /// Fit the springs of a mesh, without a scene
     Fit(FitArguments),
+    /// Prove element files: one line per property, exit code 1 if one fails
+    Check(CheckArguments),
     /// Objectives and solvers side by side: error against run time, on random shapes of an element or on a scene
     Compare(CompareArguments),
+}
+
+#[derive(Args)]
+struct CheckArguments {
+    /// Element files, folders of them, or names of shipped elements
+    #[arg(required = true)]
+    what: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Args)]
@@ -125,13 +137,15 @@ enum PlaneArgument {
 
 fn main() -> ExitCode {
     let command = CommandLine::parse().command;
+    let done = |result: Result<()>| result.map(|()| ExitCode::SUCCESS);
     let result = match command {
-        Command::Run(arguments) => run_scene(&arguments),
-        Command::Fit(arguments) => fit(&arguments),
-        Command::Compare(arguments) => compare(&arguments),
+        Command::Run(arguments) => done(run_scene(&arguments)),
+        Command::Fit(arguments) => done(fit(&arguments)),
+        Command::Check(arguments) => check(&arguments),
+        Command::Compare(arguments) => done(compare(&arguments)),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(2)
@@ -206,6 +220,46 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let outcome = study::Outcome::of_fit(arguments.mesh.display().to_string(), mesh, material, masses, outcome);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
     print(&format!("written: {}\n", arguments.output.display()))
+}
+
+fn check(arguments: &CheckArguments) -> Result<ExitCode> {
+    let mut files = Vec::new();
+    for what in &arguments.what {
+        let path = Path::new(what);
+        if !path.is_dir() {
+            files.push(what.clone());
+            continue;
+        }
+        let before = files.len();
+        files.extend(springfit::files_in(path, "toml")?.iter().map(|file| file.display().to_string()));
+        if files.len() == before {
+            return Err(Error::new("expected element files that end in .toml, found none").in_file(path));
+        }
+    }
+    let mut bar = Bar::new();
+    let mut inspections = Vec::new();
+    for (done, file) in files.iter().enumerate() {
+        bar.show("check", done, files.len());
+        let loaded = Element::load(file);
+        // A file that is not there is no fault of an element.
+        if let (Err(error), false) = (&loaded, Path::new(file).is_file()) {
+            return Err(error.clone());
+        }
+        let inspection = study::inspect(file, loaded);
+        if !arguments.json {
+            bar.clear();
+            print(&(report::check_text(&inspection) + "\n"))?;
+        }
+        inspections.push(inspection);
+    }
+    bar.clear();
+    if arguments.json {
+        print(&report::check_json(&inspections))?;
+    } else {
+        let failed = inspections.iter().filter(|i| !i.passes()).count();
+        print(&format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()))?;
+    }
+    Ok(if inspections.iter().all(|i| i.passes()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 fn compare(arguments: &CompareArguments) -> Result<()> {

@@ -97,6 +97,31 @@ impl Cell {
         }
     }
 
+    /// Exponents of the products of coordinates that a map of the cell with straight edges may hold beyond the linear ones.
+    pub fn straight_terms(self) -> &'static [&'static [i32]] {
+        match self {
+            Cell::Quadrilateral => &[&[1, 1]],
+            Cell::Hexahedron => &[&[1, 1, 0], &[1, 0, 1], &[0, 1, 1], &[1, 1, 1]],
+            Cell::Wedge => &[&[1, 0, 1], &[0, 1, 1]],
+            _ => &[],
+        }
+    }
+
+    /// Whether the point is in the cell or on its boundary, to rounding.
+    pub fn contains(self, at: &[f64]) -> bool {
+        let centre: Vec<f64> = (0..self.dimension())
+            .map(|k| self.corners().iter().map(|c| c[k]).sum::<f64>() / self.corners().len() as f64)
+            .collect();
+        if self == Cell::Interval {
+            return at[0].abs() <= 1.0 + 1e-12;
+        }
+        self.sides().iter().all(|side| {
+            let (origin, tangents) = side.embedding(self);
+            let above = |x: &[f64]| height(x, &origin, &tangents);
+            above(at) * above(&centre).signum() >= -1e-12
+        })
+    }
+
     /// The sides of one dimension less.
     pub fn sides(self) -> &'static [Side] {
         use Cell::{Interval, Quadrilateral, Triangle};
@@ -159,5 +184,18 @@ impl Side {
             }
         }
         (origin, tangents)
+    }
+}
+
+/// Distance of `x` above the line or plane `origin + span(tangents)`, times the tangents' length or area.
+pub fn height(x: &[f64], origin: &[f64], tangents: &[Vec<f64>]) -> f64 {
+    let r: Vec<f64> = x.iter().zip(origin).map(|(a, b)| a - b).collect();
+    match tangents {
+        [t] => r[0] * t[1] - r[1] * t[0],
+        [s, t] => {
+            let normal = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];
+            normal.iter().zip(&r).map(|(n, r)| n * r).sum()
+        }
+        _ => f64::INFINITY,
     }
 }

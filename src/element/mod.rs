@@ -15,6 +15,7 @@ pub use cell::{Cell, Side};
 pub use definition::{FormatEntry, Formats, SpringKind};
 pub use groups::{SpringGroup, coordinate_names};
 pub use quadrature::Quadrature;
+pub use symmetry::permutations;
 pub use tabulation::{ShapeFunctions, Tabulation};
 
 use crate::error::{Error, Result};
@@ -153,7 +154,7 @@ impl Element {
     fn side_table(&self, side: &Side) -> SideTable {
         let d = self.dimension();
         let (origin, tangents) = side.embedding(self.cell);
-        let on_side = |a: &usize| off_plane(&self.positions[a * d..(a + 1) * d], &origin, &tangents) < 1e-9;
+        let on_side = |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < 1e-9;
         let nodes: Vec<usize> = (0..self.nodes()).filter(on_side).collect();
         let local = Quadrature::of_degree(side.cell, 2 * self.degree());
         let points = local
@@ -171,6 +172,11 @@ impl Element {
             gradients: nodes.iter().map(|&a| self.functions.gradients[a].clone()).collect(),
         };
         SideTable { nodes, tabulation: Tabulation::new(&functions, &rule, None).along(&tangents) }
+    }
+
+    /// Whether all shape functions are polynomials.
+    pub fn is_polynomial(&self) -> bool {
+        self.functions.values.iter().all(|n| Polynomial::expand(n, self.dimension()).is_some())
     }
 
     /// The largest degree of a shape function; for one that is no polynomial, the number of nodes stands in.
@@ -199,19 +205,6 @@ impl Shipped {
     /// The file is wrong, which the tests over all shipped files exclude.
     pub fn load(&self) -> Result<Element> {
         Element::parse(self.text).map_err(|e| e.in_file(&PathBuf::from(format!("elements/{}.toml", self.name))))
-    }
-}
-
-/// Distance of `x` from the line or plane `origin + span(tangents)`.
-fn off_plane(x: &[f64], origin: &[f64], tangents: &[Vec<f64>]) -> f64 {
-    let r: Vec<f64> = x.iter().zip(origin).map(|(a, b)| a - b).collect();
-    match tangents {
-        [t] => (r[0] * t[1] - r[1] * t[0]).abs(),
-        [s, t] => {
-            let normal = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];
-            normal.iter().zip(&r).map(|(n, r)| n * r).sum::<f64>().abs()
-        }
-        _ => f64::INFINITY,
     }
 }
 

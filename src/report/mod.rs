@@ -1,11 +1,13 @@
 //! What a person or a program reads of an outcome.
 
+mod check;
 mod comparison;
 mod json;
 mod network;
 mod pictures;
 mod table;
 
+pub use check::{check_json, check_text};
 pub use comparison::Comparison;
 pub use json::report;
 pub use network::{network_csv, network_json};

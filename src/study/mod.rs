@@ -1,11 +1,13 @@
 //! Whole studies: a scene from its file to the errors and times of each fit.
 
+mod check;
 mod comparison;
 mod metrics;
 mod moduli;
 mod run;
 mod scene;
 
+pub use check::{Inspection, Mark, Property, inspect};
 pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice};

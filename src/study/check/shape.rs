@@ -1,0 +1,208 @@
+//! The element at distorted shapes with straight edges: stiffness, patch test, moduli, and its place in mesh files.
+
+use super::Property;
+use crate::element::{Element, FormatEntry, permutations};
+use crate::fit::{Fit, Objective, Weight};
+use crate::material::{Material, Moduli};
+use crate::mesh::{Mesh, MeshSource, gmsh, vtk};
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+use crate::study::moduli::Lattice;
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// How many shapes are tried.
+const SHAPES: usize = 5;
+/// The material that is asked for.
+pub const ASKED: (f64, f64) = (1.0, 0.3);
+
+pub fn properties(element: &Arc<Element>) -> Vec<Property> {
+    let mut properties = vec![stiffness(element), patch(element), moduli(element)];
+    let formats = &element.formats;
+    properties.extend(formats.gmsh.as_ref().map(|entry| round_trip(element, entry, true)));
+    properties.extend(formats.vtk.as_ref().map(|entry| round_trip(element, entry, false)));
+    properties
+}
+
+/// The nodes under random maps with straight edges, far from tangled.
+pub fn shapes(element: &Element) -> Vec<Vec<f64>> {
+    let d = element.dimension();
+    let mut state = 7u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let mut geometry = Geometry::new(&element.tabulation);
+    let mut found = Vec::new();
+    for _ in 0..100 * SHAPES {
+        let linear: Vec<f64> = (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.25 * random()).collect();
+        let terms = element.cell.straight_terms();
+        let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random()).collect();
+        let place = |at: &[f64], k: usize| {
+            let straight: f64 = (0..d).map(|l| linear[k * d + l] * at[l]).sum();
+            let product = |e: &[i32]| at.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();
+            straight + terms.iter().enumerate().map(|(i, e)| bent[k * terms.len() + i] * product(e)).sum::<f64>()
+        };
+        let x: Vec<f64> =
+            element.positions.chunks_exact(d).flat_map(|at| (0..d).map(|k| place(at, k)).collect::<Vec<_>>()).collect();
+        if geometry.set(&element.tabulation, &x).is_ok() {
+            found.push(x);
+        }
+        if found.len() == SHAPES {
+            break;
+        }
+    }
+    found
+}
+
+pub fn geometry(element: &Element, x: &[f64]) -> Geometry {
+    let mut geometry = Geometry::new(&element.tabulation);
+    geometry.set(&element.tabulation, x).expect("the shapes were chosen so");
+    geometry
+}
+
+fn stiffness(element: &Element) -> Property {
+    let (n, d) = (element.nodes(), element.dimension());
+    let expected = n * d - d * (d + 1) / 2;
+    let mut least = expected;
+    for x in shapes(element) {
+        let r = geometry(element, &x).stiffness(Moduli { lambda: 1.0, mu: 1.0 });
+        let eigenvalues = r.symmetric_eigenvalues();
+        let floor = 1e-10 * eigenvalues.amax();
+        least = least.min(eigenvalues.iter().filter(|e| **e > floor).count());
+    }
+    let spurious = expected - least;
+    let finding = format!("{least} of {expected}, {spurious} spurious modes");
+    Property::new("rank of R", spurious == 0, finding).with(spurious as f64)
+}
+
+/// Uniform stress must be carried by tractions on the sides alone: `∫ ∇N_a dV = ∮ N_a n dA` for every node.
+fn patch(element: &Element) -> Property {
+    let worst = shapes(element).iter().map(|x| patch_defect(element, x)).fold(0.0, f64::max);
+    // A product of rational functions has no exact rule.
+    let allowed = if element.is_polynomial() { 1e-11 } else { 1e-6 };
+    let finding = format!("forces of uniform stress against tractions on the sides: largest defect {worst:.1e}");
+    Property::new("patch test", worst < allowed, finding).with(worst)
+}
+
+fn patch_defect(element: &Element, x: &[f64]) -> f64 {
+    let d = element.dimension();
+    let volume = geometry(element, x).content_gradient();
+    let mut boundary = vec![0.0; x.len()];
+    if d == 1 {
+        for (a, at) in element.positions.iter().enumerate() {
+            boundary[a] = if at.abs() > 1.0 - 1e-9 { at.signum() } else { 0.0 };
+        }
+    }
+    for side in element.sides() {
+        let table = &side.tabulation;
+        let count = side.nodes.len();
+        let points = table.values.chunks_exact(count).zip(table.gradients.chunks_exact(count * (d - 1)));
+        for ((values, gradients), w) in points.zip(&table.weights) {
+            let tangent = |l: usize, k: usize| -> f64 {
+                side.nodes.iter().enumerate().map(|(i, a)| x[a * d + k] * gradients[i * (d - 1) + l]).sum()
+            };
+            let normal = if d == 2 {
+                vec![tangent(0, 1), -tangent(0, 0)]
+            } else {
+                let cross = |k: usize, l: usize| tangent(0, k) * tangent(1, l) - tangent(0, l) * tangent(1, k);
+                vec![cross(1, 2), cross(2, 0), cross(0, 1)]
+            };
+            for (value, a) in values.iter().zip(&side.nodes) {
+                (0..d).for_each(|k| boundary[a * d + k] += w * value * normal[k]);
+            }
+        }
+    }
+    let size = volume.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    volume.iter().zip(&boundary).map(|(v, b)| (v - b).abs()).fold(0.0, f64::max) / size
+}
+
+/// The moduli of the finite elements on a periodic box.
+fn moduli(element: &Arc<Element>) -> Property {
+    let name = "moduli of R";
+    let (young, poisson) = ASKED;
+    let d = element.dimension();
+    let asked = Material::for_body(d, young, poisson, None, None).and_then(|material| {
+        let none = Springs::select(element, Some(&[]))?;
+        let fit = Fit::new(Objective::Frobenius(Weight::None));
+        Ok((material, Lattice::fit(element, &none, &vec![1.0; d], material, &fit)?))
+    });
+    let Ok((material, lattice)) = asked else { return Property::noted(name, "its cells fill no box") };
+    let Some(found) = lattice.of_elements(material) else {
+        return Property::new(name, false, "some uniform strain meets no resistance");
+    };
+    let error = (found.young / young - 1.0).abs().max((found.poisson - poisson).abs());
+    let finding = format!("E {:.6}, nu {:.6}, asked {young}, {poisson}", found.young, found.poisson);
+    Property::new(name, error < 1e-8, finding).with(error)
+}
+
+/// One cell written in the format's order and read again; its corners must come first, as both formats have them.
+fn round_trip(element: &Arc<Element>, entry: &FormatEntry, in_gmsh: bool) -> Property {
+    let name = if in_gmsh { "Gmsh order" } else { "VTK order" };
+    let (n, d) = (element.nodes(), element.dimension());
+    let mut places: Vec<usize> = (0..n).collect();
+    for (a, &place) in entry.order.iter().flatten().enumerate() {
+        places[place] = a;
+    }
+    let corners = element.cell.corners();
+    let corner_at = |a: usize| {
+        let at = &element.positions[a * d..(a + 1) * d];
+        corners.iter().position(|c| c.iter().zip(at).all(|(c, x)| (c - x).abs() < 1e-9))
+    };
+    let first: Option<Vec<usize>> = places.iter().take(corners.len()).map(|&a| corner_at(a)).collect();
+    match first {
+        None => {
+            let finding = format!("expected the {} corners first, found other nodes among them", corners.len());
+            return Property::new(name, false, finding);
+        }
+        Some(order) if !permutations(element.cell, &corners.concat()).contains(&order) => {
+            return Property::new(
+                name,
+                false,
+                format!("corners come as {order:?}, which goes back and forth in the cell"),
+            );
+        }
+        _ => {}
+    }
+    let Some(x) = shapes(element).into_iter().next() else { return Property::noted(name, "no shape to write") };
+    let points: Vec<[f64; 3]> =
+        x.chunks_exact(d).map(|x| std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))).collect();
+    let source = if in_gmsh {
+        gmsh::parse(gmsh_text(&points, entry.cell_type, &places).as_bytes())
+    } else {
+        vtk::parse(vtk_text(&points, entry.cell_type, &places).as_bytes(), "vtk")
+    };
+    let read = source.and_then(|source: MeshSource| Mesh::resolve(&source, std::slice::from_ref(element), 1.0));
+    match read {
+        Err(error) => Property::new(name, false, format!("type {}: {error}", entry.cell_type)),
+        Ok(mesh) => {
+            let same = mesh.blocks[0].connectivity.iter().copied().eq(0..n);
+            let finding = format!(
+                "type {}, one cell written and read: {}",
+                entry.cell_type,
+                if same { "the same" } else { "another" }
+            );
+            Property::new(name, same, finding)
+        }
+    }
+}
+
+fn gmsh_text(points: &[[f64; 3]], cell_type: u32, places: &[usize]) -> String {
+    let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", points.len());
+    for (i, [x, y, z]) in points.iter().enumerate() {
+        writeln!(text, "{} {x} {y} {z}", i + 1).expect("a String grows");
+    }
+    let nodes: Vec<String> = places.iter().map(|a| (a + 1).to_string()).collect();
+    text + &format!("$EndNodes\n$Elements\n1\n1 {cell_type} 2 0 1 {}\n$EndElements\n", nodes.join(" "))
+}
+
+fn vtk_text(points: &[[f64; 3]], cell_type: u32, places: &[usize]) -> String {
+    let mut text =
+        format!("# vtk DataFile Version 3.0\ncell\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n", points.len());
+    for [x, y, z] in points {
+        writeln!(text, "{x} {y} {z}").expect("a String grows");
+    }
+    let nodes: Vec<String> = places.iter().map(usize::to_string).collect();
+    let (n, list) = (places.len(), nodes.join(" "));
+    text + &format!("CELLS 1 {}\n{n} {list}\nCELL_TYPES 1\n{cell_type}\n", n + 1)
+}

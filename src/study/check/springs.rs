@@ -1,0 +1,78 @@
+//! The springs of an element: mechanisms, the condition of their equations, the moduli they give.
+
+use super::Property;
+use super::shape::{ASKED, geometry, shapes};
+use crate::element::Element;
+use crate::fit::{Fit, Objective, Weight};
+use crate::material::Material;
+use crate::springs::Springs;
+use crate::study::moduli::Lattice;
+use nalgebra::DMatrix;
+use std::sync::Arc;
+
+pub fn properties(element: &Arc<Element>) -> Vec<Property> {
+    let springs = match Springs::select(element, None) {
+        Ok(springs) if springs.is_empty() => return vec![Property::noted("springs", "none that are not optional")],
+        Ok(springs) => springs,
+        Err(error) => return vec![Property::new("springs", false, error.to_string())],
+    };
+    let (rank, condition) = rank_and_condition(element, &springs);
+    let mut properties = vec![rank, condition];
+    let every: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
+    properties.push(moduli(element, "moduli of the springs", &springs));
+    if element.springs.iter().any(|g| g.optional)
+        && let Ok(all) = Springs::select(element, Some(&every))
+    {
+        properties.push(moduli(element, "with optional springs", &all));
+    }
+    properties
+}
+
+/// The rank of the g_s, and the condition of `M_st = (g_s·g_t)²` scaled to a unit diagonal, over all shapes.
+fn rank_and_condition(element: &Element, springs: &Springs) -> (Property, Property) {
+    let (n, d) = (element.nodes(), element.dimension());
+    let expected = n * d - d * (d + 1) / 2;
+    let (mut least, mut worst) = (expected, 0.0f64);
+    for x in shapes(element) {
+        let mut g = Vec::new();
+        springs.gradients(&x, &geometry(element, &x), &mut g);
+        let mut rows = DMatrix::from_row_slice(springs.len(), x.len(), &g);
+        rows.row_iter_mut().for_each(|mut row| {
+            let size = row.norm();
+            row /= size;
+        });
+        let singular = (rows.transpose() * &rows).symmetric_eigenvalues();
+        least = least.min(singular.iter().filter(|s| **s > 1e-12 * singular.amax()).count());
+        let gram = (&rows * rows.transpose()).map(|c| c * c).symmetric_eigenvalues();
+        worst = worst.max(if gram.min() > 0.0 { gram.max() / gram.min() } else { f64::INFINITY });
+    }
+    let mechanisms = expected - least;
+    let finding = format!("{least} of {expected}, {mechanisms} mechanisms");
+    let rank = Property::new("rank of the springs", mechanisms == 0, finding).with(mechanisms as f64);
+    let finding = if worst < 1e14 {
+        format!("{worst:.1} at worst, scaled to a unit diagonal")
+    } else {
+        "singular: the springs are linearly dependent, and the least of all optima is taken".to_string()
+    };
+    (rank, Property::noted("condition of the equations", finding).with(worst))
+}
+
+/// The moduli of the plain fit on a periodic box.
+fn moduli(element: &Arc<Element>, name: &'static str, springs: &Springs) -> Property {
+    let (young, poisson) = ASKED;
+    let d = element.dimension();
+    let fit = Fit::new(Objective::Frobenius(Weight::None));
+    let lattice = Material::for_body(d, young, poisson, None, None)
+        .and_then(|material| Lattice::fit(element, springs, &vec![1.0; d], material, &fit));
+    let Ok(lattice) = lattice else { return Property::noted(name, "its cells fill no box") };
+    match lattice.of_springs() {
+        None => Property::noted(name, "some uniform strain meets no resistance"),
+        Some(m) => {
+            let finding = format!(
+                "frobenius: E {:.3}, nu {:.3}, Zener {:.3}, asked {young}, {poisson}, 1",
+                m.young, m.poisson, m.zener
+            );
+            Property::noted(name, finding).with(m.young)
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Every shipped element and example passes its proof; files that are wrong in one way fail in that one.
+
+use springfit::element::Element;
+use springfit::study::{Mark, inspect};
+use std::path::Path;
+use std::process::Command;
+
+fn folder(name: &str) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    springfit::files_in(&folder, "toml").unwrap().iter().map(|file| file.display().to_string()).collect()
+}
+
+/// A new file is tested by being there.
+#[test]
+fn all_elements_pass() {
+    let files = [folder("elements"), folder("examples/elements")].concat();
+    assert!(files.len() >= 23);
+    for file in files {
+        let inspection = inspect(&file, Element::load(&file));
+        for property in &inspection.properties {
+            assert!(property.mark != Mark::Fails, "{file}: {}: {}", property.name, property.finding);
+        }
+        assert!(inspection.properties.len() > 10, "{file}");
+    }
+}
+
+/// What fails in each file of `tests/wrong`.
+const WRONG: [(&str, &str, &str); 18] = [
+    (
+        "completeness",
+        "loads",
+        "nodes: expected shape functions that reproduce xi, found xi -1.769e-1 at [0.340, 0.861]",
+    ),
+    ("corners", "Gmsh order", "corners come as [1, 0, 2, 3], which goes back and forth in the cell"),
+    ("expression", "loads", "nodes[0].shape: column 9: expected an operator, found '(' in \"(1 - xi)(1 - eta)/4\""),
+    ("gmsh", "Gmsh order", "type 5: line 14: $Elements: expected 1 elements, found 0"),
+    ("group", "loads", "springs[2].group: expected a name used once, found \"edge\" again"),
+    (
+        "key",
+        "loads",
+        ":2: titel: unknown field \"titel\", expected one of \"name\", \"title\", \"cell\", \"coordinates\", \"source\", \"let\", \
+         \"nodes\", \"quadrature\", \"volumetric_quadrature\", \"springs\", \"formats\"",
+    ),
+    ("kronecker", "loads", "nodes[1].shape: is 2 at nodes[1], expected 1"),
+    ("mechanism", "rank of the springs", "4 of 5, 1 mechanisms"),
+    ("negative", "quadrature rule", "0 points outside the cell, 1 negative weights"),
+    ("order", "loads", "formats.vtk.order: expected each of 0 to 3 once, found [0, 0, 2, 3]"),
+    ("outside", "quadrature rule", "1 points outside the cell, 0 negative weights"),
+    ("patch", "patch test", "forces of uniform stress against tractions on the sides: largest defect"),
+    ("singular", "loads", "nodes[0].shape: is NaN at nodes[0], expected 1"),
+    ("spring", "loads", "springs[0].nodes[0]: expected two different nodes below 4, found [0, 4]"),
+    ("spurious", "rank of R", "3 of 5, 2 spurious modes"),
+    ("toml", "loads", ":13: expected TOML: unclosed table, expected \"]\""),
+    ("unity", "loads", "nodes: expected shape functions that sum to 1, found 1 +7.822e-1 at [-0.340, -0.340]"),
+    ("weights", "loads", "quadrature.weights: expected weights that sum to the cell's content 4, found 3"),
+];
+
+#[test]
+fn wrong_files_fail_in_what_is_wrong() {
+    let files = folder("tests/wrong");
+    assert_eq!(files.len(), WRONG.len());
+    for (file, (name, property, finding)) in files.iter().zip(WRONG) {
+        assert!(file.ends_with(&format!("{name}.toml")), "{file} {name}");
+        let inspection = inspect(file, Element::load(file));
+        let failed: Vec<_> = inspection.properties.iter().filter(|p| p.mark == Mark::Fails).collect();
+        // A rule that is not exact shows in more than one way.
+        assert!(failed.len() == 1 || name == "patch", "{name}: {failed:?}");
+        assert_eq!(failed[0].name, property, "{name}");
+        let found = failed[0].finding.trim_start_matches(file.as_str()).trim_start_matches(": ");
+        assert!(found == finding || name == "patch" && found.starts_with(finding), "{name}: {found}");
+    }
+}
+
+fn check(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_springfit"))
+        .arg("check")
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_command_tells_by_its_exit_code() {
+    let (code, text, _) = check(&["quad4", "elements/tri6.toml"]);
+    assert_eq!(code, Some(0));
+    assert!(text.ends_with("2 of 2 files pass\n") && text.contains("  ok    rank of R "), "{text}");
+    let (code, text, _) = check(&["tests/wrong"]);
+    assert_eq!(code, Some(1));
+    assert!(text.ends_with("0 of 18 files pass\n"), "{text}");
+    let (code, text, _) = check(&["--json", "tests/wrong/spurious.toml"]);
+    assert_eq!(code, Some(1));
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let properties = value[0]["properties"].as_array().unwrap();
+    let rank = properties.iter().find(|p| p["property"] == "rank of R").unwrap();
+    assert_eq!((rank["mark"].as_str(), rank["value"].as_f64()), (Some("FAIL"), Some(2.0)));
+    for (what, error) in [
+        (
+            "tests/wrong/none.toml",
+            "error: tests/wrong/none.toml: cannot be read: No such file or directory (os error 2)\n",
+        ),
+        ("src", "error: src: expected element files that end in .toml, found none\n"),
+    ] {
+        assert_eq!(check(&[what]), (Some(2), String::new(), error.to_string()));
+    }
+}
