@@ -4,10 +4,11 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::element::Element;
 use springfit::error::{Error, Result};
-use springfit::fit::{Choices, Fit, Objective, Solver};
+use springfit::fit::{Choices, ClosedForm, Fit, Objective, Solver, Weight};
 use springfit::material::{Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, vtk};
 use springfit::report::Comparison;
+use springfit::springs::Springs;
 use springfit::study::{NamedFit, Scene, fit_mesh, load_elements, run, stages};
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
@@ -31,6 +32,8 @@ enum Command {
     Fit(FitArguments),
     /// Prove element files: one line per property, exit code 1 if one fails
     Check(CheckArguments),
+    /// Exact closed forms of an element's stiffness and spring constants
+    Derive(DeriveArguments),
     /// Objectives and solvers side by side: error against run time, on random shapes of an element or on a scene
     Compare(CompareArguments),
 }
@@ -43,6 +46,27 @@ struct CheckArguments {
     /// Print JSON
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Args)]
+struct DeriveArguments {
+    /// A shipped element's name, or an element file
+    element: String,
+    /// Lengths a, b, c along the axes as variables, instead of the reference cell
+    #[arg(long)]
+    sides: bool,
+    /// Plane element: stress or strain, for the constants in terms of E and nu [default: stress]
+    #[arg(long)]
+    plane: Option<PlaneArgument>,
+    /// Spring groups to use, separated by commas [default: all that are not optional]
+    #[arg(long, value_delimiter = ',')]
+    springs: Option<Vec<String>>,
+    /// Print the stiffness matrix as well
+    #[arg(long)]
+    matrix: bool,
+    /// Print LaTeX
+    #[arg(long)]
+    latex: bool,
 }
 
 #[derive(Args)]
@@ -142,6 +166,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => done(run_scene(&arguments)),
         Command::Fit(arguments) => done(fit(&arguments)),
         Command::Check(arguments) => check(&arguments),
+        Command::Derive(arguments) => done(derive(&arguments)),
         Command::Compare(arguments) => done(compare(&arguments)),
     };
     match result {
@@ -260,6 +285,25 @@ fn check(arguments: &CheckArguments) -> Result<ExitCode> {
         print(&format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()))?;
     }
     Ok(if inspections.iter().all(|i| i.passes()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn derive(arguments: &DeriveArguments) -> Result<()> {
+    let element = Element::load(&arguments.element)?;
+    let plane = match (element.dimension(), arguments.plane) {
+        (2, Some(PlaneArgument::Strain)) => Some(Plane::Strain),
+        (2, _) => Some(Plane::Stress),
+        (_, Some(_)) => return Err(Error::at("--plane", format!("expected a plane element, found {}", element.name))),
+        _ => None,
+    };
+    let springs = Springs::select(&element, arguments.springs.as_deref()).map_err(Error::of_option)?;
+    let mut bar = Bar::new();
+    bar.show("closed form", 0, 1);
+    let form = ClosedForm::new(&element, &springs, arguments.sides)?;
+    let fits = [Weight::None, Weight::OffDiagonal].map(|weight| form.fit(weight));
+    bar.clear();
+    let derivation =
+        report::Derivation { element: &element, form: &form, fits: &fits, plane, matrix: arguments.matrix };
+    print(&if arguments.latex { derivation.latex() } else { derivation.text() })
 }
 
 fn compare(arguments: &CompareArguments) -> Result<()> {

@@ -251,7 +251,7 @@ fn exact_rationals_agree() {
             let exact: Vec<BigRational> = constants_in(
                 weight,
                 &case.springs,
-                &case.element.tabulation.map(|v| BigRational::from_float(v).unwrap()),
+                &case.element.tabulation.map(|v| BigRational::from_float(*v).unwrap()),
                 &case.x.iter().map(|x| BigRational::from_float(*x).unwrap()).collect::<Vec<_>>(),
                 &Moduli {
                     lambda: BigRational::from_float(case.moduli.lambda).unwrap(),
@@ -273,7 +273,7 @@ fn exact_rationals_agree() {
 fn single_precision_agrees_to_its_rounding() {
     for case in cases(3).iter().filter(|case| case.springs.content.is_none()) {
         for weight in [Weight::None, Weight::OffDiagonal] {
-            let table = case.element.tabulation.map(|v| v as f32);
+            let table = case.element.tabulation.map(|v| *v as f32);
             let x: Vec<f32> = case.x.iter().map(|x| *x as f32).collect();
             let moduli = Moduli { lambda: case.moduli.lambda as f32, mu: case.moduli.mu as f32 };
             let single = constants_in(weight, &case.springs, &table, &x, &moduli).unwrap();

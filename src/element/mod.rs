@@ -7,6 +7,7 @@ mod definition;
 mod groups;
 mod proof;
 mod quadrature;
+mod rational;
 mod symmetry;
 mod tabulation;
 
@@ -23,6 +24,7 @@ use crate::file;
 use crate::symbolic::{Polynomial, Scope};
 use definition::Definition;
 use groups::spring_groups;
+use num_rational::BigRational;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -37,6 +39,8 @@ pub struct Element {
     pub coordinates: Vec<String>,
     /// Reference positions, `[nodes × dimension]`.
     pub positions: Vec<f64>,
+    /// The same as exact numbers, where all are rational.
+    pub rational_positions: Option<Vec<BigRational>>,
     pub functions: ShapeFunctions,
     /// At the points of the element's own quadrature rule.
     pub tabulation: Tabulation,
@@ -100,6 +104,7 @@ impl Element {
         let volumetric = definition.volumetric_quadrature.as_ref();
         let volumetric = volumetric.map(|r| proof::quadrature(&definition, r, "volumetric_quadrature")).transpose()?;
         let positions: Vec<f64> = definition.nodes.iter().flat_map(|n| n.at.iter().map(|c| c.value())).collect();
+        let rational_positions = definition.nodes.iter().flat_map(|n| n.at.iter().map(|c| c.exact())).collect();
         let springs = spring_groups(&definition, &positions)?;
         proof::formats(&definition)?;
 
@@ -114,6 +119,7 @@ impl Element {
             cell: definition.cell,
             coordinates: definition.coordinates,
             positions,
+            rational_positions,
             functions,
             tabulation,
             springs,

@@ -56,10 +56,12 @@ impl Tabulation {
             .collect();
         Tabulation { gradients, dimension: tangents.len(), ..self }
     }
+}
 
+impl<C> Tabulation<C> {
     /// The same table in another kind of number.
-    pub fn map<C>(&self, convert: impl Fn(f64) -> C) -> Tabulation<C> {
-        let all = |values: &[f64]| values.iter().map(|v| convert(*v)).collect();
+    pub fn map<D>(&self, convert: impl Fn(&C) -> D) -> Tabulation<D> {
+        let all = |values: &[C]| values.iter().map(&convert).collect();
         Tabulation {
             nodes: self.nodes,
             dimension: self.dimension,
@@ -70,9 +72,7 @@ impl Tabulation {
             gradients: all(&self.gradients),
         }
     }
-}
 
-impl<C> Tabulation<C> {
     pub fn points(&self) -> usize {
         self.weights.len()
     }

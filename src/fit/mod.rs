@@ -2,6 +2,7 @@
 
 mod ambiguity;
 mod batch;
+mod closed_form;
 mod congruence;
 mod constrained;
 mod dense;
@@ -16,6 +17,7 @@ mod reduction;
 mod residual;
 mod spectral;
 
+pub use closed_form::{ClosedFit, ClosedForm, SymmetryClass};
 pub use descent::{Search, Solver};
 pub use least_squares::constants_in;
 pub use method::Certificate;

@@ -2,6 +2,7 @@
 
 mod check;
 mod comparison;
+mod derivation;
 mod json;
 mod network;
 mod pictures;
@@ -9,6 +10,7 @@ mod table;
 
 pub use check::{check_json, check_text};
 pub use comparison::Comparison;
+pub use derivation::Derivation;
 pub use json::report;
 pub use network::{network_csv, network_json};
 pub use pictures::{displacement_grid, network_grid};

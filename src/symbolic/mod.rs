@@ -4,15 +4,16 @@
 
 mod differentiate;
 mod evaluate;
+mod expand;
+mod fraction;
 mod jet;
 mod parse;
-mod polynomial;
 mod predicate;
 mod print;
 
+pub use fraction::{Fraction, Polynomial};
 pub use jet::Jet;
 pub use parse::{Scope, parse_rational};
-pub use polynomial::Polynomial;
 pub use predicate::Predicate;
 
 use num_rational::BigRational;

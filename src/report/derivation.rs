@@ -1,0 +1,206 @@
+//! Closed forms as text and as LaTeX.
+
+use crate::element::Element;
+use crate::error::Result;
+use crate::fit::{ClosedFit, ClosedForm};
+use crate::material::Plane;
+use crate::scalar::Scalar;
+use crate::symbolic::Fraction;
+use num_rational::BigRational;
+use std::fmt::Write;
+
+/// What is printed of a closed form.
+#[derive(Debug)]
+pub struct Derivation<'a> {
+    pub element: &'a Element,
+    pub form: &'a ClosedForm,
+    pub fits: &'a [Result<ClosedFit>],
+    /// Of plane elements: what E and ν mean.
+    pub plane: Option<Plane>,
+    /// With the stiffness matrix.
+    pub matrix: bool,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Notation {
+    Text,
+    Latex,
+}
+
+impl Derivation<'_> {
+    /// Plain text.
+    pub fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.element.name, self.element.title);
+        let sides = self.form.variables.len() - 1;
+        let shape = match (sides, self.plane) {
+            (0, _) => "the reference cell".to_string(),
+            _ => format!("sides {}", self.form.variables[..sides].join(", ")),
+        };
+        writeln!(text, "on {shape}; {}\n", self.meaning()).expect("a String grows");
+        if self.matrix {
+            text += "R, the stiffness, by rows up to the diagonal:\n";
+            self.each_entry(|i, j, entry| {
+                writeln!(text, "  R[{i}][{j}] = {}", self.pair(entry, Notation::Text)).expect("a String grows");
+            });
+            text.push('\n');
+        }
+        writeln!(text, "|R|^2 = {}\n", self.square(&self.form.norm, Notation::Text)).expect("a String grows");
+        for fit in self.fits {
+            match fit {
+                Ok(fit) => self.fit_text(fit, &mut text),
+                Err(error) => writeln!(text, "{error}\n").expect("a String grows"),
+            }
+        }
+        text
+    }
+
+    /// LaTeX, for a document that loads amsmath.
+    pub fn latex(&self) -> String {
+        let mut text = format!("% {}: {}; {}\n", self.element.name, self.element.title, self.meaning());
+        if self.matrix {
+            text += "\\begin{align*}\n";
+            self.each_entry(|i, j, entry| {
+                let value = self.pair(entry, Notation::Latex);
+                writeln!(text, "  R_{{{},{}}} &= {value} \\\\", i + 1, j + 1).expect("a String grows");
+            });
+            text += "\\end{align*}\n";
+        }
+        for fit in self.fits.iter().flatten() {
+            writeln!(text, "% {}\n\\begin{{align*}}", objective(fit)).expect("a String grows");
+            for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
+                let name = format!("k_{{\\text{{{} {}}}}}", class.group, nodes(&class.springs[0]));
+                let (plain, engineering) =
+                    (self.pair(constants, Notation::Latex), self.engineering(constants, Notation::Latex));
+                writeln!(text, "  {name} &= {plain} = {engineering} \\\\").expect("a String grows");
+            }
+            text += "\\end{align*}\n";
+        }
+        text
+    }
+
+    fn fit_text(&self, fit: &ClosedFit, text: &mut String) {
+        writeln!(text, "{}", objective(fit)).expect("a String grows");
+        for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
+            let count = class.springs.len();
+            let like = if count > 1 { format!(" and {} more like it", count - 1) } else { String::new() };
+            writeln!(text, "  {} {}{like}", class.group, nodes(&class.springs[0])).expect("a String grows");
+            writeln!(text, "    k = {}", self.pair(constants, Notation::Text)).expect("a String grows");
+            writeln!(text, "      = {}", self.engineering(constants, Notation::Text)).expect("a String grows");
+        }
+        writeln!(text, "  |R-K|^2 = {}", self.square(&fit.residual, Notation::Text)).expect("a String grows");
+        if let Some(error) = self.relative_error(fit) {
+            writeln!(text, "  |R-K|/|R| = {error:.6} at nu = 0.3").expect("a String grows");
+        }
+        text.push('\n');
+    }
+
+    fn meaning(&self) -> &'static str {
+        match self.plane {
+            Some(Plane::Stress) => "plane stress, lambda = E*nu/(1 - nu^2), mu = E/(2*(1 + nu)), thickness 1",
+            Some(Plane::Strain) => {
+                "plane strain, lambda = E*nu/((1 + nu)*(1 - 2*nu)), mu = E/(2*(1 + nu)), thickness 1"
+            }
+            None => "lambda = E*nu/((1 + nu)*(1 - 2*nu)), mu = E/(2*(1 + nu))",
+        }
+    }
+
+    /// λ/E and μ/E as functions of ν.
+    fn moduli(&self) -> [Fraction; 2] {
+        let count = self.form.variables.len();
+        let number = |n: i64| Fraction::number(BigRational::from_integer(n.into()), count);
+        let nu = Fraction::variable(count - 1, count);
+        let less = |factor: i64| number(1) - &(nu.clone() * &number(factor));
+        let lambda = match self.plane {
+            Some(Plane::Stress) => nu.clone() / &(less(-1) * &less(1)),
+            _ => nu.clone() / &(less(-1) * &less(2)),
+        };
+        [lambda, number(1) / &(less(-1) * &number(2))]
+    }
+
+    /// `|R − K|/|R|` at ν = 0.3, where the sides are numbers.
+    fn relative_error(&self, fit: &ClosedFit) -> Option<f64> {
+        let at = [BigRational::new(3.into(), 10.into())];
+        if self.form.variables.len() > 1 {
+            return None;
+        }
+        let [lambda, mu] = self.moduli().map(|m| m.evaluate(&at));
+        let (lambda, mu) = (lambda?, mu?);
+        let value = |form: &[Fraction; 3]| -> Option<f64> {
+            let [ll, lm, mm] = [form[0].evaluate(&at)?, form[1].evaluate(&at)?, form[2].evaluate(&at)?];
+            num_traits::ToPrimitive::to_f64(&(ll * &lambda * &lambda + lm * &lambda * &mu + mm * &mu * &mu))
+        };
+        Some((value(&fit.residual)?.max(0.0) / value(&self.form.norm)?).sqrt())
+    }
+
+    fn each_entry(&self, mut visit: impl FnMut(usize, usize, &[Fraction; 2])) {
+        let size = self.form.positions.len();
+        let [lambda, mu] = &self.form.stiffness;
+        for i in 0..size {
+            for j in 0..=i {
+                visit(i, j, &[lambda[i * size + j].clone(), mu[i * size + j].clone()]);
+            }
+        }
+    }
+
+    fn names(&self, notation: Notation) -> Vec<&str> {
+        let name = |name: &'_ String| -> &str {
+            match (name.as_str(), notation) {
+                ("nu", Notation::Latex) => "\\nu",
+                _ => "",
+            }
+        };
+        let named = self.form.variables.iter().map(|v| if name(v).is_empty() { v.as_str() } else { name(v) });
+        named.collect()
+    }
+
+    /// `α λ + β μ`.
+    fn pair(&self, [lambda, mu]: &[Fraction; 2], notation: Notation) -> String {
+        let symbols = if notation == Notation::Text { ["lambda", "mu"] } else { ["\\lambda", "\\mu"] };
+        self.combination(&[(lambda, symbols[0]), (mu, symbols[1])], notation)
+    }
+
+    fn square(&self, [ll, lm, mm]: &[Fraction; 3], notation: Notation) -> String {
+        self.combination(&[(ll, "lambda^2"), (lm, "lambda*mu"), (mm, "mu^2")], notation)
+    }
+
+    /// `E f(ν)`.
+    fn engineering(&self, constants: &[Fraction; 2], notation: Notation) -> String {
+        let [lambda, mu] = self.moduli();
+        let value = constants[0].clone() * &lambda + &(constants[1].clone() * &mu);
+        self.combination(&[(&value, "E")], notation)
+    }
+
+    fn combination(&self, terms: &[(&Fraction, &str)], notation: Notation) -> String {
+        let names = self.names(notation);
+        let mut text = String::new();
+        for (fraction, symbol) in terms.iter().filter(|(fraction, _)| !fraction.is_zero()) {
+            let negative = num_traits::Signed::is_negative(fraction.content());
+            let size = if negative { -(*fraction).clone() } else { (*fraction).clone() };
+            let factor = if notation == Notation::Text { size.text(&names) } else { size.latex(&names) };
+            let sign = match (text.is_empty(), negative) {
+                (true, false) => "",
+                (true, true) => "-",
+                (false, false) => " + ",
+                (false, true) => " - ",
+            };
+            let is_sum = size.denominator().is_one() && size.numerator().term_count() > 1;
+            let factor = if is_sum && !factor.starts_with('(') { format!("({factor})") } else { factor };
+            let dot = if notation == Notation::Text { "*" } else { " " };
+            text += sign;
+            text += &if factor == "1" { symbol.to_string() } else { format!("{factor}{dot}{symbol}") };
+        }
+        if text.is_empty() { "0".into() } else { text }
+    }
+}
+
+fn objective(fit: &ClosedFit) -> String {
+    match fit.weight {
+        crate::fit::Weight::OffDiagonal => "offdiag: least squares over the blocks of different nodes".into(),
+        crate::fit::Weight::None => "frobenius: least squares over all entries".into(),
+        other => format!("frobenius, weight {}", other.name()),
+    }
+}
+
+fn nodes(spring: &[usize]) -> String {
+    spring.iter().map(usize::to_string).collect::<Vec<_>>().join("-")
+}
