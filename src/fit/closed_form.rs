@@ -65,7 +65,9 @@ impl ClosedForm {
         }
         let positions =
             element.rational_positions.as_ref().ok_or_else(|| refuse("a node is not at a rational place"))?;
-        let table = element.rational_tabulation().ok_or_else(|| refuse("its shape functions are not rational"))?;
+        let table = element
+            .rational_tabulation()
+            .ok_or_else(|| refuse("its shape functions are not rational, or no rule integrates them exactly"))?;
         let d = element.dimension();
         let lengths = if sides { &SIDES[..d] } else { &[] };
         let variables: Vec<String> = lengths.iter().map(|s| s.to_string()).chain([RATIO.to_string()]).collect();

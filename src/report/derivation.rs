@@ -4,8 +4,7 @@ use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{ClosedFit, ClosedForm};
 use crate::material::Plane;
-use crate::scalar::Scalar;
-use crate::symbolic::Fraction;
+use crate::symbolic::{Fraction, Polynomial};
 use num_rational::BigRational;
 use std::fmt::Write;
 
@@ -96,6 +95,7 @@ impl Derivation<'_> {
 
     fn meaning(&self) -> &'static str {
         match self.plane {
+            None if self.element.dimension() == 1 => "lambda + 2*mu = E, cross-section 1",
             Some(Plane::Stress) => "plane stress, lambda = E*nu/(1 - nu^2), mu = E/(2*(1 + nu)), thickness 1",
             Some(Plane::Strain) => {
                 "plane strain, lambda = E*nu/((1 + nu)*(1 - 2*nu)), mu = E/(2*(1 + nu)), thickness 1"
@@ -110,6 +110,9 @@ impl Derivation<'_> {
         let number = |n: i64| Fraction::number(BigRational::from_integer(n.into()), count);
         let nu = Fraction::variable(count - 1, count);
         let less = |factor: i64| number(1) - &(nu.clone() * &number(factor));
+        if self.element.dimension() == 1 {
+            return [number(0), number(1) / &number(2)];
+        }
         let lambda = match self.plane {
             Some(Plane::Stress) => nu.clone() / &(less(-1) * &less(1)),
             _ => nu.clone() / &(less(-1) * &less(2)),
@@ -163,11 +166,56 @@ impl Derivation<'_> {
         self.combination(&[(ll, "lambda^2"), (lm, "lambda*mu"), (mm, "mu^2")], notation)
     }
 
-    /// `E f(ν)`.
+    /// `E f(ν)`, with the factors of the moduli told apart in the denominator.
     fn engineering(&self, constants: &[Fraction; 2], notation: Notation) -> String {
         let [lambda, mu] = self.moduli();
-        let value = constants[0].clone() * &lambda + &(constants[1].clone() * &mu);
-        self.combination(&[(&value, "E")], notation)
+        let mut value = constants[0].clone() * &lambda + &(constants[1].clone() * &mu);
+        let count = self.form.variables.len();
+        let one = Fraction::number(BigRational::from_integer(1.into()), count);
+        let nu = Fraction::variable(count - 1, count);
+        let mut below = Vec::new();
+        for (multiple, text, latex) in
+            [(1i64, "(1 + nu)", "(1+\\nu)"), (-1, "(1 - nu)", "(1-\\nu)"), (-2, "(1 - 2*nu)", "(1-2\\nu)")]
+        {
+            let factor =
+                one.clone() + &(nu.clone() * &Fraction::number(BigRational::from_integer(multiple.into()), count));
+            if value.denominator().divided_by(factor.numerator()).is_some() {
+                value = value * &factor;
+                below.push(if notation == Notation::Text { text } else { latex });
+            }
+        }
+        let negative = num_traits::Signed::is_negative(value.content());
+        let size = if negative { -value } else { value };
+        let names = self.names(notation);
+        // Numerator and denominator apart: the factors join the latter.
+        let whole = |p: &Polynomial, c: &num_bigint::BigInt| {
+            let number = Fraction::number(BigRational::from_integer(c.clone()), count);
+            let one = Polynomial::constant(BigRational::from_integer(1.into()), count);
+            number * &Fraction::new(p.clone(), one)
+        };
+        let above = whole(size.numerator(), size.content().numer());
+        let under = whole(size.denominator(), size.content().denom());
+        let sign = if negative { "-" } else { "" };
+        if notation == Notation::Latex {
+            let under = if under == one { String::new() } else { under.latex(&names) + " " };
+            return format!(
+                "{sign}\\frac{{{} E}}{{{under}{}}}",
+                bracketed(&above, above.latex(&names)),
+                below.join(" ")
+            );
+        }
+        let under = bracketed(&under, under.text(&names));
+        let factors: Vec<&str> = [under.as_str()].into_iter().chain(below).filter(|f| *f != "1").collect();
+        let (sign, above) = match ascending(&above, negative, &names) {
+            Some(text) => ("", text),
+            None => (sign, bracketed(&above, above.text(&names))),
+        };
+        let above = if above == "1" { "E".to_string() } else { format!("E*{above}") };
+        match factors.len() {
+            0 => format!("{sign}{above}"),
+            1 => format!("{sign}{above}/{}", factors[0]),
+            _ => format!("{sign}{above}/({})", factors.join("*")),
+        }
     }
 
     fn combination(&self, terms: &[(&Fraction, &str)], notation: Notation) -> String {
@@ -183,13 +231,46 @@ impl Derivation<'_> {
                 (false, false) => " + ",
                 (false, true) => " - ",
             };
-            let is_sum = size.denominator().is_one() && size.numerator().term_count() > 1;
-            let factor = if is_sum && !factor.starts_with('(') { format!("({factor})") } else { factor };
+            let factor = if size.denominator().is_one() { bracketed(&size, factor) } else { factor };
             let dot = if notation == Notation::Text { "*" } else { " " };
             text += sign;
             text += &if factor == "1" { symbol.to_string() } else { format!("{factor}{dot}{symbol}") };
         }
         if text.is_empty() { "0".into() } else { text }
+    }
+}
+
+/// A negative sum whose last term is positive reads better turned round: `(6 - 7*nu)` for `-(7*nu - 6)`.
+fn ascending(sum: &Fraction, negative: bool, names: &[&str]) -> Option<String> {
+    let alone = matches!(&sum.numerator().factors()[..], [(p, 1)] if p.term_count() > 1);
+    if !negative || !alone || *sum.content() != BigRational::from_integer(1.into()) {
+        return None;
+    }
+    let terms = sum.numerator().sorted();
+    let mut text = String::new();
+    for (exponents, c) in terms.into_iter().rev() {
+        let positive = num_traits::Signed::is_negative(c);
+        if text.is_empty() && !positive {
+            return None;
+        }
+        let size = Polynomial::monomial(exponents.to_vec(), num_traits::Signed::abs(c)).text(names);
+        text += match (text.is_empty(), positive) {
+            (true, _) => "",
+            (false, true) => " + ",
+            (false, false) => " - ",
+        };
+        text += &size;
+    }
+    Some(format!("({text})"))
+}
+
+/// The text of a polynomial as a factor: a sum that nothing multiplies needs parentheses.
+fn bracketed(polynomial: &Fraction, text: String) -> String {
+    let factors = polynomial.numerator().factors();
+    let alone = polynomial.content().is_integer() && *polynomial.content() == BigRational::from_integer(1.into());
+    match &factors[..] {
+        [(p, 1)] if alone && p.term_count() > 1 => format!("({text})"),
+        _ => text,
     }
 }
 

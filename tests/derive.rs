@@ -1,0 +1,206 @@
+//! Closed forms: against the numerical fits of every element, the matrix of the paper, and published formulas.
+
+mod shapes;
+
+use num_rational::BigRational;
+use num_traits::ToPrimitive;
+use shapes::elements;
+use springfit::element::Element;
+use springfit::fit::{ClosedForm, Fit, Objective, Weight, fit_element};
+use springfit::material::Moduli;
+use springfit::springs::Springs;
+use std::process::Command;
+
+fn ratio(above: i64, below: i64) -> BigRational {
+    BigRational::new(above.into(), below.into())
+}
+
+fn form(name: &str, groups: Option<&[String]>, sides: bool) -> ClosedForm {
+    let element = Element::load(name).unwrap();
+    let springs = Springs::select(&element, groups).unwrap();
+    ClosedForm::new(&element, &springs, sides).unwrap()
+}
+
+/// At random lengths, with and without the spring on the content; formulas and numbers agree to the numbers' rounding.
+#[test]
+fn formulas_agree_with_the_numerical_fits() {
+    let lengths = [ratio(7, 5), ratio(9, 4), ratio(4, 7), ratio(1, 3)];
+    let (mut seen, moduli) = (0, Moduli { lambda: 0.7, mu: 1.3 });
+    // Larger ones take up to a minute, and large ones one fit.
+    for element in elements().into_iter().filter(|e| e.nodes() <= 6 || e.cell.corners().len() == e.nodes()) {
+        let d = element.dimension();
+        let every: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
+        for groups in [None, Some(&every[..])] {
+            if element.nodes() > 4 && groups.is_some() {
+                continue;
+            }
+            let springs = Springs::select(&element, groups).unwrap();
+            let Ok(form) = ClosedForm::new(&element, &springs, true) else { continue };
+            let at = [&lengths[..d], &lengths[3..]].concat();
+            let number = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
+            let x: Vec<f64> = form.positions.iter().map(number).collect();
+            for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal { higher: 0.5 }] {
+                if element.nodes() > 4 && weight != Weight::None {
+                    continue;
+                }
+                let expected =
+                    fit_element(&element, &springs, &x, moduli, &Fit::new(Objective::Frobenius(weight))).unwrap();
+                let fit = form.fit(weight).unwrap();
+                for (class, [l, m]) in form.classes.iter().zip(&fit.constants) {
+                    let k = 0.7 * number(l) + 1.3 * number(m);
+                    for nodes in &class.springs {
+                        let s = springs.pairs.iter().position(|p| p[..] == nodes[..]).unwrap_or(springs.len() - 1);
+                        let error = (k - expected[s]).abs();
+                        assert!(
+                            error < 1e-11 * (1.0 + k.abs()),
+                            "{} {weight:?} {nodes:?}: {k} {}",
+                            element.name,
+                            expected[s]
+                        );
+                    }
+                }
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 25, "{seen}");
+}
+
+/// Natsupakpong and Çavuşoğlu (2010), (19), in twelfths of λ and μ, and (27); their nodes run from the upper left clockwise.
+#[test]
+fn the_square_is_that_of_the_paper() {
+    const ROWS: [&[[i64; 2]]; 8] = [
+        &[[4, 12], [-3, -3], [-4, -6], [-3, 3], [-2, -6], [3, 3], [2, 0], [3, -3]],
+        &[[4, 12], [3, -3], [2, 0], [3, 3], [-2, -6], [-3, 3], [-4, -6]],
+        &[[4, 12], [3, 3], [2, 0], [-3, 3], [-2, -6], [-3, -3]],
+        &[[4, 12], [3, -3], [-4, -6], [-3, -3], [-2, -6]],
+        &[[4, 12], [-3, -3], [-4, -6], [-3, 3]],
+        &[[4, 12], [3, -3], [2, 0]],
+        &[[4, 12], [3, 3]],
+        &[[4, 12]],
+    ];
+    let form = form("quad4", None, false);
+    let at = [ratio(0, 1)];
+    let ours = |dof: usize| 2 * (3 - dof / 2) + dof % 2;
+    for (i, row) in ROWS.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            let place = ours(i) * 8 + ours(i + j);
+            for (part, twelfths) in form.stiffness.iter().zip(entry) {
+                assert_eq!(part[place].evaluate(&at).unwrap(), ratio(*twelfths, 12), "R[{i}][{}]", i + j);
+            }
+        }
+    }
+    let constants = |weight| -> Vec<[BigRational; 2]> {
+        let fit = form.fit(weight).unwrap();
+        fit.constants.iter().map(|pair| pair.each_ref().map(|f| f.evaluate(&at).unwrap())).collect()
+    };
+    assert_eq!(constants(Weight::OffDiagonal), [[ratio(1, 3), ratio(1, 2)], [ratio(5, 12), ratio(3, 4)]]);
+    // The optimum over all entries is another.
+    assert_eq!(constants(Weight::None), [[ratio(5, 21), ratio(4, 7)], [ratio(8, 21), ratio(5, 7)]]);
+}
+
+/// `λ = Eν/(1 − ν²)`, `μ = E/(2(1 + ν))` at ν = 1/3 and E = 1.
+fn at_one_third(pair: &[springfit::symbolic::Fraction; 2], lengths: &[BigRational]) -> BigRational {
+    let at = [lengths, &[ratio(1, 3)]].concat();
+    pair[0].evaluate(&at).unwrap() * ratio(3, 8) + pair[1].evaluate(&at).unwrap() * ratio(3, 8)
+}
+
+/// Van Gelder (1998): `k = E/(1+ν) A/c² + Eν/(1−ν²) (a² + b² − c²)/(8A)` is the fit of the blocks of different nodes at
+/// ν = 1/3, here for right triangles.
+#[test]
+fn right_triangles_have_van_gelders_constants() {
+    let form = form("tri3", None, true);
+    let fit = form.fit(Weight::OffDiagonal).unwrap();
+    for (a, b) in [(ratio(1, 1), ratio(1, 1)), (ratio(7, 5), ratio(2, 9)), (ratio(3, 1), ratio(10, 7))] {
+        let legs = [&a * &a, &b * &b];
+        let area = &a * &b / ratio(2, 1);
+        let all = &legs[0] + &legs[1];
+        for (class, pair) in form.classes.iter().zip(&fit.constants) {
+            let square = match class.springs[0][..] {
+                [0, 1] => legs[0].clone(),
+                [2, 0] => legs[1].clone(),
+                _ => all.clone(),
+            };
+            let others = (&all + &legs[0] + &legs[1]) - &square;
+            let first = ratio(3, 4) * &area / &square;
+            let second = ratio(3, 8) * (others - &square) / (ratio(8, 1) * &area);
+            assert_eq!(at_one_third(pair, &[a.clone(), b.clone()]), first + second, "{:?}", class.springs[0]);
+        }
+    }
+}
+
+/// Lloyd et al. (2007): 5/16 and 7/16 of E h for the square at ν = 1/3; over all entries it is 17/56 and 23/56.
+#[test]
+fn squares_have_lloyds_constants() {
+    let form = form("quad4", None, true);
+    let one = [ratio(1, 1), ratio(1, 1)];
+    for (weight, edge, diagonal) in
+        [(Weight::OffDiagonal, ratio(5, 16), ratio(7, 16)), (Weight::None, ratio(17, 56), ratio(23, 56))]
+    {
+        let fit = form.fit(weight).unwrap();
+        let found: Vec<BigRational> = fit.constants.iter().map(|pair| at_one_third(pair, &one)).collect();
+        assert_eq!(found, [edge.clone(), edge, diagonal]);
+    }
+}
+
+/// Baudet et al. on l × h: `k_l = E (h² (3ν+2) − l²)/(4lh(1+ν))`, `k_d = E (l² + h²)/(4lh(1+ν))`. They hold E and G for every
+/// ν, and the whole stiffness of the strains at ν = 1/3, where the fit of the strains alone gives them.
+#[test]
+fn rectangles_have_baudets_constants() {
+    let form = form("quad4", None, true);
+    let fit = form.fit(Weight::Modal { higher: 0.0 }).unwrap();
+    for (l, h) in [(ratio(1, 1), ratio(1, 1)), (ratio(7, 5), ratio(2, 3)), (ratio(1, 2), ratio(9, 7))] {
+        let (ll, hh, below) = (&l * &l, &h * &h, &l * &h * ratio(16, 3));
+        let expected = [(ratio(3, 1) * &hh - &ll) / &below, (ratio(3, 1) * &ll - &hh) / &below, (&ll + &hh) / &below];
+        let found: Vec<BigRational> =
+            fit.constants.iter().map(|pair| at_one_third(pair, &[l.clone(), h.clone()])).collect();
+        assert_eq!(found, expected);
+    }
+}
+
+fn derive(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).arg("derive").args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_command_prints_formulas_and_refuses_what_has_none() {
+    let (code, text, _) = derive(&["quad4", "--plane", "strain", "--matrix"]);
+    assert_eq!(code, Some(0));
+    for line in [
+        "  R[1][0] = 1/4*lambda + 1/4*mu",
+        "    k = 5/12*lambda + 3/4*mu",
+        "      = E*(9 - 8*nu)/(24*(1 + nu)*(1 - 2*nu))",
+        "  |R-K|^2 = 29/18*lambda^2 - 8/3*lambda*mu + 3/2*mu^2",
+        "  |R-K|/|R| = 0.173205 at nu = 0.3",
+    ] {
+        assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+    }
+    let (_, text, _) = derive(&["tri3", "--sides", "--latex"]);
+    let line = "  k_{\\text{edge 2-0}} &= \\frac{a}{2 b} \\lambda + \\frac{a}{b} \\mu = \\frac{a E}{2 b (1+\\nu) (1-\\nu)} \\\\";
+    assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+    let (_, text, _) = derive(&["bar2", "--sides"]);
+    assert!(text.contains("= E/a\n"), "{text}");
+    for (arguments, error) in [
+        (&["hex8", "--plane", "stress"][..], "--plane: expected a plane element, found hex8"),
+        (
+            &["quad4", "--springs", "edges"],
+            "--springs: expected groups of quad4: \"edge\", \"diagonal\", \"bulk\", found \"edges\"",
+        ),
+        (
+            &["pentagon5"],
+            "pentagon5 has no closed form: its shape functions are not rational, or no rule integrates them exactly",
+        ),
+    ] {
+        assert_eq!(derive(arguments), (Some(2), String::new(), format!("error: {error}\n")));
+    }
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/elements/");
+    for (file, why) in [
+        ("tri3_coupled", "its angles, areas, couplings or measures need roots"),
+        ("hex8_selective", "its quadrature is not exact for its own stiffness"),
+    ] {
+        let (code, _, error) = derive(&[&format!("{example}{file}.toml")]);
+        assert_eq!((code, error), (Some(2), format!("error: {file} has no closed form: {why}\n")));
+    }
+}
