@@ -326,7 +326,7 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
         let outcomes = study::compare_element(&element, material, shapes, iterations, &mut progress)
             .map_err(|e| e.placed(Error::of_option))?;
         let title = format!("{}: {shapes} random shapes, nu = {}, one thread", element.name, arguments.poisson);
-        Comparison::of_element(title, &outcomes)
+        Comparison::of_element(title, &outcomes, material.young())
     };
     bar.clear();
     print(&comparison.table())?;

@@ -141,7 +141,7 @@ fn comparisons_show_every_method() {
     for outcome in &outcomes {
         assert!(outcome.spectral.mean >= certified.spectral.mean * (1.0 - 1e-8), "{outcome:?}");
     }
-    let comparison = Comparison::of_element("three".into(), &outcomes);
+    let comparison = Comparison::of_element("three".into(), &outcomes, 1e4);
     let plot = comparison.plot().unwrap();
     for outcome in &outcomes {
         assert!(comparison.csv().contains(&outcome.name) && comparison.table().contains(&outcome.name));

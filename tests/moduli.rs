@@ -102,3 +102,29 @@ fn exact_springs_have_the_moduli_of_the_material() {
         close(&lattice(&path, material).of_springs().unwrap(), 1.0, 0.3, 1.0, 1e-10);
     }
 }
+
+/// A body of finite elements is its material whatever its mesh, and one of equal cubes is the lattice of the cube. Rounding
+/// of the sparse solution is below 1e-9.
+#[test]
+fn bodies_have_the_moduli_of_what_they_are_made_of() {
+    let scene = |name: &str| {
+        let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut scene = springfit::study::Scene::load(path.as_ref()).unwrap();
+        scene.loads.clear();
+        scene.fits.truncate(1);
+        scene.output.moduli = true;
+        springfit::study::run(&scene, &mut |_, _, _| {}).unwrap()
+    };
+    for name in ["cube_tet", "cube_hex"] {
+        let outcome = scene(name);
+        let entries = springfit::model::finite_elements(&outcome.mesh, outcome.material.moduli());
+        let found = springfit::study::moduli_of_body(&outcome.mesh, &entries).unwrap().unwrap();
+        close(&found, 1e4, 0.3, 1.0, 1e-5);
+        assert!((found.poisson - 0.3).abs() < 1e-9 && (found.zener - 1.0).abs() < 1e-9, "{found:?}");
+    }
+    let outcome = scene("cube_hex");
+    let found = outcome.fits[0].moduli.as_ref().unwrap();
+    let expected = lattice("hex8", outcome.material).of_springs().unwrap();
+    close(found, expected.young, expected.poisson, expected.zener, 1e-5);
+    assert!((found.zener - expected.zener).abs() < 1e-9);
+}

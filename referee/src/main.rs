@@ -97,6 +97,10 @@ fn main() -> ExitCode {
     let mut agree = true;
     for shipped in SHIPPED {
         let element = Element::load(shipped.name).expect("it is shipped");
+        // A rod is its spring; beyond the linear elements the general cone takes minutes.
+        if element.dimension() == 1 || element.nodes() > element.cell.corners().len() {
+            continue;
+        }
         let material = Material::for_body(element.dimension(), 1e4, 0.3, None, None).expect("it is valid");
         let moduli = material.moduli();
         let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();

@@ -100,6 +100,8 @@ struct Room<'a, S: Simd> {
     measured: Vec<Lanes<S>>,
     placement: Placement,
     geometry: Geometry<Lanes<S>>,
+    /// Whether `M = 2I`: each constant is half of its right-hand side.
+    decoupled: bool,
     /// Whether the constants are found by way of the nodes.
     by_nodes: bool,
     nodal: Nodal<Lanes<S>>,
@@ -126,6 +128,11 @@ impl<'a, S: Simd> Room<'a, S> {
             measured: vec![zero; springs.functions.len() * element.nodes() * element.dimension()],
             placement: Placement::new(&element.tabulation),
             geometry: Geometry::of_kind(&zero, &element.tabulation),
+            decoupled: fit.objective == Objective::Frobenius(Weight::OffDiagonal)
+                && !fit.tied
+                && springs.content.is_none()
+                && springs.functions.is_empty()
+                && springs.parallel.is_empty(),
             by_nodes: fit.objective == Objective::Frobenius(Weight::None) && !fit.tied && is_shorter(springs),
             nodal: Nodal::default(),
             normal: Normal::default(),
@@ -169,6 +176,14 @@ impl<'a, S: Simd> Room<'a, S> {
             }
         }
         normal_equations(self.weight, self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal);
+        if self.decoupled {
+            self.normal.rhs.iter_mut().for_each(|b| *b = b.scaled(&0.5));
+            self.write(constants);
+            if self.fit.nonnegative {
+                constants.iter_mut().for_each(|k| *k = k.max(0.0));
+            }
+            return true;
+        }
         let equations = if self.fit.tied {
             self.normal.tied(&self.springs.groups, self.springs.names.len(), &mut self.tied);
             &mut self.tied

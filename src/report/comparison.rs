@@ -3,7 +3,7 @@
 use super::table::aligned;
 use crate::error::{Error, Result};
 use crate::file::{create_folder, write_whole};
-use crate::study::{MethodOutcome, Outcome};
+use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -20,8 +20,9 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Every method on random shapes of one element; the plot has the relative 2-norm error.
-    pub fn of_element(title: String, outcomes: &[MethodOutcome]) -> Comparison {
+    /// Every method on random shapes of one element, with the moduli of its springs beside `young` that was asked for; the plot
+    /// has the relative 2-norm error.
+    pub fn of_element(title: String, outcomes: &[MethodOutcome], young: f64) -> Comparison {
         let header = [
             "objective",
             "solver",
@@ -34,10 +35,16 @@ impl Comparison {
             "2-norm max",
             "gap",
             "k < 0",
+            "E / asked",
+            "nu",
+            "Zener",
         ];
         let row = |o: &MethodOutcome| {
             let [least, median, largest] = o.seconds.map(|s| format!("{:.3}", 1e6 * s));
             let share = |v: f64| format!("{v:.4}");
+            let modulus = |of: &dyn Fn(&EffectiveModuli) -> f64| {
+                o.moduli.as_ref().map_or("-".into(), |m| format!("{:.3}", of(m)))
+            };
             vec![
                 o.name.clone(),
                 o.solver.to_string(),
@@ -50,6 +57,9 @@ impl Comparison {
                 share(o.spectral.max),
                 o.gap.map_or("-".into(), |gap| format!("{gap:.1e}")),
                 format!("{:.1}%", 100.0 * o.negative),
+                modulus(&|m| m.young / young),
+                modulus(&|m| m.poisson),
+                modulus(&|m| m.zener),
             ]
         };
         let name = |o: &MethodOutcome| {

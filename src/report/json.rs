@@ -18,12 +18,12 @@ pub fn report(outcome: &Outcome) -> String {
         "young": outcome.material.young(),
         "poisson": outcome.material.poisson(),
         "left_out": outcome.left_out,
-        "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count())).collect::<Vec<_>>(),
+        "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count(), outcome.material.thickness())).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&value).expect("a value of finite numbers and text is JSON") + "\n"
 }
 
-fn fit(outcome: &FitOutcome, elements: usize) -> Value {
+fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
     let fit = &outcome.fit.fit;
     json!({
         "name": outcome.fit.name,
@@ -57,6 +57,9 @@ fn fit(outcome: &FitOutcome, elements: usize) -> Value {
         "ambiguous_elements": outcome.ambiguous,
         "unreached_elements": outcome.unreached,
         "energy_error_bound": outcome.energy_error,
+        "effective_young": outcome.moduli.as_ref().map(|m| m.young / thickness),
+        "effective_poisson": outcome.moduli.as_ref().map(|m| m.poisson),
+        "zener": outcome.moduli.as_ref().map(|m| m.zener),
         "loads": outcome.loads.iter().map(load).collect::<Vec<_>>(),
     })
 }

@@ -122,6 +122,16 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     if let Some(epsilon) = fit.energy_error {
         notes.push(format!("{name}: the energy of every deformation is within {:.1} % of the body's", 100.0 * epsilon));
     }
+    if let Some(m) = &fit.moduli {
+        let (young, thickness) = (outcome.material.young(), outcome.material.thickness());
+        notes.push(format!(
+            "{name}: as a material E = {:.4e} Pa, nu = {:.3}, Zener {:.3}; asked {young:e} Pa, {}, 1",
+            m.young / thickness,
+            m.poisson,
+            m.zener,
+            outcome.material.poisson()
+        ));
+    }
     let Some(stability) = &fit.stability else { return notes };
     let points = points(outcome, &fit.loose_points);
     let [least, _] = stability.energy_ratio;

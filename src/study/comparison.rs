@@ -1,5 +1,6 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
+use super::moduli::{EffectiveModuli, Lattice};
 use super::run::{Outcome, Progress, run};
 use super::scene::{NamedFit, Scene};
 use crate::element::Element;
@@ -8,6 +9,7 @@ use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors,
 use crate::material::Material;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How often a fit is timed, unless once takes longer than `PATIENCE` seconds.
@@ -30,6 +32,8 @@ pub struct MethodOutcome {
     pub gap: Option<f64>,
     /// Constants below zero, as a share of all.
     pub negative: f64,
+    /// Of the springs on a periodic box of unit size; not of general solvers, nor of cells that fill no box.
+    pub moduli: Option<EffectiveModuli>,
 }
 
 /// The objectives that are compared; `modal` where the element has motions beyond constant strain.
@@ -68,6 +72,11 @@ pub fn compare_element(
     }
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let one = one.map_err(|e| Error::new(format!("no thread can be started: {e}")))?;
+    let shared = Arc::new(element.clone());
+    let size = vec![1.0; element.dimension()];
+    let native = |fit: &&Fit| fit.solver == Solver::Native;
+    let lattice = |fit: &Fit| Lattice::fit(&shared, &springs, &size, material, fit).ok();
+    let measure = |fit: &Fit| Some(fit).filter(native).and_then(lattice).and_then(|lattice| lattice.of_springs());
     let moduli = material.moduli();
     let mut outcomes = Vec::new();
     for (done, fit) in fits.iter().enumerate() {
@@ -92,6 +101,7 @@ pub fn compare_element(
             spectral: Spread::of(&errors.spectral),
             gap: fitted.certificates.iter().map(|c| c.gap()).reduce(f64::max),
             negative: negative as f64 / fitted.constants.len().max(1) as f64,
+            moduli: measure(fit),
         });
     }
     progress("", fits.len(), fits.len());

@@ -10,6 +10,6 @@ mod scene;
 pub use check::{Inspection, Mark, Property, inspect};
 pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
 pub use metrics::{DisplacementError, displacement_error};
-pub use moduli::{EffectiveModuli, Lattice};
+pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
 pub use scene::{BoxEntry, LoadCase, MeshInput, NamedFit, Output, Part, Scene, load_elements};

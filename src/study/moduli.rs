@@ -5,9 +5,12 @@ use crate::error::Result;
 use crate::fit::{CellFits, Fit, fit_cells};
 use crate::material::Material;
 use crate::mesh::{BoxMesh, Mesh};
-use crate::model::{Entries, Network, finite_elements};
+use crate::model::{Entries, Network, Support, finite_elements, masses};
+use crate::solve::System;
 use crate::springs::Springs;
+use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Moduli of a homogenised material, that of the axes if it is not the same in all directions.
@@ -67,6 +70,39 @@ impl Lattice {
     pub fn of_elements(&self, material: Material) -> Option<EffectiveModuli> {
         homogenise(&self.mesh, &finite_elements(&self.mesh, material.moduli()))
     }
+}
+
+/// The moduli of a whole body under `u = ε x` on its boundary, the points inside finding their places: those of its material,
+/// the better the more points are inside. `None` where some strain meets no resistance, or no point is inside.
+pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<EffectiveModuli>> {
+    let d = mesh.dimension;
+    let boundary: BTreeSet<usize> = mesh.boundary_points();
+    if d != mesh.cell_dimension() || boundary.len() == mesh.point_count() {
+        return Ok(None);
+    }
+    let strains = strains(d);
+    let mut solutions = Vec::new();
+    for strain in &strains {
+        let mut support = Support::free(mesh);
+        for &p in &boundary {
+            let u = strain * DVector::from_column_slice(mesh.point(p));
+            (0..d).for_each(|k| support.prescribed[p * d + k] = Some(u[k]));
+        }
+        let system = System::new(entries, &support)?;
+        let Some(factor) = system.factorize() else { return Ok(None) };
+        solutions.push(system.solve(&factor, &vec![0.0; mesh.points.len()]).0);
+    }
+    let energy = |u: &[f64], v: &[f64]| -> f64 {
+        let entry = |e: &Triplet<usize, usize, f64>| {
+            let other = if e.row == e.col { 0.0 } else { u[e.col] * v[e.row] };
+            e.val * (u[e.row] * v[e.col] + other)
+        };
+        entries.iter().map(entry).sum()
+    };
+    let volume: f64 = masses(mesh, 1.0, 1.0).iter().sum();
+    let count = strains.len();
+    let stiffness = DMatrix::from_fn(count, count, |i, j| energy(&solutions[i], &solutions[j]) / volume);
+    Ok(moduli(stiffness, d))
 }
 
 /// Displacements `u = ε x + ũ` with ũ the same at opposite points: `C_ij = (u_iᵀ K u_j)/V`, each ũ being the one of least

@@ -1,6 +1,7 @@
 //! Runs a scene: fit each objective, solve each load with both models, compare.
 
 use super::metrics::{DisplacementError, displacement_error};
+use super::moduli::{EffectiveModuli, moduli_of_body};
 use super::scene::{NamedFit, Scene};
 use crate::error::{Error, Result};
 use crate::fit::{CellFits, ElementErrors, Objective, Spread, Weight, element_errors, fit_cells};
@@ -50,6 +51,8 @@ pub struct FitOutcome {
     pub energy_error: Option<f64>,
     pub frobenius: Spread,
     pub spectral: Spread,
+    /// What the network is as a material, where the scene asks for it: under linear displacements of its boundary.
+    pub moduli: Option<EffectiveModuli>,
     /// With the support of the first load; `None` without loads.
     pub stability: Option<Stability>,
     /// Points that move in the softest motion, at least half as far as the one that moves most.
@@ -102,7 +105,11 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
         Some(_) => stages.push(run("masses".into())),
         None => stages.push(skip("masses", "the material has no density")),
     }
-    for (wanted, what) in [(scene.output.vtu, "VTU files"), (scene.output.csv, "CSV files")] {
+    for (wanted, what) in [
+        (scene.output.moduli, "moduli of each network as a material"),
+        (scene.output.vtu, "VTU files"),
+        (scene.output.csv, "CSV files"),
+    ] {
         stages.push(if wanted { run(what.into()) } else { skip(what, "not asked for in [output]") });
     }
     stages
@@ -129,6 +136,12 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     for (i, fit) in scene.fits.iter().enumerate() {
         let fitted = fit_mesh(&outcome.mesh, material, fit, progress).map_err(|e| scene.at(&format!("fit[{i}]"), e))?;
         outcome.fits.push(fitted);
+    }
+    if scene.output.moduli {
+        for (done, fit) in outcome.fits.iter_mut().enumerate() {
+            progress("moduli", done, scene.fits.len());
+            fit.moduli = moduli_of_body(&outcome.mesh, &fit.network.stiffness(&outcome.mesh.points))?;
+        }
     }
     let body = Body::solve(&outcome.mesh, material.moduli(), &cases, progress).map_err(|e| e.in_file(&scene.path))?;
     for fit in &mut outcome.fits {
@@ -201,6 +214,7 @@ pub fn fit_mesh(mesh: &Mesh, material: Material, named: &NamedFit, progress: &mu
         energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
         frobenius: Spread::of(&errors.frobenius),
         spectral: Spread::of(&errors.spectral),
+        moduli: None,
         stability: None,
         loose_points: Vec::new(),
         loads: Vec::new(),

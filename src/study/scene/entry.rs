@@ -17,6 +17,8 @@ pub struct Output {
     pub vtu: bool,
     /// The springs as a CSV file.
     pub csv: bool,
+    /// What each network is as a material: Young's modulus, Poisson's ratio, Zener's ratio.
+    pub moduli: bool,
     /// report.json; written unless switched off.
     pub report: Option<bool>,
 }
