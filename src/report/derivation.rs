@@ -243,7 +243,7 @@ impl Derivation<'_> {
 /// A negative sum whose last term is positive reads better turned round: `(6 - 7*nu)` for `-(7*nu - 6)`.
 fn ascending(sum: &Fraction, negative: bool, names: &[&str]) -> Option<String> {
     let alone = matches!(&sum.numerator().factors()[..], [(p, 1)] if p.term_count() > 1);
-    if !negative || !alone || *sum.content() != BigRational::from_integer(1.into()) {
+    if !negative || !alone {
         return None;
     }
     let terms = sum.numerator().sorted();
@@ -261,7 +261,8 @@ fn ascending(sum: &Fraction, negative: bool, names: &[&str]) -> Option<String> {
         };
         text += &size;
     }
-    Some(format!("({text})"))
+    let number = sum.content().numer().to_string();
+    Some(if number == "1" { format!("({text})") } else { format!("{number}*({text})") })
 }
 
 /// The text of a polynomial as a factor: a sum that nothing multiplies needs parentheses.
