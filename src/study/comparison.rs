@@ -1,6 +1,7 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
 use super::moduli::{EffectiveModuli, Lattice};
+use super::random::Random;
 use super::run::{Outcome, Progress, run};
 use super::scene::{NamedFit, Scene};
 use crate::element::Element;
@@ -144,19 +145,16 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
 /// Nearly every shape tangles.
 pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f64>> {
     let d = element.dimension();
-    let mut state = seed;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
+    let mut random = Random::new(seed);
     let mut points = Vec::with_capacity(count * element.positions.len());
     let mut geometry = Geometry::new(&element.tabulation);
     for _ in 0..100 * count {
-        let map: Vec<f64> = (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.4 * random()).collect();
+        let map: Vec<f64> =
+            (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.4 * random.symmetric()).collect();
         let mut shape = Vec::new();
         for at in element.positions.chunks_exact(d) {
             for k in 0..d {
-                shape.push((0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>() + JITTER * random());
+                shape.push((0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>() + JITTER * random.symmetric());
             }
         }
         if geometry.set(&element.tabulation, &shape).is_ok() {

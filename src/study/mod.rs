@@ -4,6 +4,7 @@ mod check;
 mod comparison;
 mod metrics;
 mod moduli;
+mod random;
 mod run;
 mod scene;
 

@@ -8,6 +8,7 @@ use crate::mesh::{Mesh, MeshSource, gmsh, vtk};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use crate::study::moduli::Lattice;
+use crate::study::random::Random;
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -27,17 +28,14 @@ pub fn properties(element: &Arc<Element>) -> Vec<Property> {
 /// The nodes under random maps with straight edges, far from tangled.
 pub fn shapes(element: &Element) -> Vec<Vec<f64>> {
     let d = element.dimension();
-    let mut state = 7u64;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
+    let mut random = Random::new(7);
     let mut geometry = Geometry::new(&element.tabulation);
     let mut found = Vec::new();
     for _ in 0..100 * SHAPES {
-        let linear: Vec<f64> = (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.25 * random()).collect();
+        let linear: Vec<f64> =
+            (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.25 * random.symmetric()).collect();
         let terms = element.cell.straight_terms();
-        let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random()).collect();
+        let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random.symmetric()).collect();
         let place = |at: &[f64], k: usize| {
             let straight: f64 = (0..d).map(|l| linear[k * d + l] * at[l]).sum();
             let product = |e: &[i32]| at.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();

@@ -93,15 +93,8 @@ fn gradients(element: &Element) -> Property {
 }
 
 fn rule(element: &Element) -> Property {
-    let d = element.dimension();
     let table = &element.tabulation;
-    // Where the points are is what the linear functions reproduce.
-    let outside = table.values.chunks_exact(element.nodes()).filter(|values| {
-        let at: Vec<f64> =
-            (0..d).map(|k| values.iter().enumerate().map(|(a, n)| n * element.positions[a * d + k]).sum()).collect();
-        !element.cell.contains(&at)
-    });
-    let outside = outside.count();
+    let outside = places(element).iter().filter(|at| !element.cell.contains(at)).count();
     let negative = table.weights.iter().chain(&table.volumetric).filter(|w| **w < 0.0).count();
     let finding = match (outside, negative) {
         (0, 0) => "all points inside the cell, no negative weight".to_string(),
@@ -135,17 +128,21 @@ fn degree(element: &Element) -> Property {
     property.with(error(&own))
 }
 
+/// Where the quadrature points are: what the linear functions reproduce there.
+fn places(element: &Element) -> Vec<Vec<f64>> {
+    let d = element.dimension();
+    let coordinate = |values: &[f64], k: usize| -> f64 {
+        values.iter().zip(element.positions.chunks_exact(d)).map(|(n, x)| n * x[k]).sum()
+    };
+    let values = element.tabulation.values.chunks_exact(element.nodes());
+    values.map(|values| (0..d).map(|k| coordinate(values, k)).collect()).collect()
+}
+
 /// The largest degree of which the rule integrates every monomial.
 fn reached(element: &Element) -> usize {
     let (d, table) = (element.dimension(), &element.tabulation);
     let fine = Quadrature::of_degree(element.cell, 24);
-    let places: Vec<Vec<f64>> = table
-        .values
-        .chunks_exact(element.nodes())
-        .map(|values| {
-            (0..d).map(|k| values.iter().enumerate().map(|(a, n)| n * element.positions[a * d + k]).sum()).collect()
-        })
-        .collect();
+    let places = places(element);
     let monomial = |x: &[f64], e: &[i32]| x.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();
     let exact = |e: &Vec<i32>| {
         let own: f64 = places.iter().zip(&table.weights).map(|(x, w)| w * monomial(x, e)).sum();
