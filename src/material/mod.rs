@@ -1,5 +1,9 @@
 //! Isotropic linear elasticity.
 
+mod energy;
+
+pub use energy::{Energy, SHIPPED, Tangent};
+
 use crate::error::{Error, Result};
 use serde::Deserialize;
 

@@ -25,6 +25,30 @@ impl Jet {
         Jet::of_order(expr, at, 0).gradient
     }
 
+    /// The variables themselves, with both derivatives.
+    pub fn variables(at: &[f64]) -> Vec<Jet> {
+        let n = at.len();
+        let variable = |i: usize| {
+            let mut gradient = vec![0.0; n];
+            gradient[i] = 1.0;
+            Jet { value: at[i], gradient, hessian: vec![0.0; n * n] }
+        };
+        (0..n).map(variable).collect()
+    }
+
+    /// A number that no variable changes.
+    pub fn number(value: f64) -> Jet {
+        Jet { value, gradient: Vec::new(), hessian: Vec::new() }
+    }
+
+    pub fn sum(self, other: &Jet) -> Jet {
+        self.plus(other.clone())
+    }
+
+    pub fn product(self, other: &Jet) -> Jet {
+        self.times(other.clone())
+    }
+
     /// `second` entries of the Hessian, all or none.
     fn of_order(expr: &Expr, at: &[f64], second: usize) -> Jet {
         let n = at.len();
@@ -51,15 +75,22 @@ impl Jet {
         jet.gradient.iter_mut().for_each(|g| *g *= first);
         jet
     }
+}
 
-    fn constant(value: f64) -> Jet {
-        Jet { value, gradient: Vec::new(), hessian: Vec::new() }
+impl Expr {
+    /// The value where the variables are these jets, in `n` variables of their own; NaN where it has none.
+    pub fn jet(&self, at: &[Jet], n: usize) -> Jet {
+        let nothing = || Jet { value: f64::NAN, gradient: vec![f64::NAN; n], hessian: vec![f64::NAN; n * n] };
+        let mut jet = self.value(at).unwrap_or_else(nothing);
+        jet.gradient.resize(n, 0.0);
+        jet.hessian.resize(n * n, 0.0);
+        jet
     }
 }
 
 impl Value for Jet {
     fn from_rational(c: &BigRational) -> Option<Jet> {
-        c.to_f64().map(Jet::constant)
+        c.to_f64().map(Jet::number)
     }
 
     fn plus(self, other: Jet) -> Jet {

@@ -153,6 +153,16 @@ impl Expr {
         if let Expr::Number(c) = self { Some(c) } else { None }
     }
 
+    /// Whether the variable occurs in it.
+    pub fn uses(&self, variable: usize) -> bool {
+        match self {
+            Expr::Number(_) => false,
+            Expr::Variable(v) => *v == variable,
+            Expr::Sum(inner) | Expr::Product(inner) => inner.iter().any(|e| e.uses(variable)),
+            Expr::Power(inner, _) | Expr::Call(_, inner) => inner.uses(variable),
+        }
+    }
+
     /// How many numbers, variables and operations it consists of.
     fn parts(&self) -> usize {
         1 + match self {

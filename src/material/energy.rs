@@ -1,0 +1,279 @@
+//! Hyperelastic materials: an energy per volume at rest as an expression of the deformation's invariants.
+
+use super::Material;
+use crate::error::{Error, Result};
+use crate::file;
+use crate::symbolic::{Expr, Jet, Scope};
+use nalgebra::{Matrix3, SMatrix, Vector3};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The second derivative of the energy, `∂P_ij/∂F_kl` at `[3i + j][3k + l]`.
+pub type Tangent = SMatrix<f64, 9, 9>;
+
+/// What the energy may be a function of, beside the moduli and its own parameters.
+const INVARIANTS: [&str; 7] = ["I1", "I2", "J", "I4", "l1", "l2", "l3"];
+/// What follows from Young's modulus and Poisson's ratio.
+const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
+/// Principal stretches that differ by less than this share are the same: the divided difference has rounding of 1e-10
+/// there, the limit an error of its square.
+const SAME: f64 = 1e-6;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Definition {
+    name: String,
+    title: String,
+    source: Option<String>,
+    /// Direction of the fibres at rest, of any length.
+    fibre: Option<[f64; 3]>,
+    /// Numbers with their defaults.
+    #[serde(default)]
+    parameters: BTreeMap<String, f64>,
+    #[serde(default, rename = "let")]
+    definitions: toml::Table,
+    energy: String,
+}
+
+/// `W(F)`, J/m³, of one material.
+#[derive(Debug, Clone)]
+pub struct Energy {
+    pub name: String,
+    pub title: String,
+    /// Where it is published.
+    pub source: Option<String>,
+    fibre: Option<Vector3<f64>>,
+    /// Of the invariants, then the moduli, then the parameters.
+    expression: Expr,
+    /// Of the moduli and parameters.
+    constants: Vec<f64>,
+    by_stretches: bool,
+}
+
+/// The files of the folder `materials`, by name.
+pub static SHIPPED: &[(&str, &str)] = &[
+    ("corotational", include_str!("../../materials/corotational.toml")),
+    ("fibre", include_str!("../../materials/fibre.toml")),
+    ("fung", include_str!("../../materials/fung.toml")),
+    ("mooney-rivlin", include_str!("../../materials/mooney-rivlin.toml")),
+    ("neo-hookean", include_str!("../../materials/neo-hookean.toml")),
+    ("neo-hookean-isochoric", include_str!("../../materials/neo-hookean-isochoric.toml")),
+    ("ogden", include_str!("../../materials/ogden.toml")),
+    ("st-venant-kirchhoff", include_str!("../../materials/st-venant-kirchhoff.toml")),
+    ("yeoh", include_str!("../../materials/yeoh.toml")),
+];
+
+impl Energy {
+    /// The shipped energy of that name, or that of the file of that path, with the moduli of `material`.
+    ///
+    /// # Errors
+    /// There is no such energy, its file is wrong, or it is not stress-free at rest with these moduli.
+    pub fn load(name_or_path: &str, material: Material) -> Result<Energy> {
+        if name_or_path.ends_with(".toml") {
+            let path = Path::new(name_or_path);
+            return Energy::parse(&file::read_text(path)?, material).map_err(|e| e.in_file(path));
+        }
+        match SHIPPED.iter().find(|(name, _)| *name == name_or_path) {
+            Some((name, text)) => {
+                Energy::parse(text, material).map_err(|e| e.in_file(Path::new(&format!("materials/{name}.toml"))))
+            }
+            None => {
+                let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
+                let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
+                Err(Error::expected("energy", expected, format!("\"{name_or_path}\"")))
+            }
+        }
+    }
+
+    /// Parses the text of a material file and proves that the body at rest is free of stress.
+    ///
+    /// # Errors
+    /// Names the key, what was expected and what was found.
+    pub fn parse(text: &str, material: Material) -> Result<Energy> {
+        let definition: Definition = file::parse_toml(text)?;
+        let names: Vec<&str> =
+            INVARIANTS.iter().chain(&MODULI).copied().chain(definition.parameters.keys().map(String::as_str)).collect();
+        let mut check = Scope::new(&[INVARIANTS.as_slice(), MODULI.as_slice()].concat());
+        for (name, value) in &definition.parameters {
+            let key = format!("parameters.{name}");
+            if !value.is_finite() {
+                return Err(Error::expected(key, "a finite number", value));
+            }
+            check.define(name, "0").map_err(|e| Error::at(key, e.problem()))?;
+        }
+        let mut scope = Scope::new(&names);
+        for (name, value) in &definition.definitions {
+            let key = format!("let.{name}");
+            let text =
+                value.as_str().ok_or_else(|| Error::expected(&key, "an expression in quotes", value.type_str()))?;
+            scope.define(name, text).map_err(|e| e.under(key))?;
+        }
+        let expression = scope.expression(&definition.energy).map_err(|e| e.under("energy"))?;
+        let fibre = definition.fibre.map(Vector3::from);
+        if fibre.is_some_and(|a| !(a.norm() > 0.0 && a.norm().is_finite())) {
+            return Err(Error::expected("fibre", "a direction", format!("{:?}", definition.fibre.unwrap_or_default())));
+        }
+        let (young, poisson) = (material.young(), material.poisson());
+        let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        let mu = young / (2.0 * (1.0 + poisson));
+        let mut constants = vec![young, poisson, lambda, mu, lambda + 2.0 / 3.0 * mu];
+        constants.extend(definition.parameters.values());
+        let uses = |range: std::ops::Range<usize>| range.clone().any(|v| expression.uses(v));
+        if uses(3..4) && fibre.is_none() {
+            return Err(Error::expected("fibre", "the direction of the fibres that I4 belongs to", "none"));
+        }
+        if uses(3..4) && uses(4..7) {
+            return Err(Error::at("energy", "expected either I4 or principal stretches, found both"));
+        }
+        let energy = Energy {
+            name: definition.name,
+            title: definition.title,
+            source: definition.source,
+            fibre: fibre.map(|a| a.normalize()),
+            by_stretches: uses(4..7),
+            expression,
+            constants,
+        };
+        let (_, stress, tangent) = energy.respond(&Matrix3::identity());
+        let size = tangent.norm();
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(Error::at("energy", "has no finite, positive stiffness at rest"));
+        }
+        if stress.norm() > 1e-10 * size {
+            return Err(Error::expected("energy", "no stress at rest", format!("{:.3e} Pa", stress.norm())));
+        }
+        Ok(energy)
+    }
+
+    /// `W`, `P = ∂W/∂F` (the first Piola-Kirchhoff stress, Pa) and `∂P/∂F` at the deformation gradient F. Not finite where
+    /// the energy is not: at `J ≤ 0` of those with `ln(J)`.
+    pub fn respond(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
+        if self.by_stretches { self.by_stretches(f) } else { self.by_invariants(f) }
+    }
+
+    /// The energy with its derivatives in the first invariants, or in the stretches.
+    fn jet(&self, variables: Vec<Jet>) -> Jet {
+        let n = variables[0].gradient.len();
+        let mut at = variables;
+        at.extend(self.constants.iter().map(|c| Jet::number(*c)));
+        self.expression.jet(&at, n)
+    }
+
+    /// The chain rule on `I1 = tr C`, `I2 = (I1² − tr C²)/2`, `J = det F`, `I4 = |F a|²`.
+    fn by_invariants(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
+        let c = f.transpose() * f;
+        let (i1, j) = (c.trace(), f.determinant());
+        let i2 = (i1 * i1 - (c * c).trace()) / 2.0;
+        let fibre = self.fibre.map(|a| f * a);
+        let i4 = fibre.map_or(1.0, |a| a.norm_squared());
+        let mut variables = Jet::variables(&[i1, i2, j, i4]);
+        // The stretches are not asked for here.
+        variables.extend([1.0; 3].map(Jet::number));
+        let w = self.jet(variables);
+        // cof F = J F^(−T), also where J = 0
+        let cofactor = cofactor(f);
+        let firsts = [
+            2.0 * f,
+            2.0 * (i1 * f - f * c),
+            cofactor,
+            fibre.zip(self.fibre).map_or(Matrix3::zeros(), |(b, a)| 2.0 * b * a.transpose()),
+        ];
+        let mut stress = Matrix3::zeros();
+        firsts.iter().zip(&w.gradient).for_each(|(d, g)| stress += *g * d);
+        let b = f * f.transpose();
+        let mut tangent = Tangent::zeros();
+        for (row, i, k) in (0..9).map(|r| (r, r / 3, r % 3)) {
+            for (column, l, m) in (0..9).map(|s| (s, s / 3, s % 3)) {
+                let same = |a: usize, b: usize| f64::from(u8::from(a == b));
+                // ∂²I1 = 2 δ δ; ∂²I2 = 2(2 F F + I1 δ δ − F_il... ); ∂²J from the permutation symbols; ∂²I4 = 2 δ a a
+                let second1 = 2.0 * same(i, l) * same(k, m);
+                let second2 = 2.0
+                    * (2.0 * f[(i, k)] * f[(l, m)] + i1 * same(i, l) * same(k, m)
+                        - same(i, l) * c[(m, k)]
+                        - f[(i, m)] * f[(l, k)]
+                        - b[(i, l)] * same(k, m));
+                let second3 = second_of_determinant(f, (i, k), (l, m));
+                let second4 = self.fibre.map_or(0.0, |a| 2.0 * same(i, l) * a[k] * a[m]);
+                let mut entry = w.gradient[0] * second1
+                    + w.gradient[1] * second2
+                    + w.gradient[2] * second3
+                    + w.gradient[3] * second4;
+                for (p, dp) in firsts.iter().enumerate() {
+                    for (q, dq) in firsts.iter().enumerate() {
+                        entry += w.hessian[4 * p + q] * dp[(i, k)] * dq[(l, m)];
+                    }
+                }
+                tangent[(row, column)] = entry;
+            }
+        }
+        (w.value, stress, tangent)
+    }
+
+    /// In the frame of the singular vectors, `F = Σ λ_i n_i N_iᵀ`; Ogden (1984), 6.1.4.
+    fn by_stretches(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
+        let svd = f.svd(true, true);
+        let (Some(mut n), Some(big_n)) = (svd.u, svd.v_t) else {
+            return (f64::NAN, Matrix3::repeat(f64::NAN), Tangent::repeat(f64::NAN));
+        };
+        let mut stretch = svd.singular_values;
+        // A reflection goes into the sign of the least stretch.
+        if f.determinant() < 0.0 {
+            stretch[2] = -stretch[2];
+            n.column_mut(2).neg_mut();
+        }
+        let l = Jet::variables(stretch.as_slice());
+        let square = |i: usize| l[i].clone().product(&l[i]);
+        let i1 = square(0).sum(&square(1)).sum(&square(2));
+        let pair = |i: usize, j: usize| square(i).product(&square(j));
+        let i2 = pair(0, 1).sum(&pair(1, 2)).sum(&pair(2, 0));
+        let j = l[0].clone().product(&l[1]).product(&l[2]);
+        let [l1, l2, l3] = [0, 1, 2].map(|i| l[i].clone());
+        let w = self.jet(vec![i1, i2, j, Jet::number(1.0), l1, l2, l3]);
+        let (g, h) = (&w.gradient, &w.hessian);
+        let big_n = big_n.transpose();
+        let direction = |i: usize, j: usize| n.column(i) * big_n.column(j).transpose();
+        let mut stress = Matrix3::zeros();
+        (0..3).for_each(|i| stress += g[i] * direction(i, i));
+        let mut tangent = Tangent::zeros();
+        let flat = |a: Matrix3<f64>| SMatrix::<f64, 9, 1>::from_row_slice(a.transpose().as_slice());
+        for i in 0..3 {
+            for j in 0..3 {
+                tangent += h[3 * i + j] * flat(direction(i, i)) * flat(direction(j, j)).transpose();
+                if i == j {
+                    continue;
+                }
+                let (a, b) = (stretch[i], stretch[j]);
+                let (direct, crossed) = if (a - b).abs() > SAME * (a.abs() + b.abs()) {
+                    let below = a * a - b * b;
+                    ((a * g[i] - b * g[j]) / below, (b * g[i] - a * g[j]) / below)
+                } else {
+                    // Means of both ends: the error is the square of the difference.
+                    let bend = ((h[4 * i] + h[4 * j]) / 2.0 - h[3 * i + j]) / 2.0;
+                    let pull = (g[i] + g[j]) / (2.0 * (a + b));
+                    (bend + pull, bend - pull)
+                };
+                tangent += direct * flat(direction(i, j)) * flat(direction(i, j)).transpose();
+                tangent += crossed * flat(direction(i, j)) * flat(direction(j, i)).transpose();
+            }
+        }
+        (w.value, stress, tangent)
+    }
+}
+
+/// `∂det F/∂F`.
+fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, k| {
+        let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (k + 1) % 3, (k + 2) % 3);
+        f[(a, c)] * f[(b, d)] - f[(a, d)] * f[(b, c)]
+    })
+}
+
+/// `∂² det F/∂F_ik ∂F_lm = ε_ilp ε_kmq F_pq`.
+fn second_of_determinant(f: &Matrix3<f64>, (i, k): (usize, usize), (l, m): (usize, usize)) -> f64 {
+    if i == l || k == m {
+        return 0.0;
+    }
+    let sign = |a: usize, b: usize| if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
+    sign(i, l) * sign(k, m) * f[(3 - i - l, 3 - k - m)]
+}
