@@ -1,10 +1,12 @@
 //! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
 
+mod elastic;
 mod load;
 mod network;
 mod support;
 mod system;
 
+pub use elastic::{Body, Elastic};
 pub use load::{Action, nodal_forces};
 pub use network::{LengthSpring, MeasureSpring, Network};
 pub use support::{Support, Unheld, unheld_bodies};
@@ -14,3 +16,14 @@ use faer::sparse::Triplet;
 
 /// Entries of the lower triangle of a symmetric matrix; those of the same place add up.
 pub type Entries = Vec<Triplet<usize, usize, f64>>;
+
+/// What a model does with its points at given positions.
+#[derive(Debug, Clone)]
+pub struct Response {
+    /// J.
+    pub energy: f64,
+    /// The energy's derivative in the positions, `[points · dimension]`, N.
+    pub force: Vec<f64>,
+    /// Its second derivative, N/m.
+    pub tangent: Entries,
+}

@@ -1,7 +1,9 @@
 //! Equilibrium of either model, and how the two compare mode by mode.
 
 mod linear;
+mod newton;
 mod stability;
 
 pub use linear::{Factor, System};
+pub use newton::{Equilibrium, Newton, Outcome};
 pub use stability::{Stability, Standing, compare_energies};

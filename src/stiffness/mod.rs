@@ -1,7 +1,9 @@
 //! The stiffness of one element: its geometry at the quadrature points, the strain energy, and R.
 
+mod large;
 mod placement;
 
+pub use large::Response;
 pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;

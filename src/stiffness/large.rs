@@ -1,0 +1,103 @@
+//! One element at large deformation: energy, nodal forces and tangent of a hyperelastic material.
+
+use super::Geometry;
+use crate::material::{Energy, State, Tangent};
+use nalgebra::{DMatrix, Matrix3};
+
+/// Steps of the search for the stretch across a plane that leaves no stress there.
+const STEPS: usize = 60;
+
+/// What an element does at given positions.
+#[derive(Debug, Clone)]
+pub struct Response {
+    /// `∫ W dV`, J.
+    pub energy: f64,
+    /// `∂/∂x_a ∫ W dV = ∫ P ∇N_a dV`, `[nodes × dimension]`, N.
+    pub force: Vec<f64>,
+    /// `∫ ∇N_a · (∂P/∂F) ∇N_b dV`, `[nodes·dimension × nodes·dimension]`, N/m.
+    pub tangent: DMatrix<f64>,
+}
+
+impl Geometry {
+    /// The response with the nodes at `x`, `[nodes × dimension]`, m, the geometry being that at rest. `F = Σ_a x_a ∇N_aᵀ`, in
+    /// the plane with the stretch across it that the state has. `None` where the energy is not finite.
+    ///
+    /// The rule of the term λ (div u)² has no part in it.
+    pub fn respond(&self, energy: &Energy, state: State, x: &[f64]) -> Option<Response> {
+        let (n, d) = (self.nodes, self.dimension);
+        let thickness = match state {
+            State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
+            State::Rod { area } => area,
+            State::Solid => 1.0,
+        };
+        let mut response = Response { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
+        for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
+            let mut f = Matrix3::identity();
+            for k in 0..d {
+                for l in 0..d {
+                    f[(k, l)] = (0..n).map(|a| x[a * d + k] * grad[a * d + l]).sum();
+                }
+            }
+            let (w, stress, tangent) = match state {
+                State::PlaneStress { .. } => without_stress(energy, f, &[2])?,
+                State::Rod { .. } => without_stress(energy, f, &[1, 2])?,
+                _ => energy.respond(&f),
+            };
+            if !(w.is_finite() && tangent.norm().is_finite()) {
+                return None;
+            }
+            let v = v * thickness;
+            response.energy += v * w;
+            for (a, ga) in grad.chunks_exact(d).enumerate() {
+                for k in 0..d {
+                    let row = a * d + k;
+                    response.force[row] += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
+                    // ∇N_a · ∂P_k·/∂F, then with every ∇N_b
+                    let half: Vec<f64> =
+                        (0..9).map(|s| v * (0..d).map(|l| ga[l] * tangent[(3 * k + l, s)]).sum::<f64>()).collect();
+                    for (b, gb) in grad.chunks_exact(d).enumerate() {
+                        for m in 0..d {
+                            let entry: f64 = (0..d).map(|l| half[3 * m + l] * gb[l]).sum();
+                            response.tangent[(row, b * d + m)] += entry;
+                        }
+                    }
+                }
+            }
+        }
+        Some(response)
+    }
+}
+
+/// The response with the stretches along the `free` axes that leave no stress along them, condensed to the others. All free
+/// stretches are the same.
+fn without_stress(energy: &Energy, mut f: Matrix3<f64>, free: &[usize]) -> Option<(f64, Matrix3<f64>, Tangent)> {
+    let place = |k: usize| 4 * k;
+    let mut step = 1.0;
+    for _ in 0..STEPS {
+        let (w, stress, tangent) = energy.respond(&f);
+        let pull: f64 = free.iter().map(|&k| stress[(k, k)]).sum();
+        let stiffness: f64 = free.iter().flat_map(|&k| free.iter().map(move |&l| tangent[(place(k), place(l))])).sum();
+        if !(w.is_finite() && stiffness > 0.0) {
+            // Too far: half of the last step back.
+            step /= 2.0;
+            free.iter().for_each(|&k| f[(k, k)] = (f[(k, k)] + 1.0) / 2.0);
+            if step < 1e-6 {
+                return None;
+            }
+            continue;
+        }
+        let change = -pull / stiffness;
+        if change.abs() <= 1e-14 {
+            let mut condensed = tangent;
+            for row in 0..9 {
+                for column in 0..9 {
+                    let sum = |index: usize| free.iter().map(|&k| tangent[(index, place(k))]).sum::<f64>();
+                    condensed[(row, column)] -= sum(row) * sum(column) / stiffness;
+                }
+            }
+            return Some((w, stress, condensed));
+        }
+        free.iter().for_each(|&k| f[(k, k)] = (f[(k, k)] + change).max(0.1 * f[(k, k)]));
+    }
+    None
+}
