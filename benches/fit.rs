@@ -2,8 +2,8 @@
 //! batched NumPy implementation of the same fit, in the same run. Medians of five runs.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
-use springfit::material::Material;
+use springfit::fit::{CellFits, Fit, Objective, Sampling, Weight, fit_cells, fit_sampled};
+use springfit::material::{Energy, Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::Network;
 use springfit::springs::Springs;
@@ -78,7 +78,28 @@ fn main() {
             }
         }
     }
+    sampled();
     beside_numpy();
+}
+
+/// Constants from the forces at a thousand deformed shapes, per element on one core.
+fn sampled() {
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+    for name in ["tet4", "hex8"] {
+        let element = Element::load(name).expect("it is shipped");
+        let mesh = jittered(&element, 24).expect("it fills a box");
+        let material = Material::for_body(3, 1e4, 0.3, None, None).expect("it is valid");
+        let energy = Energy::load("neo-hookean", material).expect("it is shipped");
+        let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
+        let springs = Springs::select(element, None).expect("no group is named");
+        let sampling = Sampling { shapes: 1000, held_out: 0, ..Sampling::default() };
+        let start = Instant::now();
+        let fit =
+            || fit_sampled(element, &springs, &mesh.points, connectivity, &energy, State::Solid, &sampling, false);
+        one.install(fit).expect("the shapes are upright");
+        let each = start.elapsed().as_secs_f64() / mesh.cell_count() as f64;
+        println!("{name:10} {:28} {:14.0}", "sampled, 1000 shapes", 1e9 * each);
+    }
 }
 
 /// From a mesh in memory to the springs of the whole body, on all cores.

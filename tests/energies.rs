@@ -52,6 +52,7 @@ fn stresses_and_tangents_are_those_of_differences() {
         for f in deformations() {
             let (_, stress, tangent) = energy.respond(&f);
             let size = tangent.norm();
+            assert!((energy.stress(&f) - stress).norm() < 1e-12 * size, "{} {f}", energy.name);
             for k in 0..9 {
                 let moved = |h: f64| {
                     let mut f = f;

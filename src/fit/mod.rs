@@ -15,6 +15,7 @@ mod normal;
 mod objective;
 mod reduction;
 mod residual;
+mod sampled;
 mod spectral;
 
 pub use closed_form::{ClosedFit, ClosedForm, SymmetryClass};
@@ -24,6 +25,7 @@ pub use method::Certificate;
 pub use normal::Rank;
 pub use objective::{Choices, Objective, Weight};
 pub use residual::{ElementErrors, Spread, element_errors};
+pub use sampled::{SampledFits, Sampling, fit_sampled};
 
 use crate::element::Element;
 use crate::error::{Error, Result};

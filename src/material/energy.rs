@@ -46,6 +46,8 @@ pub struct Energy {
     fibre: Option<Vector3<f64>>,
     /// Of the invariants, then the moduli, then the parameters.
     expression: Expr,
+    /// Its derivatives in the invariants.
+    slopes: Vec<Expr>,
     /// Of the moduli and parameters.
     constants: Vec<f64>,
     by_stretches: bool,
@@ -132,6 +134,7 @@ impl Energy {
             source: definition.source,
             fibre: fibre.map(|a| a.normalize()),
             by_stretches: uses(4..7),
+            slopes: (0..INVARIANTS.len()).map(|v| expression.derivative(v)).collect(),
             expression,
             constants,
         };
@@ -150,6 +153,41 @@ impl Energy {
     /// the energy is not: at `J ≤ 0` of those with `ln(J)`.
     pub fn respond(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
         if self.by_stretches { self.by_stretches(f) } else { self.by_invariants(f) }
+    }
+
+    /// `P = ∂W/∂F` alone, at a tenth of the cost.
+    pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
+        let c = f.transpose() * f;
+        let (i1, j) = (c.trace(), f.determinant());
+        let i2 = (i1 * i1 - (c * c).trace()) / 2.0;
+        let fibre = self.fibre.map(|a| f * a);
+        let i4 = fibre.map_or(1.0, |a| a.norm_squared());
+        let mut at = vec![i1, i2, j, i4, 1.0, 1.0, 1.0];
+        at.extend(&self.constants);
+        if self.by_stretches {
+            let Some((n, stretch, big_n)) = principal(f) else { return Matrix3::repeat(f64::NAN) };
+            at[4..7].copy_from_slice(stretch.as_slice());
+            let [g1, g2, g3] = [0, 1, 2].map(|v| self.slopes[v].evaluate(&at));
+            let pull = |i: usize| {
+                let l = stretch[i];
+                let direct = self.slopes[4 + i].evaluate(&at);
+                let others = stretch[(i + 1) % 3] * stretch[(i + 2) % 3];
+                direct + 2.0 * l * g1 + 2.0 * l * (i1 - l * l) * g2 + others * g3
+            };
+            return (0..3).map(|i| pull(i) * n.column(i) * big_n.column(i).transpose()).sum();
+        }
+        let mut stress = Matrix3::zeros();
+        let mut add = |v: usize, direction: &dyn Fn() -> Matrix3<f64>| match &self.slopes[v] {
+            Expr::Number(c) if num_traits::Zero::is_zero(c) => {}
+            slope => stress += slope.evaluate(&at) * direction(),
+        };
+        add(0, &|| 2.0 * f);
+        add(1, &|| 2.0 * (i1 * f - f * c));
+        add(2, &|| cofactor(f));
+        if let (Some(b), Some(a)) = (fibre, self.fibre) {
+            add(3, &|| 2.0 * b * a.transpose());
+        }
+        stress
     }
 
     /// The energy with its derivatives in the first invariants, or in the stretches.
@@ -212,16 +250,9 @@ impl Energy {
 
     /// In the frame of the singular vectors, `F = Σ λ_i n_i N_iᵀ`; Ogden (1984), 6.1.4.
     fn by_stretches(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
-        let svd = f.svd(true, true);
-        let (Some(mut n), Some(big_n)) = (svd.u, svd.v_t) else {
+        let Some((n, stretch, big_n)) = principal(f) else {
             return (f64::NAN, Matrix3::repeat(f64::NAN), Tangent::repeat(f64::NAN));
         };
-        let mut stretch = svd.singular_values;
-        // A reflection goes into the sign of the least stretch.
-        if f.determinant() < 0.0 {
-            stretch[2] = -stretch[2];
-            n.column_mut(2).neg_mut();
-        }
         let l = Jet::variables(stretch.as_slice());
         let square = |i: usize| l[i].clone().product(&l[i]);
         let i1 = square(0).sum(&square(1)).sum(&square(2));
@@ -231,7 +262,6 @@ impl Energy {
         let [l1, l2, l3] = [0, 1, 2].map(|i| l[i].clone());
         let w = self.jet(vec![i1, i2, j, Jet::number(1.0), l1, l2, l3]);
         let (g, h) = (&w.gradient, &w.hessian);
-        let big_n = big_n.transpose();
         let direction = |i: usize, j: usize| n.column(i) * big_n.column(j).transpose();
         let mut stress = Matrix3::zeros();
         (0..3).for_each(|i| stress += g[i] * direction(i, i));
@@ -259,6 +289,20 @@ impl Energy {
         }
         (w.value, stress, tangent)
     }
+}
+
+/// `F = Σ λ_i n_i N_iᵀ`: the n as columns, the λ, the N as columns; a reflection is the sign of the least stretch.
+fn principal(f: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>, Matrix3<f64>)> {
+    if !f.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let svd = f.svd(true, true);
+    let (mut n, big_n, mut stretch) = (svd.u?, svd.v_t?.transpose(), svd.singular_values);
+    if f.determinant() < 0.0 {
+        stretch[2] = -stretch[2];
+        n.column_mut(2).neg_mut();
+    }
+    Some((n, stretch, big_n))
 }
 
 /// `∂det F/∂F`.

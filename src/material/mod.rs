@@ -20,6 +20,17 @@ pub enum State {
     PlaneStrain { thickness: f64 },
 }
 
+impl State {
+    /// What makes the cells' content a volume: the thickness in m, of a rod its cross-section in m²; 1 for a solid.
+    pub fn thickness(self) -> f64 {
+        match self {
+            State::Solid => 1.0,
+            State::Rod { area } => area,
+            State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
+        }
+    }
+}
+
 /// The two plane states, by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -133,13 +144,9 @@ impl Material {
         self.state
     }
 
-    /// What makes the cells' content a volume: the thickness in m, of a rod its cross-section in m²; 1 for a solid.
+    /// [`State::thickness`].
     pub fn thickness(&self) -> f64 {
-        match self.state {
-            State::Solid => 1.0,
-            State::Rod { area } => area,
-            State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
-        }
+        self.state.thickness()
     }
 
     pub fn moduli(&self) -> Moduli {

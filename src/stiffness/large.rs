@@ -25,19 +25,9 @@ impl Geometry {
     /// The rule of the term λ (div u)² has no part in it.
     pub fn respond(&self, energy: &Energy, state: State, x: &[f64]) -> Option<Response> {
         let (n, d) = (self.nodes, self.dimension);
-        let thickness = match state {
-            State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
-            State::Rod { area } => area,
-            State::Solid => 1.0,
-        };
         let mut response = Response { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
         for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
-            let mut f = Matrix3::identity();
-            for k in 0..d {
-                for l in 0..d {
-                    f[(k, l)] = (0..n).map(|a| x[a * d + k] * grad[a * d + l]).sum();
-                }
-            }
+            let f = deformation(grad, x, d);
             let (w, stress, tangent) = match state {
                 State::PlaneStress { .. } => without_stress(energy, f, &[2])?,
                 State::Rod { .. } => without_stress(energy, f, &[1, 2])?,
@@ -46,7 +36,7 @@ impl Geometry {
             if !(w.is_finite() && tangent.norm().is_finite()) {
                 return None;
             }
-            let v = v * thickness;
+            let v = v * state.thickness();
             response.energy += v * w;
             for (a, ga) in grad.chunks_exact(d).enumerate() {
                 for k in 0..d {
@@ -66,6 +56,39 @@ impl Geometry {
         }
         Some(response)
     }
+
+    /// The nodal forces of [`Geometry::respond`] alone, into `force`; false where the energy is not finite.
+    pub fn forces(&self, energy: &Energy, state: State, x: &[f64], force: &mut [f64]) -> bool {
+        let (n, d) = (self.nodes, self.dimension);
+        force.fill(0.0);
+        for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
+            let f = deformation(grad, x, d);
+            let stress = match state {
+                State::PlaneStress { .. } => without_stress(energy, f, &[2]).map(|(_, stress, _)| stress),
+                State::Rod { .. } => without_stress(energy, f, &[1, 2]).map(|(_, stress, _)| stress),
+                _ => Some(energy.stress(&f)),
+            };
+            let Some(stress) = stress.filter(|p| p.iter().all(|entry| entry.is_finite())) else { return false };
+            let v = v * state.thickness();
+            for (force, ga) in force.chunks_exact_mut(d).zip(grad.chunks_exact(d)) {
+                for (k, force) in force.iter_mut().enumerate() {
+                    *force += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
+                }
+            }
+        }
+        true
+    }
+}
+
+/// `F = Σ_a x_a ∇N_aᵀ`, with the identity across planes and rods.
+fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
+    let mut f = Matrix3::identity();
+    for k in 0..d {
+        for l in 0..d {
+            f[(k, l)] = x.chunks_exact(d).zip(grad.chunks_exact(d)).map(|(x, g)| x[k] * g[l]).sum();
+        }
+    }
+    f
 }
 
 /// The response with the stretches along the `free` axes that leave no stress along them, condensed to the others. All free
