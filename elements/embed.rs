@@ -1,30 +1,42 @@
-//! Build script: puts every element file of this folder into the library, with the cell types it serves.
+//! Build script: puts every element file of this folder into the library, with the cell types it serves, and every file of
+//! the folder `materials`.
 
-use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() {
-    println!("cargo::rerun-if-changed=elements");
-    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("elements");
-    let mut files: Vec<_> = fs::read_dir(&folder)
-        .expect("the folder elements can be read")
+    let code: Vec<String> = files("elements").iter().map(|(name, path, text)| element(name, path, text)).collect();
+    write("elements.rs", &code);
+    let code = files("materials").into_iter().map(|(name, path, _)| format!("({name:?}, include_str!({path:?})),"));
+    write("materials.rs", &code.collect::<Vec<_>>());
+}
+
+/// Name, path and text of the files of a folder that end in .toml, by name.
+fn files(folder: &str) -> Vec<(String, PathBuf, String)> {
+    println!("cargo::rerun-if-changed={folder}");
+    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join(folder);
+    let mut paths: Vec<PathBuf> = fs::read_dir(&folder)
+        .expect("the folder can be read")
         .map(|entry| entry.expect("an entry can be read").path())
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .collect();
-    files.sort();
+    paths.sort();
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(&path).expect("a file can be read");
+        let name = path.file_stem().expect("it ends in .toml").to_string_lossy().into_owned();
+        (name, path, text)
+    };
+    paths.into_iter().map(read).collect()
+}
 
-    let mut code = String::from("&[\n");
-    for path in files {
-        let text = fs::read_to_string(&path).expect("an element file can be read");
-        let table: toml::Table = text.parse().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let name = path.file_stem().expect("it ends in .toml").to_string_lossy();
-        let cell_type = |format: &str| table.get("formats").and_then(|f| f.get(format)?.get("type")?.as_integer());
-        let (gmsh, vtk) = (cell_type("gmsh"), cell_type("vtk"));
-        writeln!(code, "Shipped {{ name: {name:?}, gmsh: {gmsh:?}, vtk: {vtk:?}, text: include_str!({path:?}) }},")
-            .expect("a String grows");
-    }
-    code += "]\n";
-    let out = Path::new(&env::var("OUT_DIR").expect("cargo sets it")).join("shipped.rs");
-    fs::write(out, code).expect("the build folder can be written");
+fn element(name: &str, path: &Path, text: &str) -> String {
+    let table: toml::Table = text.parse().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let cell_type = |format: &str| table.get("formats").and_then(|f| f.get(format)?.get("type")?.as_integer());
+    let (gmsh, vtk) = (cell_type("gmsh"), cell_type("vtk"));
+    format!("Shipped {{ name: {name:?}, gmsh: {gmsh:?}, vtk: {vtk:?}, text: include_str!({path:?}) }},")
+}
+
+fn write(file: &str, entries: &[String]) {
+    let out = Path::new(&env::var("OUT_DIR").expect("cargo sets it")).join(file);
+    fs::write(out, format!("&[\n{}\n]\n", entries.join("\n"))).expect("the build folder can be written");
 }

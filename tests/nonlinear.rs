@@ -9,7 +9,7 @@ use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
 use springfit::material::{Energy, Material, Plane, SHIPPED, State};
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
-use springfit::solve::{Newton, Outcome, System};
+use springfit::solve::{Ending, Newton, System};
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
@@ -134,7 +134,7 @@ fn newtons_method_converges_quadratically() {
             let body = Body { mesh: &mesh, energy: &energy, state: material.state() };
             let (support, forces) = pulled(&mesh, 0.2);
             let found = Newton::default().solve(&body, &mesh.points, &support, &forces).unwrap();
-            assert_eq!((found.outcome, found.load), (Outcome::Converged, 1.0), "{name} {law}");
+            assert_eq!((found.ending, found.load), (Ending::Converged, 1.0), "{name} {law}");
             let history = found.residuals.last().unwrap();
             println!("{name} {law}: {history:?}");
             let fast = history.windows(2).filter(|r| r[0] < 1e-2 && r[0] > 1e-7);
@@ -178,7 +178,7 @@ fn supports_that_move_are_followed() {
     }
     let newton = Newton { steps: 4, ..Newton::default() };
     let found = newton.solve(&body, &mesh.points, &support, &vec![0.0; mesh.points.len()]).unwrap();
-    assert_eq!(found.outcome, Outcome::Converged);
+    assert_eq!(found.ending, Ending::Converged);
     // The stretch across that leaves no stress: μ (z − 1/z) + λ ln(2 z²)/z = 0
     let (lambda, mu) = (0.3 / (1.3 * 0.4), 0.5 / 1.3);
     let pull = |z: f64| mu * (z - 1.0 / z) + lambda * (2.0 * z * z).ln() / z;
@@ -219,7 +219,7 @@ fn a_shallow_truss_snaps_through() {
         let mut forces = vec![0.0; 6];
         forces[5] = -share * most;
         let found = Newton::default().solve(&network, &points, &support, &forces).unwrap();
-        assert_eq!(found.outcome, Outcome::Converged, "{share}: {found:?}");
+        assert_eq!(found.ending, Ending::Converged, "{share}: {found:?}");
         let v = found.displacement[5];
         assert!((load(v) + forces[5]).abs() < 1e-9 * most.max(1.0), "{share}: {v} {}", load(v));
         assert_eq!(v < -0.3, share > 1.0, "{share}: {v}");
@@ -234,7 +234,7 @@ fn a_load_beyond_reach_is_told() {
     forces[5] = -0.01;
     let newton = Newton { iterations: 1, ..Newton::default() };
     let found = newton.solve(&network, &points, &support, &forces).unwrap();
-    assert_eq!(found.outcome, Outcome::Stalled);
+    assert_eq!(found.ending, Ending::Stalled);
     assert!(found.load < 1.0 && !found.residuals.is_empty());
 }
 
@@ -255,7 +255,7 @@ fn networks_are_solved_at_large_deformation() {
     assert!(network.others.iter().any(|s| s.kind == SpringKind::Volume));
     let (support, forces) = pulled(&mesh, 0.3);
     let found = Newton { steps: 2, ..Newton::default() }.solve(&network, &mesh.points, &support, &forces).unwrap();
-    assert_eq!(found.outcome, Outcome::Converged, "{:?}", found.residuals);
+    assert_eq!(found.ending, Ending::Converged, "{:?}", found.residuals);
     let x: Vec<f64> = mesh.points.iter().zip(&found.displacement).map(|(x, u)| x + u).collect();
     let force = network.respond(&x).unwrap().force;
     let left = force.iter().zip(&forces).enumerate().filter(|(i, _)| !support.is_fixed(*i));

@@ -9,7 +9,7 @@ use springfit::fit::{CellFits, Fit, Objective, SampledFits, Sampling, Weight, fi
 use springfit::material::{Energy, Material, State};
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{Action, Body, Elastic, Network, Support, nodal_forces};
-use springfit::solve::{Newton, Outcome};
+use springfit::solve::{Ending, Newton};
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use springfit::study::displacement_error;
@@ -137,7 +137,7 @@ fn sampled_springs_follow_large_stretches() {
     let newton = Newton { steps: 2, ..Newton::default() };
     let solve = |model: &dyn Elastic| {
         let found = newton.solve(model, &mesh.points, &support, &forces).unwrap();
-        assert_eq!(found.outcome, Outcome::Converged, "{:?}", found.residuals);
+        assert_eq!(found.ending, Ending::Converged, "{:?}", found.residuals);
         found.displacement
     };
     let body = solve(&Body { mesh: &mesh, energy: &energy, state: State::Solid });

@@ -10,4 +10,4 @@ pub struct Shipped {
 }
 
 /// All files of the folder `elements`, by name.
-pub static SHIPPED: &[Shipped] = include!(concat!(env!("OUT_DIR"), "/shipped.rs"));
+pub static SHIPPED: &[Shipped] = include!(concat!(env!("OUT_DIR"), "/elements.rs"));

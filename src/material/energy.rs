@@ -53,18 +53,8 @@ pub struct Energy {
     by_stretches: bool,
 }
 
-/// The files of the folder `materials`, by name.
-pub static SHIPPED: &[(&str, &str)] = &[
-    ("corotational", include_str!("../../materials/corotational.toml")),
-    ("fibre", include_str!("../../materials/fibre.toml")),
-    ("fung", include_str!("../../materials/fung.toml")),
-    ("mooney-rivlin", include_str!("../../materials/mooney-rivlin.toml")),
-    ("neo-hookean", include_str!("../../materials/neo-hookean.toml")),
-    ("neo-hookean-isochoric", include_str!("../../materials/neo-hookean-isochoric.toml")),
-    ("ogden", include_str!("../../materials/ogden.toml")),
-    ("st-venant-kirchhoff", include_str!("../../materials/st-venant-kirchhoff.toml")),
-    ("yeoh", include_str!("../../materials/yeoh.toml")),
-];
+/// Name and text of the files of the folder `materials`, by name.
+pub static SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/materials.rs"));
 
 impl Energy {
     /// The shipped energy of that name, or that of the file of that path, with the moduli of `material`.

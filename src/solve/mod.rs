@@ -5,5 +5,5 @@ mod newton;
 mod stability;
 
 pub use linear::{Factor, System};
-pub use newton::{Equilibrium, Newton, Outcome};
+pub use newton::{Ending, Equilibrium, Newton};
 pub use stability::{Stability, Standing, compare_energies};

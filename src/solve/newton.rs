@@ -24,7 +24,7 @@ impl Default for Newton {
 
 /// How far a solution came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Ending {
     Converged,
     /// No shorter step of the load came to an equilibrium either.
     Stalled,
@@ -33,7 +33,7 @@ pub enum Outcome {
 /// An equilibrium, or the last one found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
-    pub outcome: Outcome,
+    pub ending: Ending,
     /// `[points · dimension]`, m.
     pub displacement: Vec<f64>,
     /// The share of the load that it carries, 1 if converged.
@@ -59,7 +59,7 @@ impl Newton {
     /// The tangent does not fit into memory.
     pub fn solve(&self, model: &dyn Elastic, points: &[f64], support: &Support, forces: &[f64]) -> Result<Equilibrium> {
         let mut found = Equilibrium {
-            outcome: Outcome::Converged,
+            ending: Ending::Converged,
             displacement: vec![0.0; points.len()],
             load: 0.0,
             residuals: Vec::new(),
@@ -80,7 +80,7 @@ impl Newton {
                     step /= 2.0;
                     if step < first * 0.5f64.powi(HALVINGS as i32) {
                         found.residuals.push(history);
-                        found.outcome = Outcome::Stalled;
+                        found.ending = Ending::Stalled;
                         break;
                     }
                 }
