@@ -4,7 +4,7 @@ mod shapes;
 
 use shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, SpringKind};
-use springfit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_cells};
+use springfit::fit::{CellFits, Fit, Objective, Search, Solver, Weight, element_errors, fit_cells};
 use springfit::material::{Material, Plane};
 use springfit::springs::{Measure, Springs};
 use std::path::Path;
@@ -206,4 +206,34 @@ fn selective_integration_does_not_lock() {
         (geometry.stiffness(moduli) * &u).dot(&u)
     };
     assert!((energy(&full) / energy(&selective) - 1.0).abs() < 1e-13);
+}
+
+/// A measure that nothing moves, or that has a kink where the body rests, is an error with the cell's name, not a number.
+#[test]
+fn measures_without_a_gradient_are_told() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/elements/tri3_coupled.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let formula = "abs((x1 - x0)*(y2 - y0) - (x2 - x0)*(y1 - y0))/sqrt((x1 - x0)^2 + (y1 - y0)^2)";
+    assert!(text.contains(formula));
+    for measure in ["x0 - x0", "abs(x0 - x0)", "ln(x0 - x0)", "sqrt(x0 - x0)"] {
+        let element = Element::parse(&text.replace(formula, measure)).unwrap();
+        let names = ["edge".to_string(), "height".to_string()];
+        let springs = Springs::select(&element, Some(&names)).unwrap();
+        let material = Material::for_body(2, 1.0, 0.3, None, None).unwrap();
+        for objective in [NORMS[0], NORMS[1], Objective::Spectral(Weight::None), Objective::Divergence { balance: 0.0 }]
+        {
+            let x = element.positions.clone();
+            let cells = [0, 1, 2, 0, 1, 2];
+            let searched = Solver::General { method: Search::NelderMead, iterations: 5 };
+            for solver in [Solver::Native, searched].into_iter().filter(|s| objective != NORMS[1] || *s != searched) {
+                let fit = Fit { solver, ..Fit::new(objective) };
+                let fits = fit_cells(&element, &springs, &x, &cells, material.moduli(), &fit, &mut |_| {});
+                assert_eq!(
+                    fits.unwrap_err().to_string(),
+                    "tri3_coupled cell 1: what one of its springs measures has no finite gradient other than zero",
+                    "{measure} {objective:?}"
+                );
+            }
+        }
+    }
 }

@@ -154,7 +154,9 @@ impl<'a, S: Simd> Room<'a, S> {
         if !self.geometry.update(&self.element.tabulation, &self.x) {
             return false;
         }
-        self.measure(nodes.len() / self.element.nodes());
+        if !self.measure(nodes.len() / self.element.nodes()) {
+            return false;
+        }
         if let Some(method) = &mut self.method {
             let zero = self.x[0].zero();
             zero.vectorize(
@@ -232,9 +234,11 @@ impl<'a, S: Simd> Room<'a, S> {
         self.placement.place(&self.element.tabulation, self.points, nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
         geometry.set(&self.element.tabulation, &x)?;
+        let mut measured = vec![0.0; self.measured.len()];
+        if !self.springs.function_gradients(&x, &mut measured) {
+            return Err(Fault::Unmeasured);
+        }
         if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
-            let mut measured = vec![0.0; self.measured.len()];
-            self.springs.function_gradients(&x, &mut measured);
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
             return Ok(method.finish(|value| *value, constants));
         }
@@ -254,19 +258,22 @@ impl<'a, S: Simd> Room<'a, S> {
         Ok(Verdict { certificate: None, rank, reached: true })
     }
 
-    /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first.
-    fn measure(&mut self, cells: usize) {
+    /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first. False if one is zero
+    /// or not finite.
+    fn measure(&mut self, cells: usize) -> bool {
         if self.measured.is_empty() {
-            return;
+            return true;
         }
+        let mut regular = true;
         let mut rows = vec![0.0; self.measured.len()];
         for lane in (0..Lanes::<S>::COUNT).rev() {
             let from = if lane < cells { lane } else { 0 };
             let x: Vec<f64> = self.x.iter().map(|x| x.as_slice()[from]).collect();
             rows.fill(0.0);
-            self.springs.function_gradients(&x, &mut rows);
+            regular &= self.springs.function_gradients(&x, &mut rows);
             self.measured.iter_mut().zip(&rows).for_each(|(lanes, value)| lanes.as_mut_slice()[lane] = *value);
         }
+        regular
     }
 
     /// The coordinates of the cells' nodes, one cell per lane; lanes without a cell repeat the first. False if a cell of a

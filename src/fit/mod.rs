@@ -163,11 +163,17 @@ impl CellFits {
         let cells = connectivity.len() / n;
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
             if let Solver::General { method, iterations } = fit.solver {
+                let mut unmeasured = None;
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
+                    if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {
+                        unmeasured.get_or_insert(cell);
+                        return;
+                    }
                     let found = descent::search(springs, x, geometry, &moduli, fit, method, iterations);
                     constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
                 })?;
-                return Ok(Tally::default());
+                let fault = unmeasured.map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
+                return fault.map_or(Ok(Tally::default()), Err);
             }
             let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants };
             batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))

@@ -190,6 +190,9 @@ impl Cell<'_> {
                 let solid = self.geometry.forces(self.energy, self.state, &x, &mut force);
                 if solid && self.is_upright(&x) {
                     self.pull(&measures, &x, &mut pulls);
+                    if pulls.iter().any(|p| !p.is_finite()) {
+                        return Err(Error::new("what a spring measures has no finite gradient at a sampled shape"));
+                    }
                     sums.add(&force, &pulls);
                     drawn = true;
                     break;

@@ -135,8 +135,9 @@ impl Springs {
         }
     }
 
-    /// The rows of the springs on functions alone, `[functions × nodes·dimension]`, into rows of zeros.
-    pub fn function_gradients(&self, x: &[f64], rows: &mut [f64]) {
+    /// The rows of the springs on functions alone, `[functions × nodes·dimension]`, into rows of zeros. False if one is zero or
+    /// not finite.
+    pub fn function_gradients(&self, x: &[f64], rows: &mut [f64]) -> bool {
         let d = self.dimension;
         let size = self.nodes * d;
         for (row, spring) in rows.chunks_exact_mut(size).zip(&self.functions) {
@@ -147,6 +148,8 @@ impl Springs {
                 row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row += g);
             }
         }
+        let springs = rows[..self.functions.len() * size].chunks_exact(size);
+        springs.map(|row| row.iter().map(|g| g * g).sum::<f64>()).all(|square| square > 0.0 && square.is_finite())
     }
 }
 

@@ -25,6 +25,8 @@ pub enum Fault {
     Tangled { point: usize, determinant: f64, largest: f64 },
     /// The Jacobian vanishes at every quadrature point: no length, area or volume.
     Flat,
+    /// What a spring measures has no finite gradient, or none at all.
+    Unmeasured,
 }
 
 /// Gradients of the shape functions and volumes at the quadrature points of one element, or of one per lane.
@@ -283,6 +285,7 @@ impl std::fmt::Display for Fault {
                  quadrature point {point}"
             ),
             Fault::Flat => write!(f, "the element has no volume (its Jacobian vanishes)"),
+            Fault::Unmeasured => write!(f, "what one of its springs measures has no finite gradient other than zero"),
         }
     }
 }

@@ -63,7 +63,15 @@ fn stiffness(element: &Element) -> Property {
     let (n, d) = (element.nodes(), element.dimension());
     let expected = n * d - d * (d + 1) / 2;
     let mut least = expected;
-    for x in shapes(element) {
+    let shapes = shapes(element);
+    if shapes.is_empty() {
+        return Property::new(
+            "rank of R",
+            false,
+            "no shape with a positive Jacobian was found near the reference cell",
+        );
+    }
+    for x in shapes {
         let r = geometry(element, &x).stiffness(Moduli { lambda: 1.0, mu: 1.0 });
         let eigenvalues = r.symmetric_eigenvalues();
         let floor = 1e-10 * eigenvalues.amax();
