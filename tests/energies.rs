@@ -1,6 +1,9 @@
 //! Every shipped energy: stress and tangent against differences, linear elasticity at rest, closed forms.
 
+mod shapes;
+
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use shapes::Random;
 use springfit::material::{Energy, Material, SHIPPED, State};
 
 fn solid(young: f64, poisson: f64) -> Material {
@@ -9,15 +12,6 @@ fn solid(young: f64, poisson: f64) -> Material {
 
 fn energies(poisson: f64) -> Vec<Energy> {
     SHIPPED.iter().map(|(name, _)| Energy::load(name, solid(1.0, poisson)).unwrap()).collect()
-}
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }
 
 /// At rest, near it, at equal stretches, in shear and at random deformations of half the size.

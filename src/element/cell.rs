@@ -97,6 +97,12 @@ impl Cell {
         }
     }
 
+    /// The mean of the corners.
+    pub fn centre(self) -> Vec<f64> {
+        let corners = self.corners();
+        (0..self.dimension()).map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64).collect()
+    }
+
     /// Exponents of the products of coordinates that a map of the cell with straight edges may hold beyond the linear ones.
     pub fn straight_terms(self) -> &'static [&'static [i32]] {
         match self {
@@ -109,9 +115,7 @@ impl Cell {
 
     /// Whether the point is in the cell or on its boundary, to rounding.
     pub fn contains(self, at: &[f64]) -> bool {
-        let centre: Vec<f64> = (0..self.dimension())
-            .map(|k| self.corners().iter().map(|c| c[k]).sum::<f64>() / self.corners().len() as f64)
-            .collect();
+        let centre = self.centre();
         if self == Cell::Interval {
             return at[0].abs() <= 1.0 + 1e-12;
         }

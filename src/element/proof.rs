@@ -81,10 +81,9 @@ fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, S
         return ((value - expected as f64).abs() <= ROUNDING, value.to_string());
     }
     // At the apex of a pyramid a rational function is continued from inside, linearly from two points.
-    let corners = cell.corners();
-    let centre = |k: usize| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64;
+    let centre = cell.centre();
     let inside = |share: f64| {
-        let at: Vec<f64> = at.iter().enumerate().map(|(k, x)| x + share * (centre(k) - x)).collect();
+        let at: Vec<f64> = at.iter().enumerate().map(|(k, x)| x + share * (centre[k] - x)).collect();
         shape.evaluate(&at)
     };
     let (near, far) = (inside(CONTINUED), inside(2.0 * CONTINUED));
@@ -123,7 +122,7 @@ pub fn quadrature(definition: &Definition, rule: &Rule, name: &str) -> Result<Qu
             Err(Error::expected(key(rest), format!("1 to {MOST_POINTS}"), n))
         }
     };
-    let simplex = matches!(cell, Cell::Triangle | Cell::Tetrahedron);
+    let simplex = cell.is_simplex();
     match rule {
         Rule::GaussLegendre { points } if cell.is_box() => {
             limited("points", *points)?;

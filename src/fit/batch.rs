@@ -173,9 +173,14 @@ impl<'a, S: Simd> Room<'a, S> {
                 return false;
             }
             self.write(constants);
-            if !self.fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
-                return true;
+            if self.fit.nonnegative && constants.iter().any(|k| *k < 0.0) {
+                let (springs, geometry) = (self.springs, &self.geometry);
+                normal_equations(self.weight, springs, &self.x, geometry, &self.moduli, &mut self.normal);
+                let equations = std::mem::take(&mut self.normal);
+                self.bound(&equations, constants);
+                self.normal = equations;
             }
+            return true;
         }
         normal_equations(self.weight, self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal);
         if self.decoupled {
@@ -198,21 +203,26 @@ impl<'a, S: Simd> Room<'a, S> {
             return false;
         }
         self.write(constants);
-        let m = self.springs.len();
         if let Some(kept) = kept {
-            for (lane, constants) in constants.chunks_exact_mut(m).enumerate() {
-                if constants.iter().all(|k| *k >= 0.0) {
-                    continue;
-                }
-                self.single.gram.clear();
-                self.single.gram.extend(kept.gram.iter().map(|entry| entry.as_slice()[lane]));
-                self.single.rhs.clear();
-                self.single.rhs.extend(kept.rhs.iter().map(|entry| entry.as_slice()[lane]));
-                let (k, _) = solve_nonnegative(&self.single);
-                spread(&self.fit, self.springs, constants, &k);
-            }
+            self.bound(&kept, constants);
         }
         true
+    }
+
+    /// The bounded optimum of the cells, one per lane of the equations, that have a constant below zero.
+    #[inline(always)]
+    fn bound(&mut self, equations: &Normal<Lanes<S>>, constants: &mut [f64]) {
+        for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
+            if constants.iter().all(|k| *k >= 0.0) {
+                continue;
+            }
+            self.single.gram.clear();
+            self.single.gram.extend(equations.gram.iter().map(|entry| entry.as_slice()[lane]));
+            self.single.rhs.clear();
+            self.single.rhs.extend(equations.rhs.iter().map(|entry| entry.as_slice()[lane]));
+            let (k, _) = solve_nonnegative(&self.single);
+            spread(&self.fit, self.springs, constants, &k);
+        }
     }
 
     /// The solution of the equations as the constants of the cells, one per lane.
@@ -266,12 +276,15 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         let mut regular = true;
         let mut rows = vec![0.0; self.measured.len()];
-        for lane in (0..Lanes::<S>::COUNT).rev() {
-            let from = if lane < cells { lane } else { 0 };
-            let x: Vec<f64> = self.x.iter().map(|x| x.as_slice()[from]).collect();
+        for lane in 0..cells {
+            let x: Vec<f64> = self.x.iter().map(|x| x.as_slice()[lane]).collect();
             rows.fill(0.0);
             regular &= self.springs.function_gradients(&x, &mut rows);
-            self.measured.iter_mut().zip(&rows).for_each(|(lanes, value)| lanes.as_mut_slice()[lane] = *value);
+            let last = if lane == 0 { Lanes::<S>::COUNT } else { lane + 1 };
+            self.measured
+                .iter_mut()
+                .zip(&rows)
+                .for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
         }
         regular
     }

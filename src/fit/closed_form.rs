@@ -118,14 +118,18 @@ impl ClosedForm {
                 group[spring.unwrap_or(self.springs.len() - 1)] = i;
             }
         }
-        let solve = |moduli: Moduli<BigRational>| {
-            let (mut normal, mut tied) = (Normal::default(), Normal::default());
-            normal_equations(weight, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
-            // M is built on its lower triangle, of which the tied one is the sum with both.
+        let solve = |normal: &Normal<Fraction>| {
+            let mut tied = Normal::default();
             normal.tied(&group, self.classes.len(), &mut tied);
             tied.solve_regular().then_some(tied.rhs)
         };
-        let [Some(lambda), Some(mu)] = units().map(solve) else {
+        let weighted = |moduli: Moduli<BigRational>| {
+            let mut normal = Normal::default();
+            normal_equations(weight, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
+            solve(&normal)
+        };
+        let solved = if weight == Weight::None { self.plain.each_ref().map(solve) } else { units().map(weighted) };
+        let [Some(lambda), Some(mu)] = solved else {
             return Err(Error::new("this weight does not determine the springs"));
         };
         // ‖R − K‖² = ‖R‖² − 2 bᵀk + kᵀ M k

@@ -15,7 +15,7 @@ pub use source::{Format, MeshSource, SourceBlock};
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, Result};
 use crate::stiffness::{Fault, Geometry, Placement};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Cells of proved elements. Every point belongs to a cell, and every cell has a positive volume.
@@ -198,18 +198,6 @@ impl Mesh {
 
     pub fn cell_count(&self) -> usize {
         self.blocks.iter().map(|b| b.cells().len()).sum()
-    }
-
-    /// The points of the sides that belong to one cell only.
-    pub fn boundary_points(&self) -> BTreeSet<usize> {
-        let mut met: HashMap<Vec<usize>, usize> = HashMap::new();
-        for block in &self.blocks {
-            for (nodes, side) in block.cells().flat_map(|nodes| block.element.sides().iter().map(move |s| (nodes, s))) {
-                let points: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
-                *met.entry(sorted(&points)).or_default() += 1;
-            }
-        }
-        met.into_iter().filter(|(_, times)| *times == 1).flat_map(|(points, _)| points).collect()
     }
 
     /// Of the cells: 3 for solids, 2 for surfaces, 1 for curves.

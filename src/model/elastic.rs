@@ -1,12 +1,12 @@
 //! Both models at large deformation: their energy, forces and tangent at given positions.
 
 use super::network::Network;
-use super::system::dofs;
+use super::system::{self, dofs};
 use super::{Entries, Response};
 use crate::material::{Energy, State};
 use crate::mesh::Mesh;
 use crate::springs::Measure;
-use crate::stiffness::{Geometry, each_cell, gather};
+use crate::stiffness::{Geometry, gather};
 use faer::sparse::Triplet;
 
 /// What resists deformation.
@@ -47,16 +47,11 @@ impl Body<'_> {
     /// Stops at the first cell without an answer.
     fn each_cell(&self, mut visit: impl FnMut(&[usize], &Geometry) -> Option<()>) -> Option<()> {
         let mut all = Some(());
-        for block in &self.mesh.blocks {
-            let n = block.element.nodes();
-            let one = |cell: usize, _: &[f64], geometry: &Geometry| {
-                if all.is_some() {
-                    all = visit(&block.connectivity[cell * n..(cell + 1) * n], geometry);
-                }
-            };
-            each_cell(&block.element.tabulation, &self.mesh.points, &block.connectivity, one)
-                .expect("a mesh holds only cells with a volume");
-        }
+        system::each_cell(self.mesh, |_, nodes, geometry| {
+            if all.is_some() {
+                all = visit(nodes, geometry);
+            }
+        });
         all
     }
 }

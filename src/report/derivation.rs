@@ -146,14 +146,8 @@ impl Derivation<'_> {
     }
 
     fn names(&self, notation: Notation) -> Vec<&str> {
-        let name = |name: &'_ String| -> &str {
-            match (name.as_str(), notation) {
-                ("nu", Notation::Latex) => "\\nu",
-                _ => "",
-            }
-        };
-        let named = self.form.variables.iter().map(|v| if name(v).is_empty() { v.as_str() } else { name(v) });
-        named.collect()
+        let names = self.form.variables.iter().map(String::as_str);
+        names.map(|v| if v == "nu" && notation == Notation::Latex { "\\nu" } else { v }).collect()
     }
 
     /// `α λ + β μ`.

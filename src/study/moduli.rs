@@ -4,7 +4,7 @@ use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, Fit, fit_cells};
 use crate::material::Material;
-use crate::mesh::{BoxMesh, Mesh};
+use crate::mesh::{BoxMesh, CellBlock, Mesh, Selection, SideIndex};
 use crate::model::{Entries, Network, Support, finite_elements, masses};
 use crate::solve::System;
 use crate::springs::Springs;
@@ -76,7 +76,12 @@ impl Lattice {
 /// the better the more points are inside. `None` where some strain meets no resistance, or no point is inside.
 pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<EffectiveModuli>> {
     let d = mesh.dimension;
-    let boundary: BTreeSet<usize> = mesh.boundary_points();
+    let on_side = |side: SideIndex| {
+        let CellBlock { element, connectivity } = &mesh.blocks[side.cell.block];
+        let nodes = &connectivity[side.cell.cell * element.nodes()..][..element.nodes()];
+        element.sides()[side.side].nodes.iter().map(|&a| nodes[a]).collect::<Vec<_>>()
+    };
+    let boundary: BTreeSet<usize> = Selection::Everything.sides(mesh)?.into_iter().flat_map(on_side).collect();
     if d != mesh.cell_dimension() || boundary.len() == mesh.point_count() {
         return Ok(None);
     }
