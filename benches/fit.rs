@@ -2,7 +2,7 @@
 //! batched NumPy implementation of the same fit, in the same run. Medians of five runs.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::fit::{CellFits, Fit, Objective, Sampling, Weight, fit_cells, fit_sampled};
+use springfit::fit::{CellFits, Fit, Objective, SampledFit, Sampling, Weight, fit_cells, fit_sampled};
 use springfit::material::{Energy, Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::Network;
@@ -93,9 +93,10 @@ fn sampled() {
         let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
         let springs = Springs::select(element, None).expect("no group is named");
         let sampling = Sampling { shapes: 1000, held_out: 0, ..Sampling::default() };
+        let fit = SampledFit { sampling, ..SampledFit::default() };
         let start = Instant::now();
         let fit =
-            || fit_sampled(element, &springs, &mesh.points, connectivity, &energy, State::Solid, &sampling, false);
+            || fit_sampled(element, &springs, &mesh.points, connectivity, &energy, State::Solid, &fit, &mut |_| {});
         one.install(fit).expect("the shapes are upright");
         let each = start.elapsed().as_secs_f64() / mesh.cell_count() as f64;
         println!("{name:10} {:28} {:14.0}", "sampled, 1000 shapes", 1e9 * each);

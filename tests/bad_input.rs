@@ -742,7 +742,7 @@ fn expressions() {
         ("sin", "column 4: expected '(' after sin, found the end"),
         (
             "sinh(xi)",
-            "expected an operator, or a function of sqrt, exp, ln, sin, cos, tan, asin, acos, atan, abs, found \"sinh(\"",
+            "expected an operator, or a function of sqrt, ramp, exp, ln, sin, cos, tan, asin, acos, atan, abs, step, found \"sinh(\"",
         ),
         ("ξ", "column 1: expected a number, a name or '(', found 'ξ'"),
         ("xi = 1", "column 4: expected one of <, <=, >, >=, ==, !=, &&, ||, found '='"),

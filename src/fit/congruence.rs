@@ -23,15 +23,36 @@ impl Congruence {
     /// A cell is reversed, tangled or flat.
     pub fn of(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
         let d = element.dimension();
+        Congruence::by(element, points, connectivity, |x| {
+            let nodes: Vec<&[f64]> = x.chunks_exact(d).collect();
+            let pairs = (0..nodes.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            pairs.map(|(a, b)| distance(nodes[a], nodes[b])).collect()
+        })
+    }
+
+    /// Of cells that a translation alone takes into each other: turned ones count as others.
+    ///
+    /// # Errors
+    /// A cell is reversed, tangled or flat.
+    pub fn by_translation(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
+        let d = element.dimension();
+        Congruence::by(element, points, connectivity, |x| (d..x.len()).map(|i| x[i] - x[i % d]).collect())
+    }
+
+    /// `lengths` of the node positions are what cells of one shape have in common.
+    fn by(
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        lengths: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Result<Congruence> {
         let mut congruence = Congruence { representatives: Vec::new(), shapes: Vec::new() };
         let mut known: HashMap<Vec<i64>, usize> = HashMap::new();
         let mut unit = 0.0;
         each_cell(element, points, connectivity, 0, |cell, x, _| {
-            let nodes: Vec<&[f64]> = x.chunks_exact(d).collect();
-            let pairs = (0..nodes.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-            let lengths: Vec<f64> = pairs.map(|(a, b)| distance(nodes[a], nodes[b])).collect();
+            let lengths = lengths(x);
             if unit == 0.0 {
-                unit = EQUAL * lengths.iter().copied().fold(0.0, f64::max);
+                unit = EQUAL * lengths.iter().fold(0.0, |a, length| length.abs().max(a));
             }
             let key = lengths.iter().map(|length| (length / unit).round() as i64).collect();
             let shape = *known.entry(key).or_insert_with(|| {

@@ -12,6 +12,7 @@ mod least_squares;
 mod method;
 mod nodal;
 mod normal;
+mod norms;
 mod objective;
 mod reduction;
 mod residual;
@@ -23,14 +24,15 @@ pub use descent::{Search, Solver};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use normal::Rank;
+pub use norms::Norm;
 pub use objective::{Choices, Objective, Weight};
 pub use residual::{ElementErrors, Spread, element_errors};
-pub use sampled::{SampledFits, Sampling, fit_sampled};
+pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::material::Moduli;
-use crate::springs::Springs;
+use crate::springs::{Force, Springs};
 use crate::stiffness::{self, Fault, Geometry};
 use batch::{Batch, Tally};
 use congruence::Congruence;
@@ -68,8 +70,11 @@ impl Fit {
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellFits {
     pub springs: Springs,
-    /// `[cells × springs]`, N/m; that of an area or volume spring N/m³ or N/m⁵.
+    /// `[cells × springs]`, N/m; that of an area or volume spring N/m³ or N/m⁵. The slope of the force at rest.
     pub constants: Vec<f64>,
+    pub force: Force,
+    /// Of the springs of each cell one after another, see [`Force::places`].
+    pub parameters: Vec<f64>,
     /// Cells whose normal equations were singular, see [`Rank::Deficient`].
     pub deficient: usize,
     /// Cells whose iteration did not reach its end; of cells of one shape only the fitted one counts.
@@ -102,7 +107,16 @@ pub fn fit_cells(
 
 impl CellFits {
     fn new(springs: Springs) -> CellFits {
-        CellFits { springs, constants: Vec::new(), deficient: 0, unreached: 0, reused: 0, certificates: Vec::new() }
+        CellFits {
+            springs,
+            constants: Vec::new(),
+            force: Force::Linear,
+            parameters: Vec::new(),
+            deficient: 0,
+            unreached: 0,
+            reused: 0,
+            certificates: Vec::new(),
+        }
     }
 
     /// [`fit_cells`] into the memory of an earlier fit.

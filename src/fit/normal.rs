@@ -23,8 +23,9 @@ pub struct Normal<T = f64> {
 }
 
 /// How the constants were determined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rank {
+    #[default]
     Full,
     /// The springs are linearly dependent under this objective; of all optima the one of least norm was taken, in
     /// the scaling in which `M` has a unit diagonal.

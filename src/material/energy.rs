@@ -139,6 +139,10 @@ impl Energy {
         Ok(energy)
     }
 
+    pub fn poisson(&self) -> f64 {
+        self.constants[1]
+    }
+
     /// `W`, `P = ∂W/∂F` (the first Piola-Kirchhoff stress, Pa) and `∂P/∂F` at the deformation gradient F. Not finite where
     /// the energy is not: at `J ≤ 0` of those with `ln(J)`.
     pub fn respond(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {

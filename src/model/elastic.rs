@@ -81,10 +81,10 @@ impl Elastic for Network {
     fn respond(&self, x: &[f64]) -> Option<Response> {
         let d = self.dimension;
         let mut total = Response { energy: 0.0, force: vec![0.0; x.len()], tangent: Entries::new() };
-        let mut add = |measure: &Measure, points: &[usize], constant: f64, rest: f64| -> Option<()> {
+        let mut add = |measure: &Measure, points: &[usize], law: &dyn Fn(f64) -> [f64; 3]| -> Option<()> {
             let mut local = vec![0.0; points.len() * d];
             gather(x, d, points, &mut local);
-            let spring = measure.respond(constant, rest, &local, d);
+            let spring = measure.respond_by(law, &local, d);
             let size = local.len();
             total.energy += spring.energy;
             for (i, row) in dofs(points, d).enumerate() {
@@ -96,10 +96,10 @@ impl Elastic for Network {
             spring.energy.is_finite().then_some(())
         };
         for spring in &self.lengths {
-            add(&Measure::Length, &spring.points, spring.constant, spring.rest)?;
+            add(&Measure::Length, &spring.points, &|length| spring.pull(length))?;
         }
         for spring in &self.others {
-            add(&spring.measure, &spring.points, spring.constant, spring.rest)?;
+            add(&spring.measure, &spring.points, &|c| spring.pull(c))?;
         }
         Some(total)
     }

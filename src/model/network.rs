@@ -5,11 +5,12 @@ use super::system::dofs;
 use crate::element::SpringKind;
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
-use crate::springs::{Measure, distance};
+use crate::springs::{Force, Law, Measure, distance};
 use crate::stiffness::gather;
 use crate::symbolic::Expr;
 use faer::sparse::Triplet;
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A spring between two points.
@@ -23,7 +24,20 @@ pub struct LengthSpring {
     pub rest: f64,
 }
 
-/// A spring that measures something else of a few points: an angle, an area, a volume, a coupling, a user's measure.
+impl LengthSpring {
+    /// Energy, force and its slope at a length.
+    pub fn pull(&self, length: f64) -> [f64; 3] {
+        linear(self.constant, length - self.rest)
+    }
+}
+
+/// `½ k x²`, `k x`, `k`.
+fn linear(constant: f64, change: f64) -> [f64; 3] {
+    [constant * change * change / 2.0, constant * change, constant]
+}
+
+/// A spring that measures something else of a few points, an angle, an area, a volume, a coupling, a user's measure, or one with
+/// a law of its own.
 #[derive(Debug, Clone)]
 pub struct MeasureSpring {
     pub kind: SpringKind,
@@ -33,6 +47,24 @@ pub struct MeasureSpring {
     /// The measure at rest, m², m³, rad, …
     pub rest: f64,
     pub measure: Measure,
+    /// Where the force is not `constant · (c − rest)`; the constant is its slope at rest then.
+    pub law: Option<Arc<Law>>,
+    /// Of the law.
+    pub parameters: Vec<f64>,
+}
+
+impl MeasureSpring {
+    /// Energy, force and its slope where the measure is c.
+    pub fn pull(&self, c: f64) -> [f64; 3] {
+        match &self.law {
+            None => linear(self.constant, c - self.rest),
+            Some(law) => [
+                law.energy(c, self.rest, &self.parameters),
+                law.force(c, self.rest, &self.parameters),
+                law.slope(c, self.rest, &self.parameters),
+            ],
+        }
+    }
 }
 
 /// Springs on the points of a mesh. Springs whose constant is zero are not in it.
@@ -50,7 +82,8 @@ impl Network {
     pub fn assemble(mesh: &Mesh, fits: &[CellFits]) -> Network {
         let mut network = Network { dimension: mesh.dimension, ..Network::default() };
         network.lengths = merge(mesh, fits);
-        network.others = mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| others(mesh, block, fit)).collect();
+        network.others = lawful(mesh, fits);
+        network.others.extend(mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| others(mesh, block, fit)));
         network
     }
 
@@ -60,10 +93,15 @@ impl Network {
         let mut entries = Entries::new();
         for spring in &self.lengths {
             let [i, j] = spring.points;
-            let n: Vec<f64> = (0..d).map(|k| (points[j * d + k] - points[i * d + k]) / spring.rest).collect();
+            let (xi, xj) = (&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d]);
+            let length = distance(xi, xj);
+            let n: Vec<f64> = xi.iter().zip(xj).map(|(a, b)| (b - a) / length).collect();
+            // (1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ: n nᵀ of springs that do not pull at rest.
+            let along = spring.rest / length;
             for k in 0..d {
                 for l in 0..d {
-                    let value = spring.constant * n[k] * n[l];
+                    let across = if k == l { 1.0 - along } else { 0.0 };
+                    let value = spring.constant * (across + along * n[k] * n[l]);
                     if l <= k {
                         entries.push(Triplet::new(i * d + k, i * d + l, value));
                         entries.push(Triplet::new(j * d + k, j * d + l, value));
@@ -76,11 +114,13 @@ impl Network {
             let mut x = vec![0.0; spring.points.len() * d];
             gather(points, d, &spring.points, &mut x);
             let gradient = spring.measure.gradient(&x, d);
-            for (row, g) in dofs(&spring.points, d).zip(&gradient) {
-                for (column, h) in dofs(&spring.points, d).zip(&gradient) {
-                    if row >= column {
-                        entries.push(Triplet::new(row, column, spring.constant * g * h));
-                    }
+            let [_, pull, slope] = spring.pull(spring.measure.value(&x, d));
+            // Springs that do not pull at rest need no second derivatives.
+            let bend = if pull == 0.0 { Vec::new() } else { spring.measure.jet(&x, d).hessian };
+            for (a, row) in dofs(&spring.points, d).enumerate() {
+                for (b, column) in dofs(&spring.points, d).enumerate().filter(|(_, column)| row >= *column) {
+                    let bent = bend.get(a * x.len() + b).map_or(0.0, |h| pull * h);
+                    entries.push(Triplet::new(row, column, slope * gradient[a] * gradient[b] + bent));
                 }
             }
         }
@@ -120,16 +160,66 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
     if kinds.is_empty() {
         return all;
     }
-    for (nodes, constants) in block.cells().zip(fit.constants.chunks_exact(m)) {
-        for ((kind, places, measure), &constant) in kinds.iter().zip(&constants[first..]) {
-            if constant == 0.0 {
+    let places = fit.force.places(&springs.groups);
+    let count = places[m];
+    for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m)).enumerate() {
+        for (s, (kind, own, measure)) in (first..).zip(&kinds) {
+            let constant = constants[s];
+            let parameters = &fit.parameters[cell * count..][places[s]..places[s + 1]];
+            if constant == 0.0 && parameters.iter().all(|p| *p == 0.0) {
                 continue;
             }
-            let points: Vec<usize> = places.iter().map(|&a| nodes[a]).collect();
+            let points: Vec<usize> = own.iter().map(|&a| nodes[a]).collect();
             let mut x = vec![0.0; points.len() * d];
             gather(&mesh.points, d, &points, &mut x);
-            let rest = measure.value(&x, d);
-            all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone() });
+            let now = measure.value(&x, d);
+            let (law, rest) = match &fit.force {
+                Force::Linear => (None, now),
+                Force::FreeRest => (None, parameters[0] / constant),
+                Force::Laws(laws) => (Some(laws[springs.groups[s]].clone()), now),
+            };
+            let parameters = if law.is_some() { parameters.to_vec() } else { Vec::new() };
+            all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law, parameters });
+        }
+    }
+    all
+}
+
+/// The length springs of the blocks whose force is a law, those between the same two points added up where the law is linear in
+/// its parameters.
+fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
+    let mut all: Vec<MeasureSpring> = Vec::new();
+    let mut known: HashMap<([usize; 2], &str), usize> = HashMap::new();
+    for (block, fit) in mesh.blocks.iter().zip(fits) {
+        let Force::Laws(laws) = &fit.force else { continue };
+        let m = fit.springs.len();
+        let places = fit.force.places(&fit.springs.groups);
+        for (cell, nodes) in block.cells().enumerate() {
+            for (s, &[a, b]) in fit.springs.pairs.iter().enumerate() {
+                let at = cell * m + s;
+                let parameters = &fit.parameters[cell * places[m]..][places[s]..places[s + 1]];
+                let law = &laws[fit.springs.groups[s]];
+                if parameters.iter().all(|p| *p == 0.0) {
+                    continue;
+                }
+                let points = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
+                let next = all.len();
+                let place = if law.is_linear() { *known.entry((points, &law.text)).or_insert(next) } else { next };
+                if place < next {
+                    all[place].constant += fit.constants[at];
+                    all[place].parameters.iter_mut().zip(parameters).for_each(|(sum, p)| *sum += p);
+                    continue;
+                }
+                all.push(MeasureSpring {
+                    kind: SpringKind::Length,
+                    points: points.to_vec(),
+                    constant: fit.constants[at],
+                    rest: distance(mesh.point(points[0]), mesh.point(points[1])),
+                    measure: Measure::Length,
+                    law: Some(law.clone()),
+                    parameters: parameters.to_vec(),
+                });
+            }
         }
     }
     all
@@ -141,27 +231,37 @@ const CHUNK: usize = 2048;
 /// Adds up the length springs between the same two points. Each point goes through the cells around it and gathers the
 /// springs to its higher neighbours in a list of its own, which is short: nothing is sorted or hashed as a whole.
 fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
-    let stars: Vec<Star> = mesh.blocks.iter().zip(fits).map(|(block, fit)| Star::new(mesh, block, fit)).collect();
+    let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
+    let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
     let count = mesh.point_count();
     let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
     let part = |first: &usize| {
         let mut springs = Vec::new();
-        let mut neighbours: Vec<(usize, f64)> = Vec::new();
+        let mut neighbours: Vec<Neighbour> = Vec::new();
         for i in *first..(first + CHUNK).min(count) {
             neighbours.clear();
             for star in &stars {
-                star.gather(i, &mut neighbours);
+                star.gather(mesh, i, &mut neighbours);
             }
-            neighbours.sort_unstable_by_key(|(j, _)| *j);
-            for &(j, constant) in neighbours.iter().filter(|(_, k)| *k != 0.0) {
-                let rest = distance(mesh.point(i), mesh.point(j));
-                springs.push(LengthSpring { points: [i, j], constant, rest });
+            neighbours.sort_unstable_by_key(|n| n.point);
+            for n in neighbours.iter().filter(|n| n.constant != 0.0) {
+                let length = distance(mesh.point(i), mesh.point(n.point));
+                let rest = length + n.slack / n.constant;
+                springs.push(LengthSpring { points: [i, n.point], constant: n.constant, rest });
             }
         }
         springs
     };
     let parts: Vec<Vec<LengthSpring>> = firsts.par_iter().map(part).collect();
     parts.concat()
+}
+
+/// The springs from a point to another so far.
+struct Neighbour {
+    point: usize,
+    constant: f64,
+    /// `Σ k (L₀ − ℓ)`, ℓ the distance: zero of springs at their rest length.
+    slack: f64,
 }
 
 /// The cells of one block around each point.
@@ -198,7 +298,7 @@ impl<'a> Star<'a> {
     }
 
     /// Adds the springs from point i to higher points; each point appears once in `neighbours`.
-    fn gather(&self, i: usize, neighbours: &mut Vec<(usize, f64)>) {
+    fn gather(&self, mesh: &Mesh, i: usize, neighbours: &mut Vec<Neighbour>) {
         let (n, m) = (self.springs.len(), self.fit.springs.len());
         for &place in &self.places[self.starts[i]..self.starts[i + 1]] {
             let (cell, node) = (place / n, place % n);
@@ -207,9 +307,19 @@ impl<'a> Star<'a> {
             for &(s, other) in &self.springs[node] {
                 let j = nodes[other];
                 if j > i {
-                    match neighbours.iter_mut().find(|(point, _)| *point == j) {
-                        Some((_, sum)) => *sum += constants[s],
-                        None => neighbours.push((j, constants[s])),
+                    let slack = match self.fit.force {
+                        Force::FreeRest => {
+                            let length = distance(mesh.point(i), mesh.point(j));
+                            self.fit.parameters[cell * m + s] - constants[s] * length
+                        }
+                        _ => 0.0,
+                    };
+                    match neighbours.iter_mut().find(|n| n.point == j) {
+                        Some(n) => {
+                            n.constant += constants[s];
+                            n.slack += slack;
+                        }
+                        None => neighbours.push(Neighbour { point: j, constant: constants[s], slack }),
                     }
                 }
             }

@@ -19,11 +19,11 @@ pub enum Measure {
 /// A spring's pull at given positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
-    /// `½ k (c − c₀)²`, J.
+    /// U, of a linear spring `½ k (c − c₀)²`, J.
     pub energy: f64,
-    /// On its points, `−k (c − c₀) ∇c`, `[points × dimension]`, N.
+    /// On its points, `−T ∇c`, of a linear spring with `T = k (c − c₀)`, `[points × dimension]`, N.
     pub force: Vec<f64>,
-    /// `k (∇c ∇cᵀ + (c − c₀) ∇∇c)`, `[points·dimension × points·dimension]`, N/m.
+    /// `T' ∇c ∇cᵀ + T ∇∇c`, `[points·dimension × points·dimension]`, N/m.
     pub tangent: Vec<f64>,
 }
 
@@ -81,11 +81,18 @@ impl Measure {
 
     /// The pull of a spring with this constant and rest measure at the positions `x`, `[points × dimension]`, m.
     pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> Response {
+        let linear = |c: f64| [constant * (c - rest) * (c - rest) / 2.0, constant * (c - rest), constant];
+        self.respond_by(linear, x, dimension)
+    }
+
+    /// The pull of a spring whose energy U, force `T = U'` and slope `T'` are `law(c)`.
+    pub fn respond_by(&self, law: impl Fn(f64) -> [f64; 3], x: &[f64], dimension: usize) -> Response {
         let Jet { value, gradient, hessian } = self.jet(x, dimension);
-        let (n, pull) = (gradient.len(), constant * (value - rest));
-        let entry = |(i, h): (usize, f64)| constant * gradient[i / n] * gradient[i % n] + pull * h;
+        let n = gradient.len();
+        let [energy, pull, slope] = law(value);
+        let entry = |(i, h): (usize, f64)| slope * gradient[i / n] * gradient[i % n] + pull * h;
         Response {
-            energy: pull * (value - rest) / 2.0,
+            energy,
             force: gradient.iter().map(|g| -pull * g).collect(),
             tangent: hessian.into_iter().enumerate().map(entry).collect(),
         }

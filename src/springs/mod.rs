@@ -2,8 +2,10 @@
 //!
 //! At rest the tangent stiffness is `K(k) = Σ_s k_s g_s g_sᵀ`, so a fit needs nothing of a spring but g.
 
+mod law;
 mod measure;
 
+pub use law::{Force, Law};
 pub use measure::{Measure, Response};
 
 use crate::element::{Element, SpringKind};

@@ -35,6 +35,7 @@ impl Expr {
                         Expr::sum([Expr::integer(1), Expr::power(x, BigRational::from_integer(2.into()))]),
                         -BigRational::one(),
                     ),
+                    Function::Step => Expr::integer(0),
                     Function::Abs => Expr::product([x.clone(), Expr::power(self.clone(), -BigRational::one())]),
                 };
                 Expr::product([outer, inner])

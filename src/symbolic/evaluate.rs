@@ -40,6 +40,7 @@ impl Value for f64 {
             Function::Acos => self.acos(),
             Function::Atan => self.atan(),
             Function::Abs => self.abs(),
+            Function::Step => f64::from(u8::from(self >= 0.0)),
         })
     }
 }
@@ -65,6 +66,8 @@ impl Value for BigRational {
     fn apply(self, function: Function) -> Option<BigRational> {
         match function {
             Function::Abs => Some(num_traits::Signed::abs(&self)),
+            Function::Step if num_traits::Signed::is_negative(&self) => Some(BigRational::zero()),
+            Function::Step => Some(BigRational::one()),
             Function::Exp if self.is_zero() => Some(BigRational::one()),
             Function::Ln if self.is_one() => Some(BigRational::zero()),
             _ => None,

@@ -149,6 +149,7 @@ impl Value for Jet {
                 (x.atan(), first, -2.0 * x * first * first)
             }
             Function::Abs => (x.abs(), x.signum(), 0.0),
+            Function::Step => (f64::from(u8::from(x >= 0.0)), 0.0, 0.0),
         };
         Some(self.chain(value, first, second))
     }

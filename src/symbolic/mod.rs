@@ -42,10 +42,12 @@ pub enum Function {
     Acos,
     Atan,
     Abs,
+    /// 1 from 0 on, 0 below.
+    Step,
 }
 
 impl Function {
-    pub const ALL: [(&'static str, Function); 9] = [
+    pub const ALL: [(&'static str, Function); 10] = [
         ("exp", Function::Exp),
         ("ln", Function::Ln),
         ("sin", Function::Sin),
@@ -55,6 +57,7 @@ impl Function {
         ("acos", Function::Acos),
         ("atan", Function::Atan),
         ("abs", Function::Abs),
+        ("step", Function::Step),
     ];
 
     pub fn name(self) -> &'static str {

@@ -116,6 +116,7 @@ impl Scope {
                 let argument = real(0)?;
                 match function(identifier) {
                     Some(Called::Sqrt) => Expr::power(argument, BigRational::new(1.into(), 2.into())),
+                    Some(Called::Ramp) => Expr::product([argument.clone(), Expr::call(Function::Step, argument)]),
                     Some(Called::Function(f)) => Expr::call(f, argument),
                     None => return Err(Error::new(unknown_function(identifier))),
                 }
@@ -185,19 +186,22 @@ impl Parsed {
 
 enum Called {
     Sqrt,
+    Ramp,
     Function(Function),
 }
 
 fn function(name: &str) -> Option<Called> {
-    if name == "sqrt" {
-        return Some(Called::Sqrt);
+    match name {
+        "sqrt" => return Some(Called::Sqrt),
+        "ramp" => return Some(Called::Ramp),
+        _ => {}
     }
     Function::ALL.iter().find(|(n, _)| *n == name).map(|(_, f)| Called::Function(*f))
 }
 
 fn unknown_function(name: &str) -> String {
     let names: Vec<_> = Function::ALL.iter().map(|(n, _)| *n).collect();
-    format!("expected an operator, or a function of sqrt, {}, found \"{name}(\"", names.join(", "))
+    format!("expected an operator, or a function of sqrt, ramp, {}, found \"{name}(\"", names.join(", "))
 }
 
 fn shortened(text: &str) -> String {

@@ -1,0 +1,377 @@
+//! One cell of the sampled fit: its forces and those of its springs at every shape, added up to normal equations.
+
+use super::shapes::{Part, Shapes};
+use super::{SampledFit, Weights};
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::fit::dense::inner;
+use crate::fit::normal::Normal;
+use crate::material::{Energy, State};
+use crate::springs::{Force, Law, Measure, Springs, distance};
+use crate::stiffness::Geometry;
+use nalgebra::{DMatrix, Matrix3};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A shape whose deformation gradient has a smaller determinant is drawn again, at half the size.
+const FLAT: f64 = 0.2;
+/// How often.
+const HALVINGS: i32 = 8;
+/// Shapes that one thread adds up, and blocks of them before they are added to the rest.
+const BLOCK: usize = 256;
+const BLOCKS: usize = 16;
+/// Rest measures of springs that choose their own, as shares of what is measured at rest: a nonnegative sum of one spring of
+/// each is a spring with a rest measure between.
+pub const REST_RANGE: [f64; 2] = [0.5, 2.0];
+
+/// One cell with what its fit needs.
+pub struct Cell<'a> {
+    springs: Vec<Spring>,
+    /// The unknowns of each spring.
+    unknowns: Vec<Range<usize>>,
+    count: usize,
+    /// The group of each spring.
+    groups: &'a [usize],
+    /// Where the slopes of each spring begin, `[springs + 1]`.
+    places: Vec<usize>,
+    geometry: &'a Geometry,
+    energy: &'a Energy,
+    state: State,
+    shapes: Shapes<'a>,
+    pub(super) fit: &'a SampledFit,
+    /// Orthonormal coordinates of the nodes, `[dimension × nodes]`: what a force does on homogeneous deformations. Empty where
+    /// all forces count alike.
+    affine: Vec<f64>,
+}
+
+struct Spring {
+    nodes: Vec<usize>,
+    measure: Measure,
+    rest: f64,
+}
+
+/// `Σ_q w_q Jᵀ J`, `Σ_q w_q Jᵀ r` and `Σ_q w_q ‖r‖²` so far, J the derivative of the springs' forces in the unknowns, and r what
+/// the forces lack.
+pub struct Sums {
+    pub normal: Normal,
+    pub square: f64,
+    /// `Σ_q w_q ‖f‖²`.
+    pub size: f64,
+}
+
+/// What a cell does at one shape, as it is seen: see [`SampledFit::higher`].
+#[derive(Debug, Clone, Default)]
+pub struct Sample {
+    pub weight: f64,
+    /// Of the material, `[seen]`.
+    pub force: Vec<f64>,
+    /// `∇c` of each spring, `[springs × seen]`.
+    pub gradients: Vec<f64>,
+    /// c of each spring.
+    pub measures: Vec<f64>,
+}
+
+impl<'a> Cell<'a> {
+    pub fn new(
+        element: &Arc<Element>,
+        springs: &'a Springs,
+        geometry: &'a Geometry,
+        energy: &'a Energy,
+        state: State,
+        fit: &'a SampledFit,
+        shapes: Shapes<'a>,
+    ) -> Cell<'a> {
+        let d = element.dimension();
+        let lengths = springs.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
+        let functions = springs.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
+        let content = springs.content.map(|_| ((0..springs.nodes).collect(), Measure::Content(element.clone())));
+        let with_rest = |(nodes, measure): (Vec<usize>, Measure)| {
+            let rest = measure.value(&gathered(shapes.rest, d, &nodes), d);
+            Spring { nodes, measure, rest }
+        };
+        let mut unknowns: Vec<Range<usize>> = Vec::new();
+        let (mut count, mut places) = (0, vec![0]);
+        for (s, &group) in springs.groups.iter().enumerate() {
+            let first = springs.groups[..s].iter().position(|&g| g == group).filter(|_| fit.tied);
+            let own = first.map_or(count..count + fit.columns(group), |first| unknowns[first].clone());
+            count = count.max(own.end);
+            places.push(places[s] + own.len());
+            unknowns.push(own);
+        }
+        Cell {
+            unknowns,
+            count,
+            groups: &springs.groups,
+            places,
+            springs: lengths.chain(functions).chain(content).map(with_rest).collect(),
+            geometry,
+            energy,
+            state,
+            fit,
+            affine: if fit.higher < 1.0 { coordinates(shapes.rest, d) } else { Vec::new() },
+            shapes,
+        }
+    }
+
+    /// How many unknowns the fit has.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    pub fn len(&self) -> usize {
+        self.springs.len()
+    }
+
+    /// Of spring s at rest.
+    pub fn rest(&self, s: usize) -> f64 {
+        self.springs[s].rest
+    }
+
+    /// The unknowns of spring s.
+    pub fn of_spring<'p>(&self, s: usize, unknowns: &'p [f64]) -> &'p [f64] {
+        &unknowns[self.unknowns[s].clone()]
+    }
+
+    /// The law of spring s, where it has one.
+    pub fn law(&self, s: usize) -> Option<&Law> {
+        if let Force::Laws(laws) = &self.fit.force { Some(&laws[self.groups[s]]) } else { None }
+    }
+
+    /// What `of` says of every parameter of every law, unknown by unknown.
+    pub fn each_parameter<T: Clone + Default>(&self, of: impl Fn(&Law, usize) -> T) -> Vec<T> {
+        let mut all = vec![T::default(); self.count];
+        for (s, own) in self.unknowns.iter().enumerate() {
+            let Some(law) = self.law(s) else { continue };
+            own.clone().enumerate().for_each(|(i, unknown)| all[unknown] = of(law, i));
+        }
+        all
+    }
+
+    /// The sums over the shapes of one part, with J and r at `unknowns`.
+    pub fn sums(&self, part: Part, unknowns: &[f64]) -> Result<Sums> {
+        let total = match part {
+            Part::Trained => self.fit.sampling.shapes,
+            Part::HeldOut => self.fit.sampling.held_out,
+        };
+        let block = |first: usize| {
+            let mut sums = Sums::of(self.count);
+            let (mut sample, mut room) = (Sample::default(), Vec::new());
+            for i in first..(first + BLOCK).min(total) {
+                self.sample(part, i, &mut sample)?;
+                self.add(&sample, unknowns, &mut room, &mut sums);
+            }
+            Ok(sums)
+        };
+        let mut sums = Sums::of(self.count);
+        for round in (0..total).step_by(BLOCK * BLOCKS) {
+            let firsts: Vec<usize> = (round..total.min(round + BLOCK * BLOCKS)).step_by(BLOCK).collect();
+            let parts: Vec<Result<Sums>> = firsts.into_par_iter().map(block).collect();
+            for part in parts {
+                sums.merge(&part?);
+            }
+        }
+        Ok(sums)
+    }
+
+    /// Shape `i`, at less of its deformation where it would turn the cell inside out.
+    ///
+    /// # Errors
+    /// The shape is turned inside out however small it is made, or a spring has no gradient there.
+    pub fn sample(&self, part: Part, i: usize, sample: &mut Sample) -> Result<()> {
+        let size = self.shapes.rest.len();
+        let seen = self.seen();
+        sample.force.resize(seen, 0.0);
+        sample.gradients.clear();
+        sample.gradients.resize(self.springs.len() * seen, 0.0);
+        for halvings in 0..HALVINGS {
+            let x = self.shapes.place(part, i, 0.5f64.powi(halvings));
+            if !(self.is_upright(&x) && self.geometry.forces(self.energy, self.state, &x, &mut sample.force[..size])) {
+                continue;
+            }
+            self.measure(&x, sample);
+            if sample.gradients.iter().chain(&sample.measures).any(|g| !g.is_finite()) {
+                return Err(Error::new("what a spring measures has no finite gradient at a sampled shape"));
+            }
+            std::iter::once(&mut sample.force[..])
+                .chain(sample.gradients.chunks_exact_mut(seen))
+                .for_each(|row| self.see(row));
+            sample.weight = match self.fit.weights {
+                Weights::Alike => 1.0,
+                // A shape that is hardly deformed has hardly any force to be wrong about.
+                Weights::Relative => 1.0 / sample.force.iter().map(|f| f * f).sum::<f64>().max(f64::MIN_POSITIVE),
+            };
+            return Ok(());
+        }
+        Err(Error::new("the sampled shapes are turned inside out: expected a smaller stretch"))
+    }
+
+    /// Numbers in which forces are seen.
+    fn seen(&self) -> usize {
+        let d = self.shapes.dimension;
+        self.shapes.rest.len() + if self.affine.is_empty() { 0 } else { d * d }
+    }
+
+    /// `f ↦ (h f, √(1 − h²) Cᵀ f)`, in which `‖·‖² = ‖(C Cᵀ + h H Hᵀ) f‖²`, C the homogeneous deformations and H the others.
+    fn see(&self, row: &mut [f64]) {
+        if self.affine.is_empty() {
+            return;
+        }
+        let (d, h) = (self.shapes.dimension, self.fit.higher);
+        let (force, homogeneous) = row.split_at_mut(self.shapes.rest.len());
+        let share = (1.0 - h * h).sqrt();
+        for (l, coordinate) in self.affine.chunks_exact(force.len() / d).enumerate() {
+            for k in 0..d {
+                let along: f64 = coordinate.iter().zip(force.chunks_exact(d)).map(|(c, f)| c * f[k]).sum();
+                homogeneous[l * d + k] = share * along;
+            }
+        }
+        force.iter_mut().for_each(|f| *f *= h);
+    }
+
+    /// Whether no quadrature point has lost most of its volume.
+    fn is_upright(&self, x: &[f64]) -> bool {
+        let d = self.shapes.dimension;
+        self.geometry.gradients.chunks_exact(x.len()).all(|grad| {
+            let entry = |k: usize, l: usize| -> f64 {
+                if k >= d || l >= d {
+                    return f64::from(u8::from(k == l));
+                }
+                x.chunks_exact(d).zip(grad.chunks_exact(d)).map(|(x, g)| x[k] * g[l]).sum()
+            };
+            Matrix3::from_fn(entry).determinant() > FLAT
+        })
+    }
+
+    fn measure(&self, x: &[f64], sample: &mut Sample) {
+        let (d, seen) = (self.shapes.dimension, self.seen());
+        sample.measures.clear();
+        for (spring, row) in self.springs.iter().zip(sample.gradients.chunks_exact_mut(seen)) {
+            if let Measure::Length = spring.measure {
+                let [i, j] = [spring.nodes[0] * d, spring.nodes[1] * d];
+                let length = distance(&x[i..i + d], &x[j..j + d]);
+                for k in 0..d {
+                    let n = (x[j + k] - x[i + k]) / length;
+                    (row[i + k], row[j + k]) = (-n, n);
+                }
+                sample.measures.push(length);
+                continue;
+            }
+            let at = gathered(x, d, &spring.nodes);
+            for (&a, g) in spring.nodes.iter().zip(spring.measure.gradient(&at, d).chunks_exact(d)) {
+                row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row += g);
+            }
+            sample.measures.push(spring.measure.value(&at, d));
+        }
+    }
+
+    /// The force of spring s where it measures c, at `unknowns`, and its derivatives in its parameters.
+    fn pull(&self, s: usize, c: f64, unknowns: &[f64], slopes: &mut [f64]) -> f64 {
+        let rest = self.springs[s].rest;
+        let own = self.of_spring(s, unknowns);
+        match &self.fit.force {
+            Force::Linear => slopes[0] = c - rest,
+            Force::FreeRest => slopes.iter_mut().zip(REST_RANGE).for_each(|(slope, share)| *slope = c - share * rest),
+            Force::Laws(laws) => {
+                let law = &laws[self.groups[s]];
+                law.by_parameter(c, rest, own, slopes);
+                if !law.is_linear() {
+                    return law.force(c, rest, own);
+                }
+            }
+        }
+        slopes.iter().zip(own).map(|(slope, p)| slope * p).sum()
+    }
+
+    /// The equations of one shape, `w (f − Σ_s φ_s ∇c_s) = 0`, `[seen × unknowns]` and `[seen]`, after those so far.
+    pub fn equations(&self, sample: &Sample, rows: &mut Vec<f64>, rhs: &mut Vec<f64>) {
+        let (seen, first) = (self.seen(), rows.len());
+        let scale = sample.weight.sqrt();
+        rows.resize(first + seen * self.count, 0.0);
+        rhs.extend(sample.force.iter().map(|f| scale * f));
+        let nothing = vec![0.0; self.count];
+        for (s, (gradient, &c)) in sample.gradients.chunks_exact(seen).zip(&sample.measures).enumerate() {
+            let mut slopes = vec![0.0; self.unknowns[s].len()];
+            self.pull(s, c, &nothing, &mut slopes);
+            for (row, g) in rows[first..].chunks_exact_mut(self.count).zip(gradient) {
+                row[self.unknowns[s].clone()]
+                    .iter_mut()
+                    .zip(&slopes)
+                    .for_each(|(entry, slope)| *entry += scale * slope * g);
+            }
+        }
+    }
+
+    fn add(&self, sample: &Sample, unknowns: &[f64], room: &mut Vec<f64>, sums: &mut Sums) {
+        let (seen, count) = (self.seen(), self.count);
+        let rows = || sample.gradients.chunks_exact(seen);
+        room.clear();
+        room.resize(self.places[self.len()] + seen, 0.0);
+        let (slopes, lacking) = room.split_at_mut(self.places[self.len()]);
+        let own = |s: usize| self.places[s]..self.places[s + 1];
+        lacking.copy_from_slice(&sample.force);
+        for (s, (row, &c)) in rows().zip(&sample.measures).enumerate() {
+            let pull = self.pull(s, c, unknowns, &mut slopes[own(s)]);
+            if pull != 0.0 {
+                lacking.iter_mut().zip(row).for_each(|(f, g)| *f -= pull * g);
+            }
+        }
+        sums.square += sample.weight * inner(lacking, lacking);
+        sums.size += sample.weight * inner(&sample.force, &sample.force);
+        let Normal { gram, rhs, .. } = &mut sums.normal;
+        for (s, row) in rows().enumerate() {
+            let work = sample.weight * inner(row, lacking);
+            let first = self.unknowns[s].start;
+            slopes[own(s)].iter().enumerate().for_each(|(i, slope)| rhs[first + i] += work * slope);
+            for (t, other) in rows().enumerate().take(s + 1) {
+                let product = sample.weight * inner(row, other);
+                if product == 0.0 {
+                    continue;
+                }
+                for (i, a) in slopes[own(s)].iter().enumerate() {
+                    for (j, b) in slopes[own(t)].iter().enumerate() {
+                        let (row, column) = (first + i, self.unknowns[t].start + j);
+                        gram[row * count + column] += product * a * b;
+                        // Springs of one group meet on both sides of the diagonal.
+                        if t < s {
+                            gram[column * count + row] += product * a * b;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Sums {
+    fn of(count: usize) -> Sums {
+        Sums { normal: Normal::new(vec![0.0; count * count], vec![0.0; count]), square: 0.0, size: 0.0 }
+    }
+
+    fn merge(&mut self, other: &Sums) {
+        let add = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        add(&mut self.normal.gram, &other.normal.gram);
+        add(&mut self.normal.rhs, &other.normal.rhs);
+        self.square += other.square;
+        self.size += other.size;
+    }
+
+    /// `√(Σ w ‖r‖²/Σ w ‖f‖²)` after a step of the unknowns in which the forces are linear.
+    pub fn error(&self, step: &[f64]) -> f64 {
+        let work: f64 = self.normal.rhs.iter().zip(step).map(|(b, k)| b * k).sum();
+        let bent: f64 = self.normal.gradient(step).iter().zip(step).map(|(g, k)| g * k).sum::<f64>() + work;
+        ((self.square - 2.0 * work + bent).max(0.0) / self.size).sqrt()
+    }
+}
+
+/// The mean of the nodes taken away, the d columns of the coordinates made orthonormal; `[dimension × nodes]`.
+fn coordinates(rest: &[f64], d: usize) -> Vec<f64> {
+    let nodes = rest.len() / d;
+    let x = DMatrix::from_fn(nodes, d, |a, k| rest[a * d + k]);
+    let centred = DMatrix::from_fn(nodes, d, |a, k| x[(a, k)] - x.column(k).mean());
+    centred.qr().q().as_slice().to_vec()
+}
+
+fn gathered(x: &[f64], d: usize, nodes: &[usize]) -> Vec<f64> {
+    nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).copied().collect()
+}

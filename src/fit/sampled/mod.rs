@@ -1,0 +1,316 @@
+//! Spring constants from the nodal forces of a hyperelastic element at many deformed shapes.
+//!
+//! A spring that measures c pulls with `T(c; p) ∇c`; the fit is `min_p Σ_q w_q ‖f(x_q) − Σ_s T_s(c_s(x_q); p_s) ∇c_s(x_q)‖²`.
+//! Where T is linear in its parameters, as of `k (c − c₀)`, that is linear least squares. The equations are added up shape by
+//! shape; no shape is kept.
+
+mod cell;
+mod inner;
+mod shapes;
+
+pub use shapes::{Family, Sampling, Source};
+
+use super::congruence::Congruence;
+use super::constrained::solve_nonnegative;
+use super::normal::Rank;
+use super::norms::{Norm, solve_norm};
+use super::{CellFits, each_cell};
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::material::{Energy, State};
+use crate::springs::{Force, Law, Springs};
+use cell::{Cell, REST_RANGE, Sample};
+use rayon::prelude::*;
+use shapes::{Part, Shapes};
+use std::sync::Arc;
+
+/// Cells in a row that one thread fits.
+const CHUNK: usize = 8;
+/// Numbers that a norm other than the Euclidean one may hold of a cell: half a gigabyte.
+const MOST_NUMBERS: usize = 1 << 26;
+
+/// How much each shape counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Weights {
+    #[default]
+    Alike,
+    /// `1/‖f‖²`: each for the error relative to its own force.
+    Relative,
+}
+
+/// A fit to forces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledFit {
+    pub sampling: Sampling,
+    pub force: Force,
+    pub weights: Weights,
+    /// Scale of the forces that do no work on homogeneous deformations of the cell, from 0 to 1; the others have 1.
+    pub higher: f64,
+    /// The same parameters for all springs of a group.
+    pub tied: bool,
+    /// No parameter below zero. Springs with rest measures of their own never have one.
+    pub nonnegative: bool,
+    /// Of the residual forces. Of a law that is not linear in its parameters only `Norm::Two` is known.
+    pub norm: Norm,
+    /// Bounds of parameters of the laws, by name.
+    pub bounds: Vec<(String, [f64; 2])>,
+    /// Starts of the search, where the law is not linear in its parameters.
+    pub starts: usize,
+}
+
+impl Default for SampledFit {
+    fn default() -> SampledFit {
+        SampledFit {
+            sampling: Sampling::default(),
+            force: Force::Linear,
+            weights: Weights::Alike,
+            higher: 1.0,
+            tied: false,
+            nonnegative: false,
+            norm: Norm::Two,
+            bounds: Vec::new(),
+            starts: 4,
+        }
+    }
+}
+
+/// The constants of all cells and the errors at the shapes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledFits {
+    pub fits: CellFits,
+    /// `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` on the shapes of the fit, `[cells]`.
+    pub trained: Vec<f64>,
+    /// The same on the shapes that were held out; NaN without any.
+    pub held_out: Vec<f64>,
+    /// Where the law is not linear in its parameters: the share of the starts that ended at the best error, least over the
+    /// cells.
+    pub agreeing: Option<f64>,
+}
+
+/// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+///
+/// `progress` is told the number of cells done, now and then.
+///
+/// # Errors
+/// A cell is tangled, the numbers of the sampling are out of range, or the cells are those of a surface or curve in space.
+#[allow(clippy::too_many_arguments)]
+pub fn fit_sampled(
+    element: &Arc<Element>,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    energy: &Energy,
+    state: State,
+    fit: &SampledFit,
+    progress: &mut dyn FnMut(usize),
+) -> Result<SampledFits> {
+    fit.check(element.dimension())?;
+    if element.space() > element.dimension() {
+        return Err(Error::new("the sampled fit is known for cells that fill their space"));
+    }
+    let n = element.nodes();
+    let cells = connectivity.len() / n;
+    let Congruence { representatives, shapes } = Congruence::by_translation(element, points, connectivity)?;
+    let mut alike: Vec<Vec<&[usize]>> = vec![Vec::new(); representatives.len()];
+    connectivity.chunks_exact(n).zip(&shapes).for_each(|(nodes, &shape)| alike[shape].push(nodes));
+    let chunk = |chunk: &[(usize, Vec<&[usize]>)]| {
+        let mut found = Vec::new();
+        for (cell, alike) in chunk {
+            let nodes = &connectivity[cell * n..(cell + 1) * n];
+            let mut outcome = Ok(());
+            each_cell(element, points, nodes, *cell, |_, x, geometry| {
+                let shapes = Shapes {
+                    sampling: &fit.sampling,
+                    rest: x,
+                    cells: alike.clone(),
+                    points,
+                    dimension: element.dimension(),
+                    extent: geometry.content().powf(1.0 / element.dimension() as f64),
+                    poisson: energy.poisson(),
+                };
+                match Cell::new(element, springs, geometry, energy, state, fit, shapes).fit() {
+                    Ok(one) => found.push(one),
+                    Err(error) => outcome = Err(error),
+                }
+            })?;
+            outcome?;
+        }
+        Ok(found)
+    };
+    let mut fitted: Vec<CellFit> = Vec::new();
+    let chosen: Vec<(usize, Vec<&[usize]>)> = representatives.into_iter().zip(alike).collect();
+    for round in chosen.chunks(CHUNK * 4 * rayon::current_num_threads()) {
+        let parts: Vec<Result<Vec<CellFit>>> = round.par_chunks(CHUNK).map(chunk).collect();
+        for part in parts {
+            fitted.extend(part?);
+        }
+        progress(fitted.len() * cells / chosen.len());
+    }
+    let mut all = SampledFits {
+        fits: CellFits::new(springs.clone()),
+        trained: Vec::new(),
+        held_out: Vec::new(),
+        agreeing: fitted.iter().filter_map(|f| f.agreeing).reduce(f64::min),
+    };
+    all.fits.unreached = fitted.iter().filter(|f| !f.converged).count();
+    all.fits.force = fit.force.clone();
+    all.fits.deficient = fitted.iter().filter(|f| f.rank == Rank::Deficient).count();
+    all.fits.reused = cells - fitted.len();
+    for one in shapes.iter().map(|&shape| &fitted[shape]) {
+        all.fits.constants.extend(&one.constants);
+        all.fits.parameters.extend(&one.parameters);
+        all.trained.push(one.trained);
+        all.held_out.push(one.held_out);
+    }
+    Ok(all)
+}
+
+/// What one cell got.
+#[derive(Default)]
+struct CellFit {
+    constants: Vec<f64>,
+    parameters: Vec<f64>,
+    rank: Rank,
+    converged: bool,
+    agreeing: Option<f64>,
+    trained: f64,
+    held_out: f64,
+}
+
+impl SampledFit {
+    /// Unknowns of a spring of the group.
+    fn columns(&self, group: usize) -> usize {
+        match &self.force {
+            Force::Linear => 1,
+            Force::FreeRest => REST_RANGE.len(),
+            Force::Laws(laws) => laws[group].parameters.len(),
+        }
+    }
+
+    fn check(&self, dimension: usize) -> Result<()> {
+        if !(0.0..=1.0).contains(&self.higher) {
+            return Err(Error::expected("higher", "a scale from 0 to 1", self.higher));
+        }
+        if self.starts == 0 {
+            return Err(Error::expected("starts", "at least one start", 0));
+        }
+        if let Norm::Huber { share } = self.norm
+            && !(share > 0.0 && share.is_finite())
+        {
+            return Err(Error::expected("huber", "a share above 0 of the size of the forces", share));
+        }
+        for (name, [lower, upper]) in &self.bounds {
+            let laws: &[Arc<Law>] = if let Force::Laws(laws) = &self.force { laws } else { &[] };
+            let mut known: Vec<&str> = laws.iter().flat_map(|law| &law.parameters).map(String::as_str).collect();
+            known.dedup();
+            if !known.contains(&name.as_str()) {
+                let expected = match laws {
+                    [] => "no bounds without a law of force".to_string(),
+                    _ => format!("parameters of the law, {}", known.join(", ")),
+                };
+                return Err(Error::expected("bounds", expected, format!("\"{name}\"")));
+            }
+            if !(lower <= upper) {
+                let found = format!("{lower} to {upper}");
+                return Err(Error::expected(format!("bounds.{name}"), "a lower and an upper bound", found));
+            }
+        }
+        if self.norm != Norm::Two && (!self.is_direct() || !self.bounds.is_empty()) {
+            let expected = "the 2-norm for a law with bounds or that is not linear in its parameters";
+            return Err(Error::expected("norm", expected, format!("{:?}", self.norm)));
+        }
+        self.sampling.check(dimension)
+    }
+
+    /// Whether the forces are linear in the unknowns.
+    fn is_direct(&self) -> bool {
+        !matches!(&self.force, Force::Laws(laws) if laws.iter().any(|law| !law.is_linear()))
+    }
+}
+
+impl Cell<'_> {
+    fn fit(&self) -> Result<CellFit> {
+        let (unknowns, found) = match &self.fit.force {
+            Force::Laws(_) if !self.fit.is_direct() || !self.fit.bounds.is_empty() => self.iterated()?,
+            _ => self.direct()?,
+        };
+        let held_out = match self.fit.sampling.held_out {
+            0 => f64::NAN,
+            _ => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
+        };
+        let (constants, parameters) = self.written(&unknowns);
+        Ok(CellFit { constants, parameters, held_out, ..found })
+    }
+
+    fn direct(&self) -> Result<(Vec<f64>, CellFit)> {
+        let sums = self.sums(Part::Trained, &vec![0.0; self.count()])?;
+        let bounded = self.fit.nonnegative || self.fit.force == Force::FreeRest;
+        let mut converged = true;
+        let (unknowns, rank) = if self.fit.norm != Norm::Two {
+            match self.in_norm(bounded)? {
+                Some(unknowns) => (unknowns, Rank::Full),
+                None => {
+                    converged = false;
+                    sums.normal.solve()
+                }
+            }
+        } else if bounded {
+            solve_nonnegative(&sums.normal)
+        } else {
+            sums.normal.solve()
+        };
+        let trained = sums.error(&unknowns);
+        Ok((unknowns, CellFit { rank, converged, trained, ..CellFit::default() }))
+    }
+
+    /// The unknowns of least residual forces in a norm that normal equations do not know: all shapes are held.
+    fn in_norm(&self, bounded: bool) -> Result<Option<Vec<f64>>> {
+        let (shapes, count) = (self.fit.sampling.shapes, self.count());
+        let (mut rows, mut rhs) = (Vec::new(), Vec::new());
+        let mut sample = Sample::default();
+        for i in 0..shapes {
+            self.sample(Part::Trained, i, &mut sample)?;
+            if shapes.saturating_mul(sample.force.len()).saturating_mul(count) > MOST_NUMBERS {
+                let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (sample.force.len() * count));
+                return Err(Error::expected("shapes", expected, shapes));
+            }
+            self.equations(&sample, &mut rows, &mut rhs);
+        }
+        Ok(solve_norm(&rows, &rhs, count, self.fit.norm, bounded))
+    }
+
+    fn iterated(&self) -> Result<(Vec<f64>, CellFit)> {
+        let lowest = if self.fit.nonnegative { 0.0 } else { f64::NEG_INFINITY };
+        let bounds = self.each_parameter(|law, i| {
+            let given = self.fit.bounds.iter().find(|(bounded, _)| *bounded == law.parameters[i]);
+            given.map_or([lowest, f64::INFINITY], |(_, [lower, upper])| [lower.max(lowest), *upper])
+        });
+        // What is linear in its parameters has one optimum.
+        let starts = if self.fit.is_direct() { 1 } else { self.fit.starts };
+        let found = inner::search(self, starts, &bounds)?;
+        let trained = found.sums.error(&vec![0.0; self.count()]);
+        let agreeing = Some(found.agreeing);
+        let rest = CellFit { trained, converged: found.converged, agreeing, ..CellFit::default() };
+        Ok((found.unknowns, rest))
+    }
+
+    /// The constants and parameters of all springs, as [`CellFits`] has them.
+    fn written(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut constants, mut parameters) = (Vec::new(), Vec::new());
+        for s in 0..self.len() {
+            let (own, rest) = (self.of_spring(s, unknowns), self.rest(s));
+            match &self.fit.force {
+                Force::Linear => constants.push(own[0]),
+                Force::FreeRest => {
+                    constants.push(own.iter().sum());
+                    parameters.push(own.iter().zip(REST_RANGE).map(|(k, share)| k * share * rest).sum());
+                }
+                Force::Laws(_) => {
+                    constants.push(self.law(s).map_or(0.0, |law| law.slope(rest, rest, own)));
+                    parameters.extend(own);
+                }
+            }
+        }
+        (constants, parameters)
+    }
+}

@@ -1,0 +1,327 @@
+//! Deformed shapes of a cell: families of homogeneous and bent ones at random amplitudes and directions, or shapes of a list.
+
+use crate::error::{Error, Result};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A sequence of Sobol points has so many; the next one has another seed.
+const LONGEST: usize = 1 << 16;
+/// And so many coordinates.
+const WIDEST: usize = 256;
+/// A prime that scatters the states of the cells.
+const STRIDE: usize = 1_000_003;
+/// Of the shapes of a list each fifth is held out.
+const APART: usize = 5;
+
+/// Kinds of deformation. Their axes are turned at random in every shape, their amplitudes fill the range evenly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// `λ = 1 + a` along one axis (`1/(1 − a)` where a < 0), `λ^(−ν)` across it.
+    Uniaxial,
+    /// λ in a plane, `λ^(−2ν/(1 − ν))` across it.
+    Equibiaxial,
+    /// `I + a e fᵀ`, e ⟂ f.
+    SimpleShear,
+    /// `λ I`.
+    Volumetric,
+    /// Sections turned about an axis by `2a` over the cell's size; of solids.
+    Torsion,
+    /// Circular bending with a strain of about a at the outer fibres.
+    Bending,
+    /// `I + A`, every entry of A an amplitude of its own.
+    Gradients,
+}
+
+impl Family {
+    pub const ALL: [(&'static str, Family); 7] = [
+        ("uniaxial", Family::Uniaxial),
+        ("equibiaxial", Family::Equibiaxial),
+        ("simple-shear", Family::SimpleShear),
+        ("volumetric", Family::Volumetric),
+        ("torsion", Family::Torsion),
+        ("bending", Family::Bending),
+        ("gradients", Family::Gradients),
+    ];
+
+    /// # Errors
+    /// There is no such family.
+    pub fn named(name: &str) -> Result<Family> {
+        let found = Family::ALL.iter().find(|(known, _)| *known == name).map(|(_, family)| *family);
+        found.ok_or_else(|| {
+            let names = Family::ALL.map(|(name, _)| name).join(", ");
+            Error::expected("families", format!("some of {names}"), format!("\"{name}\""))
+        })
+    }
+}
+
+/// Where the shapes come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Source {
+    /// In turn from each.
+    Families(Vec<Family>),
+    /// Deformation gradients, `[shapes × dimension × dimension]`.
+    Gradients(Arc<Vec<f64>>),
+    /// Positions of all points of the mesh, `[states][points × dimension]`, m: those of the nodes of each cell and of the cells
+    /// of its shape.
+    States(Arc<Vec<Vec<f64>>>),
+}
+
+/// The deformed shapes that a fit is made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampling {
+    pub source: Source,
+    /// How many shapes to fit. Those of a list are gone through again and again, with other moves of the nodes.
+    pub shapes: usize,
+    /// How many others to measure the error on. Of a list of at least five, each fifth is kept for them.
+    pub held_out: usize,
+    /// Least and largest amplitude of the families.
+    pub stretch: [f64; 2],
+    /// How far each node is moved besides, as a share of the cell's size.
+    pub perturbation: f64,
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    fn default() -> Sampling {
+        Sampling {
+            source: Source::Families(vec![Family::Gradients]),
+            shapes: 300,
+            held_out: 100,
+            stretch: [-0.3, 0.3],
+            perturbation: 0.05,
+            seed: 1,
+        }
+    }
+}
+
+/// Whether a shape is for the fit or for its test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    Trained,
+    HeldOut,
+}
+
+impl Sampling {
+    /// # Errors
+    /// A number is out of range, a list is empty or of the wrong length, or a family needs a solid.
+    pub fn check(&self, dimension: usize) -> Result<()> {
+        if self.shapes == 0 {
+            return Err(Error::expected("shapes", "at least one shape", 0));
+        }
+        let [least, largest] = self.stretch;
+        if !(-2.0..=2.0).contains(&least) || !(least..=2.0).contains(&largest) {
+            return Err(Error::expected("stretch", "a range within -2 to 2", format!("{least} to {largest}")));
+        }
+        if !(0.0..=2.0).contains(&self.perturbation) {
+            return Err(Error::expected("perturbation", "a share from 0 to 2", self.perturbation));
+        }
+        match &self.source {
+            Source::Families(families) if families.is_empty() => {
+                return Err(Error::expected("families", "at least one family", "none"));
+            }
+            Source::Families(families) if families.contains(&Family::Torsion) && dimension < 3 => {
+                return Err(Error::expected("families", "families of the plane", "\"torsion\""));
+            }
+            Source::Families(_) if self.stretch == [0.0; 2] && self.perturbation == 0.0 => {
+                return Err(Error::expected("stretch", "shapes that differ from the one at rest", "none"));
+            }
+            Source::Gradients(list) if list.is_empty() || list.len() % (dimension * dimension) != 0 => {
+                let expected = format!("deformation gradients of {} numbers", dimension * dimension);
+                return Err(Error::expected("gradients", expected, format!("{} numbers in all", list.len())));
+            }
+            Source::States(states) if states.is_empty() => {
+                return Err(Error::expected("states", "at least one state", "none"));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// The shapes of one cell.
+pub struct Shapes<'a> {
+    pub sampling: &'a Sampling,
+    /// At rest, `[nodes × dimension]`, m.
+    pub rest: &'a [f64],
+    /// The nodes of all cells of this shape.
+    pub cells: Vec<&'a [usize]>,
+    /// Of the mesh at rest.
+    pub points: &'a [f64],
+    pub dimension: usize,
+    /// Content to the power of one by the dimension, m.
+    pub extent: f64,
+    /// ν of the lateral contraction.
+    pub poisson: f64,
+}
+
+impl Shapes<'_> {
+    /// Positions of the nodes in shape `i`, deformed by the share `scale` of what its numbers say; `[nodes × dimension]`.
+    pub fn place(&self, part: Part, i: usize, scale: f64) -> Vec<f64> {
+        let d = self.dimension;
+        let numbers = Numbers { index: i, seed: 2 * self.sampling.seed + u64::from(part == Part::HeldOut) };
+        let move_of = |k: usize| scale * self.sampling.perturbation * self.extent * numbers.symmetric(9 + k);
+        let mut x = match &self.sampling.source {
+            Source::Families(families) => {
+                let family = families[i % families.len()];
+                self.family(family, scale, &numbers)
+            }
+            Source::Gradients(list) => {
+                let gradient = &list[d * d * chosen(list.len() / (d * d), part, i)..][..d * d];
+                let entry = |k: usize, l: usize| {
+                    let identity = f64::from(u8::from(k == l));
+                    identity + scale * (gradient[k * d + l] - identity)
+                };
+                self.homogeneous(&within(d, entry))
+            }
+            Source::States(states) => {
+                let count = states.len() * self.cells.len();
+                let place = chosen(count, part, i) * STRIDE % count;
+                let (state, nodes) = (&states[place % states.len()], self.cells[place / states.len()]);
+                let dofs = nodes.iter().flat_map(|&p| p * d..(p + 1) * d);
+                self.rest.iter().zip(dofs).map(|(rest, i)| rest + scale * (state[i] - self.points[i])).collect()
+            }
+        };
+        x.iter_mut().enumerate().for_each(|(k, x)| *x += move_of(k));
+        x
+    }
+
+    fn homogeneous(&self, gradient: &Matrix3<f64>) -> Vec<f64> {
+        self.moved(|x| gradient * x)
+    }
+
+    /// The nodes where `map` takes them, from the mean of the nodes.
+    fn moved(&self, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<f64> {
+        let d = self.dimension;
+        let nodes = self.rest.len() / d;
+        let centre = |k: usize| self.rest.iter().skip(k).step_by(d).sum::<f64>() / nodes as f64;
+        let centre = Vector3::from_fn(|k, _| if k < d { centre(k) } else { 0.0 });
+        let place = |x: &[f64]| {
+            let x = Vector3::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
+            let x = centre + map(x - centre);
+            (0..d).map(move |k| x[k]).collect::<Vec<f64>>()
+        };
+        self.rest.chunks_exact(d).flat_map(place).collect()
+    }
+
+    fn family(&self, family: Family, scale: f64, numbers: &Numbers) -> Vec<f64> {
+        let d = self.dimension;
+        let [least, largest] = self.sampling.stretch;
+        let amplitude = |coordinate: usize| scale * (least + (largest - least) * numbers.number(coordinate));
+        if family == Family::Gradients {
+            let entry = |k: usize, l: usize| f64::from(u8::from(k == l)) + amplitude(k * d + l);
+            return self.homogeneous(&within(d, entry));
+        }
+        let a = amplitude(0);
+        let ratio = if a < 0.0 { 1.0 / (1.0 - a) } else { 1.0 + a };
+        let axes = numbers.rotation(d);
+        let [e, f] = [0, 1].map(|k| axes.matrix().column(k).into_owned());
+        let across = |normal: Vector3<f64>, along: f64, beside: f64| {
+            Matrix3::identity() * beside + (along - beside) * normal * normal.transpose()
+        };
+        let nu = self.poisson;
+        match family {
+            Family::Uniaxial => self.homogeneous(&across(e, ratio, ratio.powf(-nu))),
+            // In the plane both axes.
+            Family::Equibiaxial if d == 3 => self.homogeneous(&across(e, ratio.powf(-2.0 * nu / (1.0 - nu)), ratio)),
+            Family::Equibiaxial | Family::Volumetric => self.homogeneous(&(Matrix3::identity() * ratio)),
+            Family::SimpleShear => self.homogeneous(&(Matrix3::identity() + a * e * f.transpose())),
+            Family::Torsion => self.moved(|x| Rotation3::new(e * (2.0 * a * e.dot(&x) / self.extent)) * x),
+            Family::Bending => {
+                let curvature = 2.0 * a / self.extent;
+                self.moved(|x| {
+                    let (along, over) = (e.dot(&x), f.dot(&x));
+                    let (sine, cosine) = (curvature * along).sin_cos();
+                    // sin(κs)/κ and (cos(κs) − 1)/κ at κ = 0 as well
+                    let half = (curvature * along / 2.0).sin();
+                    let (arc, sag) = if curvature == 0.0 {
+                        (along, 0.0)
+                    } else {
+                        (sine / curvature, -2.0 * half * half / curvature)
+                    };
+                    x + e * (arc + over * sine - along) + f * (sag + over * cosine - over)
+                })
+            }
+            Family::Gradients => unreachable!("placed above"),
+        }
+    }
+}
+
+/// The shape of a list that serves as number `i` of its part.
+fn chosen(count: usize, part: Part, i: usize) -> usize {
+    let apart = count / APART;
+    match part {
+        _ if apart == 0 => i % count,
+        Part::HeldOut => (i % apart) * APART + APART - 1,
+        Part::Trained => {
+            let i = i % (count - apart);
+            // Past each run of four comes one that is held out.
+            if i / (APART - 1) < apart { i + i / (APART - 1) } else { i + apart }
+        }
+    }
+}
+
+fn within(d: usize, entry: impl Fn(usize, usize) -> f64) -> Matrix3<f64> {
+    Matrix3::from_fn(|k, l| match (k < d && l < d, k == l) {
+        (true, _) => entry(k, l),
+        (false, same) => f64::from(u8::from(same)),
+    })
+}
+
+/// A point of a scrambled Sobol sequence (Burley 2020), coordinate by coordinate.
+pub struct Numbers {
+    pub index: usize,
+    pub seed: u64,
+}
+
+impl Numbers {
+    /// In [0, 1).
+    pub fn number(&self, coordinate: usize) -> f64 {
+        let block = (self.index / LONGEST + 7919 * (coordinate / WIDEST)) as u64;
+        // Neighbouring seeds must not look alike.
+        let seed = (self.seed.wrapping_add(block << 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        f64::from(sobol_burley::sample((self.index % LONGEST) as u32, (coordinate % WIDEST) as u32, seed as u32))
+    }
+
+    /// In [-1, 1).
+    fn symmetric(&self, coordinate: usize) -> f64 {
+        2.0 * self.number(coordinate) - 1.0
+    }
+
+    /// From the coordinates 1 to 3, evenly over all rotations (Shoemake 1992); in the plane about its normal.
+    fn rotation(&self, d: usize) -> Rotation3<f64> {
+        let [u, v, w] = [1, 2, 3].map(|k| self.number(k));
+        if d < 3 {
+            return Rotation3::from_axis_angle(&Vector3::z_axis(), TAU * u);
+        }
+        let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+        let (v, w) = (TAU * v, TAU * w);
+        let quaternion = nalgebra::Quaternion::new(b * w.cos(), a * v.sin(), a * v.cos(), b * w.sin());
+        UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Train and held-out shapes of a list never meet, and each is reached.
+    #[test]
+    fn lists_are_split() {
+        for count in 1..40 {
+            let reached = |part| -> Vec<usize> {
+                let mut all: Vec<usize> = (0..2 * count).map(|i| chosen(count, part, i)).collect();
+                all.sort_unstable();
+                all.dedup();
+                all
+            };
+            let (trained, held_out) = (reached(Part::Trained), reached(Part::HeldOut));
+            if count < APART {
+                assert_eq!(trained.len(), count);
+                continue;
+            }
+            assert_eq!(trained.len() + held_out.len(), count, "{count}");
+            assert!(held_out.iter().all(|i| !trained.contains(i)));
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Laws of force: how hard a spring pulls when what it measures has changed, as an expression with parameters.
+
+use crate::error::{Error, Result};
+use crate::symbolic::{Expr, Function, Scope};
+use gauss_quad::GaussLegendre;
+use std::sync::{Arc, OnceLock};
+
+/// What a law may be a function of, beside its parameters: `s = (c − c₀)/c₀`, `c` and `c₀`.
+const VARIABLES: [&str; 3] = ["s", "c", "c0"];
+/// Points of the quadrature that integrates the force.
+const POINTS: usize = 16;
+/// Strains at which a law must vanish with its parameters to count as linear in them.
+const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
+
+/// `T(c)`, the derivative of a spring's energy in its measure c: in N where c is a length, in Pa where it is a volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    pub text: String,
+    /// The names in the text that are neither variables nor functions, in the order in which they appear.
+    pub parameters: Vec<String>,
+    force: Expr,
+    slope_in_strain: Expr,
+    slope_in_measure: Expr,
+    by_parameter: Vec<Expr>,
+    outer: Vec<bool>,
+    linear: bool,
+}
+
+impl Law {
+    /// # Errors
+    /// The text is no expression, or has no parameter.
+    pub fn parse(text: &str) -> Result<Law> {
+        let parameters = parameters(text);
+        let names: Vec<&str> = VARIABLES.into_iter().chain(parameters.iter().map(String::as_str)).collect();
+        let force = Scope::new(&names).expression(text)?;
+        if parameters.is_empty() {
+            return Err(Error::expected("force", "a law with parameters to fit, such as \"k1*s + k3*s^3\"", text));
+        }
+        let first = VARIABLES.len();
+        let by_parameter: Vec<Expr> = (first..names.len()).map(|v| force.derivative(v)).collect();
+        let mut outer = vec![false; parameters.len()];
+        for (i, slope) in by_parameter.iter().enumerate() {
+            outer[i] = !slope.uses(first + i) && (0..i).all(|j| !outer[j] || !slope.uses(first + j));
+        }
+        let mut law = Law {
+            text: text.to_string(),
+            slope_in_strain: force.derivative(0),
+            slope_in_measure: force.derivative(1),
+            linear: outer.iter().all(|outer| *outer),
+            outer,
+            parameters,
+            force,
+            by_parameter,
+        };
+        let inner: Vec<f64> = law.outer.iter().map(|outer| if *outer { 0.0 } else { 1.0 }).collect();
+        if STRAINS.iter().any(|s| law.force(1.0 + s, 1.0, &inner) != 0.0) {
+            law.linear = false;
+            law.outer.fill(false);
+        }
+        Ok(law)
+    }
+
+    /// Whether the force is a linear function of the parameters: then they add up over springs in parallel, and a fit of
+    /// least squares is direct.
+    pub fn is_linear(&self) -> bool {
+        self.linear
+    }
+
+    /// Whether the force is linear in each parameter while the inner ones, those that are not, stay: `k` and not `a` of
+    /// `k*(exp(a*s) - 1)`.
+    pub fn outer(&self) -> &[bool] {
+        &self.outer
+    }
+
+    /// `T(c)`.
+    pub fn force(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
+        self.force.evaluate(&at(c, rest, parameters))
+    }
+
+    /// `∂T/∂c = (∂T/∂s)/c₀ + ∂T/∂c`.
+    pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
+        let at = at(c, rest, parameters);
+        self.slope_in_strain.evaluate(&at) / rest + self.slope_in_measure.evaluate(&at)
+    }
+
+    /// `∂T/∂p`, `[parameters]`.
+    pub fn by_parameter(&self, c: f64, rest: f64, parameters: &[f64], slopes: &mut [f64]) {
+        let at = at(c, rest, parameters);
+        slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(&at));
+    }
+
+    /// `∫ T dc` from rest.
+    pub fn energy(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
+        static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
+        let points = POINTS.try_into().expect("there are points");
+        let rule = RULE.get_or_init(|| GaussLegendre::new(points).iter().map(|(x, w)| (*x, *w)).collect());
+        let half = (c - rest) / 2.0;
+        rule.iter().map(|(x, w)| w * half * self.force(rest + half * (1.0 + x), rest, parameters)).sum()
+    }
+}
+
+/// The law of force that the springs of a fit share.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Force {
+    /// `k (c − c₀)`, c₀ as at rest.
+    #[default]
+    Linear,
+    /// `k (c − L₀)` with a rest measure of its own, so that springs may pull at rest. Beside k the fit gives `k L₀`.
+    FreeRest,
+    /// A law for each group, in the order of [`Springs::names`](super::Springs); the fit gives the parameters.
+    Laws(Vec<Arc<Law>>),
+}
+
+impl Force {
+    /// The same law for so many groups.
+    pub fn of_all(law: Law, groups: usize) -> Force {
+        Force::Laws(vec![Arc::new(law); groups])
+    }
+
+    /// Numbers of a spring of the group beside its constant.
+    pub fn parameters(&self, group: usize) -> usize {
+        match self {
+            Force::Linear => 0,
+            Force::FreeRest => 1,
+            Force::Laws(laws) => laws[group].parameters.len(),
+        }
+    }
+
+    /// Where the numbers of each spring begin among those of a cell, and how many those are, `[springs + 1]`.
+    pub fn places(&self, groups: &[usize]) -> Vec<usize> {
+        let mut places = vec![0];
+        groups.iter().for_each(|&group| places.push(places[places.len() - 1] + self.parameters(group)));
+        places
+    }
+}
+
+fn at(c: f64, rest: f64, parameters: &[f64]) -> Vec<f64> {
+    [(c - rest) / rest, c, rest].into_iter().chain(parameters.iter().copied()).collect()
+}
+
+/// The names in an expression that are neither variables nor called.
+fn parameters(text: &str) -> Vec<String> {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut names: Vec<String> = Vec::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(is_name) {
+        let end = rest[start..].find(|c| !is_name(c)).map_or(rest.len(), |length| start + length);
+        let (word, after) = (&rest[start..end], &rest[end..]);
+        rest = after;
+        let called = after.trim_start().starts_with('(') || Function::ALL.iter().any(|(name, _)| *name == word);
+        let number = word.starts_with(|c: char| c.is_ascii_digit());
+        if !called && !number && !VARIABLES.contains(&word) && !names.iter().any(|name| name == word) {
+            names.push(word.to_string());
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Laws with closed forms: the cubic, the exponential, one that pulls only.
+    #[test]
+    fn forces_slopes_and_energies_are_those_of_closed_forms() {
+        let cubic = Law::parse("k1*s + k3*s^3").unwrap();
+        assert!(cubic.is_linear() && cubic.parameters == ["k1", "k3"]);
+        let exponential = Law::parse("k*(exp(a*s) - 1)").unwrap();
+        assert!(!exponential.is_linear() && exponential.parameters == ["k", "a"]);
+        let rope = Law::parse("k*ramp(c - c0)").unwrap();
+        assert!(rope.is_linear());
+        assert!(!Law::parse("k*s + 1").unwrap().is_linear());
+        for (c, rest) in [(1.5f64, 1.0f64), (0.2, 0.25), (3.0, 2.0), (2.0, 2.0)] {
+            let s = c / rest - 1.0;
+            for (law, p, force, slope, energy) in [
+                (
+                    &cubic,
+                    [2.0, 3.0],
+                    2.0 * s + 3.0 * s.powi(3),
+                    (2.0 + 9.0 * s * s) / rest,
+                    rest * (s * s + 0.75 * s.powi(4)),
+                ),
+                (
+                    &exponential,
+                    [2.0, 1.5],
+                    2.0 * ((1.5 * s).exp() - 1.0),
+                    3.0 * (1.5 * s).exp() / rest,
+                    rest * 2.0 * (((1.5 * s).exp() - 1.0) / 1.5 - s),
+                ),
+            ] {
+                assert!((law.force(c, rest, &p) - force).abs() < 1e-14 * (1.0 + force.abs()));
+                assert!((law.slope(c, rest, &p) - slope).abs() < 1e-14 * slope);
+                assert!((law.energy(c, rest, &p) - energy).abs() < 1e-14 * (1.0 + energy));
+            }
+            let stretched = (c - rest).max(0.0);
+            assert!((rope.force(c, rest, &[2.0]) - 2.0 * stretched).abs() < 1e-15);
+            assert!((rope.energy(c, rest, &[2.0]) - stretched * stretched).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn texts_that_are_no_law_are_told() {
+        let error = |text: &str| Law::parse(text).unwrap_err().to_string();
+        assert_eq!(error("3*s"), "force: expected a law with parameters to fit, such as \"k1*s + k3*s^3\", found 3*s");
+        assert!(error("k*s +").contains("column 6: expected a number, a name or '(', found the end"));
+        assert!(error("k*sinh(s)").contains("found \"sinh(\""));
+    }
+}
