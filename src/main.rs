@@ -234,7 +234,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let fit = Fit { tied: arguments.tied, nonnegative, ..Fit::new(objective) };
     let mut bar = Bar::new();
     let named = NamedFit::new(fit, arguments.springs.clone());
-    let outcome = fit_mesh(&mesh, material, &named, &mut |stage, done, total| bar.show(stage, done, total))?;
+    let outcome = fit_mesh(&mesh, material, None, &named, &mut |stage, done, total| bar.show(stage, done, total))?;
     bar.clear();
     let masses = arguments.density.map(|density| model::masses(&mesh, density, material.thickness()));
     match ending {

@@ -4,8 +4,10 @@ use super::{CHUNK, CellFits, each_cell};
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::Moduli;
+use crate::springs::{Force, Measure};
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Mean and largest over the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -50,6 +52,7 @@ pub fn element_errors(
 ) -> Result<ElementErrors> {
     let (n, size) = (element.nodes(), element.nodes() * element.dimension());
     let m = fits.springs.len();
+    let pulls = Pulls::of(element, fits);
     let chunk = |(i, nodes): (usize, &[usize])| {
         let first = i * CHUNK;
         let mut errors = ElementErrors::default();
@@ -62,6 +65,7 @@ pub fn element_errors(
                 let g = DVectorView::from_slice(g, size);
                 difference.ger(-k, &g, &g, 1.0);
             }
+            pulls.subtract(fits, first + cell, x, &mut difference);
             errors.frobenius.push(difference.norm() / r.norm());
             errors.spectral.push(spectral_norm(difference) / spectral_norm(r));
         })?;
@@ -73,6 +77,48 @@ pub fn element_errors(
         all.extend(errors?);
     }
     Ok(all)
+}
+
+/// What springs that pull at rest add to K: `Σ T_s ∇∇c_s`.
+struct Pulls {
+    measures: Vec<(Vec<usize>, Measure)>,
+    places: Vec<usize>,
+    dimension: usize,
+}
+
+impl Pulls {
+    /// Of linear springs, which do not pull at rest, nothing.
+    fn of(element: &Element, fits: &CellFits) -> Pulls {
+        let measures = match fits.force {
+            Force::Linear => Vec::new(),
+            _ => fits.springs.measures(&Arc::new(element.clone())),
+        };
+        Pulls { measures, places: fits.force.places(&fits.springs.groups), dimension: element.dimension() }
+    }
+
+    fn subtract(&self, fits: &CellFits, cell: usize, x: &[f64], difference: &mut DMatrix<f64>) {
+        let (d, count) = (self.dimension, self.places.last().copied().unwrap_or(0));
+        for (s, (nodes, measure)) in self.measures.iter().enumerate() {
+            let dofs: Vec<usize> = nodes.iter().flat_map(|&a| a * d..(a + 1) * d).collect();
+            let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
+            let rest = measure.value(&at, d);
+            let own = &fits.parameters[cell * count..][self.places[s]..self.places[s + 1]];
+            let pull = match &fits.force {
+                Force::Linear => 0.0,
+                Force::FreeRest => fits.constants[cell * self.measures.len() + s] * rest - own[0],
+                Force::Laws(laws) => laws[fits.springs.groups[s]].force(rest, rest, own),
+            };
+            if pull == 0.0 {
+                continue;
+            }
+            let hessian = measure.jet(&at, d).hessian;
+            for (a, &row) in dofs.iter().enumerate() {
+                for (b, &column) in dofs.iter().enumerate() {
+                    difference[(row, column)] -= pull * hessian[a * dofs.len() + b];
+                }
+            }
+        }
+    }
 }
 
 fn spectral_norm(symmetric: DMatrix<f64>) -> f64 {

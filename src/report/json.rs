@@ -1,8 +1,8 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
-use crate::fit::{Objective, Solver, Spread};
-use crate::solve::Standing;
-use crate::study::{FitOutcome, LoadOutcome, Outcome};
+use crate::fit::{Fit, Norm, Objective, Solver, Spread, Weights};
+use crate::solve::{Ending, Standing};
+use crate::study::{FitOutcome, Followed, ForceRecipe, LoadOutcome, Outcome, Recipe, SampledRecipe};
 use serde_json::{Value, json};
 
 /// The report as text.
@@ -17,6 +17,8 @@ pub fn report(outcome: &Outcome) -> String {
         "springs": outcome.fits.iter().map(|f| f.network.len()).max(),
         "young": outcome.material.young(),
         "poisson": outcome.material.poisson(),
+        "law": outcome.law,
+        "loads_followed": outcome.followed.iter().map(followed).collect::<Vec<_>>(),
         "left_out": outcome.left_out,
         "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count(), outcome.material.thickness())).collect::<Vec<_>>(),
     });
@@ -24,23 +26,13 @@ pub fn report(outcome: &Outcome) -> String {
 }
 
 fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
-    let fit = &outcome.fit.fit;
-    json!({
+    let mut value = match &outcome.fit.recipe {
+        Recipe::Stiffness(fit) => of_stiffness(fit),
+        Recipe::Forces(recipe) => of_forces(recipe),
+    };
+    let rest = json!({
         "name": outcome.fit.name,
-        "objective": fit.objective.name(),
-        "weight": fit.objective.weight().map(|w| w.name()),
-        "higher": fit.objective.higher(),
-        "balance": if let Objective::Divergence { balance } = fit.objective { Some(balance) } else { None },
         "groups": outcome.fit.springs,
-        "tied": fit.tied,
-        "nonnegative": fit.nonnegative,
-        "solver": match (fit.objective, fit.nonnegative) {
-            _ if fit.solver != Solver::Native => fit.solver.name(),
-            (Objective::Frobenius(_), false) => "normal equations",
-            (Objective::Frobenius(_), true) => "block principal pivoting",
-            (Objective::Spectral(_), _) => "barrier",
-            (Objective::Divergence { .. }, _) => "newton",
-        },
         "status": status(outcome),
         "springs": outcome.network.len(),
         "seconds": outcome.seconds,
@@ -61,6 +53,59 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
         "effective_poisson": outcome.moduli.as_ref().map(|m| m.poisson),
         "zener": outcome.moduli.as_ref().map(|m| m.zener),
         "loads": outcome.loads.iter().map(load).collect::<Vec<_>>(),
+        "sampled": outcome.sampled.as_ref().map(|s| json!({
+            "shapes": s.shapes,
+            "trained": spread(s.trained),
+            "held_out": s.held_out.map(spread),
+            "agreeing_starts": s.agreeing,
+            "loads": s.loads,
+        })),
+    });
+    if let (Value::Object(value), Value::Object(rest)) = (&mut value, rest) {
+        value.extend(rest);
+    }
+    value
+}
+
+fn of_stiffness(fit: &Fit) -> Value {
+    json!({
+        "objective": fit.objective.name(),
+        "weight": fit.objective.weight().map(|w| w.name()),
+        "higher": fit.objective.higher(),
+        "balance": if let Objective::Divergence { balance } = fit.objective { Some(balance) } else { None },
+        "tied": fit.tied,
+        "nonnegative": fit.nonnegative,
+        "solver": match (fit.objective, fit.nonnegative) {
+            _ if fit.solver != Solver::Native => fit.solver.name(),
+            (Objective::Frobenius(_), false) => "normal equations",
+            (Objective::Frobenius(_), true) => "block principal pivoting",
+            (Objective::Spectral(_), _) => "barrier",
+            (Objective::Divergence { .. }, _) => "newton",
+        },
+    })
+}
+
+fn of_forces(recipe: &SampledRecipe) -> Value {
+    let fit = &recipe.fit;
+    json!({
+        "objective": "sampled",
+        "weight": if fit.weights == Weights::Relative { "relative" } else { "none" },
+        "higher": fit.higher,
+        "tied": fit.tied,
+        "nonnegative": fit.nonnegative,
+        "force": match &recipe.force {
+            ForceRecipe::Linear => json!("linear"),
+            ForceRecipe::FreeRest => json!("free-rest"),
+            ForceRecipe::Law(law) => json!(law.text),
+            ForceRecipe::Groups(laws) => laws.iter().map(|(group, law)| (group.clone(), json!(law.text))).collect(),
+        },
+        "norm": match fit.norm {
+            Norm::Two => "2",
+            Norm::One => "1",
+            Norm::Max => "max",
+            Norm::Huber { .. } => "huber",
+        },
+        "seed": fit.sampling.seed,
     })
 }
 
@@ -75,11 +120,26 @@ fn load(outcome: &LoadOutcome) -> Value {
         "e_max": outcome.error.map(|e| e.max),
         "seconds_fem": outcome.seconds_fem,
         "seconds_lem": outcome.seconds_lem,
+        "followed": outcome.followed.as_ref().map(followed),
+    })
+}
+
+fn followed(followed: &Followed) -> Value {
+    json!({
+        "converged": followed.ending == Ending::Converged,
+        "load": followed.load,
+        "residual": followed.residual,
+        "iterations": followed.iterations,
+        "shifted": followed.shifted,
     })
 }
 
 /// One word for how the network stands.
 pub fn status(outcome: &FitOutcome) -> &'static str {
+    let mut followed = outcome.loads.iter().filter_map(|load| load.followed).peekable();
+    if followed.peek().is_some() {
+        return if followed.all(|f| f.ending == Ending::Converged) { "converged" } else { "stalled" };
+    }
     match outcome.stability.as_ref().map(|s| s.standing) {
         None => "fitted",
         Some(Standing::Sound) => "sound",

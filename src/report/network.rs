@@ -2,22 +2,36 @@
 
 use crate::mesh::Mesh;
 use crate::model::Network;
+use crate::springs::Law;
 use serde_json::json;
 use std::fmt::Write;
 
 /// One spring per line: `kind,points,constant,rest`. Points count from 0. A length spring has N/m and m, a spring on
 /// an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
+///
+/// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
+/// rest then.
 pub fn network_csv(network: &Network) -> String {
-    let mut text = String::from("kind,points,constant,rest\n");
-    let mut line = |kind: &str, points: &[usize], constant: f64, rest: f64| {
+    let lawful = network.others.iter().any(|spring| spring.law.is_some());
+    let mut text = format!("kind,points,constant,rest{}\n", if lawful { ",law,parameters" } else { "" });
+    let mut line = |kind: &str, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
         let points: Vec<_> = points.iter().map(usize::to_string).collect();
-        writeln!(text, "{kind},{},{constant:e},{rest:e}", points.join(" ")).expect("a String grows");
+        write!(text, "{kind},{},{constant:e},{rest:e}", points.join(" ")).expect("a String grows");
+        if lawful {
+            let parameters = law.map_or(String::new(), |(law, values)| {
+                let named = law.parameters.iter().zip(values).map(|(name, value)| format!("{name}={value:e}"));
+                named.collect::<Vec<_>>().join(" ")
+            });
+            write!(text, ",{},{parameters}", law.map_or("", |(law, _)| &law.text)).expect("a String grows");
+        }
+        text.push('\n');
     };
     for spring in &network.lengths {
-        line("length", &spring.points, spring.constant, spring.rest);
+        line("length", &spring.points, spring.constant, spring.rest, None);
     }
     for spring in &network.others {
-        line(spring.kind.name(), &spring.points, spring.constant, spring.rest);
+        let law = spring.law.as_deref().map(|law| (law, &spring.parameters[..]));
+        line(spring.kind.name(), &spring.points, spring.constant, spring.rest, law);
     }
     text
 }
@@ -28,10 +42,15 @@ pub fn network_json(mesh: &Mesh, masses: Option<&[f64]>, network: &Network) -> S
         .lengths
         .iter()
         .map(|s| json!({ "kind": "length", "points": s.points, "constant": s.constant, "rest": s.rest }));
-    let others = network
-        .others
-        .iter()
-        .map(|s| json!({ "kind": s.kind.name(), "points": s.points, "constant": s.constant, "rest": s.rest }));
+    let others = network.others.iter().map(|s| {
+        let mut spring = json!({ "kind": s.kind.name(), "points": s.points, "constant": s.constant, "rest": s.rest });
+        if let Some(law) = &s.law {
+            let named = law.parameters.iter().zip(&s.parameters).map(|(name, value)| (name.clone(), json!(value)));
+            spring["law"] = json!(law.text);
+            spring["parameters"] = named.collect();
+        }
+        spring
+    });
     let value = json!({
         "units": { "length": "m", "mass": "kg", "length spring": "N/m", "area spring": "N/m^3", "volume spring": "N/m^5", "angle spring": "N*m" },
         "points": mesh.points.chunks_exact(mesh.dimension).collect::<Vec<_>>(),

@@ -1,8 +1,9 @@
 //! The table on the terminal.
 
 use super::json::status;
-use crate::solve::Standing;
-use crate::study::{FitOutcome, Outcome};
+use crate::fit::Spread;
+use crate::solve::{Ending, Standing};
+use crate::study::{FitOutcome, Followed, Outcome};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
 use std::fmt::Write;
@@ -13,12 +14,13 @@ pub fn summary(outcome: &Outcome) -> String {
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
     let material = outcome.material;
     let mut text = format!(
-        "{}\n{} points, {}; E = {} Pa, nu = {}\n",
+        "{}\n{} points, {}; E = {} Pa, nu = {}{}\n",
         outcome.scene,
         mesh.point_count(),
         cells.join(", "),
         material.young(),
-        material.poisson()
+        material.poisson(),
+        outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
     );
     if mesh.reversed > 0 {
         writeln!(text, "{} elements were numbered the other way round and have been turned", mesh.reversed)
@@ -38,11 +40,15 @@ pub fn table(outcome: &Outcome) -> String {
         ["fit", "springs", "k < 0", "|R-K|/|R| Frobenius\nmean / max", "2-norm\nmean / max", "fit\nus/element"]
             .map(String::from)
             .into();
+    let sampled = outcome.fits.iter().any(|fit| fit.sampled.is_some());
+    if sampled {
+        header.push("sampled forces %\nfitted / held out".into());
+    }
     header.extend(loads.iter().map(|load| format!("{load}\n%e_rms / %e_max")));
     if !loads.is_empty() {
         header.push("network".into());
     }
-    let rows: Vec<_> = outcome.fits.iter().map(|fit| row(fit, outcome.mesh.cell_count())).collect();
+    let rows: Vec<_> = outcome.fits.iter().map(|fit| row(fit, outcome.mesh.cell_count(), sampled)).collect();
     aligned(&header, &rows) + &times(outcome)
 }
 
@@ -58,7 +64,7 @@ pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
     table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }
 
-fn row(fit: &FitOutcome, elements: usize) -> Vec<String> {
+fn row(fit: &FitOutcome, elements: usize, sampled: bool) -> Vec<String> {
     let pair = |mean: f64, max: f64| format!("{mean:.4} / {max:.4}");
     let mut row = vec![
         fit.fit.name.clone(),
@@ -68,6 +74,12 @@ fn row(fit: &FitOutcome, elements: usize) -> Vec<String> {
         pair(fit.spectral.mean, fit.spectral.max),
         format!("{:.2}", 1e6 * fit.seconds / elements.max(1) as f64),
     ];
+    if sampled {
+        let percent = |spread: &Spread| format!("{:.2}", 100.0 * spread.mean);
+        row.push(fit.sampled.as_ref().map_or("-".into(), |s| {
+            format!("{} / {:>5}", percent(&s.trained), s.held_out.as_ref().map_or("-".into(), percent))
+        }));
+    }
     for load in &fit.loads {
         row.push(load.error.map_or("-".into(), |e| format!("{:.2} / {:5.2}", e.rms, e.max)));
     }
@@ -94,7 +106,17 @@ fn times(outcome: &Outcome) -> String {
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
-    outcome.fits.iter().flat_map(|fit| note(outcome, fit)).collect()
+    let loads = outcome.fits.first().map_or(&[][..], |fit| &fit.loads);
+    let stalled = loads.iter().zip(&outcome.followed).filter(|(_, followed)| followed.ending == Ending::Stalled);
+    let finite = stalled.map(|(load, followed)| format!("finite elements: {}", stall(&load.name, followed)));
+    finite.chain(outcome.fits.iter().flat_map(|fit| note(outcome, fit))).collect()
+}
+
+fn stall(load: &str, followed: &Followed) -> String {
+    format!(
+        "no equilibrium found beyond {:.3} of the load {load} (residual {:.1e} there)",
+        followed.load, followed.residual
+    )
 }
 
 fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
@@ -131,6 +153,25 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             m.zener,
             outcome.material.poisson()
         ));
+    }
+    if let Some(sampled) = &fit.sampled {
+        if !sampled.loads.is_empty() {
+            notes.push(format!(
+                "{name}: fitted to the shapes of the finite elements under {}: its errors there are not held out",
+                sampled.loads.join(", ")
+            ));
+        }
+        if let Some(agreeing) = sampled.agreeing.filter(|share| *share < 1.0) {
+            notes.push(format!(
+                "{name}: in the worst element {:.0} % of the starts found the best parameters, the others worse ones",
+                100.0 * agreeing
+            ));
+        }
+    }
+    for load in &fit.loads {
+        if let Some(followed) = load.followed.filter(|f| f.ending == Ending::Stalled) {
+            notes.push(format!("{name}: {}", stall(&load.name, &followed)));
+        }
     }
     let Some(stability) = &fit.stability else { return notes };
     let points = points(outcome, &fit.loose_points);

@@ -36,6 +36,8 @@ pub struct Equilibrium {
     pub ending: Ending,
     /// `[points · dimension]`, m.
     pub displacement: Vec<f64>,
+    /// The displacements at the loads on the way, the last one being `displacement` if any load was reached.
+    pub path: Vec<Vec<f64>>,
     /// The share of the load that it carries, 1 if converged.
     pub load: f64,
     /// Residuals of the iterations of each step, relative to the forces that act.
@@ -61,6 +63,7 @@ impl Newton {
         let mut found = Equilibrium {
             ending: Ending::Converged,
             displacement: vec![0.0; points.len()],
+            path: Vec::new(),
             load: 0.0,
             residuals: Vec::new(),
             shifted: 0,
@@ -73,6 +76,7 @@ impl Newton {
             match self.settle(model, points, support, forces, target, &mut u, &mut found.shifted)? {
                 (history, true) => {
                     found.residuals.push(history);
+                    found.path.push(u.clone());
                     (found.displacement, found.load) = (u, target);
                     step = (2.0 * step).min(first);
                 }

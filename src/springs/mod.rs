@@ -105,6 +105,14 @@ impl Springs {
         Ok(springs)
     }
 
+    /// Nodes and measure of every spring of the element.
+    pub fn measures(&self, element: &Arc<Element>) -> Vec<(Vec<usize>, Measure)> {
+        let lengths = self.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
+        let functions = self.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
+        let content = self.content.map(|_| ((0..self.nodes).collect(), Measure::Content(element.clone())));
+        lengths.chain(functions).chain(content).collect()
+    }
+
     pub fn len(&self) -> usize {
         self.groups.len()
     }

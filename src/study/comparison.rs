@@ -1,8 +1,9 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
 use super::moduli::{EffectiveModuli, Lattice};
+use super::outcome::Outcome;
 use super::random::Random;
-use super::run::{Outcome, Progress, run};
+use super::run::{Progress, run};
 use super::scene::{NamedFit, Scene};
 use crate::element::Element;
 use crate::error::{Error, Result};

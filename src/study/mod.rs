@@ -1,16 +1,26 @@
 //! Whole studies: a scene from its file to the errors and times of each fit.
 
+mod cases;
 mod check;
 mod comparison;
+mod large;
+mod linear;
 mod metrics;
 mod moduli;
+mod outcome;
 mod random;
 mod run;
 mod scene;
+mod stages;
 
 pub use check::{Inspection, Mark, Property, inspect};
 pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
+pub use large::LargeBody;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
-pub use run::{FitOutcome, LoadOutcome, Outcome, Progress, fit_mesh, run, stages};
-pub use scene::{BoxEntry, LoadCase, MeshInput, NamedFit, Output, Part, Scene, load_elements};
+pub use outcome::{FitOutcome, Followed, LoadOutcome, Outcome, SampledOutcome};
+pub use run::{Progress, fit_mesh, run};
+pub use scene::{
+    BoxEntry, ForceRecipe, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene, load_elements,
+};
+pub use stages::stages;

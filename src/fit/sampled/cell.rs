@@ -83,9 +83,6 @@ impl<'a> Cell<'a> {
         shapes: Shapes<'a>,
     ) -> Cell<'a> {
         let d = element.dimension();
-        let lengths = springs.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
-        let functions = springs.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
-        let content = springs.content.map(|_| ((0..springs.nodes).collect(), Measure::Content(element.clone())));
         let with_rest = |(nodes, measure): (Vec<usize>, Measure)| {
             let rest = measure.value(&gathered(shapes.rest, d, &nodes), d);
             Spring { nodes, measure, rest }
@@ -104,7 +101,7 @@ impl<'a> Cell<'a> {
             count,
             groups: &springs.groups,
             places,
-            springs: lengths.chain(functions).chain(content).map(with_rest).collect(),
+            springs: springs.measures(element).into_iter().map(with_rest).collect(),
             geometry,
             energy,
             state,

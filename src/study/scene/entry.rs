@@ -1,14 +1,17 @@
 //! The scene file as it is written, key by key, and what each entry must satisfy on its own.
 
+use super::recipe::Recipe;
+use super::sampled::{SampledEntry, ShapesEntry};
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective, Solver};
+use crate::fit::{Choices, Fit, Objective, Solver, Weights};
 use crate::material::{Material, Plane, parse_pressure};
 use crate::model::Action;
+use crate::solve::Newton;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -31,6 +34,7 @@ pub struct SceneFile {
     pub material: MaterialEntry,
     #[serde(default)]
     pub fit: Vec<FitEntry>,
+    pub newton: Option<NewtonEntry>,
     #[serde(default)]
     pub fix: Vec<FixEntry>,
     #[serde(default)]
@@ -75,6 +79,17 @@ pub struct MaterialEntry {
     /// The cross-section of rods, m².
     pub area: Option<f64>,
     pub density: Option<f64>,
+    /// A shipped energy's name, or a path relative to the scene that ends in .toml. Loads are at large deformation then.
+    pub law: Option<String>,
+}
+
+/// How large deformations are followed.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NewtonEntry {
+    pub steps: Option<usize>,
+    pub iterations: Option<usize>,
+    pub tolerance: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -93,6 +108,12 @@ pub struct FitEntry {
     pub solver: Option<String>,
     /// Of a general solver.
     pub iterations: Option<u64>,
+    pub force: Option<toml::Value>,
+    pub norm: Option<String>,
+    pub huber: Option<f64>,
+    pub bounds: Option<toml::Table>,
+    pub starts: Option<usize>,
+    pub shapes: Option<ShapesEntry>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -147,16 +168,69 @@ impl MaterialEntry {
 }
 
 impl FitEntry {
-    pub fn check(self) -> Result<NamedFit> {
-        let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
-        let objective = Objective::named(&self.objective, choices)?;
-        let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
-        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver };
-        let mut named = NamedFit::new(fit, self.springs);
-        if let Some(name) = self.name {
-            named.name = name;
+    pub fn check(self, folder: &Path) -> Result<NamedFit> {
+        let sampled = SampledEntry {
+            force: self.force,
+            norm: self.norm,
+            huber: self.huber,
+            bounds: self.bounds,
+            starts: self.starts,
+            shapes: self.shapes,
+        };
+        let recipe = if self.objective == "sampled" {
+            let other = [
+                ("balance", self.balance.is_some()),
+                ("solver", self.solver.is_some()),
+                ("iterations", self.iterations.is_some()),
+            ];
+            if let Some((key, _)) = other.iter().find(|(_, given)| *given) {
+                return Err(Error::at(*key, "does not go with the objective \"sampled\""));
+            }
+            let mut recipe = sampled.check(folder)?;
+            recipe.fit.weights = match self.weight.as_deref() {
+                None | Some("relative") => Weights::Relative,
+                Some("none") => Weights::Alike,
+                Some(other) => {
+                    let expected = "\"relative\" or \"none\" with the objective \"sampled\"";
+                    return Err(Error::expected("weight", expected, format!("\"{other}\"")));
+                }
+            };
+            recipe.fit.higher = self.higher.unwrap_or(recipe.fit.higher);
+            (recipe.fit.tied, recipe.fit.nonnegative) = (self.tied, self.nonnegative);
+            Recipe::Forces(Box::new(recipe))
+        } else {
+            if let Some(key) = sampled.key() {
+                let problem = format!("belongs to the objective \"sampled\", found with \"{}\"", self.objective);
+                return Err(Error::at(key, problem));
+            }
+            let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
+            let objective = Objective::named(&self.objective, choices)?;
+            let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
+            Recipe::Stiffness(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
+        };
+        let name = self.name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
+        Ok(NamedFit { name, recipe, springs: self.springs })
+    }
+}
+
+impl NewtonEntry {
+    pub fn check(self) -> Result<Newton> {
+        let newton = Newton::default();
+        let newton = Newton {
+            steps: self.steps.unwrap_or(newton.steps),
+            iterations: self.iterations.unwrap_or(newton.iterations),
+            tolerance: self.tolerance.unwrap_or(newton.tolerance),
+        };
+        if !(1..=100_000).contains(&newton.steps) {
+            return Err(Error::expected("steps", "a number from 1 to 100000", newton.steps));
         }
-        Ok(named)
+        if newton.iterations == 0 {
+            return Err(Error::expected("iterations", "a number above 0", 0));
+        }
+        if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
+            return Err(Error::expected("tolerance", "a share above 0 and below 1", newton.tolerance));
+        }
+        Ok(newton)
     }
 }
 

@@ -1,16 +1,20 @@
 //! The scene file.
 
 mod entry;
+mod recipe;
+mod sampled;
 
 pub use entry::{BoxEntry, MeshInput, Output};
+pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
 
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::fit::{Fit, Solver};
-use crate::material::Material;
+use crate::fit::Fit;
+use crate::material::{Energy, Material};
 use crate::mesh::{BoxMesh, Mesh, MeshSource, Selection};
 use crate::model::Action;
+use crate::solve::Newton;
 use crate::symbolic::Scope;
 use entry::{MaterialEntry, SceneFile};
 use std::path::{Path, PathBuf};
@@ -27,6 +31,8 @@ pub struct Scene {
     /// The parts that are held, and in which directions (all if absent).
     pub supports: Vec<(Part, Option<Vec<usize>>)>,
     pub loads: Vec<LoadCase>,
+    /// How loads are followed where the material has a law.
+    pub newton: Newton,
     pub output: Output,
 }
 
@@ -34,7 +40,7 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedFit {
     pub name: String,
-    pub fit: Fit,
+    pub recipe: Recipe,
     /// All groups that are not optional, if absent.
     pub springs: Option<Vec<String>>,
 }
@@ -79,8 +85,9 @@ impl Scene {
         }
         entry.material.check()?;
         let mut fits: Vec<NamedFit> = Vec::new();
+        let folder = path.parent().unwrap_or(Path::new(""));
         for (i, fit) in entry.fit.into_iter().enumerate() {
-            let fit = fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
+            let fit = fit.check(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))?;
             if fits.iter().any(|f| f.name == fit.name) {
                 let expected = "a name of its own";
                 return Err(Error::expected(format!("fit[{i}].name"), expected, format!("\"{}\" again", fit.name)));
@@ -100,6 +107,22 @@ impl Scene {
             }
             loads.push(load.check(name).map_err(|e| e.under(format!("load[{i}]")))?);
         }
+        if entry.newton.is_some() && entry.material.law.is_none() {
+            return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
+        }
+        let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
+        for (i, fit) in fits.iter().enumerate() {
+            let Recipe::Forces(recipe) = &fit.recipe else { continue };
+            if entry.material.law.is_none() {
+                let expected = format!("the energy whose forces fit[{i}] samples, such as \"neo-hookean\"");
+                return Err(Error::expected("material.law", expected, "none"));
+            }
+            if let Some(name) = recipe.loads.iter().find(|name| !loads.iter().any(|load| load.name == **name)) {
+                let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
+                let expected = format!("loads of the scene ({})", names.join(", "));
+                return Err(Error::expected(format!("fit[{i}].shapes.loads"), expected, format!("\"{name}\"")));
+            }
+        }
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Scene {
             path: path.to_path_buf(),
@@ -109,6 +132,7 @@ impl Scene {
             fits,
             supports,
             loads,
+            newton,
             output: entry.output,
         })
     }
@@ -146,6 +170,26 @@ impl Scene {
             .map_err(|e| e.under("material").in_file(&self.path))
     }
 
+    /// The name of the material's law, where the scene gives one: loads are at large deformation then.
+    pub fn law(&self) -> Option<&str> {
+        self.material.law.as_deref()
+    }
+
+    /// The law's energy for a body of that material.
+    ///
+    /// # Errors
+    /// There is no such law, or its file is wrong.
+    pub fn energy(&self, material: Material) -> Result<Option<Energy>> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let load = |law: &str| {
+            let place =
+                if law.ends_with(".toml") { folder.join(law).to_string_lossy().into_owned() } else { law.into() };
+            Energy::load(&place, material)
+                .map_err(|e| e.placed(|e| Error::at("material.law", e.problem()).in_file(&self.path)))
+        };
+        self.law().map(load).transpose()
+    }
+
     /// kg/m³, where the scene gives one.
     pub fn density(&self) -> Option<f64> {
         self.material.density
@@ -175,27 +219,14 @@ fn load_element(name: &str, folder: &Path) -> Result<Arc<Element>> {
 }
 
 impl NamedFit {
-    /// The fit under the name that says what it does, such as `modal 0.1 +bulk`.
+    /// The recipe under the name that says what it does, such as `modal 0.1 +bulk`.
     pub fn new(fit: Fit, springs: Option<Vec<String>>) -> NamedFit {
-        NamedFit { name: fit_name(&fit, springs.as_deref()), fit, springs }
+        NamedFit::of(Recipe::Stiffness(fit), springs)
     }
-}
 
-fn fit_name(fit: &Fit, springs: Option<&[String]>) -> String {
-    let mut name = fit.objective.title();
-    for group in springs.unwrap_or_default() {
-        name += &format!(" +{group}");
+    pub fn of(recipe: Recipe, springs: Option<Vec<String>>) -> NamedFit {
+        NamedFit { name: recipe.name(springs.as_deref()), recipe, springs }
     }
-    if fit.solver != Solver::Native {
-        name += &format!(" by {}", fit.solver.name());
-    }
-    if fit.tied {
-        name += " tied";
-    }
-    if fit.nonnegative {
-        name += " k>=0";
-    }
-    name
 }
 
 impl Part {

@@ -1,0 +1,114 @@
+//! The loads of a scene at large deformation: Newton's method on both models.
+
+use super::cases::Case;
+use super::metrics::displacement_error;
+use super::outcome::{FitOutcome, Followed, LoadOutcome};
+use super::run::Progress;
+use crate::error::{Error, Result};
+use crate::material::{Energy, State};
+use crate::mesh::Mesh;
+use crate::model::{Body, Elastic};
+use crate::solve::{Ending, Equilibrium, Newton};
+use std::time::Instant;
+
+/// The finite element solutions of a scene whose material has a law.
+pub struct LargeBody {
+    pub energy: Energy,
+    newton: Newton,
+    /// One per load, that at the last load reached; `[points · dimension]`, m.
+    pub displacements: Vec<Vec<f64>>,
+    pub followed: Vec<Followed>,
+    seconds: Vec<f64>,
+    /// Name of each load and the positions of all points on the way to it.
+    states: Vec<(String, Vec<Vec<f64>>)>,
+}
+
+impl LargeBody {
+    /// A body without loads.
+    pub fn at_rest(energy: Energy) -> LargeBody {
+        let (newton, displacements, followed, seconds, states) = Default::default();
+        LargeBody { energy, newton, displacements, followed, seconds, states }
+    }
+
+    /// # Errors
+    /// The cells do not fill their space, or the equations do not fit into memory. A load that is not reached is no error.
+    pub(super) fn solve(
+        mesh: &Mesh,
+        state: State,
+        energy: Energy,
+        newton: Newton,
+        cases: &[Case],
+        progress: &mut Progress,
+    ) -> Result<LargeBody> {
+        if mesh.cell_dimension() < mesh.dimension {
+            let problem = "is known for cells that fill their space, found a surface or lines in space";
+            return Err(Error::at("material.law", problem));
+        }
+        let mut body = LargeBody { newton, ..LargeBody::at_rest(energy) };
+        for (done, case) in cases.iter().enumerate() {
+            progress("finite elements", done, cases.len());
+            let start = Instant::now();
+            let model = Body { mesh, energy: &body.energy, state };
+            let found = newton.solve(&model, &mesh.points, &case.support, &case.forces)?;
+            body.seconds.push(start.elapsed().as_secs_f64());
+            let place = |u: &Vec<f64>| mesh.points.iter().zip(u).map(|(x, u)| x + u).collect::<Vec<f64>>();
+            body.states.push((case.name.clone(), found.path.iter().map(place).collect()));
+            body.followed.push(Followed::of(&found));
+            body.displacements.push(found.displacement);
+        }
+        progress("finite elements", cases.len(), cases.len());
+        Ok(body)
+    }
+
+    /// Positions of all points on the way to these loads.
+    ///
+    /// # Errors
+    /// None of them was reached in any part.
+    pub fn states(&self, loads: &[String]) -> Result<Vec<Vec<f64>>> {
+        let named = self.states.iter().filter(|(name, _)| loads.contains(name));
+        let states: Vec<Vec<f64>> = named.flat_map(|(_, states)| states).cloned().collect();
+        if states.is_empty() && !loads.is_empty() {
+            let expected = "loads that the finite elements reach in part at least";
+            return Err(Error::expected("shapes.loads", expected, format!("none of {}", loads.join(", "))));
+        }
+        Ok(states)
+    }
+
+    /// Solves every load with the network of `fit` and writes the errors into it.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub(super) fn compare(&self, mesh: &Mesh, cases: &[Case], fit: &mut FitOutcome) -> Result<()> {
+        for (i, case) in cases.iter().enumerate() {
+            let start = Instant::now();
+            let model: &dyn Elastic = &fit.network;
+            let found = self.newton.solve(model, &mesh.points, &case.support, &case.forces)?;
+            let seconds_lem = start.elapsed().as_secs_f64();
+            let followed = Followed::of(&found);
+            let complete = |followed: &Followed| followed.ending == Ending::Converged;
+            let displacement = complete(&followed).then_some(found.displacement);
+            let compared = displacement.as_ref().filter(|_| complete(&self.followed[i]));
+            fit.loads.push(LoadOutcome {
+                name: case.name.clone(),
+                error: compared.and_then(|u| displacement_error(&self.displacements[i], u, mesh.dimension)),
+                displacement,
+                seconds_fem: self.seconds[i],
+                seconds_lem,
+                followed: Some(followed),
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Followed {
+    fn of(found: &Equilibrium) -> Followed {
+        Followed {
+            ending: found.ending,
+            load: found.load,
+            residual: found.residuals.last().and_then(|r| r.last()).copied().unwrap_or(0.0),
+            iterations: found.residuals.iter().map(Vec::len).sum(),
+            shifted: found.shifted,
+        }
+    }
+}

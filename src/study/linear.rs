@@ -1,0 +1,125 @@
+//! The loads of a scene at small deformation: one linear system for each model and support.
+
+use super::cases::Case;
+use super::metrics::displacement_error;
+use super::outcome::{FitOutcome, LoadOutcome};
+use super::run::Progress;
+use crate::error::{Error, Result};
+use crate::material::Moduli;
+use crate::mesh::Mesh;
+use crate::model::finite_elements;
+use crate::solve::{Factor, Stability, Standing, System, compare_energies};
+use std::time::Instant;
+
+/// The finite element solutions, and what the comparison with a network reuses.
+pub struct LinearBody {
+    pub displacements: Vec<Vec<f64>>,
+    seconds: Vec<f64>,
+    /// The equations and factor of each load, as an index into these: loads of equal support share them.
+    systems: Vec<(System, Factor)>,
+    system_of: Vec<usize>,
+}
+
+/// Loads with the same support have the same equations: for each load, the first load it agrees with.
+fn shared(cases: &[Case]) -> Vec<usize> {
+    let first = |case: &Case| cases.iter().position(|c| c.support == case.support).unwrap_or(0);
+    cases.iter().map(first).collect()
+}
+
+impl LinearBody {
+    /// # Errors
+    /// Some motion has no stiffness, or the equations do not fit into memory.
+    pub fn solve(mesh: &Mesh, moduli: Moduli, cases: &[Case], progress: &mut Progress) -> Result<LinearBody> {
+        let mut body = LinearBody { displacements: vec![], seconds: vec![], systems: vec![], system_of: vec![] };
+        if cases.is_empty() {
+            return Ok(body);
+        }
+        let start = Instant::now();
+        let entries = finite_elements(mesh, moduli);
+        let assembly = start.elapsed().as_secs_f64();
+        let mut setup = Vec::new();
+        for (i, (case, first)) in cases.iter().zip(shared(cases)).enumerate() {
+            progress("finite elements", i, cases.len());
+            if first == i {
+                let start = Instant::now();
+                let system = System::new(&entries, &case.support)?;
+                let factor = system.factorize().filter(Factor::is_positive_definite).ok_or_else(|| {
+                    let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
+                    let bending = "; surfaces and curves resist no bending, so hold their points across them";
+                    let embedded = mesh.cell_dimension() < mesh.dimension;
+                    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" }))
+                })?;
+                body.systems.push((system, factor));
+                body.system_of.push(body.systems.len() - 1);
+                setup.push(start.elapsed().as_secs_f64());
+            } else {
+                body.system_of.push(body.system_of[first]);
+            }
+            let (system, factor) = &body.systems[body.system_of[i]];
+            let start = Instant::now();
+            let (u, _) = system.solve(factor, &case.forces);
+            body.seconds.push(assembly + setup[body.system_of[i]] + start.elapsed().as_secs_f64());
+            body.displacements.push(u);
+        }
+        progress("finite elements", cases.len(), cases.len());
+        Ok(body)
+    }
+
+    /// Solves every load with the network of `fit` and writes the errors into it.
+    pub fn compare(&self, mesh: &Mesh, cases: &[Case], fit: &mut FitOutcome) -> Result<()> {
+        if cases.is_empty() {
+            return Ok(());
+        }
+        let start = Instant::now();
+        let entries = fit.network.stiffness(&mesh.points);
+        let assembly = start.elapsed().as_secs_f64();
+        let mut systems: Vec<(System, Option<Factor>, Stability, f64)> = Vec::new();
+        for (i, case) in cases.iter().enumerate() {
+            let index = self.system_of[i];
+            if index == systems.len() {
+                let start = Instant::now();
+                let system = System::new(&entries, &case.support)?;
+                let factor = system.factorize();
+                let seconds = start.elapsed().as_secs_f64();
+                let (body, body_factor) = &self.systems[index];
+                let stability = compare_energies(&system, factor.as_ref(), body, body_factor);
+                systems.push((system, factor, stability, seconds));
+            }
+            let (system, factor, stability, setup) = &systems[index];
+            let start = Instant::now();
+            let stands = stability.standing != Standing::Singular;
+            let solution = factor.as_ref().filter(|_| stands).map(|factor| system.solve(factor, &case.forces));
+            let seconds_lem = assembly + setup + start.elapsed().as_secs_f64();
+            // A factor of a nearly singular matrix gives numbers that solve nothing.
+            let displacement = solution.filter(|(u, residual)| *residual < 1e-6 && u.iter().all(|u| u.is_finite()));
+            let displacement = displacement.map(|(u, _)| u);
+            fit.loads.push(LoadOutcome {
+                name: case.name.clone(),
+                error: displacement
+                    .as_ref()
+                    .and_then(|u| displacement_error(&self.displacements[i], u, mesh.dimension)),
+                displacement,
+                seconds_fem: self.seconds[i],
+                seconds_lem,
+                followed: None,
+            });
+        }
+        if let Some((system, _, stability, _)) = systems.into_iter().next() {
+            fit.loose_points = moving_points(&system, &stability, mesh.dimension);
+            fit.stability = Some(stability);
+        }
+        Ok(())
+    }
+}
+
+fn moving_points(system: &System, stability: &Stability, dimension: usize) -> Vec<usize> {
+    if stability.standing == Standing::Sound {
+        return Vec::new();
+    }
+    let mut squares = std::collections::BTreeMap::new();
+    for (dof, u) in system.free().iter().zip(&stability.softest) {
+        *squares.entry(dof / dimension).or_insert(0.0) += u * u;
+    }
+    let largest = squares.values().copied().fold(0.0, f64::max);
+    squares.into_iter().filter(|(_, s)| *s >= 0.25 * largest).map(|(p, _)| p).collect()
+}

@@ -1,0 +1,108 @@
+//! What comes out of a scene.
+
+use super::metrics::DisplacementError;
+use super::moduli::EffectiveModuli;
+use super::scene::NamedFit;
+use crate::fit::Spread;
+use crate::material::Material;
+use crate::mesh::Mesh;
+use crate::model::Network;
+use crate::solve::{Ending, Stability};
+
+/// What came out of a scene.
+#[derive(Debug)]
+pub struct Outcome {
+    pub scene: String,
+    pub mesh: Mesh,
+    pub material: Material,
+    /// `[points]`, kg, where the scene gives a density.
+    pub masses: Option<Vec<f64>>,
+    /// Displacements of the finite elements, one per load, `[points · dimension]`, m.
+    pub fem: Vec<Vec<f64>>,
+    /// Where the material has a law, what it is called, and how far the finite elements followed each load.
+    pub law: Option<String>,
+    pub followed: Vec<Followed>,
+    pub fits: Vec<FitOutcome>,
+    /// What the scene did not ask for and was not done.
+    pub left_out: Vec<String>,
+}
+
+#[derive(Debug)]
+pub struct FitOutcome {
+    pub fit: NamedFit,
+    pub network: Network,
+    /// For the constants of all cells, without assembly.
+    pub seconds: f64,
+    pub seconds_assembly: f64,
+    /// Cells whose springs the objective does not determine.
+    pub deficient: usize,
+    /// Cells whose iteration did not reach its end.
+    pub unreached: usize,
+    /// Cells that took over the constants of one of the same shape.
+    pub reused: usize,
+    /// Cells whose spectral optimum is not unique.
+    pub ambiguous: usize,
+    /// The largest relative duality gap, where the objective has certificates.
+    pub gap: Option<f64>,
+    /// Where `(1 − ε) R ⪯ K ⪯ (1 + ε) R` holds in every cell with ε < 1: the relative error of the model's energy.
+    pub energy_error: Option<f64>,
+    pub frobenius: Spread,
+    pub spectral: Spread,
+    /// What the network is as a material, where the scene asks for it: under linear displacements of its boundary.
+    pub moduli: Option<EffectiveModuli>,
+    /// Of a sampled fit.
+    pub sampled: Option<SampledOutcome>,
+    /// With the support of the first load; `None` without loads.
+    pub stability: Option<Stability>,
+    /// Points that move in the softest motion, at least half as far as the one that moves most.
+    pub loose_points: Vec<usize>,
+    pub loads: Vec<LoadOutcome>,
+}
+
+#[derive(Debug)]
+pub struct LoadOutcome {
+    pub name: String,
+    /// Displacements of the network, `[points · dimension]`, m; `None` where it does not stand.
+    pub displacement: Option<Vec<f64>>,
+    /// `None` where the network does not stand or nothing moves.
+    pub error: Option<DisplacementError>,
+    /// To assemble, factorise and solve, each as if this were the only load.
+    pub seconds_fem: f64,
+    pub seconds_lem: f64,
+    /// At large deformation, how far the network followed the load.
+    pub followed: Option<Followed>,
+}
+
+/// How far an equilibrium was followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Followed {
+    pub ending: Ending,
+    /// The share of the load reached.
+    pub load: f64,
+    /// The last residual, relative to the forces that act.
+    pub residual: f64,
+    pub iterations: usize,
+    /// Iterations whose tangent was not positive definite and had to be shifted.
+    pub shifted: usize,
+}
+
+/// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledOutcome {
+    pub shapes: usize,
+    pub trained: Spread,
+    /// `None` where no shapes were held out.
+    pub held_out: Option<Spread>,
+    /// The least share of starts that found the best parameters, where there were several.
+    pub agreeing: Option<f64>,
+    /// Loads of the scene whose shapes were sampled: their errors are not held out.
+    pub loads: Vec<String>,
+}
+
+impl Outcome {
+    /// The outcome of one fit without loads.
+    pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
+        let (fem, law, followed, left_out) = Default::default();
+        Outcome { scene: name, mesh, material, masses, fem, law, followed, fits: vec![fit], left_out }
+    }
+}

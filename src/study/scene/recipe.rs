@@ -1,0 +1,132 @@
+//! What a fit of a scene is made from.
+
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::fit::{Fit, SampledFit, Solver, Source};
+use crate::springs::{Force, Law, Springs};
+use std::sync::Arc;
+
+/// How the springs of a fit are found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Recipe {
+    /// From the stiffness at rest.
+    Stiffness(Fit),
+    /// From the forces at sampled shapes.
+    Forces(Box<SampledRecipe>),
+}
+
+/// A sampled fit before the mesh is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledRecipe {
+    /// With the force and the source of the shapes left open where the others say them.
+    pub fit: SampledFit,
+    pub force: ForceRecipe,
+    /// Loads of the scene: the shapes are those of the finite elements under them.
+    pub loads: Vec<String>,
+}
+
+/// The law of force of a sampled fit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum ForceRecipe {
+    #[default]
+    Linear,
+    FreeRest,
+    /// For all groups.
+    Law(Law),
+    /// For each group by name.
+    Groups(Vec<(String, Law)>),
+}
+
+impl ForceRecipe {
+    /// `linear`, `free-rest` or a law.
+    ///
+    /// # Errors
+    /// The text is no law.
+    pub fn parse(text: &str) -> Result<ForceRecipe> {
+        match text {
+            "linear" => Ok(ForceRecipe::Linear),
+            "free-rest" => Ok(ForceRecipe::FreeRest),
+            _ => Law::parse(text).map(ForceRecipe::Law).map_err(|e| e.placed(|e| Error::at("force", e.problem()))),
+        }
+    }
+
+    /// With a law for each group of `springs`.
+    ///
+    /// # Errors
+    /// A group has no law, or a law no group.
+    fn resolve(&self, element: &Element, springs: &Springs) -> Result<Force> {
+        match self {
+            ForceRecipe::Linear => Ok(Force::Linear),
+            ForceRecipe::FreeRest => Ok(Force::FreeRest),
+            ForceRecipe::Law(law) => Ok(Force::of_all(law.clone(), springs.names.len())),
+            ForceRecipe::Groups(laws) => {
+                if let Some((group, _)) = laws.iter().find(|(group, _)| !springs.names.contains(group)) {
+                    let expected = format!("groups of the fit's springs, {}", springs.names.join(", "));
+                    return Err(Error::expected("force", expected, format!("\"{group}\"")));
+                }
+                let law = |group: &String| match laws.iter().find(|(named, _)| named == group) {
+                    Some((_, law)) => Ok(Arc::new(law.clone())),
+                    None => {
+                        let expected = format!("a law for the group \"{group}\" of {}", element.name);
+                        Err(Error::expected("force", expected, "none"))
+                    }
+                };
+                springs.names.iter().map(law).collect::<Result<_>>().map(Force::Laws)
+            }
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            ForceRecipe::Linear => String::new(),
+            ForceRecipe::FreeRest => " free rest".into(),
+            ForceRecipe::Law(law) => format!(" {}", law.text),
+            ForceRecipe::Groups(laws) => {
+                let texts: Vec<String> = laws.iter().map(|(group, law)| format!("{group}: {}", law.text)).collect();
+                format!(" {}", texts.join("; "))
+            }
+        }
+    }
+}
+
+impl SampledRecipe {
+    /// The fit of one element's springs; `states` are positions of the mesh where the recipe names loads.
+    ///
+    /// # Errors
+    /// A group has no law, or a law no group.
+    pub fn resolve(&self, element: &Element, springs: &Springs, states: &Arc<Vec<Vec<f64>>>) -> Result<SampledFit> {
+        let mut fit = self.fit.clone();
+        fit.force = self.force.resolve(element, springs)?;
+        if !self.loads.is_empty() {
+            fit.sampling.source = Source::States(states.clone());
+        }
+        Ok(fit)
+    }
+}
+
+impl Recipe {
+    /// What says how it is made, such as `modal 0.1 +bulk k>=0`.
+    pub fn name(&self, springs: Option<&[String]>) -> String {
+        let groups: String = springs.unwrap_or_default().iter().map(|group| format!(" +{group}")).collect();
+        let (mut name, tied, nonnegative) = match self {
+            Recipe::Stiffness(fit) => {
+                let solver = match fit.solver {
+                    Solver::Native => String::new(),
+                    _ => format!(" by {}", fit.solver.name()),
+                };
+                (fit.objective.title() + &groups + &solver, fit.tied, fit.nonnegative)
+            }
+            Recipe::Forces(recipe) => {
+                let name = format!("sampled{}{groups}", recipe.force.name());
+                (name, recipe.fit.tied, recipe.fit.nonnegative)
+            }
+        };
+        if tied {
+            name += " tied";
+        }
+        if nonnegative {
+            name += " k>=0";
+        }
+        name
+    }
+}

@@ -1,0 +1,183 @@
+//! The keys of a `[[fit]]` whose objective is "sampled".
+
+use super::recipe::{ForceRecipe, SampledRecipe};
+use crate::error::{Error, Result};
+use crate::file;
+use crate::fit::{Family, Norm, SampledFit, Sampling, Source, Weights};
+use crate::springs::Law;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What only a sampled fit has.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SampledEntry {
+    pub force: Option<toml::Value>,
+    pub norm: Option<String>,
+    pub huber: Option<f64>,
+    pub bounds: Option<toml::Table>,
+    pub starts: Option<usize>,
+    pub shapes: Option<ShapesEntry>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShapesEntry {
+    pub families: Option<Vec<String>>,
+    /// A file of deformation gradients, relative to the scene.
+    pub gradients: Option<PathBuf>,
+    pub loads: Option<Vec<String>>,
+    pub count: Option<usize>,
+    pub held_out: Option<usize>,
+    pub stretch: Option<toml::Value>,
+    pub perturbation: Option<f64>,
+    pub seed: Option<u64>,
+}
+
+impl SampledEntry {
+    /// The first key that is given.
+    pub fn key(&self) -> Option<&'static str> {
+        let given = [
+            ("force", self.force.is_some()),
+            ("norm", self.norm.is_some()),
+            ("huber", self.huber.is_some()),
+            ("bounds", self.bounds.is_some()),
+            ("starts", self.starts.is_some()),
+            ("shapes", self.shapes.is_some()),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(key, _)| key)
+    }
+
+    /// The recipe, with what is not said as [`SampledRecipe::default`] has it.
+    ///
+    /// # Errors
+    /// A key has a wrong value; a file of gradients cannot be read.
+    pub fn check(self, folder: &Path) -> Result<SampledRecipe> {
+        let mut recipe = SampledRecipe::default();
+        if let Some(force) = &self.force {
+            recipe.force = force_of(force)?;
+        }
+        recipe.fit.norm = match (self.norm.as_deref(), self.huber) {
+            (None | Some("2"), None) => Norm::Two,
+            (Some("1"), None) => Norm::One,
+            (Some("max"), None) => Norm::Max,
+            (Some("huber"), share) => Norm::Huber { share: share.unwrap_or(0.5) },
+            (None | Some("1" | "2" | "max"), Some(_)) => {
+                return Err(Error::at("huber", "belongs to the norm \"huber\""));
+            }
+            (Some(other), _) => {
+                return Err(Error::expected("norm", "one of \"2\", \"1\", \"max\", \"huber\"", format!("\"{other}\"")));
+            }
+        };
+        for (name, value) in self.bounds.unwrap_or_default() {
+            let range = pair(&value).ok_or_else(|| {
+                Error::expected(format!("bounds.{name}"), "two numbers such as [0, 10]", shown(&value))
+            })?;
+            recipe.fit.bounds.push((name, range));
+        }
+        recipe.fit.starts = self.starts.unwrap_or(recipe.fit.starts);
+        if let Some(shapes) = self.shapes {
+            shapes.check(folder, &mut recipe).map_err(|e| e.placed(|e| e.under("shapes")))?;
+        }
+        Ok(recipe)
+    }
+}
+
+impl Default for SampledRecipe {
+    /// Shapes around rest and in all directions, each counting for its relative error.
+    fn default() -> SampledRecipe {
+        let families = vec![Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
+        let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
+        let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
+        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new() }
+    }
+}
+
+impl ShapesEntry {
+    fn check(self, folder: &Path, recipe: &mut SampledRecipe) -> Result<()> {
+        let sources = [self.families.is_some(), self.gradients.is_some(), self.loads.is_some()];
+        if sources.iter().filter(|given| **given).count() > 1 {
+            return Err(Error::new("expected one of \"families\", \"gradients\", \"loads\", found more"));
+        }
+        let sampling = &mut recipe.fit.sampling;
+        if let Some(names) = &self.families {
+            sampling.source = Source::Families(names.iter().map(|name| Family::named(name)).collect::<Result<_>>()?);
+        }
+        if let Some(path) = &self.gradients {
+            let path = folder.join(path);
+            let numbers = numbers_of(&file::read_text(&path)?).map_err(|e| e.in_file(&path))?;
+            sampling.source = Source::Gradients(Arc::new(numbers));
+        }
+        if let Some(loads) = self.loads {
+            if loads.is_empty() {
+                return Err(Error::expected("loads", "names of loads of the scene", "none"));
+            }
+            recipe.loads = loads;
+        }
+        let sampling = &mut recipe.fit.sampling;
+        sampling.shapes = self.count.unwrap_or(sampling.shapes);
+        sampling.held_out = self.held_out.unwrap_or(sampling.held_out);
+        sampling.perturbation = self.perturbation.unwrap_or(sampling.perturbation);
+        sampling.seed = self.seed.unwrap_or(sampling.seed);
+        if let Some(value) = &self.stretch {
+            let symmetric = number(value).map(|s| [-s, s]);
+            let expected = "a share such as 0.3, or a range such as [-0.1, 0.4]";
+            sampling.stretch =
+                symmetric.or_else(|| pair(value)).ok_or_else(|| Error::expected("stretch", expected, shown(value)))?;
+        }
+        Ok(())
+    }
+}
+
+/// A law for all springs, or a table of laws by group.
+fn force_of(value: &toml::Value) -> Result<ForceRecipe> {
+    match value {
+        toml::Value::String(text) => ForceRecipe::parse(text),
+        toml::Value::Table(groups) => {
+            let law = |(group, value): (&String, &toml::Value)| {
+                let key = format!("force.{group}");
+                let text = value.as_str().ok_or_else(|| Error::expected(&key, "a law in quotes", value.type_str()))?;
+                let law = Law::parse(if text == "linear" { "k*(c - c0)" } else { text });
+                Ok((group.clone(), law.map_err(|e| Error::at(key, e.problem()))?))
+            };
+            groups.iter().map(law).collect::<Result<_>>().map(ForceRecipe::Groups)
+        }
+        other => {
+            let expected = "\"linear\", \"free-rest\", a law in quotes, or a table of laws by group";
+            Err(Error::expected("force", expected, other.type_str()))
+        }
+    }
+}
+
+fn number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
+fn shown(value: &toml::Value) -> String {
+    match (value, number(value)) {
+        (_, Some(number)) => number.to_string(),
+        (toml::Value::String(text), _) => format!("\"{text}\""),
+        (toml::Value::Array(items), _) => format!("[{}]", items.iter().map(shown).collect::<Vec<_>>().join(", ")),
+        _ => format!("a {}", value.type_str()),
+    }
+}
+
+fn pair(value: &toml::Value) -> Option<[f64; 2]> {
+    let numbers: Option<Vec<f64>> = value.as_array()?.iter().map(number).collect();
+    numbers?.try_into().ok()
+}
+
+/// Numbers between commas, spaces and line ends; `#` begins a comment.
+fn numbers_of(text: &str) -> Result<Vec<f64>> {
+    let mut numbers = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default();
+        for word in line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).filter(|word| !word.is_empty()) {
+            let number = word.parse().ok().filter(|v: &f64| v.is_finite());
+            numbers.push(
+                number.ok_or_else(|| Error::new(format!("expected finite numbers, found {word}")).on_line(i + 1))?,
+            );
+        }
+    }
+    Ok(numbers)
+}

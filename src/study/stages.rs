@@ -1,0 +1,58 @@
+//! What a scene asks for, before any of it is done.
+
+use super::scene::{NamedFit, Recipe, Scene};
+
+/// The stages of a scene in order: what will run, or why it is left out.
+pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
+    let run = |what: String| (what, None);
+    let skip = |what: &str, why: &str| (what.to_string(), Some(why.to_string()));
+    let mut stages = vec![run(match (&scene.mesh.file, &scene.mesh.generated) {
+        (Some(file), _) => format!("read {}", file.display()),
+        (_, Some(entry)) => format!("generate {:?} cells of {}", entry.cells, entry.element),
+        _ => "mesh".into(),
+    })];
+    if let Some(law) = scene.law() {
+        stages.push(run(format!("compile the energy {law}")));
+    }
+    let sampled = |fit: &NamedFit| matches!(fit.recipe, Recipe::Forces(_));
+    for fit in &scene.fits {
+        let shapes = match &fit.recipe {
+            Recipe::Stiffness(_) => String::new(),
+            Recipe::Forces(recipe) => {
+                let sampling = &recipe.fit.sampling;
+                format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)
+            }
+        };
+        stages.push(run(format!("fit {}{shapes}, assemble its network, measure its matrix errors", fit.name)));
+    }
+    if scene.law().is_none() {
+        stages.push(skip("hyperelastic energy, Newton's method", "the material has no law"));
+    }
+    if !scene.fits.iter().any(sampled) {
+        stages.push(skip("sampled shapes", "no [[fit]] has the objective \"sampled\""));
+    }
+    if scene.loads.is_empty() {
+        stages.push(skip("finite element solution", "the scene has no [[load]]"));
+        stages.push(skip("network solutions, displacement errors, stability", "the scene has no [[load]]"));
+    }
+    for load in &scene.loads {
+        let large = if scene.law().is_some() { " at large deformation" } else { "" };
+        let networks = scene.fits.len();
+        stages.push(run(format!("solve {}{large} with finite elements and with {networks} networks", load.name)));
+    }
+    if !scene.loads.is_empty() && scene.law().is_none() {
+        stages.push(run("compare the energies of each network with the body's".into()));
+    }
+    match scene.density() {
+        Some(_) => stages.push(run("masses".into())),
+        None => stages.push(skip("masses", "the material has no density")),
+    }
+    for (wanted, what) in [
+        (scene.output.moduli, "moduli of each network as a material"),
+        (scene.output.vtu, "VTU files"),
+        (scene.output.csv, "CSV files"),
+    ] {
+        stages.push(if wanted { run(what.into()) } else { skip(what, "not asked for in [output]") });
+    }
+    stages
+}
