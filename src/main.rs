@@ -1,163 +1,26 @@
 //! The command line: parses, calls the library, prints, and sets the exit code.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+mod arguments;
+
+use arguments::{
+    CheckArguments, Command, CommandLine, CompareArguments, DeriveArguments, FitArguments, PlaneArgument, RunArguments,
+};
+use clap::Parser;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::element::Element;
 use springfit::error::{Error, Result};
-use springfit::fit::{Choices, ClosedForm, Fit, Objective, Solver, Weight};
-use springfit::material::{Material, Plane, parse_pressure};
+use springfit::fit::{ClosedForm, Weight};
+use springfit::material::{Energy, Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, vtk};
 use springfit::report::Comparison;
 use springfit::springs::Springs;
-use springfit::study::{NamedFit, Scene, fit_mesh, load_elements, run, stages};
+use springfit::study::{FitEntry, LargeBody, Recipe, Scene, ShapesEntry, fit_mesh, load_elements, run, stages};
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// Mass-spring models that answer like finite elements.
-#[derive(Parser)]
-#[command(version, about)]
-struct CommandLine {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// Fit, solve and compare a scene
-    Run(RunArguments),
-    /// Fit the springs of a mesh, without a scene
-    Fit(FitArguments),
-    /// Prove element files: one line per property, exit code 1 if one fails
-    Check(CheckArguments),
-    /// Exact closed forms of an element's stiffness and spring constants
-    Derive(DeriveArguments),
-    /// Objectives and solvers side by side: error against run time, on random shapes of an element or on a scene
-    Compare(CompareArguments),
-}
-
-#[derive(Args)]
-struct CheckArguments {
-    /// Element files, folders of them, or names of shipped elements
-    #[arg(required = true)]
-    what: Vec<String>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-}
-
-#[derive(Args)]
-struct DeriveArguments {
-    /// A shipped element's name, or an element file
-    element: String,
-    /// Lengths a, b, c along the axes as variables, instead of the reference cell
-    #[arg(long)]
-    sides: bool,
-    /// Plane element: stress or strain, for the constants in terms of E and nu [default: stress]
-    #[arg(long)]
-    plane: Option<PlaneArgument>,
-    /// Spring groups to use, separated by commas [default: all that are not optional]
-    #[arg(long, value_delimiter = ',')]
-    springs: Option<Vec<String>>,
-    /// Print the stiffness matrix as well
-    #[arg(long)]
-    matrix: bool,
-    /// Print LaTeX
-    #[arg(long)]
-    latex: bool,
-}
-
-#[derive(Args)]
-struct CompareArguments {
-    /// A shipped element's name, an element file, or a scene
-    what: String,
-    /// Random shapes of an element
-    #[arg(long, default_value_t = 100)]
-    shapes: usize,
-    /// Iterations of the general optimisers
-    #[arg(long, default_value_t = Solver::DEFAULT_ITERATIONS)]
-    iterations: u64,
-    /// Poisson's ratio, for an element
-    #[arg(long, default_value_t = 0.3, allow_hyphen_values = true)]
-    poisson: f64,
-    /// Where table.csv and plot.svg go [default: out/compare-NAME]
-    #[arg(long)]
-    out: Option<PathBuf>,
-}
-
-#[derive(Args)]
-struct RunArguments {
-    /// The scene file
-    scene: PathBuf,
-    /// Where the report goes [default: out/NAME of the scene]
-    #[arg(long)]
-    out: Option<PathBuf>,
-    /// Say which stages will run and which are left out, and stop
-    #[arg(long)]
-    explain: bool,
-}
-
-#[derive(Args)]
-struct FitArguments {
-    /// The mesh: .msh, .vtu or .vtk
-    mesh: PathBuf,
-    /// Young's modulus, such as 10kPa
-    #[arg(long, allow_hyphen_values = true)]
-    young: String,
-    /// Poisson's ratio
-    #[arg(long, allow_hyphen_values = true)]
-    poisson: f64,
-    /// frobenius, offdiag or modal [default: offdiag with --nonnegative]
-    #[arg(long)]
-    objective: Option<String>,
-    /// What counts: none, offdiag, modal or relative (with the objectives frobenius and spectral)
-    #[arg(long)]
-    weight: Option<String>,
-    /// Scale of the modes beyond constant strain (modal only)
-    #[arg(long)]
-    higher: Option<f64>,
-    /// From 0, which errs to the soft side, to 1 (divergence only)
-    #[arg(long)]
-    balance: Option<f64>,
-    /// Spring groups to use, separated by commas [default: all that are not optional]
-    #[arg(long, value_delimiter = ',')]
-    springs: Option<Vec<String>>,
-    /// One constant per group
-    #[arg(long)]
-    tied: bool,
-    /// No constant below zero
-    #[arg(long)]
-    nonnegative: bool,
-    /// Plane mesh or surface: stress or strain [default: stress]
-    #[arg(long)]
-    plane: Option<PlaneArgument>,
-    /// Plane mesh or surface: thickness in m [default: 1]
-    #[arg(long, allow_hyphen_values = true)]
-    thickness: Option<f64>,
-    /// Mesh of lines: cross-section in m² [default: 1]
-    #[arg(long, allow_hyphen_values = true)]
-    area: Option<f64>,
-    /// In kg/m³; gives the points masses
-    #[arg(long, allow_hyphen_values = true)]
-    density: Option<f64>,
-    /// Mesh units to metres
-    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
-    scale: f64,
-    /// An element file to look in before the shipped ones; may be repeated
-    #[arg(long)]
-    element: Vec<String>,
-    /// Where the springs go: .vtu, .json or .csv
-    #[arg(short, long)]
-    output: PathBuf,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum PlaneArgument {
-    Stress,
-    Strain,
-}
 
 fn main() -> ExitCode {
     let command = CommandLine::parse().command;
@@ -197,10 +60,7 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
     for note in report::notes(&outcome) {
         eprintln!("note: {note}");
     }
-    for path in report::write_outputs(&outcome, &scene.output, &folder)? {
-        print(&format!("written: {}\n", path.display()))?;
-    }
-    Ok(())
+    written(&report::write_outputs(&outcome, &scene.output, &folder)?)
 }
 
 fn fit(arguments: &FitArguments) -> Result<()> {
@@ -210,9 +70,28 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     }
     let young = parse_pressure(&arguments.young).map_err(|e| e.under("--young"))?;
     // Of the fits that serve every element alike, the one with the least error among those that always stand.
-    let chosen = arguments.objective.as_deref();
-    let choices = Choices { weight: arguments.weight.as_deref(), higher: arguments.higher, balance: arguments.balance };
-    let objective = Objective::named(chosen.unwrap_or("offdiag"), choices).map_err(Error::of_option)?;
+    let chosen = arguments.objective.clone();
+    let nonnegative = arguments.nonnegative || chosen.is_none();
+    let shapes =
+        ShapesEntry { count: arguments.shapes, stretch: arguments.stretch.map(Into::into), ..ShapesEntry::default() };
+    let entry = FitEntry {
+        objective: chosen.unwrap_or("offdiag".into()),
+        weight: arguments.weight.clone(),
+        higher: arguments.higher,
+        balance: arguments.balance,
+        springs: arguments.springs.clone(),
+        tied: arguments.tied,
+        nonnegative,
+        force: arguments.force.clone().map(Into::into),
+        shapes: Some(shapes).filter(|s| *s != ShapesEntry::default()),
+        ..FitEntry::default()
+    };
+    let named = entry.check(Path::new("")).map_err(|e| e.placed(Error::of_option))?;
+    let sampled = matches!(named.recipe, Recipe::Forces(_));
+    if sampled != arguments.law.is_some() {
+        let problem = "goes with the objective \"sampled\", and that with it: the energy whose forces are sampled";
+        return Err(Error::at("--law", problem));
+    }
     if !(arguments.scale > 0.0 && arguments.scale.is_finite()) {
         return Err(Error::expected("--scale", "a positive number of metres per mesh unit", arguments.scale));
     }
@@ -223,18 +102,16 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         .map_err(|e| e.placed(|e| Error::at("--element", e.problem())))?;
     let source = MeshSource::read(&arguments.mesh)?;
     let mesh = Mesh::resolve(&source, &own, arguments.scale).map_err(|e| e.in_file(&arguments.mesh))?;
-    let plane = arguments.plane.map(|p| match p {
-        PlaneArgument::Stress => Plane::Stress,
-        PlaneArgument::Strain => Plane::Strain,
-    });
+    let plane = arguments.plane.map(plane);
     let material = Material::for_body(mesh.cell_dimension(), young, arguments.poisson, plane, arguments.thickness)
         .and_then(|m| arguments.area.map_or(Ok(m), |area| m.with_area(area)))
         .map_err(Error::of_option)?;
-    let nonnegative = arguments.nonnegative || chosen.is_none();
-    let fit = Fit { tied: arguments.tied, nonnegative, ..Fit::new(objective) };
+    let energy = arguments.law.as_ref().map(|law| Energy::load(law, material)).transpose();
+    let large = energy.map_err(|e| e.placed(|e| Error::at("--law", e.problem())))?.map(LargeBody::at_rest);
     let mut bar = Bar::new();
-    let named = NamedFit::new(fit, arguments.springs.clone());
-    let outcome = fit_mesh(&mesh, material, None, &named, &mut |stage, done, total| bar.show(stage, done, total))?;
+    let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    let outcome = fit_mesh(&mesh, material, large.as_ref(), &named, &mut progress);
+    let outcome = outcome.map_err(|e| if sampled { e.placed(Error::of_option) } else { e })?;
     bar.clear();
     let masses = arguments.density.map(|density| model::masses(&mesh, density, material.thickness()));
     match ending {
@@ -313,12 +190,24 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
     springfit::check_folder(&folder)?;
     let mut bar = Bar::new();
     let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    if arguments.law.is_some() && is_scene(path) {
+        return Err(Error::at("--law", "goes with an element; a scene names it in its material"));
+    }
     let comparison = if is_scene(path) {
         Comparison::of_scene(&study::compare_scene(&Scene::load(path)?, &mut progress)?)
     } else {
         let element = Element::load(&arguments.what)?;
+        let plane = arguments.plane.map(plane);
         let material =
-            Material::for_body(element.dimension(), 10e3, arguments.poisson, None, None).map_err(Error::of_option)?;
+            Material::for_body(element.dimension(), 10e3, arguments.poisson, plane, None).map_err(Error::of_option)?;
+        if let Some(law) = &arguments.law {
+            let element = Arc::new(element);
+            let study = study::compare_stretches(&element, material, law, arguments.stretch, &mut progress);
+            let study = study.map_err(|e| e.placed(Error::of_option))?;
+            bar.clear();
+            print(&report::stretches_text(&study))?;
+            return written(&report::write_stretches(&study, &folder)?);
+        }
         if arguments.iterations == 0 {
             return Err(Error::expected("--iterations", "a number above 0", 0));
         }
@@ -330,10 +219,18 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
     };
     bar.clear();
     print(&comparison.table())?;
-    for path in comparison.write(&folder)? {
-        print(&format!("written: {}\n", path.display()))?;
+    written(&comparison.write(&folder)?)
+}
+
+fn written(paths: &[PathBuf]) -> Result<()> {
+    paths.iter().try_for_each(|path| print(&format!("written: {}\n", path.display())))
+}
+
+fn plane(argument: PlaneArgument) -> Plane {
+    match argument {
+        PlaneArgument::Stress => Plane::Stress,
+        PlaneArgument::Strain => Plane::Strain,
     }
-    Ok(())
 }
 
 /// Whether a file is a scene: it has a `[mesh]`, where an element has nodes. What cannot be read is told as an element.

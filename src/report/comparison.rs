@@ -112,14 +112,7 @@ impl Comparison {
     }
 
     pub fn csv(&self) -> String {
-        let line = |cells: &[String]| {
-            let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
-                true => format!("\"{}\"", cell.replace('"', "\"\"")),
-                false => cell.clone(),
-            };
-            cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
-        };
-        std::iter::once(line(&self.header)).chain(self.rows.iter().map(|row| line(row))).collect()
+        csv(&self.header, &self.rows)
     }
 
     /// Writes `table.csv` and `plot.svg` into `folder`, and returns the paths.
@@ -159,8 +152,19 @@ impl Comparison {
     }
 }
 
+pub(super) fn csv(header: &[String], rows: &[Vec<String>]) -> String {
+    let line = |cells: &[String]| {
+        let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell.clone(),
+        };
+        cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
+    };
+    std::iter::once(line(header)).chain(rows.iter().map(|row| line(row))).collect()
+}
+
 /// Okabe and Ito (2008): told apart by all eyes and on paper. Each eight methods share a mark.
-const COLORS: [RGBColor; 8] = [
+pub(super) const COLORS: [RGBColor; 8] = [
     RGBColor(0, 0, 0),
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),

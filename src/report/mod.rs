@@ -6,6 +6,7 @@ mod derivation;
 mod json;
 mod network;
 mod pictures;
+mod stretches;
 mod table;
 
 pub use check::{check_json, check_text};
@@ -14,6 +15,7 @@ pub use derivation::Derivation;
 pub use json::report;
 pub use network::{network_csv, network_json};
 pub use pictures::{displacement_grid, network_grid};
+pub use stretches::{stretches_text, write_stretches};
 pub use table::{notes, summary, table};
 
 use crate::error::Result;

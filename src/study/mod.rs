@@ -12,6 +12,7 @@ mod random;
 mod run;
 mod scene;
 mod stages;
+mod stretches;
 
 pub use check::{Inspection, Mark, Property, inspect};
 pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
@@ -21,6 +22,8 @@ pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{FitOutcome, Followed, LoadOutcome, Outcome, SampledOutcome};
 pub use run::{Progress, fit_mesh, run};
 pub use scene::{
-    BoxEntry, ForceRecipe, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene, load_elements,
+    BoxEntry, FitEntry, ForceRecipe, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,
+    ShapesEntry, load_elements,
 };
 pub use stages::stages;
+pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};

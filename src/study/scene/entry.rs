@@ -92,7 +92,8 @@ pub struct NewtonEntry {
     pub tolerance: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+/// A `[[fit]]` as it is written.
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitEntry {
     pub name: Option<String>,
@@ -168,6 +169,10 @@ impl MaterialEntry {
 }
 
 impl FitEntry {
+    /// The fit that it stands for; files are relative to `folder`.
+    ///
+    /// # Errors
+    /// A key has a wrong value, or belongs to another objective.
     pub fn check(self, folder: &Path) -> Result<NamedFit> {
         let sampled = SampledEntry {
             force: self.force,

@@ -4,8 +4,9 @@ mod entry;
 mod recipe;
 mod sampled;
 
-pub use entry::{BoxEntry, MeshInput, Output};
+pub use entry::{BoxEntry, FitEntry, MeshInput, Output};
 pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
+pub use sampled::ShapesEntry;
 
 use crate::element::Element;
 use crate::error::{Error, Result};

@@ -1,0 +1,149 @@
+//! Tables and figures of springs at large deformation.
+
+use super::comparison::{COLORS, csv};
+use super::table::aligned;
+use crate::error::{Error, Result};
+use crate::file::{create_folder, write_whole};
+use crate::study::{STRETCHES, Stretches};
+use plotters::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// Names and points of the lines of a figure.
+type Lines = Vec<(String, Vec<(f64, f64)>)>;
+
+/// Both tables as text.
+pub fn stretches_text(study: &Stretches) -> String {
+    let (header, rows) = errors(study);
+    let (sampled_header, sampled_rows) = runs(study);
+    format!(
+        "{}\n\n{}\n{}\n\n{}",
+        title(study),
+        aligned(&header, &rows),
+        format_args!("{}, one element on one thread", study.element),
+        aligned(&sampled_header, &sampled_rows)
+    )
+}
+
+/// Writes `stretch.csv`, `samples.csv`, `stretch.svg` and `samples.svg` into `folder`, and returns the paths.
+///
+/// # Errors
+/// A figure cannot be drawn; the folder or a file cannot be written.
+pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>> {
+    let (header, rows) = errors(study);
+    let (sampled_header, sampled_rows) = runs(study);
+    let stretched: Lines = study
+        .fits
+        .iter()
+        .map(|fit| {
+            let points = STRETCHES.iter().zip(&fit.errors).filter_map(|(s, e)| Some((100.0 * s, (*e)?)));
+            (fit.name.clone(), points.collect())
+        })
+        .collect();
+    let mut timed: Lines = Vec::new();
+    for run in &study.runs {
+        let point = (1e3 * run.seconds, 100.0 * run.held_out);
+        match timed.iter_mut().find(|(name, _)| *name == run.name) {
+            Some((_, points)) => points.push(point),
+            None => timed.push((run.name.clone(), vec![point])),
+        }
+    }
+    let files = [
+        ("stretch.csv", csv(&header, &rows)),
+        ("samples.csv", csv(&sampled_header, &sampled_rows)),
+        ("stretch.svg", figure(&title(study), ["stretch, %", "%e_rms"], &stretched)?),
+        (
+            "samples.svg",
+            figure(
+                &format!("{}: 10 to 10 000 shapes, one element on one thread", study.element),
+                ["fit, ms", "error of the forces at shapes held out, %"],
+                &timed,
+            )?,
+        ),
+    ];
+    create_folder(folder)?;
+    let write = |(name, text): (&str, String)| {
+        let path = folder.join(name);
+        write_whole(&path, text.as_bytes())?;
+        Ok(path)
+    };
+    files.into_iter().map(write).collect()
+}
+
+fn title(study: &Stretches) -> String {
+    format!("{}: a box held at both ends and stretched, {}; %e_rms", study.element, study.law.to_lowercase())
+}
+
+fn errors(study: &Stretches) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut header = vec!["fit".to_string(), "us/element".into()];
+    header.extend(STRETCHES.map(|s| format!("{} %", 100.0 * s)));
+    let rows = study.fits.iter().map(|fit| {
+        let mut row = vec![fit.name.clone(), format!("{:.1}", 1e6 * fit.seconds)];
+        row.extend(fit.errors.iter().map(|e| e.map_or("-".into(), |e| format!("{e:.3}"))));
+        row
+    });
+    (header, rows.collect())
+}
+
+fn runs(study: &Stretches) -> (Vec<String>, Vec<Vec<String>>) {
+    let header = ["fit", "shapes", "ms", "fitted %", "held out %"].map(String::from).into();
+    let rows = study.runs.iter().map(|run| {
+        let percent = |share: f64| format!("{:.3}", 100.0 * share);
+        let (shapes, seconds) = (run.shapes.to_string(), format!("{:.2}", 1e3 * run.seconds));
+        vec![run.name.clone(), shapes, seconds, percent(run.trained), percent(run.held_out)]
+    });
+    (header, rows.collect())
+}
+
+/// Lines over logarithmic axes, an SVG file's text; what is below a thousandth of the largest value is drawn there.
+fn figure(title: &str, axes: [&str; 2], lines: &Lines) -> Result<String> {
+    let all = || lines.iter().flat_map(|(_, points)| points).filter(|(x, y)| *x > 0.0 && y.is_finite());
+    let (least, largest) = all().fold((f64::INFINITY, 0.0f64), |(a, b), (x, _)| (a.min(*x), b.max(*x)));
+    let highest = all().map(|(_, y)| *y).fold(0.0, f64::max);
+    if highest <= 0.0 {
+        return Err(Error::new("nothing to plot: no fit has an error above zero"));
+    }
+    let mut text = String::new();
+    let range = [(least / 1.1, 1.1 * largest), (highest * 1e-3, 1.3 * highest)];
+    draw(&mut text, title, axes, lines, range).map_err(|e| Error::new(format!("the plot cannot be drawn: {e}")))?;
+    Ok(text)
+}
+
+fn draw(
+    text: &mut String,
+    title: &str,
+    [across, up]: [&str; 2],
+    lines: &Lines,
+    [x, y]: [(f64, f64); 2],
+) -> std::result::Result<(), Box<dyn std::error::Error>> {
+    let area = SVGBackend::with_string(text, (980, 520)).into_drawing_area();
+    area.fill(&WHITE)?;
+    let (plot, names) = area.split_horizontally(720);
+    let mut chart = ChartBuilder::on(&plot)
+        .margin(16)
+        .caption(title, ("sans-serif", 17))
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())?;
+    let number = |v: &f64| format!("{}", (v * 1e4).round() / 1e4);
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .x_desc(across)
+        .y_desc(up)
+        .x_label_formatter(&number)
+        .y_label_formatter(&number)
+        .label_style(("sans-serif", 13))
+        .draw()?;
+    for (i, (name, points)) in lines.iter().enumerate() {
+        let color = COLORS[i % COLORS.len()];
+        let shown: Vec<(f64, f64)> = points.iter().map(|(x, error)| (*x, error.max(y.0))).collect();
+        let label = 30 + 22 * i as i32;
+        chart.draw_series(LineSeries::new(shown.iter().copied(), color.stroke_width(2)))?;
+        chart.draw_series(shown.iter().map(|&at| Circle::new(at, 4, color.filled())))?;
+        names.draw(&PathElement::new([(6, label + 7), (24, label + 7)], color.stroke_width(2)))?;
+        names.draw(&Circle::new((15, label + 7), 4, color.filled()))?;
+        names.draw(&Text::new(name.clone(), (32, label), ("sans-serif", 14)))?;
+    }
+    area.present()?;
+    Ok(())
+}
