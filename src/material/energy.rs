@@ -3,7 +3,7 @@
 use super::Material;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::symbolic::{Expr, Jet, Scope};
+use crate::symbolic::{Expr, Jet, Program, Scope};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -47,7 +47,7 @@ pub struct Energy {
     /// Of the invariants, then the moduli, then the parameters.
     expression: Expr,
     /// Its derivatives in the invariants.
-    slopes: Vec<Expr>,
+    slopes: Vec<Program>,
     /// Of the moduli and parameters.
     constants: Vec<f64>,
     by_stretches: bool,
@@ -124,7 +124,7 @@ impl Energy {
             source: definition.source,
             fibre: fibre.map(|a| a.normalize()),
             by_stretches: uses(4..7),
-            slopes: (0..INVARIANTS.len()).map(|v| expression.derivative(v)).collect(),
+            slopes: (0..INVARIANTS.len()).map(|v| Program::of(&expression.derivative(v))).collect(),
             expression,
             constants,
         };
@@ -171,9 +171,10 @@ impl Energy {
             return (0..3).map(|i| pull(i) * n.column(i) * big_n.column(i).transpose()).sum();
         }
         let mut stress = Matrix3::zeros();
-        let mut add = |v: usize, direction: &dyn Fn() -> Matrix3<f64>| match &self.slopes[v] {
-            Expr::Number(c) if num_traits::Zero::is_zero(c) => {}
-            slope => stress += slope.evaluate(&at) * direction(),
+        let mut add = |v: usize, direction: &dyn Fn() -> Matrix3<f64>| {
+            if !self.slopes[v].is_zero() {
+                stress += self.slopes[v].evaluate(&at) * direction();
+            }
         };
         add(0, &|| 2.0 * f);
         add(1, &|| 2.0 * (i1 * f - f * c));

@@ -1,7 +1,7 @@
 //! Laws of force: how hard a spring pulls when what it measures has changed, as an expression with parameters.
 
 use crate::error::{Error, Result};
-use crate::symbolic::{Expr, Function, Scope};
+use crate::symbolic::{Expr, Function, Program, Scope};
 use gauss_quad::GaussLegendre;
 use std::sync::{Arc, OnceLock};
 
@@ -18,10 +18,10 @@ pub struct Law {
     pub text: String,
     /// The names in the text that are neither variables nor functions, in the order in which they appear.
     pub parameters: Vec<String>,
-    force: Expr,
-    slope_in_strain: Expr,
-    slope_in_measure: Expr,
-    by_parameter: Vec<Expr>,
+    force: Program,
+    slope_in_strain: Program,
+    slope_in_measure: Program,
+    by_parameter: Vec<Program>,
     outer: Vec<bool>,
     linear: bool,
 }
@@ -44,13 +44,13 @@ impl Law {
         }
         let mut law = Law {
             text: text.to_string(),
-            slope_in_strain: force.derivative(0),
-            slope_in_measure: force.derivative(1),
+            slope_in_strain: Program::of(&force.derivative(0)),
+            slope_in_measure: Program::of(&force.derivative(1)),
             linear: outer.iter().all(|outer| *outer),
             outer,
             parameters,
-            force,
-            by_parameter,
+            force: Program::of(&force),
+            by_parameter: by_parameter.iter().map(Program::of).collect(),
         };
         let inner: Vec<f64> = law.outer.iter().map(|outer| if *outer { 0.0 } else { 1.0 }).collect();
         if STRAINS.iter().any(|s| law.force(1.0 + s, 1.0, &inner) != 0.0) {

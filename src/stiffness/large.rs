@@ -57,12 +57,16 @@ impl Geometry {
         Some(response)
     }
 
-    /// The nodal forces of [`Geometry::respond`] alone, into `force`; false where the energy is not finite.
-    pub fn forces(&self, energy: &Energy, state: State, x: &[f64], force: &mut [f64]) -> bool {
+    /// The nodal forces of [`Geometry::respond`] alone, into `force`; false where the energy is not finite, or where less than
+    /// the share `upright` of the volume is left at a quadrature point (of the area in the plane).
+    pub fn forces(&self, energy: &Energy, state: State, x: &[f64], upright: f64, force: &mut [f64]) -> bool {
         let (n, d) = (self.nodes, self.dimension);
         force.fill(0.0);
         for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
             let f = deformation(grad, x, d);
+            if f.determinant() < upright {
+                return false;
+            }
             let stress = match state {
                 State::PlaneStress { .. } => without_stress(energy, f, &[2]).map(|(_, stress, _)| stress),
                 State::Rod { .. } => without_stress(energy, f, &[1, 2]).map(|(_, stress, _)| stress),
@@ -83,9 +87,12 @@ impl Geometry {
 /// `F = Σ_a x_a ∇N_aᵀ`, with the identity across planes and rods.
 fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
     let mut f = Matrix3::identity();
-    for k in 0..d {
-        for l in 0..d {
-            f[(k, l)] = x.chunks_exact(d).zip(grad.chunks_exact(d)).map(|(x, g)| x[k] * g[l]).sum();
+    (0..d).for_each(|k| f[(k, k)] = 0.0);
+    for (x, g) in x.chunks_exact(d).zip(grad.chunks_exact(d)) {
+        for k in 0..d {
+            for l in 0..d {
+                f[(k, l)] += x[k] * g[l];
+            }
         }
     }
     f

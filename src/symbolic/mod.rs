@@ -10,11 +10,13 @@ mod jet;
 mod parse;
 mod predicate;
 mod print;
+mod program;
 
 pub use fraction::{Fraction, Polynomial};
 pub use jet::Jet;
 pub use parse::{Scope, parse_rational};
 pub use predicate::Predicate;
+pub use program::Program;
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};

@@ -9,18 +9,24 @@ use crate::fit::normal::Normal;
 use crate::material::{Energy, State};
 use crate::springs::{Force, Law, Measure, Springs, distance};
 use crate::stiffness::Geometry;
-use nalgebra::{DMatrix, Matrix3};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A shape whose deformation gradient has a smaller determinant is drawn again, at half the size.
+/// A shape that leaves less than this share of the volume somewhere is drawn again, at half the size.
 const FLAT: f64 = 0.2;
 /// How often.
 const HALVINGS: i32 = 8;
 /// Shapes that one thread adds up, and blocks of them before they are added to the rest.
 const BLOCK: usize = 256;
 const BLOCKS: usize = 16;
+/// Numbers of equations that are held before they are added up: a few hundred kilobytes.
+const HELD: usize = 1 << 15;
+/// Parameters of a spring for which there is always room.
+const FEW: usize = 8;
 /// Rest measures of springs that choose their own, as shares of what is measured at rest: a nonnegative sum of one spring of
 /// each is a spring with a rest measure between.
 pub const REST_RANGE: [f64; 2] = [0.5, 2.0];
@@ -33,8 +39,8 @@ pub struct Cell<'a> {
     count: usize,
     /// The group of each spring.
     groups: &'a [usize],
-    /// Where the slopes of each spring begin, `[springs + 1]`.
-    places: Vec<usize>,
+    /// The most unknowns that a spring has.
+    widest: usize,
     geometry: &'a Geometry,
     energy: &'a Energy,
     state: State,
@@ -88,19 +94,19 @@ impl<'a> Cell<'a> {
             Spring { nodes, measure, rest }
         };
         let mut unknowns: Vec<Range<usize>> = Vec::new();
-        let (mut count, mut places) = (0, vec![0]);
+        let (mut count, mut widest) = (0, 0);
         for (s, &group) in springs.groups.iter().enumerate() {
             let first = springs.groups[..s].iter().position(|&g| g == group).filter(|_| fit.tied);
             let own = first.map_or(count..count + fit.columns(group), |first| unknowns[first].clone());
             count = count.max(own.end);
-            places.push(places[s] + own.len());
+            widest = widest.max(own.len());
             unknowns.push(own);
         }
         Cell {
             unknowns,
             count,
             groups: &springs.groups,
-            places,
+            widest,
             springs: springs.measures(element).into_iter().map(with_rest).collect(),
             geometry,
             energy,
@@ -153,11 +159,16 @@ impl<'a> Cell<'a> {
         };
         let block = |first: usize| {
             let mut sums = Sums::of(self.count);
-            let (mut sample, mut room) = (Sample::default(), Vec::new());
+            let (mut sample, mut rows, mut lacking) = (Sample::default(), Vec::new(), Vec::new());
             for i in first..(first + BLOCK).min(total) {
                 self.sample(part, i, &mut sample)?;
-                self.add(&sample, unknowns, &mut room, &mut sums);
+                self.equations(&sample, unknowns, &mut rows, &mut lacking);
+                sums.size += sample.weight * inner(&sample.force, &sample.force);
+                if rows.len() > HELD {
+                    sums.add(&mut rows, &mut lacking);
+                }
             }
+            sums.add(&mut rows, &mut lacking);
             Ok(sums)
         };
         let mut sums = Sums::of(self.count);
@@ -183,7 +194,7 @@ impl<'a> Cell<'a> {
         sample.gradients.resize(self.springs.len() * seen, 0.0);
         for halvings in 0..HALVINGS {
             let x = self.shapes.place(part, i, 0.5f64.powi(halvings));
-            if !(self.is_upright(&x) && self.geometry.forces(self.energy, self.state, &x, &mut sample.force[..size])) {
+            if !self.geometry.forces(self.energy, self.state, &x, FLAT, &mut sample.force[..size]) {
                 continue;
             }
             self.measure(&x, sample);
@@ -226,20 +237,6 @@ impl<'a> Cell<'a> {
         force.iter_mut().for_each(|f| *f *= h);
     }
 
-    /// Whether no quadrature point has lost most of its volume.
-    fn is_upright(&self, x: &[f64]) -> bool {
-        let d = self.shapes.dimension;
-        self.geometry.gradients.chunks_exact(x.len()).all(|grad| {
-            let entry = |k: usize, l: usize| -> f64 {
-                if k >= d || l >= d {
-                    return f64::from(u8::from(k == l));
-                }
-                x.chunks_exact(d).zip(grad.chunks_exact(d)).map(|(x, g)| x[k] * g[l]).sum()
-            };
-            Matrix3::from_fn(entry).determinant() > FLAT
-        })
-    }
-
     fn measure(&self, x: &[f64], sample: &mut Sample) {
         let (d, seen) = (self.shapes.dimension, self.seen());
         sample.measures.clear();
@@ -280,61 +277,24 @@ impl<'a> Cell<'a> {
         slopes.iter().zip(own).map(|(slope, p)| slope * p).sum()
     }
 
-    /// The equations of one shape, `w (f − Σ_s φ_s ∇c_s) = 0`, `[seen × unknowns]` and `[seen]`, after those so far.
-    pub fn equations(&self, sample: &Sample, rows: &mut Vec<f64>, rhs: &mut Vec<f64>) {
-        let (seen, first) = (self.seen(), rows.len());
+    /// The equations of one shape, `√w (f − Σ_s T_s ∇c_s)` and its derivatives in the unknowns, with its sign turned: rows
+    /// `[seen × unknowns]` and `[seen]`, after those so far.
+    pub fn equations(&self, sample: &Sample, unknowns: &[f64], rows: &mut Vec<f64>, lacking: &mut Vec<f64>) {
+        let (seen, first, before) = (self.seen(), rows.len(), lacking.len());
         let scale = sample.weight.sqrt();
         rows.resize(first + seen * self.count, 0.0);
-        rhs.extend(sample.force.iter().map(|f| scale * f));
-        let nothing = vec![0.0; self.count];
+        lacking.extend(sample.force.iter().map(|f| scale * f));
+        let mut few = [0.0; FEW];
+        let mut many = vec![0.0; if self.widest > FEW { self.widest } else { 0 }];
         for (s, (gradient, &c)) in sample.gradients.chunks_exact(seen).zip(&sample.measures).enumerate() {
-            let mut slopes = vec![0.0; self.unknowns[s].len()];
-            self.pull(s, c, &nothing, &mut slopes);
-            for (row, g) in rows[first..].chunks_exact_mut(self.count).zip(gradient) {
-                row[self.unknowns[s].clone()]
-                    .iter_mut()
-                    .zip(&slopes)
-                    .for_each(|(entry, slope)| *entry += scale * slope * g);
-            }
-        }
-    }
-
-    fn add(&self, sample: &Sample, unknowns: &[f64], room: &mut Vec<f64>, sums: &mut Sums) {
-        let (seen, count) = (self.seen(), self.count);
-        let rows = || sample.gradients.chunks_exact(seen);
-        room.clear();
-        room.resize(self.places[self.len()] + seen, 0.0);
-        let (slopes, lacking) = room.split_at_mut(self.places[self.len()]);
-        let own = |s: usize| self.places[s]..self.places[s + 1];
-        lacking.copy_from_slice(&sample.force);
-        for (s, (row, &c)) in rows().zip(&sample.measures).enumerate() {
-            let pull = self.pull(s, c, unknowns, &mut slopes[own(s)]);
-            if pull != 0.0 {
-                lacking.iter_mut().zip(row).for_each(|(f, g)| *f -= pull * g);
-            }
-        }
-        sums.square += sample.weight * inner(lacking, lacking);
-        sums.size += sample.weight * inner(&sample.force, &sample.force);
-        let Normal { gram, rhs, .. } = &mut sums.normal;
-        for (s, row) in rows().enumerate() {
-            let work = sample.weight * inner(row, lacking);
-            let first = self.unknowns[s].start;
-            slopes[own(s)].iter().enumerate().for_each(|(i, slope)| rhs[first + i] += work * slope);
-            for (t, other) in rows().enumerate().take(s + 1) {
-                let product = sample.weight * inner(row, other);
-                if product == 0.0 {
-                    continue;
-                }
-                for (i, a) in slopes[own(s)].iter().enumerate() {
-                    for (j, b) in slopes[own(t)].iter().enumerate() {
-                        let (row, column) = (first + i, self.unknowns[t].start + j);
-                        gram[row * count + column] += product * a * b;
-                        // Springs of one group meet on both sides of the diagonal.
-                        if t < s {
-                            gram[column * count + row] += product * a * b;
-                        }
-                    }
-                }
+            let own = self.unknowns[s].clone();
+            let slopes = if own.len() <= FEW { &mut few[..own.len()] } else { &mut many[..own.len()] };
+            let pull = scale * self.pull(s, c, unknowns, slopes);
+            let places = gradient.iter().enumerate().filter(|(_, g)| **g != 0.0);
+            for (place, g) in places {
+                lacking[before + place] -= pull * g;
+                let row = &mut rows[first + place * self.count..][own.clone()];
+                row.iter_mut().zip(&*slopes).for_each(|(entry, slope)| *entry += scale * slope * g);
             }
         }
     }
@@ -343,6 +303,24 @@ impl<'a> Cell<'a> {
 impl Sums {
     fn of(count: usize) -> Sums {
         Sums { normal: Normal::new(vec![0.0; count * count], vec![0.0; count]), square: 0.0, size: 0.0 }
+    }
+
+    /// `M += AᵀA`, `b += Aᵀ r` and `‖r‖²` of some equations, which are taken away.
+    fn add(&mut self, rows: &mut Vec<f64>, lacking: &mut Vec<f64>) {
+        let (equations, count) = (lacking.len(), self.normal.rhs.len());
+        if equations == 0 {
+            return;
+        }
+        self.square += inner(lacking, lacking);
+        let a = MatRef::from_row_major_slice(rows, equations, count);
+        let gram = MatMut::from_row_major_slice_mut(&mut self.normal.gram, count, count);
+        let (lower, all) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+        triangular::matmul(gram, lower, Accum::Add, a.transpose(), all, a, all, 1.0, Par::Seq);
+        for (row, r) in rows.chunks_exact(count).zip(&*lacking) {
+            self.normal.rhs.iter_mut().zip(row).for_each(|(b, entry)| *b += entry * r);
+        }
+        rows.clear();
+        lacking.clear();
     }
 
     fn merge(&mut self, other: &Sums) {

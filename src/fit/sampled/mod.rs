@@ -274,7 +274,7 @@ impl Cell<'_> {
                 let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (sample.force.len() * count));
                 return Err(Error::expected("shapes", expected, shapes));
             }
-            self.equations(&sample, &mut rows, &mut rhs);
+            self.equations(&sample, &vec![0.0; count], &mut rows, &mut rhs);
         }
         Ok(solve_norm(&rows, &rhs, count, self.fit.norm, bounded))
     }
