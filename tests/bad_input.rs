@@ -37,6 +37,29 @@ group = "ymax"
 traction = [0, 1]
 "#;
 
+/// At large deformation, fitted to sampled forces.
+const SOFT: &str = r#"[mesh]
+box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+law = "neo-hookean"
+[[fit]]
+objective = "sampled"
+force = "k*(exp(a*s) - 1)"
+bounds = { a = [0, 10] }
+starts = 2
+shapes = { families = ["uniaxial"], count = 30, held_out = 10, stretch = 0.2 }
+[newton]
+steps = 2
+[[fix]]
+group = "zmin"
+[[load]]
+name = "pull"
+group = "zmax"
+traction = [0, 0, 1]
+"#;
+
 /// Reads `mesh.msh` and looks in `own.toml` first.
 const FROM_FILES: &str = r#"[mesh]
 file = "mesh.msh"
@@ -205,8 +228,9 @@ fn refuses_elements(edits: &[Edit]) {
 #[test]
 fn the_inputs_are_right_before_they_are_changed() {
     let mesh = unit_mesh();
-    let files: [(&str, &[u8]); 5] = [
+    let files: [(&str, &[u8]); 6] = [
         ("brick.toml", BRICK.as_bytes()),
+        ("soft.toml", SOFT.as_bytes()),
         ("plate.toml", PLATE.as_bytes()),
         ("files.toml", FROM_FILES.as_bytes()),
         ("own.toml", TETRAHEDRON.as_bytes()),
@@ -229,13 +253,13 @@ fn keys_and_types() {
                 "poisson = 0.3",
                 "poison = 0.3",
                 "scene.toml:5: material.poison: unknown field \"poison\", expected one of \"young\", \"poisson\", \
-                 \"plane\", \"thickness\", \"area\", \"density\"",
+                 \"plane\", \"thickness\", \"area\", \"density\", \"law\"",
             ),
             (
                 "[material]",
                 "[materials]",
                 "scene.toml:3: materials: unknown field \"materials\", expected one of \"title\", \"mesh\", \
-                 \"material\", \"fit\", \"fix\", \"load\", \"output\"",
+                 \"material\", \"fit\", \"newton\", \"fix\", \"load\", \"output\"",
             ),
             (
                 "group = \"zmax\"",
@@ -1315,5 +1339,124 @@ fn comparisons() {
         let arguments = [&["compare"], arguments].concat();
         refusals.expect(&[("scene.toml", file.as_bytes())], &arguments, message);
     }
+    refusals.finish();
+}
+
+#[test]
+fn sampled_fits_and_laws() {
+    let shapes = "shapes = { families = [\"uniaxial\"], count = 30, held_out = 10, stretch = 0.2 }";
+    let in_fit = |problem: &str| format!("scene.toml: fit[0].{problem}");
+    let edits: Vec<(&str, String, String)> = [
+        ("law = \"neo-hookean\"\n", "", "newton: belongs to a material with a \"law\", found one without"),
+        ("steps = 2", "steps = 0", "newton.steps: expected a number from 1 to 100000, found 0"),
+        ("steps = 2", "iterations = 0", "newton.iterations: expected a number above 0, found 0"),
+        ("steps = 2", "tolerance = 2", "newton.tolerance: expected a share above 0 and below 1, found 2"),
+        (
+            "law = \"neo-hookean\"",
+            "law = \"rubber\"",
+            "material.law: expected one of corotational, fibre, fung, mooney-rivlin, neo-hookean-isochoric, neo-hookean, \
+             ogden, st-venant-kirchhoff, yeoh, or a path that ends in .toml, found \"rubber\"",
+        ),
+    ]
+    .map(|(from, to, problem)| (from, to.to_string(), format!("scene.toml: {problem}")))
+    .into_iter()
+    .chain(
+        [
+            ("starts = 2", "starts = 0", "starts: expected at least one start, found 0"),
+            ("starts = 2", "balance = 0.5", "balance: does not go with the objective \"sampled\""),
+            ("starts = 2", "solver = \"nelder-mead\"", "solver: does not go with the objective \"sampled\""),
+            (
+                "starts = 2",
+                "weight = \"modal\"",
+                "weight: expected \"relative\" or \"none\" with the objective \"sampled\", found \"modal\"",
+            ),
+            ("starts = 2", "higher = -1", "higher: expected a scale from 0 to 1, found -1"),
+            (
+                "starts = 2",
+                "norm = \"3\"",
+                "norm: expected one of \"2\", \"1\", \"max\", \"huber\", found \"3\"",
+            ),
+            ("starts = 2", "huber = 0.5", "huber: belongs to the norm \"huber\""),
+            (
+                "starts = 2",
+                "norm = \"1\"",
+                "norm: expected the 2-norm for a law with bounds or that is not linear in its parameters, found One",
+            ),
+            (
+                "a = [0, 10]",
+                "a = [10, 0]",
+                "bounds.a: expected a lower and an upper bound, found 10 to 0",
+            ),
+            ("a = [0, 10]", "a = 3", "bounds.a: expected two numbers such as [0, 10], found 3"),
+            ("a = [0, 10]", "b = [0, 1]", "bounds: expected parameters of the law, k, a, found \"b\""),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "\"3*s\"",
+                "force: expected a law with parameters to fit, such as \"k1*s + k3*s^3\", found 3*s",
+            ),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "3",
+                "force: expected \"linear\", \"free-rest\", a law in quotes, or a table of laws by group, found integer",
+            ),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "{ edge = \"a*s\", bulk = \"a*s\" }",
+                "force: expected groups of the fit's springs, edge, found \"bulk\"",
+            ),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "{ edge = \"k*s*\" }",
+                "force.edge: column 5: expected a number, a name or '(', found the end in \"k*s*\"",
+            ),
+            (
+                shapes,
+                "shapes = { families = [\"uniaxal\"] }",
+                "shapes.families: expected some of uniaxial, equibiaxial, simple-shear, volumetric, torsion, bending, \
+                 gradients, found \"uniaxal\"",
+            ),
+            (
+                shapes,
+                "shapes = { families = [\"uniaxial\"], loads = [\"pull\"] }",
+                "shapes: expected one of \"families\", \"gradients\", \"loads\", found more",
+            ),
+            (shapes, "shapes = { count = 0 }", "shapes: expected at least one shape, found 0"),
+            (
+                shapes,
+                "shapes = { stretch = \"much\" }",
+                "shapes.stretch: expected a share such as 0.3, or a range such as [-0.1, 0.4], found \"much\"",
+            ),
+            (shapes, "shapes = { stretch = [0.5, 0] }", "stretch: expected a range within -2 to 2, found 0.5 to 0"),
+            (shapes, "shapes = { perturbation = 9 }", "perturbation: expected a share from 0 to 2, found 9"),
+            (shapes, "shapes = { loads = [\"push\"] }", "shapes.loads: expected loads of the scene (pull), found \"push\""),
+        ]
+        .map(|(from, to, problem)| (from, to.to_string(), in_fit(problem))),
+    )
+    .collect();
+    let edits: Vec<Edit> = edits.iter().map(|(from, to, message)| (*from, to.as_str(), message.as_str())).collect();
+    refuses_edits(SOFT, &edits);
+    let mut refusals = Refusals::default();
+    let list = edited(SOFT, shapes, "shapes = { gradients = \"list.csv\" }");
+    refusals.expect_of_scene(&list, "list.csv: cannot be read: No such file or directory (os error 2)");
+    for (text, message) in [
+        (
+            "1 0 0 0 1 0 0 0\n",
+            "scene.toml: fit[0].gradients: expected deformation gradients of 9 numbers, found 8 numbers in all",
+        ),
+        ("1 0 0\n0 one 0 0 0 1\n", "list.csv:2: expected finite numbers, found one"),
+    ] {
+        let files: [(&str, &[u8]); 2] = [("scene.toml", list.as_bytes()), ("list.csv", text.as_bytes())];
+        refusals.expect(&files, &["run", "scene.toml"], message);
+    }
+    let plain = edited(BRICK, "objective = \"modal\"", "objective = \"modal\"\nforce = \"k*s\"");
+    refusals.expect_of_scene(
+        &plain,
+        "scene.toml: fit[0].force: belongs to the objective \"sampled\", found with \"modal\"",
+    );
+    let lawless = edited(BRICK, "objective = \"modal\"", "objective = \"sampled\"");
+    refusals.expect_of_scene(
+        &lawless,
+        "scene.toml: material.law: expected the energy whose forces fit[0] samples, such as \"neo-hookean\", found none",
+    );
     refusals.finish();
 }

@@ -6,7 +6,7 @@ use shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, SpringKind};
 use springfit::fit::{CellFits, Fit, Objective, Search, Solver, Weight, element_errors, fit_cells};
 use springfit::material::{Material, Plane};
-use springfit::springs::{Measure, Springs};
+use springfit::springs::{Law, Measure, Springs};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -72,6 +72,46 @@ fn forces_and_tangents_are_those_of_differences() {
     }
     for kind in [SpringKind::Angle, SpringKind::Area, SpringKind::Volume, SpringKind::Coupling, SpringKind::Measure] {
         assert!(kinds.contains(&kind), "{kind:?}");
+    }
+}
+
+/// Springs with laws of force, at rest and stretched, pulling only and pushing only: with parameters as they may be fitted.
+#[test]
+fn laws_of_force_have_the_forces_and_tangents_of_differences() {
+    let (d, rest) = (3, 1.3);
+    let x = [0.1, 0.2, 0.0, 0.9, -0.4, 0.8];
+    for (text, parameters) in [
+        ("k1*s + k3*s^3", &[2.0, 5.0][..]),
+        ("k*(exp(a*s) - 1)", &[1.5, 2.0]),
+        ("k*ramp(s)^2", &[3.0]),
+        ("k*c + p*(1 - c0/c)", &[1.0, -0.5]),
+        ("a/(1 + s) + b*ln(1 + s)/(1 + s)", &[-0.4, 0.6]),
+    ] {
+        let law = Law::parse(text).unwrap();
+        let respond = |x: &[f64]| {
+            let pull = |c: f64| {
+                [law.energy(c, rest, parameters), law.force(c, rest, parameters), law.slope(c, rest, parameters)]
+            };
+            Measure::Length.respond_by(pull, x, d)
+        };
+        for stretch in [1.0, 1.4] {
+            let x = x.map(|x| x * stretch);
+            let response = respond(&x);
+            for i in 0..x.len() {
+                let moved = |h: f64| {
+                    let mut x = x;
+                    x[i] += h;
+                    respond(&x)
+                };
+                let (ahead, behind) = (moved(1e-5), moved(-1e-5));
+                let slope = (ahead.energy - behind.energy) / 2e-5;
+                assert!((slope + response.force[i]).abs() < 1e-7, "{text}: force {i}: {slope} {}", response.force[i]);
+                for j in 0..x.len() {
+                    let slope = (ahead.force[j] - behind.force[j]) / 2e-5;
+                    assert!((slope + response.tangent[j * x.len() + i]).abs() < 1e-7, "{text}: tangent {j} {i}");
+                }
+            }
+        }
     }
 }
 

@@ -4,41 +4,43 @@ use super::comparison::{COLORS, csv};
 use super::table::aligned;
 use crate::error::{Error, Result};
 use crate::file::{create_folder, write_whole};
-use crate::study::{STRETCHES, Stretches};
+use crate::study::{STRETCHES, StretchedFit, Stretches};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Names and points of the lines of a figure.
 type Lines = Vec<(String, Vec<(f64, f64)>)>;
 
-/// Both tables as text.
+/// The tables as text.
 pub fn stretches_text(study: &Stretches) -> String {
-    let (header, rows) = errors(study);
+    let (header, rows) = of_fits(study, |fit| &fit.errors);
+    let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
     let (sampled_header, sampled_rows) = runs(study);
     format!(
-        "{}\n\n{}\n{}\n\n{}",
+        "{}; %e_rms\n\n{}\nForce at the pulled end, % above the body's\n\n{}\n{}, one element on one thread\n\n{}",
         title(study),
         aligned(&header, &rows),
-        format_args!("{}, one element on one thread", study.element),
+        aligned(&forces_header, &forces),
+        study.element,
         aligned(&sampled_header, &sampled_rows)
     )
 }
 
-/// Writes `stretch.csv`, `samples.csv`, `stretch.svg` and `samples.svg` into `folder`, and returns the paths.
+/// Writes `stretch`, `force` and `samples` as CSV and SVG files into `folder`, and returns the paths.
 ///
 /// # Errors
 /// A figure cannot be drawn; the folder or a file cannot be written.
 pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>> {
-    let (header, rows) = errors(study);
+    let (header, rows) = of_fits(study, |fit| &fit.errors);
+    let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
     let (sampled_header, sampled_rows) = runs(study);
-    let stretched: Lines = study
-        .fits
-        .iter()
-        .map(|fit| {
-            let points = STRETCHES.iter().zip(&fit.errors).filter_map(|(s, e)| Some((100.0 * s, (*e)?)));
+    let against_stretch = |values: fn(&StretchedFit) -> &Vec<Option<f64>>| -> Lines {
+        let line = |fit: &StretchedFit| {
+            let points = STRETCHES.iter().zip(values(fit)).filter_map(|(s, e)| Some((100.0 * s, (*e)?.abs())));
             (fit.name.clone(), points.collect())
-        })
-        .collect();
+        };
+        study.fits.iter().map(line).collect()
+    };
     let mut timed: Lines = Vec::new();
     for run in &study.runs {
         let point = (1e3 * run.seconds, 100.0 * run.held_out);
@@ -50,11 +52,20 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
     let files = [
         ("stretch.csv", csv(&header, &rows)),
         ("samples.csv", csv(&sampled_header, &sampled_rows)),
-        ("stretch.svg", figure(&title(study), ["stretch, %", "%e_rms"], &stretched)?),
+        ("force.csv", csv(&forces_header, &forces)),
+        ("stretch.svg", figure(&title(study), ["stretch, %", "%e_rms"], &against_stretch(|fit| &fit.errors))?),
+        (
+            "force.svg",
+            figure(
+                &title(study),
+                ["stretch, %", "error of the force that pulls, %"],
+                &against_stretch(|fit| &fit.excess),
+            )?,
+        ),
         (
             "samples.svg",
             figure(
-                &format!("{}: 10 to 10 000 shapes, one element on one thread", study.element),
+                &format!("{}: 10 to 100 000 shapes, one element on one thread", study.element),
                 ["fit, ms", "error of the forces at shapes held out, %"],
                 &timed,
             )?,
@@ -70,15 +81,15 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
 }
 
 fn title(study: &Stretches) -> String {
-    format!("{}: a box held at both ends and stretched, {}; %e_rms", study.element, study.law.to_lowercase())
+    format!("{}: a box held at both ends and stretched, {}", study.element, study.law.to_lowercase())
 }
 
-fn errors(study: &Stretches) -> (Vec<String>, Vec<Vec<String>>) {
+fn of_fits(study: &Stretches, values: fn(&StretchedFit) -> &Vec<Option<f64>>) -> (Vec<String>, Vec<Vec<String>>) {
     let mut header = vec!["fit".to_string(), "us/element".into()];
     header.extend(STRETCHES.map(|s| format!("{} %", 100.0 * s)));
     let rows = study.fits.iter().map(|fit| {
         let mut row = vec![fit.name.clone(), format!("{:.1}", 1e6 * fit.seconds)];
-        row.extend(fit.errors.iter().map(|e| e.map_or("-".into(), |e| format!("{e:.3}"))));
+        row.extend(values(fit).iter().map(|e| e.map_or("-".into(), |e| format!("{e:.3}"))));
         row
     });
     (header, rows.collect())

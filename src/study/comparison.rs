@@ -5,6 +5,7 @@ use super::outcome::Outcome;
 use super::random::Random;
 use super::run::{Progress, run};
 use super::scene::{NamedFit, Scene};
+use super::stretches::sampled_fits;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
@@ -20,6 +21,8 @@ const PATIENCE: f64 = 0.5;
 /// How far the nodes of a random shape are moved, in units of the reference cell.
 const JITTER: f64 = 0.15;
 const SEED: u64 = 2010;
+/// The largest stretch of the shapes that are sampled for a scene.
+const SAMPLED: f64 = 0.35;
 
 /// One method on the random shapes of an element.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,6 +137,12 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
                 named.springs = Some(groups.clone());
             }
             scene.fits.push(named);
+        }
+        if scene.law().is_some() {
+            for mut named in sampled_fits(&mesh.blocks[0].element, groups.as_deref(), SAMPLED) {
+                named.name += if groups.is_some() { " + all" } else { "" };
+                scene.fits.push(named);
+            }
         }
     }
     run(&scene, progress)

@@ -1,0 +1,119 @@
+use super::evaluate::Value;
+use super::{Expr, Function};
+use num_traits::ToPrimitive;
+
+/// Values that a program keeps without asking for memory.
+const ROOM: usize = 32;
+
+/// An expression made ready to be evaluated in floating point many times: its constants are numbers already, its operations in
+/// the order of [`Expr::evaluate`], so that the values are the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Program {
+    steps: Vec<Step>,
+    depth: usize,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Step {
+    Number(f64),
+    Variable(usize),
+    /// The last two values for their sum, or their product.
+    Add,
+    Multiply,
+    PowerOf(i32),
+    Power(f64),
+    Call(Function),
+}
+
+impl Program {
+    pub fn of(expr: &Expr) -> Program {
+        let mut program = Program { steps: Vec::new(), depth: 0 };
+        program.push(expr, 0);
+        program
+    }
+
+    /// Whether it is the number zero.
+    pub fn is_zero(&self) -> bool {
+        self.steps == [Step::Number(0.0)]
+    }
+
+    /// Appends the steps of `expr`, which find `below` values there.
+    fn push(&mut self, expr: &Expr, below: usize) {
+        self.depth = self.depth.max(below + 1);
+        match expr {
+            Expr::Number(c) => self.steps.push(Step::Number(c.to_f64().unwrap_or(f64::NAN))),
+            Expr::Variable(v) => self.steps.push(Step::Variable(*v)),
+            Expr::Sum(inner) | Expr::Product(inner) => {
+                for (i, part) in inner.iter().enumerate() {
+                    self.push(part, below + i.min(1));
+                    if i > 0 {
+                        self.steps.push(if matches!(expr, Expr::Sum(_)) { Step::Add } else { Step::Multiply });
+                    }
+                }
+            }
+            Expr::Power(base, exponent) => {
+                self.push(base, below);
+                self.steps.push(match exponent.to_i32().filter(|_| exponent.is_integer()) {
+                    Some(n) => Step::PowerOf(n),
+                    None => Step::Power(exponent.to_f64().unwrap_or(f64::NAN)),
+                });
+            }
+            Expr::Call(function, argument) => {
+                self.push(argument, below);
+                self.steps.push(Step::Call(*function));
+            }
+        }
+    }
+
+    /// The value at `at`, one entry per variable; NaN or infinite where the expression has no finite value.
+    pub fn evaluate(&self, at: &[f64]) -> f64 {
+        if self.depth <= ROOM { self.run(at, &mut [0.0; ROOM]) } else { self.run(at, &mut vec![0.0; self.depth]) }
+    }
+
+    fn run(&self, at: &[f64], values: &mut [f64]) -> f64 {
+        let mut next = 0;
+        for step in &self.steps {
+            match step {
+                Step::Number(c) => (values[next], next) = (*c, next + 1),
+                Step::Variable(v) => (values[next], next) = (at[*v], next + 1),
+                Step::Add => (values[next - 2], next) = (values[next - 2] + values[next - 1], next - 1),
+                Step::Multiply => (values[next - 2], next) = (values[next - 2] * values[next - 1], next - 1),
+                Step::PowerOf(n) => values[next - 1] = values[next - 1].powi(*n),
+                Step::Power(p) if *p == 0.5 => values[next - 1] = values[next - 1].sqrt(),
+                Step::Power(p) => values[next - 1] = values[next - 1].powf(*p),
+                Step::Call(f) => values[next - 1] = values[next - 1].apply(*f).unwrap_or(f64::NAN),
+            }
+        }
+        values[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Scope;
+    use super::*;
+
+    #[test]
+    fn a_program_has_the_values_of_its_expression() {
+        let scope = Scope::new(&["x", "y"]);
+        let texts = [
+            "1/3",
+            "x - y/7 + x*y*3 - 2",
+            "exp(x*y)/(1 + x^2) - ln(y)^3 + sqrt(x)",
+            "ramp(x - 1)*abs(y - x)^(5/2) + atan(x)/sin(y)",
+            "((((x + 1)*y + 2)*x + 3)*y + 4)^(-3)",
+        ];
+        for text in texts {
+            let expr = scope.expression(text).unwrap();
+            let program = Program::of(&expr);
+            for at in [[0.3, 1.7], [1.2, 0.4], [2.0, 3.0]] {
+                assert_eq!(program.evaluate(&at).to_bits(), expr.evaluate(&at).to_bits(), "{text}");
+            }
+        }
+        // Deeper than the room.
+        let deep = (0..40).fold("x".to_string(), |text, i| format!("(y + {i}*{text})"));
+        let expr = scope.expression(&deep).unwrap();
+        assert_eq!(Program::of(&expr).evaluate(&[1e-9, 0.5]), expr.evaluate(&[1e-9, 0.5]));
+        assert!(Program::of(&Expr::integer(0)).is_zero() && !Program::of(&Expr::Variable(0)).is_zero());
+    }
+}
