@@ -17,7 +17,7 @@ pub enum Command {
     /// Fit, solve and compare a scene
     Run(RunArguments),
     /// Fit the springs of a mesh, without a scene
-    Fit(FitArguments),
+    Fit(Box<FitArguments>),
     /// Prove element files: one line per property, exit code 1 if one fails
     Check(CheckArguments),
     /// Exact closed forms of an element's stiffness and spring constants

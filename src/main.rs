@@ -107,7 +107,9 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         .and_then(|m| arguments.area.map_or(Ok(m), |area| m.with_area(area)))
         .map_err(Error::of_option)?;
     let energy = arguments.law.as_ref().map(|law| Energy::load(law, material)).transpose();
-    let large = energy.map_err(|e| e.placed(|e| Error::at("--law", e.problem())))?.map(LargeBody::at_rest);
+    let large = energy
+        .map_err(|e| e.placed(|e| Error::at("--law", e.problem())))?
+        .map(|energy| LargeBody::at_rest(energy, material.state()));
     let mut bar = Bar::new();
     let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
     let outcome = fit_mesh(&mesh, material, large.as_ref(), &named, &mut progress);

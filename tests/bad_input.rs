@@ -1376,6 +1376,38 @@ fn sampled_fits_and_laws() {
                 "norm = \"3\"",
                 "norm: expected one of \"2\", \"1\", \"max\", \"huber\", found \"3\"",
             ),
+            ("starts = 2", "nonnegative = true\nhuber = 0.5", "huber: belongs to the norm \"huber\""),
+            (
+                "bounds = { a = [0, 10] }\nstarts = 2",
+                "bounds = { a = [-2, -1] }\nnonnegative = true",
+                "bounds.a: expected a lower and an upper bound that is not below zero, found -2 to -1",
+            ),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "\"Linear\"",
+                "force: expected a law of s or c, such as \"k1*s + k3*s^3\", found \"Linear\"",
+            ),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "{ edge = \"free-rest\" }",
+                "force.edge: \"free-rest\" is for all groups alike: force = \"free-rest\"",
+            ),
+            (
+                "\"k*(exp(a*s) - 1)\"",
+                "\"k*s\"",
+                "starts: belongs to a law of force that is not linear in its parameters",
+            ),
+            (
+                "objective = \"sampled\"",
+                "objective = \"sampled\"\nsprings = []",
+                "springs: expected at least one spring to fit, found none",
+            ),
+            (
+                shapes,
+                "shapes = { loads = [\"pull\"], stretch = 0.1 }",
+                "shapes.stretch: belongs to \"families\": shapes of a list have their own",
+            ),
+            (shapes, "shapes = { count = 100000000000 }", "shapes: expected at most 1000000000 shapes, found 100000000000"),
             ("starts = 2", "huber = 0.5", "huber: belongs to the norm \"huber\""),
             (
                 "starts = 2",
@@ -1401,7 +1433,7 @@ fn sampled_fits_and_laws() {
             ),
             (
                 "\"k*(exp(a*s) - 1)\"",
-                "{ edge = \"a*s\", bulk = \"a*s\" }",
+                "{ edge = \"k*exp(a*s)\", bulk = \"a*s\" }",
                 "force: expected groups of the fit's springs, edge, found \"bulk\"",
             ),
             (

@@ -218,7 +218,7 @@ fn free_rest_lengths_are_positive_and_better() {
             fit_sampled(&element, &springs, &mesh.points, cells, &energy, material.state(), &fit, &mut |_| {}).unwrap()
         });
         assert!(free.trained[0] <= kept.trained[0] + 1e-12, "{name}");
-        let network = Network::assemble(&mesh, &[free.fits.clone()]);
+        let network = Network::assemble(&mesh, std::slice::from_ref(&free.fits));
         for spring in &network.lengths {
             let [a, b] = spring.points.map(|p| mesh.point(p));
             let length = springfit::springs::distance(a, b);
@@ -346,7 +346,7 @@ fn sampled_springs_follow_large_deformations() {
         };
         let groups = springs.names.len();
         let cubic = format!("{CUBIC} + p*(s + 1/2) + q*(s - 1)");
-        let mut laws = vec![Arc::new(Law::parse("k*c").unwrap()); groups];
+        let mut laws: Vec<_> = (0..groups).map(|_| Arc::new(Law::parse("k*c").unwrap())).collect();
         laws[groups - 1] = Arc::new(Law::parse("a/(1 + s) + b*ln(1 + s)/(1 + s)").unwrap());
         let [free, cubic, exact] =
             [Force::FreeRest, Force::of_all(Law::parse(&cubic).unwrap(), groups), Force::Laws(laws)].map(sampled);
@@ -356,4 +356,57 @@ fn sampled_springs_follow_large_deformations() {
         assert!(free < best && cubic < best && exact < 0.5 * best, "{name}");
         assert!(name == "hex8" || exact < 1e-4, "{exact}");
     }
+}
+
+/// What a fit cannot know it says: unknowns that no shape feels are zero and counted, laws without finite values are errors, and
+/// shapes that are hardly deformed do not drown the others.
+#[test]
+fn fits_that_shapes_do_not_determine_are_told() {
+    let element = Arc::new(Element::load("tet4").unwrap());
+    let springs = Springs::select(&element, None).unwrap();
+    let x = distorted(&element, &mut Random(3));
+    let material = Material::new(1.0, 0.3, State::Solid).unwrap();
+    let energy = Energy::load("neo-hookean", material).unwrap();
+    let with = |sampling: Sampling, text: &str, nonnegative: bool| {
+        let fit = SampledFit { sampling, force: law(text, &springs), nonnegative, ..SampledFit::default() };
+        let fit = SampledFit { weights: Weights::Relative, ..fit };
+        fit_sampled(&element, &springs, &x, &[0, 1, 2, 3], &energy, State::Solid, &fit, &mut |_| {})
+    };
+    let grown = Sampling {
+        source: Source::Families(vec![Family::Volumetric]),
+        stretch: [0.2, 0.5],
+        perturbation: 0.0,
+        ..Sampling::default()
+    };
+    for nonnegative in [false, true] {
+        let found = with(grown.clone(), "k*ramp(s) + m*ramp(-s)", nonnegative).unwrap();
+        assert_eq!(found.fits.deficient, 1);
+        assert!(found.fits.parameters.chunks_exact(2).all(|p| p[0].is_finite() && p[1] == 0.0));
+        assert!(found.trained[0] < 0.3);
+    }
+    for text in ["k*ln(s - 3)", "k*s^1.5", "k*(exp(a*ln(s)) - 1)", "k*abs(s)^(1/2)"] {
+        let error = with(Sampling::default(), text, false).unwrap_err().to_string();
+        assert!(error.starts_with("force: expected a law with finite values at the sampled shapes"), "{text}: {error}");
+    }
+    // The identity and a quarter turn among shapes that are stretched.
+    let quiet = [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]];
+    let stretched = |a: f64| [1.0 + a, 0.0, 0.1 * a, 0.0, 1.0 - 0.3 * a, 0.0, 0.0, 0.2 * a, 1.0 - 0.3 * a];
+    let loud: Vec<f64> = (1..=8).flat_map(|i| stretched(0.05 * f64::from(i))).collect();
+    let list = |gradients: Vec<f64>| Sampling {
+        source: Source::Gradients(Arc::new(gradients)),
+        perturbation: 0.0,
+        held_out: 0,
+        ..Sampling::default()
+    };
+    let without = with(list(loud.clone()), "k*s", false).unwrap().fits.constants;
+    let beside = with(list([&quiet.concat()[..], &loud].concat()), "k*s", false).unwrap().fits.constants;
+    let largest = without.iter().fold(0.0f64, |a, k| a.max(k.abs()));
+    assert!(without.iter().zip(&beside).all(|(a, b)| (a - b).abs() < 0.2 * largest), "{without:?} {beside:?}");
+    // A list too short to keep any of it apart has no others.
+    let few = Sampling { held_out: 10, ..list(stretched(0.3).to_vec()) };
+    assert!(with(few, "k*s", false).unwrap().held_out[0].is_nan());
+    let none = SampledFit::default();
+    let nothing = Springs::select(&element, Some(&[])).unwrap();
+    let found = fit_sampled(&element, &nothing, &x, &[0, 1, 2, 3], &energy, State::Solid, &none, &mut |_| {});
+    assert_eq!(found.unwrap_err().to_string(), "springs: expected at least one spring to fit, found none");
 }

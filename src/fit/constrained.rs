@@ -12,6 +12,10 @@ const OPTIMALITY: f64 = 1e-10;
 /// solve for them, exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. Where `M` is singular or the exchange does not
 /// end, the interior-point solver decides.
 pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
+    normal.solve_determined(solve_scalable)
+}
+
+fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
     let (scaled, scale) = normal.scaled();
     let (mut k, rank) = match pivot(&scaled) {
         Some(k) => (k, Rank::Full),

@@ -132,8 +132,26 @@ impl Normal {
         self.rhs.iter().enumerate().map(|(s, b)| row(s) - b).collect()
     }
 
+    /// The solution where unknowns that nothing depends on are zero, and `solve` finds the others.
+    pub fn solve_determined(&self, solve: impl Fn(&Normal) -> (Vec<f64>, Rank)) -> (Vec<f64>, Rank) {
+        let determined: Vec<usize> = (0..self.size()).filter(|&s| self.entry(s, s) > 0.0).collect();
+        if determined.len() == self.size() {
+            return solve(self);
+        }
+        let mut k = vec![0.0; self.size()];
+        if !determined.is_empty() {
+            let (found, _) = solve(&self.restricted(&determined));
+            determined.iter().zip(found).for_each(|(&s, value)| k[s] = value);
+        }
+        (k, Rank::Deficient)
+    }
+
     /// `k = M⁻¹ b`; where M is singular, the solution of least norm in the scaling with a unit diagonal.
     pub fn solve(&self) -> (Vec<f64>, Rank) {
+        self.solve_determined(Normal::solve_scalable)
+    }
+
+    fn solve_scalable(&self) -> (Vec<f64>, Rank) {
         let mut copy = self.clone();
         if copy.solve_regular() {
             return (copy.rhs, Rank::Full);

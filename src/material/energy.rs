@@ -139,6 +139,11 @@ impl Energy {
         Ok(energy)
     }
 
+    /// Pa.
+    pub fn young(&self) -> f64 {
+        self.constants[0]
+    }
+
     pub fn poisson(&self) -> f64 {
         self.constants[1]
     }

@@ -166,7 +166,11 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
         for (s, (kind, own, measure)) in (first..).zip(&kinds) {
             let constant = constants[s];
             let parameters = &fit.parameters[cell * count..][places[s]..places[s + 1]];
-            if constant == 0.0 && parameters.iter().all(|p| *p == 0.0) {
+            let idle = match &fit.force {
+                Force::Laws(laws) => is_idle(&laws[springs.groups[s]], parameters),
+                _ => constant == 0.0 && parameters.iter().all(|p| *p == 0.0),
+            };
+            if idle {
                 continue;
             }
             let points: Vec<usize> = own.iter().map(|&a| nodes[a]).collect();
@@ -199,7 +203,7 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
                 let at = cell * m + s;
                 let parameters = &fit.parameters[cell * places[m]..][places[s]..places[s + 1]];
                 let law = &laws[fit.springs.groups[s]];
-                if parameters.iter().all(|p| *p == 0.0) {
+                if is_idle(law, parameters) {
                     continue;
                 }
                 let points = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
@@ -223,6 +227,11 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
         }
     }
     all
+}
+
+/// Whether a law never pulls with these parameters.
+fn is_idle(law: &Law, parameters: &[f64]) -> bool {
+    law.is_linear() && parameters.iter().all(|p| *p == 0.0)
 }
 
 /// Points whose springs one thread merges in one go.

@@ -1,6 +1,6 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
-use crate::fit::{Fit, Norm, Objective, Solver, Spread, Weights};
+use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
 use crate::solve::{Ending, Standing};
 use crate::study::{FitOutcome, Followed, ForceRecipe, LoadOutcome, Outcome, Recipe, SampledRecipe};
 use serde_json::{Value, json};
@@ -105,6 +105,15 @@ fn of_forces(recipe: &SampledRecipe) -> Value {
             Norm::Max => "max",
             Norm::Huber { .. } => "huber",
         },
+        "huber": if let Norm::Huber { share } = fit.norm { Some(share) } else { None },
+        "bounds": fit.bounds.iter().map(|(name, range)| (name.clone(), json!(range))).collect::<Value>(),
+        "starts": fit.starts,
+        "families": match &fit.sampling.source {
+            Source::Families(families) if recipe.loads.is_empty() => json!(families.iter().map(Family::name).collect::<Vec<_>>()),
+            _ => Value::Null,
+        },
+        "stretch": fit.sampling.stretch,
+        "perturbation": fit.sampling.perturbation,
         "seed": fit.sampling.seed,
     })
 }
@@ -131,6 +140,7 @@ fn followed(followed: &Followed) -> Value {
         "residual": followed.residual,
         "iterations": followed.iterations,
         "shifted": followed.shifted,
+        "inverted_elements": followed.inverted,
     })
 }
 

@@ -107,16 +107,24 @@ fn times(outcome: &Outcome) -> String {
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
     let loads = outcome.fits.first().map_or(&[][..], |fit| &fit.loads);
-    let stalled = loads.iter().zip(&outcome.followed).filter(|(_, followed)| followed.ending == Ending::Stalled);
-    let finite = stalled.map(|(load, followed)| format!("finite elements: {}", stall(&load.name, followed)));
+    let finite = loads.iter().zip(&outcome.followed).filter_map(|(load, followed)| trouble(&load.name, followed));
+    let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
     finite.chain(outcome.fits.iter().flat_map(|fit| note(outcome, fit))).collect()
 }
 
-fn stall(load: &str, followed: &Followed) -> String {
-    format!(
-        "no equilibrium found beyond {:.3} of the load {load} (residual {:.1e} there)",
-        followed.load, followed.residual
-    )
+/// What is wrong with an equilibrium.
+fn trouble(load: &str, followed: &Followed) -> Option<String> {
+    match (followed.ending, followed.inverted) {
+        (Ending::Stalled, _) if followed.residual.is_nan() => {
+            Some(format!("no finite response at {:.3} of the load {load}", followed.load))
+        }
+        (Ending::Stalled, _) => Some(format!(
+            "no equilibrium found beyond {:.3} of the load {load} (residual {:.1e} there)",
+            followed.load, followed.residual
+        )),
+        (_, 0) => None,
+        (_, count) => Some(format!("{count} elements are turned inside out under {load}")),
+    }
 }
 
 fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
@@ -169,8 +177,8 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         }
     }
     for load in &fit.loads {
-        if let Some(followed) = load.followed.filter(|f| f.ending == Ending::Stalled) {
-            notes.push(format!("{name}: {}", stall(&load.name, &followed)));
+        if let Some(trouble) = load.followed.and_then(|followed| trouble(&load.name, &followed)) {
+            notes.push(format!("{name}: {trouble}"));
         }
     }
     let Some(stability) = &fit.stability else { return notes };

@@ -1,7 +1,7 @@
 //! Laws of force: how hard a spring pulls when what it measures has changed, as an expression with parameters.
 
 use crate::error::{Error, Result};
-use crate::symbolic::{Expr, Function, Program, Scope};
+use crate::symbolic::{Expr, Program, Scope, variables_of};
 use gauss_quad::GaussLegendre;
 use std::sync::{Arc, OnceLock};
 
@@ -30,9 +30,14 @@ impl Law {
     /// # Errors
     /// The text is no expression, or has no parameter.
     pub fn parse(text: &str) -> Result<Law> {
-        let parameters = parameters(text);
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let names = variables_of(&text);
+        let parameters: Vec<String> = names.into_iter().filter(|name| !VARIABLES.contains(&name.as_str())).collect();
         let names: Vec<&str> = VARIABLES.into_iter().chain(parameters.iter().map(String::as_str)).collect();
-        let force = Scope::new(&names).expression(text)?;
+        let force = Scope::new(&names).expression(&text)?;
+        if !(force.uses(0) || force.uses(1)) {
+            return Err(Error::expected("force", "a law of s or c, such as \"k1*s + k3*s^3\"", format!("\"{text}\"")));
+        }
         if parameters.is_empty() {
             return Err(Error::expected("force", "a law with parameters to fit, such as \"k1*s + k3*s^3\"", text));
         }
@@ -43,7 +48,7 @@ impl Law {
             outer[i] = !slope.uses(first + i) && (0..i).all(|j| !outer[j] || !slope.uses(first + j));
         }
         let mut law = Law {
-            text: text.to_string(),
+            text,
             slope_in_strain: Program::of(&force.derivative(0)),
             slope_in_measure: Program::of(&force.derivative(1)),
             linear: outer.iter().all(|outer| *outer),
@@ -80,7 +85,9 @@ impl Law {
     /// `∂T/∂c = (∂T/∂s)/c₀ + ∂T/∂c`.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
         let at = at(c, rest, parameters);
-        self.slope_in_strain.evaluate(&at) / rest + self.slope_in_measure.evaluate(&at)
+        // Where the measure at rest is zero there is no strain.
+        let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(&at) / rest };
+        by_strain + self.slope_in_measure.evaluate(&at)
     }
 
     /// `∂T/∂p`, `[parameters]`.
@@ -114,7 +121,7 @@ pub enum Force {
 impl Force {
     /// The same law for so many groups.
     pub fn of_all(law: Law, groups: usize) -> Force {
-        Force::Laws(vec![Arc::new(law); groups])
+        Force::Laws(std::iter::repeat_n(Arc::new(law), groups).collect())
     }
 
     /// Numbers of a spring of the group beside its constant.
@@ -136,24 +143,6 @@ impl Force {
 
 fn at(c: f64, rest: f64, parameters: &[f64]) -> Vec<f64> {
     [(c - rest) / rest, c, rest].into_iter().chain(parameters.iter().copied()).collect()
-}
-
-/// The names in an expression that are neither variables nor called.
-fn parameters(text: &str) -> Vec<String> {
-    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let mut names: Vec<String> = Vec::new();
-    let mut rest = text;
-    while let Some(start) = rest.find(is_name) {
-        let end = rest[start..].find(|c| !is_name(c)).map_or(rest.len(), |length| start + length);
-        let (word, after) = (&rest[start..end], &rest[end..]);
-        rest = after;
-        let called = after.trim_start().starts_with('(') || Function::ALL.iter().any(|(name, _)| *name == word);
-        let number = word.starts_with(|c: char| c.is_ascii_digit());
-        if !called && !number && !VARIABLES.contains(&word) && !names.iter().any(|name| name == word) {
-            names.push(word.to_string());
-        }
-    }
-    names
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use std::time::Instant;
 /// The finite element solutions of a scene whose material has a law.
 pub struct LargeBody {
     pub energy: Energy,
+    state: State,
     newton: Newton,
     /// One per load, that at the last load reached; `[points · dimension]`, m.
     pub displacements: Vec<Vec<f64>>,
@@ -25,9 +26,9 @@ pub struct LargeBody {
 
 impl LargeBody {
     /// A body without loads.
-    pub fn at_rest(energy: Energy) -> LargeBody {
+    pub fn at_rest(energy: Energy, state: State) -> LargeBody {
         let (newton, displacements, followed, seconds, states) = Default::default();
-        LargeBody { energy, newton, displacements, followed, seconds, states }
+        LargeBody { energy, state, newton, displacements, followed, seconds, states }
     }
 
     /// # Errors
@@ -44,7 +45,7 @@ impl LargeBody {
             let problem = "is known for cells that fill their space, found a surface or lines in space";
             return Err(Error::at("material.law", problem));
         }
-        let mut body = LargeBody { newton, ..LargeBody::at_rest(energy) };
+        let mut body = LargeBody { newton, ..LargeBody::at_rest(energy, state) };
         for (done, case) in cases.iter().enumerate() {
             progress("finite elements", done, cases.len());
             let start = Instant::now();
@@ -53,7 +54,8 @@ impl LargeBody {
             body.seconds.push(start.elapsed().as_secs_f64());
             let place = |u: &Vec<f64>| mesh.points.iter().zip(u).map(|(x, u)| x + u).collect::<Vec<f64>>();
             body.states.push((case.name.clone(), found.path.iter().map(place).collect()));
-            body.followed.push(Followed::of(&found));
+            let inverted = model.inverted(&place(&found.displacement));
+            body.followed.push(Followed::of(&found, inverted));
             body.displacements.push(found.displacement);
         }
         progress("finite elements", cases.len(), cases.len());
@@ -84,7 +86,9 @@ impl LargeBody {
             let model: &dyn Elastic = &fit.network;
             let found = self.newton.solve(model, &mesh.points, &case.support, &case.forces)?;
             let seconds_lem = start.elapsed().as_secs_f64();
-            let followed = Followed::of(&found);
+            let place: Vec<f64> = mesh.points.iter().zip(&found.displacement).map(|(x, u)| x + u).collect();
+            let inverted = Body { mesh, energy: &self.energy, state: self.state }.inverted(&place);
+            let followed = Followed::of(&found, inverted);
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
             let compared = displacement.as_ref().filter(|_| complete(&self.followed[i]));
@@ -102,13 +106,14 @@ impl LargeBody {
 }
 
 impl Followed {
-    fn of(found: &Equilibrium) -> Followed {
+    fn of(found: &Equilibrium, inverted: usize) -> Followed {
         Followed {
             ending: found.ending,
             load: found.load,
-            residual: found.residuals.last().and_then(|r| r.last()).copied().unwrap_or(0.0),
+            residual: found.residuals.last().and_then(|r| r.last()).copied().unwrap_or(f64::NAN),
             iterations: found.residuals.iter().map(Vec::len).sum(),
             shifted: found.shifted,
+            inverted,
         }
     }
 }

@@ -84,6 +84,8 @@ pub struct Followed {
     pub iterations: usize,
     /// Iterations whose tangent was not positive definite and had to be shifted.
     pub shifted: usize,
+    /// Cells that are turned inside out at a quadrature point.
+    pub inverted: usize,
 }
 
 /// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.

@@ -7,6 +7,7 @@ use super::moduli::moduli_of_body;
 use super::outcome::{FitOutcome, Outcome, SampledOutcome};
 use super::scene::{NamedFit, Recipe, SampledRecipe, Scene};
 use super::stages::stages;
+use crate::element::SpringGroup;
 use crate::error::{Error, Result};
 use crate::fit::{ElementErrors, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
 use crate::material::Material;
@@ -109,6 +110,12 @@ pub fn fit_mesh(
             let expected = "the energy whose forces are sampled";
             let large = large.ok_or_else(|| Error::expected("law", expected, "none"))?;
             let states = Arc::new(large.states(&recipe.loads)?);
+            let groups = mesh.blocks.iter().flat_map(|block| &block.element.springs);
+            let used = |group: &&SpringGroup| match &named.springs {
+                Some(names) => names.contains(&group.name),
+                None => !group.optional,
+            };
+            recipe.force.check_groups(&groups.filter(used).map(|group| group.name.as_str()).collect::<Vec<_>>())?;
             let found = each_block(mesh, named, progress, |block, springs, progress| {
                 let fit = recipe.resolve(&block.element, springs, &states)?;
                 let (points, cells) = (&mesh.points, &block.connectivity);
@@ -173,7 +180,8 @@ impl SampledOutcome {
     fn of(recipe: &SampledRecipe, found: &[SampledFits]) -> SampledOutcome {
         let spread =
             |of: fn(&SampledFits) -> &Vec<f64>| Spread::of(&found.iter().flat_map(of).copied().collect::<Vec<f64>>());
-        let held_out = (recipe.fit.sampling.held_out > 0).then(|| spread(|f| &f.held_out));
+        let apart = found.iter().flat_map(|f| &f.held_out).all(|error| error.is_finite());
+        let held_out = apart.then(|| spread(|f| &f.held_out));
         SampledOutcome {
             shapes: recipe.fit.sampling.shapes,
             trained: spread(|f| &f.trained),

@@ -14,7 +14,7 @@ mod program;
 
 pub use fraction::{Fraction, Polynomial};
 pub use jet::Jet;
-pub use parse::{Scope, parse_rational};
+pub use parse::{Scope, parse_rational, variables_of};
 pub use predicate::Predicate;
 pub use program::Program;
 

@@ -308,6 +308,30 @@ fn lex(text: &str) -> Result<Lexed> {
     Ok(lexed)
 }
 
+/// The names in a text that are not called, in the order in which they appear.
+pub fn variables_of(text: &str) -> Vec<String> {
+    let chars: Vec<char> = text.chars().collect();
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut names: Vec<String> = Vec::new();
+    let mut at = 0;
+    while at < chars.len() {
+        let start = at;
+        if chars[at].is_ascii_digit() || chars[at] == '.' {
+            at = end_of_number(&chars, at).max(at + 1);
+        } else if is_name(chars[at]) {
+            at += chars[at..].iter().take_while(|c| is_name(**c)).count();
+            let name: String = chars[start..at].iter().collect();
+            let called = chars[at..].iter().find(|c| !c.is_whitespace()) == Some(&'(');
+            if !called && function(&name).is_none() && !names.contains(&name) {
+                names.push(name);
+            }
+        } else {
+            at += 1;
+        }
+    }
+    names
+}
+
 fn end_of_number(chars: &[char], start: usize) -> usize {
     let digits = |mut at: usize| {
         while at < chars.len() && (chars[at].is_ascii_digit() || chars[at] == '.') {

@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A shape that leaves less than this share of the volume somewhere is drawn again, at half the size.
+/// A shape that leaves less than this share of the volume somewhere is taken at half its deformation.
 const FLAT: f64 = 0.2;
-/// How often.
+/// And again, so often.
 const HALVINGS: i32 = 8;
 /// Shapes that one thread adds up, and blocks of them before they are added to the rest.
 const BLOCK: usize = 256;
@@ -27,6 +27,10 @@ const BLOCKS: usize = 16;
 const HELD: usize = 1 << 15;
 /// Parameters of a spring for which there is always room.
 const FEW: usize = 8;
+/// A strain that is next to none.
+const SLIGHT: f64 = 1e-3;
+/// Numbers of the samples that a cell may hold: 64 megabytes.
+const MOST_HELD: usize = 1 << 23;
 /// Rest measures of springs that choose their own, as shares of what is measured at rest: a nonnegative sum of one spring of
 /// each is a spring with a rest measure between.
 pub const REST_RANGE: [f64; 2] = [0.5, 2.0];
@@ -41,6 +45,10 @@ pub struct Cell<'a> {
     groups: &'a [usize],
     /// The most unknowns that a spring has.
     widest: usize,
+    /// `‖f‖²` of a strain below which forces count as those of no deformation.
+    least_square: f64,
+    /// The samples of the fit, where it goes through them again and again.
+    held: Vec<Sample>,
     geometry: &'a Geometry,
     energy: &'a Energy,
     state: State,
@@ -107,6 +115,8 @@ impl<'a> Cell<'a> {
             count,
             groups: &springs.groups,
             widest,
+            least_square: (SLIGHT * energy.young() * state.thickness() * geometry.content() / shapes.extent).powi(2),
+            held: Vec::new(),
             springs: springs.measures(element).into_iter().map(with_rest).collect(),
             geometry,
             energy,
@@ -115,6 +125,11 @@ impl<'a> Cell<'a> {
             affine: if fit.higher < 1.0 { coordinates(shapes.rest, d) } else { Vec::new() },
             shapes,
         }
+    }
+
+    /// Whether there are shapes that the fit does not see.
+    pub fn has_others(&self) -> bool {
+        self.shapes.has_others()
     }
 
     /// How many unknowns the fit has.
@@ -161,8 +176,14 @@ impl<'a> Cell<'a> {
             let mut sums = Sums::of(self.count);
             let (mut sample, mut rows, mut lacking) = (Sample::default(), Vec::new(), Vec::new());
             for i in first..(first + BLOCK).min(total) {
-                self.sample(part, i, &mut sample)?;
-                self.equations(&sample, unknowns, &mut rows, &mut lacking);
+                let sample = match self.held.get(i).filter(|_| part == Part::Trained) {
+                    Some(held) => held,
+                    None => {
+                        self.sample(part, i, &mut sample)?;
+                        &sample
+                    }
+                };
+                self.equations(sample, unknowns, &mut rows, &mut lacking);
                 sums.size += sample.weight * inner(&sample.force, &sample.force);
                 if rows.len() > HELD {
                     sums.add(&mut rows, &mut lacking);
@@ -180,6 +201,20 @@ impl<'a> Cell<'a> {
             }
         }
         Ok(sums)
+    }
+
+    /// Keeps the samples of the fit for the sums to come, as far as there is room.
+    ///
+    /// # Errors
+    /// Those of [`Cell::sample`].
+    pub fn hold(&mut self) -> Result<()> {
+        let room = MOST_HELD / ((self.len() + 1) * (self.seen() + 1));
+        for i in 0..self.fit.sampling.shapes.min(room) {
+            let mut sample = Sample::default();
+            self.sample(Part::Trained, i, &mut sample)?;
+            self.held.push(sample);
+        }
+        Ok(())
     }
 
     /// Shape `i`, at less of its deformation where it would turn the cell inside out.
@@ -206,8 +241,7 @@ impl<'a> Cell<'a> {
                 .for_each(|row| self.see(row));
             sample.weight = match self.fit.weights {
                 Weights::Alike => 1.0,
-                // A shape that is hardly deformed has hardly any force to be wrong about.
-                Weights::Relative => 1.0 / sample.force.iter().map(|f| f * f).sum::<f64>().max(f64::MIN_POSITIVE),
+                Weights::Relative => 1.0 / inner(&sample.force, &sample.force).max(self.least_square),
             };
             return Ok(());
         }
@@ -335,7 +369,9 @@ impl Sums {
     pub fn error(&self, step: &[f64]) -> f64 {
         let work: f64 = self.normal.rhs.iter().zip(step).map(|(b, k)| b * k).sum();
         let bent: f64 = self.normal.gradient(step).iter().zip(step).map(|(g, k)| g * k).sum::<f64>() + work;
-        ((self.square - 2.0 * work + bent).max(0.0) / self.size).sqrt()
+        let left = self.square - 2.0 * work + bent;
+        // Below zero by rounding; what is not finite stays so.
+        if left < 0.0 { 0.0 } else { (left / self.size).sqrt() }
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::cell::{Cell, Sums};
 use super::shapes::{Numbers, Part};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::Normal;
 
@@ -38,6 +38,11 @@ pub fn search(cell: &Cell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search>
     for start in 0..starts.max(1) {
         let first = outer_solved(cell, &outer, start_of(cell, &outer, start, bounds), bounds)?;
         found.push(descend(cell, first, bounds)?);
+    }
+    // A start may lie where the law has no value.
+    found.retain(|(_, sums, _)| sums.square.is_finite());
+    if found.is_empty() {
+        return Err(Error::expected("force", "a law with finite values at the sampled shapes", "no start with them"));
     }
     let least = found.iter().map(|(_, sums, _)| sums.square).fold(f64::INFINITY, f64::min);
     let limit = (least.sqrt() * (1.0 + SAME)).powi(2) + PROMISE * found[0].1.size;
@@ -87,6 +92,9 @@ fn descend(cell: &Cell, mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<(
     for _ in 0..STEPS {
         let slopes = (0..unknowns.len()).filter(|&i| !is_pushed(&sums.normal, &unknowns, bounds, i));
         let promise = slopes.map(|i| sums.normal.rhs[i].powi(2) / sums.normal.entry(i, i).max(f64::MIN_POSITIVE));
+        if !sums.square.is_finite() {
+            return Ok((unknowns, sums, false));
+        }
         if promise.fold(0.0, f64::max) <= PROMISE * sums.square.max(PROMISE * sums.size) {
             return Ok((unknowns, sums, true));
         }

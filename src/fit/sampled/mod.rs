@@ -104,6 +104,9 @@ pub fn fit_sampled(
     fit: &SampledFit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<SampledFits> {
+    if springs.is_empty() {
+        return Err(Error::expected("springs", "at least one spring to fit", "none"));
+    }
     fit.check(element.dimension())?;
     if element.space() > element.dimension() {
         return Err(Error::new("the sampled fit is known for cells that fill their space"));
@@ -128,7 +131,8 @@ pub fn fit_sampled(
                     extent: geometry.content().powf(1.0 / element.dimension() as f64),
                     poisson: energy.poisson(),
                 };
-                match Cell::new(element, springs, geometry, energy, state, fit, shapes).fit() {
+                let mut cell = Cell::new(element, springs, geometry, energy, state, fit, shapes);
+                match cell.fit() {
                     Ok(one) => found.push(one),
                     Err(error) => outcome = Err(error),
                 }
@@ -210,9 +214,14 @@ impl SampledFit {
                 };
                 return Err(Error::expected("bounds", expected, format!("\"{name}\"")));
             }
-            if !(lower <= upper) {
+            let lowest = if self.nonnegative { 0.0 } else { f64::NEG_INFINITY };
+            if !(lower <= upper && *upper >= lowest && *lower < f64::INFINITY && *upper > f64::NEG_INFINITY) {
+                let expected = match self.nonnegative {
+                    true => "a lower and an upper bound that is not below zero",
+                    false => "a lower and an upper bound",
+                };
                 let found = format!("{lower} to {upper}");
-                return Err(Error::expected(format!("bounds.{name}"), "a lower and an upper bound", found));
+                return Err(Error::expected(format!("bounds.{name}"), expected, found));
             }
         }
         if self.norm != Norm::Two && (!self.is_direct() || !self.bounds.is_empty()) {
@@ -229,35 +238,33 @@ impl SampledFit {
 }
 
 impl Cell<'_> {
-    fn fit(&self) -> Result<CellFit> {
+    fn fit(&mut self) -> Result<CellFit> {
         let (unknowns, found) = match &self.fit.force {
             Force::Laws(_) if !self.fit.is_direct() || !self.fit.bounds.is_empty() => self.iterated()?,
             _ => self.direct()?,
         };
-        let held_out = match self.fit.sampling.held_out {
-            0 => f64::NAN,
-            _ => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
+        let held_out = match self.has_others() {
+            true => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
+            false => f64::NAN,
         };
         let (constants, parameters) = self.written(&unknowns);
+        let finite = constants.iter().chain(&parameters).all(|k| k.is_finite());
+        if !(finite && found.trained.is_finite()) {
+            let expected = "a law with finite values at the sampled shapes and a finite slope at rest";
+            return Err(Error::expected("force", expected, "one without"));
+        }
         Ok(CellFit { constants, parameters, held_out, ..found })
     }
 
     fn direct(&self) -> Result<(Vec<f64>, CellFit)> {
-        let sums = self.sums(Part::Trained, &vec![0.0; self.count()])?;
         let bounded = self.fit.nonnegative || self.fit.force == Force::FreeRest;
-        let mut converged = true;
-        let (unknowns, rank) = if self.fit.norm != Norm::Two {
-            match self.in_norm(bounded)? {
-                Some(unknowns) => (unknowns, Rank::Full),
-                None => {
-                    converged = false;
-                    sums.normal.solve()
-                }
-            }
-        } else if bounded {
-            solve_nonnegative(&sums.normal)
-        } else {
-            sums.normal.solve()
+        let in_norm = if self.fit.norm == Norm::Two { None } else { self.in_norm(bounded)? };
+        let converged = self.fit.norm == Norm::Two || in_norm.is_some();
+        let sums = self.sums(Part::Trained, &vec![0.0; self.count()])?;
+        let (unknowns, rank) = match in_norm {
+            Some(unknowns) => (unknowns, Rank::Full),
+            None if bounded => solve_nonnegative(&sums.normal),
+            None => sums.normal.solve(),
         };
         let trained = sums.error(&unknowns);
         Ok((unknowns, CellFit { rank, converged, trained, ..CellFit::default() }))
@@ -279,7 +286,7 @@ impl Cell<'_> {
         Ok(solve_norm(&rows, &rhs, count, self.fit.norm, bounded))
     }
 
-    fn iterated(&self) -> Result<(Vec<f64>, CellFit)> {
+    fn iterated(&mut self) -> Result<(Vec<f64>, CellFit)> {
         let lowest = if self.fit.nonnegative { 0.0 } else { f64::NEG_INFINITY };
         let bounds = self.each_parameter(|law, i| {
             let given = self.fit.bounds.iter().find(|(bounded, _)| *bounded == law.parameters[i]);
@@ -287,6 +294,7 @@ impl Cell<'_> {
         });
         // What is linear in its parameters has one optimum.
         let starts = if self.fit.is_direct() { 1 } else { self.fit.starts };
+        self.hold()?;
         let found = inner::search(self, starts, &bounds)?;
         let trained = found.sums.error(&vec![0.0; self.count()]);
         let agreeing = Some(found.agreeing);

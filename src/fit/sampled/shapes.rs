@@ -9,6 +9,8 @@ use std::sync::Arc;
 const LONGEST: usize = 1 << 16;
 /// And so many coordinates.
 const WIDEST: usize = 256;
+/// Shapes of a fit.
+const MOST: usize = 1_000_000_000;
 /// A prime that scatters the states of the cells.
 const STRIDE: usize = 1_000_003;
 /// Of the shapes of a list each fifth is held out.
@@ -43,6 +45,10 @@ impl Family {
         ("bending", Family::Bending),
         ("gradients", Family::Gradients),
     ];
+
+    pub fn name(&self) -> &'static str {
+        Family::ALL.iter().find(|(_, family)| family == self).map_or("", |(name, _)| name)
+    }
 
     /// # Errors
     /// There is no such family.
@@ -106,6 +112,11 @@ impl Sampling {
     /// # Errors
     /// A number is out of range, a list is empty or of the wrong length, or a family needs a solid.
     pub fn check(&self, dimension: usize) -> Result<()> {
+        for (key, count) in [("shapes", self.shapes.max(1)), ("held_out", self.held_out)] {
+            if count > MOST {
+                return Err(Error::expected(key, format!("at most {MOST} shapes"), count));
+            }
+        }
         if self.shapes == 0 {
             return Err(Error::expected("shapes", "at least one shape", 0));
         }
@@ -156,6 +167,17 @@ pub struct Shapes<'a> {
 }
 
 impl Shapes<'_> {
+    /// Whether there are shapes that the fit does not see.
+    pub fn has_others(&self) -> bool {
+        let d = self.dimension;
+        let listed = match &self.sampling.source {
+            Source::Families(_) => APART,
+            Source::Gradients(list) => list.len() / (d * d),
+            Source::States(states) => states.len() * self.cells.len(),
+        };
+        self.sampling.held_out > 0 && (listed >= APART || self.sampling.perturbation > 0.0)
+    }
+
     /// Positions of the nodes in shape `i`, deformed by the share `scale` of what its numbers say; `[nodes × dimension]`.
     pub fn place(&self, part: Part, i: usize, scale: f64) -> Vec<f64> {
         let d = self.dimension;

@@ -1,6 +1,6 @@
 //! What a fit of a scene is made from.
 
-use crate::element::Element;
+use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
 use crate::fit::{Fit, SampledFit, Solver, Source};
 use crate::springs::{Force, Law, Springs};
@@ -53,17 +53,13 @@ impl ForceRecipe {
     /// With a law for each group of `springs`.
     ///
     /// # Errors
-    /// A group has no law, or a law no group.
+    /// A group has no law.
     fn resolve(&self, element: &Element, springs: &Springs) -> Result<Force> {
         match self {
             ForceRecipe::Linear => Ok(Force::Linear),
             ForceRecipe::FreeRest => Ok(Force::FreeRest),
             ForceRecipe::Law(law) => Ok(Force::of_all(law.clone(), springs.names.len())),
             ForceRecipe::Groups(laws) => {
-                if let Some((group, _)) = laws.iter().find(|(group, _)| !springs.names.contains(group)) {
-                    let expected = format!("groups of the fit's springs, {}", springs.names.join(", "));
-                    return Err(Error::expected("force", expected, format!("\"{group}\"")));
-                }
                 let law = |group: &String| match laws.iter().find(|(named, _)| named == group) {
                     Some((_, law)) => Ok(Arc::new(law.clone())),
                     None => {
@@ -73,6 +69,42 @@ impl ForceRecipe {
                 };
                 springs.names.iter().map(law).collect::<Result<_>>().map(Force::Laws)
             }
+        }
+    }
+
+    /// Unknowns of a fit of all springs of the element.
+    pub fn unknowns(&self, element: &Element) -> usize {
+        let columns = |group: &SpringGroup| match self {
+            ForceRecipe::Linear => 1,
+            ForceRecipe::FreeRest => 2,
+            ForceRecipe::Law(law) => law.parameters.len(),
+            ForceRecipe::Groups(laws) => {
+                laws.iter().find(|(named, _)| *named == group.name).map_or(0, |(_, law)| law.parameters.len())
+            }
+        };
+        element.springs.iter().map(|group| columns(group) * group.nodes.len().max(1)).sum()
+    }
+
+    pub fn is_linear(&self) -> bool {
+        match self {
+            ForceRecipe::Linear | ForceRecipe::FreeRest => true,
+            ForceRecipe::Law(law) => law.is_linear(),
+            ForceRecipe::Groups(laws) => laws.iter().all(|(_, law)| law.is_linear()),
+        }
+    }
+
+    /// That every law has a group among `known`, those of all elements of a mesh.
+    ///
+    /// # Errors
+    /// One has none.
+    pub fn check_groups(&self, known: &[&str]) -> Result<()> {
+        let ForceRecipe::Groups(laws) = self else { return Ok(()) };
+        match laws.iter().find(|(group, _)| !known.contains(&group.as_str())) {
+            Some((group, _)) => {
+                let expected = format!("groups of the fit's springs, {}", known.join(", "));
+                Err(Error::expected("force", expected, format!("\"{group}\"")))
+            }
+            None => Ok(()),
         }
     }
 
@@ -93,7 +125,7 @@ impl SampledRecipe {
     /// The fit of one element's springs; `states` are positions of the mesh where the recipe names loads.
     ///
     /// # Errors
-    /// A group has no law, or a law no group.
+    /// A group has no law.
     pub fn resolve(&self, element: &Element, springs: &Springs, states: &Arc<Vec<Vec<f64>>>) -> Result<SampledFit> {
         let mut fit = self.fit.clone();
         fit.force = self.force.resolve(element, springs)?;

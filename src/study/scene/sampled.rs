@@ -75,6 +75,9 @@ impl SampledEntry {
             })?;
             recipe.fit.bounds.push((name, range));
         }
+        if self.starts.is_some() && recipe.force.is_linear() {
+            return Err(Error::at("starts", "belongs to a law of force that is not linear in its parameters"));
+        }
         recipe.fit.starts = self.starts.unwrap_or(recipe.fit.starts);
         if let Some(shapes) = self.shapes {
             shapes.check(folder, &mut recipe).map_err(|e| e.placed(|e| e.under("shapes")))?;
@@ -98,6 +101,9 @@ impl ShapesEntry {
         let sources = [self.families.is_some(), self.gradients.is_some(), self.loads.is_some()];
         if sources.iter().filter(|given| **given).count() > 1 {
             return Err(Error::new("expected one of \"families\", \"gradients\", \"loads\", found more"));
+        }
+        if self.stretch.is_some() && (self.gradients.is_some() || self.loads.is_some()) {
+            return Err(Error::at("stretch", "belongs to \"families\": shapes of a list have their own"));
         }
         let sampling = &mut recipe.fit.sampling;
         if let Some(names) = &self.families {
@@ -137,6 +143,9 @@ fn force_of(value: &toml::Value) -> Result<ForceRecipe> {
             let law = |(group, value): (&String, &toml::Value)| {
                 let key = format!("force.{group}");
                 let text = value.as_str().ok_or_else(|| Error::expected(&key, "a law in quotes", value.type_str()))?;
+                if text == "free-rest" {
+                    return Err(Error::at(key, "\"free-rest\" is for all groups alike: force = \"free-rest\""));
+                }
                 let law = Law::parse(if text == "linear" { "k*(c - c0)" } else { text });
                 Ok((group.clone(), law.map_err(|e| Error::at(key, e.problem()))?))
             };

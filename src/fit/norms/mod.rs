@@ -1,0 +1,257 @@
+//! `min ‖b − A x‖`, with or without `x ≥ 0`, for many equations and few unknowns, where the norm need not be the
+//! Euclidean one: the sum of the absolute residuals, the largest of them, or Huber's compromise. No formula gives `x`;
+//! these are linear and quadratic programs, solved by Clarabel's interior-point method.
+//!
+//! The 1-norm and Huber's function are solved in their dual, `y` bounded and orthogonal to the columns of `A`: it has
+//! each entry of `A` once, where the primal with its `± (b − A x) ≤ u` has it twice and takes three times as long. The
+//! maximum is set by hardly more equations than there are unknowns, so that a few of them are solved and those that
+//! exceed their maximum are added until none does.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::SupportedConeT::{self, NonnegativeConeT, ZeroConeT};
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
+use nalgebra::{DMatrix, DVector};
+
+/// Asked of the conic solver, relative to a right-hand side and columns of unit root mean square.
+const TOLERANCE: f64 = 1e-12;
+
+/// What passes where rounding stops the solver short of that. Its own default, 5e-5, would pass as a solution.
+const REDUCED_TOLERANCE: f64 = 1e-8;
+
+/// Added to the diagonal of the solver's equations. By its own 1e-8, residuals that much smaller than the largest are
+/// lost and the 1-norm with a gross outlier does not finish; from 1e-10 down, rounding stops the maximum norm.
+const REGULARIZATION: f64 = 1e-9;
+
+/// The fraction by which an equation left out may exceed the maximum over those taken.
+const EXCESS: f64 = 1e-9;
+
+/// Columns whose pivot is below this fraction of the largest count as combinations of the others.
+const DEPENDENT: f64 = 1e-8;
+
+/// Columns whose pivots all exceed this fraction of the largest are solved as they are.
+const INDEPENDENT: f64 = 1e-2;
+
+/// How the residuals of a fit are measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Norm {
+    /// `Σ r²`.
+    Two,
+    /// `Σ |r|`.
+    One,
+    /// `max |r|`.
+    Max,
+    /// `Σ` of `r²/2` up to `|r| = δ` and of `δ (|r| − δ/2)` beyond, where `δ` is this share of the root mean square of
+    /// the right-hand side. A share of zero stands for the limit, the 1-norm.
+    Huber { share: f64 },
+}
+
+/// The `x` that minimises the norm of `rhs − rows x`, `rows` being row-major `[rhs.len() × unknowns]`; of many optima,
+/// one. `None` for numbers that are not finite, a negative share, or where the conic solver does not finish.
+///
+/// `Norm::Two` is here for completeness: normal equations take a fraction of the time.
+///
+/// # Panics
+/// If `rows` has any other length.
+pub fn solve_norm(rows: &[f64], rhs: &[f64], unknowns: usize, norm: Norm, nonnegative: bool) -> Option<Vec<f64>> {
+    assert_eq!(rows.len(), rhs.len() * unknowns, "entries of the matrix");
+    let valid = !matches!(norm, Norm::Huber { share } if !(share >= 0.0));
+    if !valid || !rows.iter().chain(rhs).all(|value| value.is_finite()) {
+        return None;
+    }
+    let size = root_mean_square(rhs.iter().copied());
+    let column = |j: usize| rows.iter().skip(j).step_by(unknowns).copied();
+    let scale: Vec<f64> = (0..unknowns).map(|j| root_mean_square(column(j))).collect();
+    if size == 0.0 || scale.iter().all(|s| *s == 0.0) {
+        return Some(vec![0.0; unknowns]);
+    }
+    let scaled = |row: &[f64]| -> Vec<f64> { row.iter().zip(&scale).map(|(a, s)| ratio(*a, *s)).collect() };
+    let rows = rows.chunks_exact(unknowns).flat_map(scaled).collect();
+    let residual = Residual { rows, rhs: rhs.iter().map(|b| b / size).collect(), unknowns, nonnegative };
+    let mut x = if nonnegative { residual.minimize(norm)? } else { residual.minimize_in_basis(norm)? };
+    x.iter_mut().zip(&scale).for_each(|(x, s)| *x = ratio(*x, *s) * size);
+    Some(x)
+}
+
+/// `a / s`, and zero for an empty column.
+fn ratio(a: f64, s: f64) -> f64 {
+    if s > 0.0 { a / s } else { 0.0 }
+}
+
+fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let largest = values.clone().fold(0.0f64, |largest, value| largest.max(value.abs()));
+    let count = values.clone().count().max(1) as f64;
+    largest * (values.map(|value| ratio(value, largest).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// `b − A x`, scaled to a unit root mean square of `b` and of the columns of `A`.
+struct Residual {
+    rows: Vec<f64>,
+    rhs: Vec<f64>,
+    unknowns: usize,
+    nonnegative: bool,
+}
+
+impl Residual {
+    fn minimize(&self, norm: Norm) -> Option<Vec<f64>> {
+        match norm {
+            Norm::Two => self.smallest_huber(f64::INFINITY),
+            Norm::One => self.smallest_huber(0.0),
+            Norm::Huber { share } => self.smallest_huber(share),
+            Norm::Max => self.smallest_maximum(),
+        }
+    }
+
+    /// The same in a basis of the columns where these are nearly or wholly dependent: the solver's tolerances are
+    /// relative to its largest variable, and it would call solved what is not, by their share of a large `x`. With
+    /// `x ≥ 0` there is no large `x`.
+    fn minimize_in_basis(&self, norm: Norm) -> Option<Vec<f64>> {
+        let a = DMatrix::from_row_slice(self.rhs.len(), self.unknowns, &self.rows);
+        let Some(basis) = basis(&a) else { return self.minimize(norm) };
+        let rows = (a * &basis).transpose().as_slice().to_vec();
+        let independent = Residual { rows, rhs: self.rhs.clone(), unknowns: basis.ncols(), nonnegative: false };
+        let x = basis * DVector::from_vec(independent.minimize(norm)?);
+        Some(x.as_slice().to_vec())
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.unknowns..][..self.unknowns]
+    }
+
+    fn at(&self, i: usize, x: &[f64]) -> f64 {
+        self.rhs[i] - self.row(i).iter().zip(x).map(|(a, x)| a * x).sum::<f64>()
+    }
+
+    /// `min δ/2 yᵀy − bᵀy` over `−1 ≤ y ≤ 1`, `Aᵀy = 0` (`Aᵀy ≤ 0` for `x ≥ 0`): the dual of Huber's function over `δ`
+    /// and, for `δ = 0`, of the 1-norm. The multiplier of the equations is `x`.
+    fn smallest_huber(&self, share: f64) -> Option<Vec<f64>> {
+        let (m, n) = (self.rhs.len(), self.unknowns);
+        // No residual of the optimum exceeds the Euclidean norm of b: from there on, these are least squares.
+        let delta = share.min((m as f64).sqrt());
+        let quadratic = sparse(m, (0..m).map(|i| [(i, delta)]));
+        let linear: Vec<f64> = self.rhs.iter().map(|b| -b).collect();
+        let bounds = |i: usize| [(n + i, 1.0), (n + m + i, -1.0)];
+        let column = |i: usize| self.row(i).iter().copied().enumerate().chain(bounds(i));
+        let constraints = sparse(n + 2 * m, (0..m).map(column));
+        let limits = [vec![0.0; n], vec![1.0; 2 * m]].concat();
+        let orthogonal = if self.nonnegative { NonnegativeConeT(n) } else { ZeroConeT(n) };
+        let cones = [orthogonal, NonnegativeConeT(2 * m)];
+        let (_, x) = interior_point(&quadratic, &linear, &constraints, &limits, &cones)?;
+        Some(self.unknowns_of(x))
+    }
+
+    /// Chebyshev's problem by exchange: every round adds the worst equations to those taken, at most doubling them.
+    fn smallest_maximum(&self) -> Option<Vec<f64>> {
+        let mut taken = vec![false; self.rhs.len()];
+        self.sample().into_iter().for_each(|i| taken[i] = true);
+        loop {
+            let (inside, outside): (Vec<usize>, Vec<usize>) = (0..taken.len()).partition(|&i| taken[i]);
+            let x = self.smallest_maximum_of(&inside)?;
+            let maximum = inside.iter().fold(0.0f64, |maximum, &i| maximum.max(self.at(i, &x).abs()));
+            let allowed = maximum * (1.0 + EXCESS) + TOLERANCE;
+            let left_out = outside.into_iter().map(|i| (self.at(i, &x).abs(), i));
+            let mut worst: Vec<(f64, usize)> = left_out.filter(|(residual, _)| *residual > allowed).collect();
+            if worst.is_empty() {
+                return Some(x);
+            }
+            worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+            worst.iter().take(inside.len()).for_each(|&(_, i)| taken[i] = true);
+        }
+    }
+
+    /// Equations to begin with: the one with the largest entry of each column, and others spread by the golden ratio,
+    /// which falls in step with no pattern of the rows.
+    fn sample(&self) -> Vec<usize> {
+        let (m, n) = (self.rhs.len(), self.unknowns);
+        let entry = |i: usize, j: usize| self.row(i)[j].abs();
+        let largest = (0..n).filter_map(|j| (0..m).max_by(|&a, &b| entry(a, j).total_cmp(&entry(b, j))));
+        let golden = (5f64.sqrt() - 1.0) / 2.0;
+        let spread = (0..4 * n).map(|k| ((k as f64 * golden).fract() * m as f64) as usize);
+        largest.chain(spread).collect()
+    }
+
+    /// `min t` over `−t ≤ b − A x ≤ t` for the given equations.
+    fn smallest_maximum_of(&self, equations: &[usize]) -> Option<Vec<f64>> {
+        let (m, n) = (equations.len(), self.unknowns);
+        let bounds = if self.nonnegative { n } else { 0 };
+        let column = |j: usize| {
+            let entry = |&i: &usize| if j < n { self.row(i)[j] } else { -1.0 };
+            let opposite = |i: &usize| if j < n { -entry(i) } else { entry(i) };
+            let both = equations.iter().map(entry).chain(equations.iter().map(opposite)).enumerate();
+            both.chain((j < bounds).then_some((2 * m + j, -1.0))).collect::<Vec<_>>()
+        };
+        let constraints = sparse(2 * m + bounds, (0..=n).map(column));
+        let rhs: Vec<f64> = equations.iter().map(|&i| self.rhs[i]).collect();
+        let limits = [rhs.clone(), rhs.iter().map(|b| -b).collect(), vec![0.0; bounds]].concat();
+        let linear = [vec![0.0; n], vec![1.0]].concat();
+        let cones = [NonnegativeConeT(limits.len())];
+        let (x, _) = interior_point(&CscMatrix::zeros((n + 1, n + 1)), &linear, &constraints, &limits, &cones)?;
+        Some(self.unknowns_of(x))
+    }
+
+    /// The unknowns among the solver's variables, without what an interior point leaves of a bound.
+    fn unknowns_of(&self, mut variables: Vec<f64>) -> Vec<f64> {
+        variables.truncate(self.unknowns);
+        if self.nonnegative {
+            variables.iter_mut().for_each(|x| *x = x.max(0.0));
+        }
+        variables
+    }
+}
+
+/// `B` for which the columns of `A B` span those of `A`, orthogonal and of unit root mean square; `x = B z` then has the
+/// least norm of all with the same residuals. `None` if the columns of `A` will do as they are.
+fn basis(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let (m, n) = a.shape();
+    let pivoted = a.clone().qr().unpack_r().col_piv_qr();
+    let mut r = pivoted.r();
+    let pivots: Vec<f64> = (0..m.min(n)).map(|k| r[(k, k)]).collect();
+    let rank = pivots.iter().take_while(|pivot| **pivot > DEPENDENT * pivots[0]).count();
+    if rank == n && pivots[n - 1] > INDEPENDENT * pivots[0] {
+        return None;
+    }
+    pivoted.p().inv_permute_columns(&mut r);
+    // A = Q R and Rᵀ = S L, so that A S L⁻ᵀ = Q.
+    let (s, l) = r.rows(0, rank).transpose().qr().unpack();
+    Some(s * l.transpose().try_inverse()? * (m as f64).sqrt())
+}
+
+/// The matrix of these columns, the entries of each in the order of its rows.
+fn sparse<C: IntoIterator<Item = (usize, f64)>>(height: usize, columns: impl Iterator<Item = C>) -> CscMatrix {
+    let (mut starts, mut rows, mut values) = (vec![0], vec![], vec![]);
+    for column in columns {
+        for (row, value) in column.into_iter().filter(|entry| entry.1 != 0.0) {
+            rows.push(row);
+            values.push(value);
+        }
+        starts.push(rows.len());
+    }
+    CscMatrix::new(height, starts.len() - 1, starts, rows, values)
+}
+
+/// `min ½ vᵀ P v + qᵀ v` over `G v + s = h`, `s` in the cones: `v` and the multipliers of the constraints.
+fn interior_point(
+    p: &CscMatrix,
+    q: &[f64],
+    g: &CscMatrix,
+    h: &[f64],
+    cones: &[SupportedConeT<f64>],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let settings = DefaultSettings {
+        verbose: false,
+        tol_gap_abs: TOLERANCE,
+        tol_gap_rel: TOLERANCE,
+        tol_feas: TOLERANCE,
+        reduced_tol_gap_abs: REDUCED_TOLERANCE,
+        reduced_tol_gap_rel: REDUCED_TOLERANCE,
+        reduced_tol_feas: REDUCED_TOLERANCE,
+        static_regularization_constant: REGULARIZATION,
+        ..Default::default()
+    };
+    let mut solver = DefaultSolver::new(p, q, g, h, cones, settings).ok()?;
+    solver.solve();
+    let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+    solved.then_some((solver.solution.x, solver.solution.z))
+}
+
+#[cfg(test)]
+mod tests;
