@@ -14,5 +14,6 @@ pub mod springs;
 pub mod stiffness;
 pub mod study;
 pub mod symbolic;
+pub mod whole;
 
 pub use file::{check_folder, files_in, write_whole};

@@ -4,7 +4,7 @@ use springfit::element::SHIPPED;
 use std::path::{Path, PathBuf};
 
 /// A module may import those before it; a folder counts as one.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 15] = [
     "error",
     "file",
     "scalar",
@@ -17,6 +17,7 @@ const LAYERS: [&str; 14] = [
     "mesh",
     "model",
     "solve",
+    "whole",
     "study",
     "report",
 ];
