@@ -14,7 +14,9 @@ use springfit::material::{Energy, Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, vtk};
 use springfit::report::Comparison;
 use springfit::springs::Springs;
-use springfit::study::{FitEntry, LargeBody, Recipe, Scene, ShapesEntry, fit_mesh, load_elements, run, stages};
+use springfit::study::{
+    FitEntry, LargeBody, Recipe, Reference, Scene, ShapesEntry, fit_mesh, load_elements, run, stages,
+};
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -112,7 +114,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         .map(|energy| LargeBody::at_rest(energy, material.state()));
     let mut bar = Bar::new();
     let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
-    let outcome = fit_mesh(&mesh, material, large.as_ref(), &named, &mut progress);
+    let outcome = fit_mesh(&mesh, material, &Reference::of_law(large.as_ref()), &named, &mut progress);
     let outcome = outcome.map_err(|e| if sampled { e.placed(Error::of_option) } else { e })?;
     bar.clear();
     let masses = arguments.density.map(|density| model::masses(&mesh, density, material.thickness()));

@@ -1492,3 +1492,50 @@ fn sampled_fits_and_laws() {
     );
     refusals.finish();
 }
+
+#[test]
+fn whole_object_fits() {
+    let fit = "objective = \"modal\"";
+    let edits = [
+        ("objective = \"whole\"", "fit[0].loads: expected names of loads of the scene to fit, found none"),
+        (
+            "objective = \"whole\"\nloads = [\"push\"]",
+            "fit[0].loads: expected loads of the scene (load 1), found \"push\"",
+        ),
+        (
+            "objective = \"whole\"\nloads = [\"load 1\"]\nvalidate = [\"load 1\"]",
+            "fit[0].validate: expected loads that are not fitted, found \"load 1\"",
+        ),
+        (
+            "objective = \"whole\"\nloads = [\"load 1\"]\nstart = \"rest\"",
+            "fit[0].start: expected one of frobenius, offdiag, modal, spectral, divergence, found \"rest\"",
+        ),
+        (
+            "objective = \"whole\"\nloads = [\"load 1\"]\niterations = 0",
+            "fit[0].iterations: expected a number above 0, found 0",
+        ),
+        (
+            "objective = \"whole\"\nloads = [\"load 1\"]\ntied = true",
+            "fit[0].tied: does not go with the objective \"whole\"",
+        ),
+        (
+            "objective = \"modal\"\nloads = [\"load 1\"]",
+            "fit[0].loads: belongs to the objective \"whole\", found with \"modal\"",
+        ),
+    ];
+    let messages = edits.map(|(_, message)| format!("scene.toml: {message}"));
+    let edits: Vec<Edit> = edits.iter().zip(&messages).map(|((to, _), message)| (fit, *to, message.as_str())).collect();
+    refuses_edits(BRICK, &edits);
+    let mut refusals = Refusals::default();
+    let large = edited(BRICK, fit, "objective = \"whole\"\nloads = [\"load 1\"]");
+    refusals.expect_of_scene(
+        &edited(&large, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\""),
+        "scene.toml: fit[0].objective: the objective \"whole\" is known for small displacements, found a material with a law",
+    );
+    let moved = edited(&large, "traction = [0, 0, 1]", "displacement = [0, 0, 0.1]");
+    refusals.expect_of_scene(
+        &moved,
+        "scene.toml: fit[0].fix: expected points that are held at rest, found a prescribed displacement",
+    );
+    refusals.finish();
+}

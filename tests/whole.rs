@@ -4,9 +4,10 @@ use springfit::fit::{Fit, Objective, Weight, fit_cells};
 use springfit::material::Material;
 use springfit::mesh::{Mesh, Selection};
 use springfit::model::{Network, Support, finite_elements};
+use springfit::report;
 use springfit::solve::System;
 use springfit::springs::Springs;
-use springfit::study::{Scene, displacement_error};
+use springfit::study::{LoadOutcome, Scene, displacement_error, run};
 use springfit::whole::{Problem, Target, WholeSettings, fit_whole, standard_loads};
 use std::path::Path;
 
@@ -126,4 +127,24 @@ fn whole_fits_lower_the_errors_of_loads() {
         assert!(after.1.iter().zip(&before.1).all(|(a, b)| a < b), "{name}");
         assert!(found.change < 1000.0);
     }
+}
+
+/// Through a scene: loads that neither the fit nor its regularization has seen come out better, and the notes say which were seen.
+#[test]
+fn scenes_fit_the_whole_object() {
+    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cube_tet_whole.toml")).unwrap();
+    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
+    for (before, after) in [(0, 1), (2, 3)] {
+        let [before, after] = [before, after].map(|i| &outcome.fits[i].loads);
+        for held_out in ["gravity along y", "one half pulled"] {
+            let error = |loads: &[LoadOutcome]| loads.iter().find(|l| l.name == held_out).unwrap().error.unwrap().rms;
+            assert!(error(after) < 0.5 * error(before), "{held_out}: {} {}", error(before), error(after));
+        }
+    }
+    assert!(outcome.fits.iter().all(|fit| fit.network.negative() == 0));
+    let notes = report::notes(&outcome);
+    assert!(
+        notes.iter().any(|note| note.contains("fitted to tension, shear x, shear y, whose errors are not held out"))
+    );
+    assert!(report::report(&outcome).contains("\"validated\""));
 }

@@ -29,6 +29,13 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
     let mut value = match &outcome.fit.recipe {
         Recipe::Stiffness(fit) => of_stiffness(fit),
         Recipe::Forces(recipe) => of_forces(recipe),
+        Recipe::Whole(recipe) => json!({
+            "objective": "whole",
+            "start": recipe.start.objective.name(),
+            "weight": recipe.start.objective.weight().map(|w| w.name()),
+            "higher": recipe.start.objective.higher(),
+            "solver": "l-bfgs",
+        }),
     };
     let rest = json!({
         "name": outcome.fit.name,
@@ -53,6 +60,13 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
         "effective_poisson": outcome.moduli.as_ref().map(|m| m.poisson),
         "zener": outcome.moduli.as_ref().map(|m| m.zener),
         "loads": outcome.loads.iter().map(load).collect::<Vec<_>>(),
+        "whole": outcome.whole.as_ref().map(|w| json!({
+            "loads": w.loads,
+            "validated": w.validated,
+            "regularization": w.regularization,
+            "largest_change": w.change,
+            "evaluations": w.evaluations,
+        })),
         "sampled": outcome.sampled.as_ref().map(|s| json!({
             "shapes": s.shapes,
             "trained": spread(s.trained),

@@ -65,7 +65,7 @@ pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
 }
 
 fn row(fit: &FitOutcome, elements: usize, sampled: bool) -> Vec<String> {
-    let pair = |mean: f64, max: f64| format!("{mean:.4} / {max:.4}");
+    let pair = |mean: f64, max: f64| if mean.is_nan() { "-".into() } else { format!("{mean:.4} / {max:.4}") };
     let mut row = vec![
         fit.fit.name.clone(),
         fit.network.len().to_string(),
@@ -175,6 +175,18 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
                 100.0 * agreeing
             ));
         }
+    }
+    if let Some(whole) = &fit.whole {
+        let validated = match &whole.validated[..] {
+            [] => String::new(),
+            loads => format!("; rho was chosen by {}", loads.join(", ")),
+        };
+        notes.push(format!(
+            "{name}: fitted to {}, whose errors are not held out{validated}; rho {:.0e}, constants changed by up to {:.1}",
+            whole.loads.join(", "),
+            whole.regularization,
+            whole.change
+        ));
     }
     for load in &fit.loads {
         if let Some(trouble) = load.followed.and_then(|followed| trouble(&load.name, &followed)) {

@@ -19,11 +19,11 @@ pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shape
 pub use large::LargeBody;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
-pub use outcome::{FitOutcome, Followed, LoadOutcome, Outcome, SampledOutcome};
-pub use run::{Progress, fit_mesh, run};
+pub use outcome::{FitOutcome, Followed, LoadOutcome, Outcome, SampledOutcome, WholeOutcome};
+pub use run::{Progress, Reference, fit_mesh, run};
 pub use scene::{
     BoxEntry, FitEntry, ForceRecipe, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,
-    ShapesEntry, load_elements,
+    ShapesEntry, WholeRecipe, load_elements,
 };
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};

@@ -52,6 +52,8 @@ pub struct FitOutcome {
     pub moduli: Option<EffectiveModuli>,
     /// Of a sampled fit.
     pub sampled: Option<SampledOutcome>,
+    /// Of a whole-object fit; its springs belong to no element, so that there are no matrix errors.
+    pub whole: Option<WholeOutcome>,
     /// With the support of the first load; `None` without loads.
     pub stability: Option<Stability>,
     /// Points that move in the softest motion, at least half as far as the one that moves most.
@@ -86,6 +88,18 @@ pub struct Followed {
     pub shifted: usize,
     /// Cells that are turned inside out at a quadrature point.
     pub inverted: usize,
+}
+
+/// What a whole-object fit has seen, and what it did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WholeOutcome {
+    /// The loads that were fitted, and those that chose the regularization.
+    pub loads: Vec<String>,
+    pub validated: Vec<String>,
+    pub regularization: f64,
+    /// The largest factor by which a constant changed.
+    pub change: f64,
+    pub evaluations: usize,
 }
 
 /// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.

@@ -1,19 +1,20 @@
 //! Runs a scene: fit each objective, solve each load with both models, compare.
 
-use super::cases::load_cases;
+use super::cases::{Case, load_cases};
 use super::large::LargeBody;
 use super::linear::LinearBody;
 use super::moduli::moduli_of_body;
-use super::outcome::{FitOutcome, Outcome, SampledOutcome};
-use super::scene::{NamedFit, Recipe, SampledRecipe, Scene};
+use super::outcome::{FitOutcome, Outcome, SampledOutcome, WholeOutcome};
+use super::scene::{NamedFit, Recipe, SampledRecipe, Scene, WholeRecipe};
 use super::stages::stages;
 use crate::element::SpringGroup;
 use crate::error::{Error, Result};
-use crate::fit::{ElementErrors, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
+use crate::fit::{ElementErrors, Fit, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
 use crate::material::Material;
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::{Network, masses};
+use crate::model::{Network, Support, masses};
 use crate::springs::Springs;
+use crate::whole::{Problem, Target, WholeFit, fit_whole};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -48,8 +49,16 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
     };
+    let linear = |outcome: &Outcome, progress: &mut Progress| {
+        LinearBody::solve(&outcome.mesh, material.moduli(), &cases, progress).map_err(in_scene)
+    };
+    // Of the fits only those to the whole object need the body's displacements.
+    let needed = scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_)));
+    let mut body = if needed { Some(linear(&outcome, progress)?) } else { None };
+    let displacements = body.as_ref().map_or(&[][..], |body| &body.displacements);
+    let reference = Reference { large: large.as_ref(), cases: &cases, displacements };
     for (i, fit) in scene.fits.iter().enumerate() {
-        let fitted = fit_mesh(&outcome.mesh, material, large.as_ref(), fit, progress);
+        let fitted = fit_mesh(&outcome.mesh, material, &reference, fit, progress);
         outcome.fits.push(fitted.map_err(|e| scene.at(&format!("fit[{i}]"), e))?);
     }
     if scene.output.moduli {
@@ -66,7 +75,10 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         (outcome.fem, outcome.followed) = (large.displacements, large.followed);
         return Ok(outcome);
     }
-    let body = LinearBody::solve(&outcome.mesh, material.moduli(), &cases, progress).map_err(in_scene)?;
+    let body = match body.take() {
+        Some(body) => body,
+        None => linear(&outcome, progress)?,
+    };
     for fit in &mut outcome.fits {
         progress("networks", outcome.fem.len(), cases.len());
         body.compare(&outcome.mesh, &cases, fit)?;
@@ -86,14 +98,47 @@ fn drawable(scene: &Scene, mesh: &Mesh) -> Result<()> {
     }
 }
 
-/// Fits one objective on every cell and assembles the network. A sampled fit needs the forces of `large`.
+/// What is known of the body that springs are fitted to, beyond its stiffness.
+#[derive(Clone, Copy, Default)]
+pub struct Reference<'a> {
+    /// For sampled fits.
+    pub large: Option<&'a LargeBody>,
+    /// For whole-object fits: loads and the displacements under them.
+    pub(super) cases: &'a [Case],
+    pub(super) displacements: &'a [Vec<f64>],
+}
+
+impl<'a> Reference<'a> {
+    /// Of a body with a law and without loads.
+    pub fn of_law(large: Option<&'a LargeBody>) -> Reference<'a> {
+        Reference { large, ..Reference::default() }
+    }
+
+    /// # Errors
+    /// The loads are not there, or held in another way than the first of them.
+    fn targets(&self, names: &[String]) -> Result<(Vec<Target>, Option<&Support>)> {
+        let mut support: Option<&Support> = None;
+        let mut targets = Vec::new();
+        for (case, displacement) in self.cases.iter().zip(self.displacements).filter(|(c, _)| names.contains(&c.name)) {
+            if **support.get_or_insert(&case.support) != case.support {
+                let expected = "loads that are held in the same way";
+                return Err(Error::expected("loads", expected, format!("\"{}\"", case.name)));
+            }
+            let (name, forces, displacement) = (case.name.clone(), case.forces.clone(), displacement.clone());
+            targets.push(Target { name, forces, displacement, weight: 1.0 });
+        }
+        Ok((targets, support))
+    }
+}
+
+/// Fits one objective on every cell and assembles the network; `reference` is needed by sampled and whole-object fits.
 ///
 /// # Errors
 /// A spring group is no group of the elements, a law does not go with the groups, or there is nothing to sample.
 pub fn fit_mesh(
     mesh: &Mesh,
     material: Material,
-    large: Option<&LargeBody>,
+    reference: &Reference,
     named: &NamedFit,
     progress: &mut Progress,
 ) -> Result<FitOutcome> {
@@ -102,13 +147,17 @@ pub fn fit_mesh(
     rayon::broadcast(|_| ());
     let start = Instant::now();
     let mut sampled: Option<SampledOutcome> = None;
-    let fits = match &named.recipe {
-        Recipe::Stiffness(fit) => each_block(mesh, named, progress, |block, springs, progress| {
+    let at_rest = |fit: &Fit, progress: &mut Progress| {
+        each_block(mesh, named, progress, |block, springs, progress| {
             fit_cells(&block.element, springs, &mesh.points, &block.connectivity, moduli, fit, progress)
-        })?,
+        })
+    };
+    let fits = match &named.recipe {
+        Recipe::Stiffness(fit) => at_rest(fit, progress)?,
+        Recipe::Whole(recipe) => at_rest(&recipe.start, progress)?,
         Recipe::Forces(recipe) => {
             let expected = "the energy whose forces are sampled";
-            let large = large.ok_or_else(|| Error::expected("law", expected, "none"))?;
+            let large = reference.large.ok_or_else(|| Error::expected("law", expected, "none"))?;
             let states = Arc::new(large.states(&recipe.loads)?);
             let groups = mesh.blocks.iter().flat_map(|block| &block.element.springs);
             let used = |group: &&SpringGroup| match &named.springs {
@@ -127,16 +176,26 @@ pub fn fit_mesh(
     };
     let seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let network = Network::assemble(mesh, &fits);
+    let mut network = Network::assemble(mesh, &fits);
     let seconds_assembly = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let mut whole = None;
+    if let Recipe::Whole(recipe) = &named.recipe {
+        progress(&named.name, 0, 1);
+        let found = fit_object(mesh, &network, recipe, reference)?;
+        whole = Some(WholeOutcome::of(recipe, &found));
+        network = found.network;
+    }
+    let seconds = seconds + start.elapsed().as_secs_f64();
     let mut errors = ElementErrors::default();
-    for (block, fit) in mesh.blocks.iter().zip(&fits) {
+    for (block, fit) in mesh.blocks.iter().zip(&fits).filter(|_| whole.is_none()) {
         errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit)?);
     }
     let certificates = || fits.iter().flat_map(|f| &f.certificates);
     let largest = certificates().map(|c| c.value).reduce(f64::max);
     let relative =
         matches!(&named.recipe, Recipe::Stiffness(fit) if fit.objective == Objective::Spectral(Weight::Relative));
+    let unknown = Spread { mean: f64::NAN, max: f64::NAN };
     Ok(FitOutcome {
         fit: named.clone(),
         network,
@@ -148,14 +207,37 @@ pub fn fit_mesh(
         ambiguous: certificates().filter(|c| c.ambiguous).count(),
         gap: certificates().map(|c| c.gap()).reduce(f64::max),
         energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
-        frobenius: Spread::of(&errors.frobenius),
-        spectral: Spread::of(&errors.spectral),
+        frobenius: if whole.is_some() { unknown } else { Spread::of(&errors.frobenius) },
+        spectral: if whole.is_some() { unknown } else { Spread::of(&errors.spectral) },
+        whole,
         moduli: None,
         sampled,
         stability: None,
         loose_points: Vec::new(),
         loads: Vec::new(),
     })
+}
+
+fn fit_object(mesh: &Mesh, network: &Network, recipe: &WholeRecipe, reference: &Reference) -> Result<WholeFit> {
+    let names = [&recipe.loads[..], &recipe.validated].concat();
+    let (targets, support) = reference.targets(&names)?;
+    let support = support.ok_or_else(|| Error::expected("loads", "loads of a scene", "none"))?;
+    let (trained, validated): (Vec<Target>, Vec<Target>) =
+        targets.into_iter().partition(|target| recipe.loads.contains(&target.name));
+    let mut problem = Problem::new(network, &mesh.points, support, 0.0)?;
+    fit_whole(&mut problem, &trained, &validated, &recipe.settings)
+}
+
+impl WholeOutcome {
+    fn of(recipe: &WholeRecipe, found: &WholeFit) -> WholeOutcome {
+        WholeOutcome {
+            loads: recipe.loads.clone(),
+            validated: recipe.validated.clone(),
+            regularization: found.regularization,
+            change: found.change,
+            evaluations: found.evaluations,
+        }
+    }
 }
 
 /// `fit` of every block with its springs; the progress it tells is that of all cells.

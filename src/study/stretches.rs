@@ -209,6 +209,7 @@ impl Pulled {
             Recipe::Stiffness(fit) => {
                 fit_cells(&block.element, &springs, points, cells, self.material.moduli(), fit, &mut |_| {})?
             }
+            Recipe::Whole(_) => return Err(Error::at("objective", "\"whole\" has no part in this study")),
             Recipe::Forces(recipe) => {
                 let fit = recipe.resolve(&block.element, &springs, &Arc::default())?;
                 let state = self.material.state();

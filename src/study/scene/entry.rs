@@ -2,6 +2,7 @@
 
 use super::recipe::Recipe;
 use super::sampled::{SampledEntry, ShapesEntry};
+use super::whole::WholeEntry;
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective, Solver, Weights};
@@ -115,6 +116,9 @@ pub struct FitEntry {
     pub bounds: Option<toml::Table>,
     pub starts: Option<usize>,
     pub shapes: Option<ShapesEntry>,
+    pub start: Option<String>,
+    pub loads: Option<Vec<String>>,
+    pub validate: Option<Vec<String>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -182,6 +186,12 @@ impl FitEntry {
             starts: self.starts,
             shapes: self.shapes,
         };
+        let whole = WholeEntry { start: self.start, loads: self.loads, validate: self.validate };
+        if let Some(key) = whole.key().filter(|_| self.objective != "whole") {
+            let problem = format!("belongs to the objective \"whole\", found with \"{}\"", self.objective);
+            return Err(Error::at(key, problem));
+        }
+        let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         let recipe = if self.objective == "sampled" {
             let other = [
                 ("balance", self.balance.is_some()),
@@ -208,7 +218,15 @@ impl FitEntry {
                 let problem = format!("belongs to the objective \"sampled\", found with \"{}\"", self.objective);
                 return Err(Error::at(key, problem));
             }
-            let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
+            if self.objective == "whole" {
+                if self.tied || self.solver.is_some() {
+                    let key = if self.tied { "tied" } else { "solver" };
+                    return Err(Error::at(key, "does not go with the objective \"whole\""));
+                }
+                let recipe = Recipe::Whole(Box::new(whole.check(choices, self.iterations)?));
+                let name = self.name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
+                return Ok(NamedFit { name, recipe, springs: self.springs });
+            }
             let objective = Objective::named(&self.objective, choices)?;
             let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
             Recipe::Stiffness(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })

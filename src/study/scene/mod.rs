@@ -3,10 +3,12 @@
 mod entry;
 mod recipe;
 mod sampled;
+mod whole;
 
 pub use entry::{BoxEntry, FitEntry, MeshInput, Output};
 pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
 pub use sampled::ShapesEntry;
+pub use whole::WholeRecipe;
 
 use crate::element::Element;
 use crate::error::{Error, Result};
@@ -113,15 +115,31 @@ impl Scene {
         }
         let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
         for (i, fit) in fits.iter().enumerate() {
-            let Recipe::Forces(recipe) = &fit.recipe else { continue };
-            if entry.material.law.is_none() {
-                let expected = format!("the energy whose forces fit[{i}] samples, such as \"neo-hookean\"");
-                return Err(Error::expected("material.law", expected, "none"));
-            }
-            if let Some(name) = recipe.loads.iter().find(|name| !loads.iter().any(|load| load.name == **name)) {
-                let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
-                let expected = format!("loads of the scene ({})", names.join(", "));
-                return Err(Error::expected(format!("fit[{i}].shapes.loads"), expected, format!("\"{name}\"")));
+            let unknown =
+                |key: &str, wanted: &[String]| match wanted.iter().find(|w| loads.iter().all(|l| l.name != **w)) {
+                    Some(name) => {
+                        let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
+                        let expected = format!("loads of the scene ({})", names.join(", "));
+                        Err(Error::expected(format!("fit[{i}].{key}"), expected, format!("\"{name}\"")))
+                    }
+                    None => Ok(()),
+                };
+            match (&fit.recipe, &entry.material.law) {
+                (Recipe::Stiffness(_), _) => {}
+                (Recipe::Forces(_), None) => {
+                    let expected = format!("the energy whose forces fit[{i}] samples, such as \"neo-hookean\"");
+                    return Err(Error::expected("material.law", expected, "none"));
+                }
+                (Recipe::Forces(recipe), Some(_)) => unknown("shapes.loads", &recipe.loads)?,
+                (Recipe::Whole(_), Some(_)) => {
+                    let problem =
+                        "the objective \"whole\" is known for small displacements, found a material with a law";
+                    return Err(Error::at(format!("fit[{i}].objective"), problem));
+                }
+                (Recipe::Whole(recipe), None) => {
+                    unknown("loads", &recipe.loads)?;
+                    unknown("validate", &recipe.validated)?;
+                }
             }
         }
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();

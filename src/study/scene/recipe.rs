@@ -1,5 +1,6 @@
 //! What a fit of a scene is made from.
 
+use super::whole::WholeRecipe;
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
 use crate::fit::{Fit, SampledFit, Solver, Source};
@@ -13,6 +14,8 @@ pub enum Recipe {
     Stiffness(Fit),
     /// From the forces at sampled shapes.
     Forces(Box<SampledRecipe>),
+    /// From the displacements of the whole object.
+    Whole(Box<WholeRecipe>),
 }
 
 /// A sampled fit before the mesh is known.
@@ -148,6 +151,7 @@ impl Recipe {
                 };
                 (fit.objective.title() + &groups + &solver, fit.tied, fit.nonnegative)
             }
+            Recipe::Whole(recipe) => (format!("whole from {}{groups}", recipe.start.objective.title()), false, false),
             Recipe::Forces(recipe) => {
                 let name = format!("sampled{}{groups}", recipe.force.name());
                 (name, recipe.fit.tied, recipe.fit.nonnegative)
