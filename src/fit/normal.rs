@@ -132,6 +132,12 @@ impl Normal {
         self.rhs.iter().enumerate().map(|(s, b)| row(s) - b).collect()
     }
 
+    /// `2 bᵀd − dᵀ M d`: by how much `‖r − J d‖²` is less than `‖r‖²`, where `M = JᵀJ`, `b = Jᵀr`.
+    pub fn fall(&self, d: &[f64]) -> f64 {
+        let along = |v: &[f64]| v.iter().zip(d).map(|(v, d)| v * d).sum::<f64>();
+        along(&self.rhs) - along(&self.gradient(d))
+    }
+
     /// The solution where unknowns that nothing depends on are zero, and `solve` finds the others.
     pub fn solve_determined(&self, solve: impl Fn(&Normal) -> (Vec<f64>, Rank)) -> (Vec<f64>, Rank) {
         let determined: Vec<usize> = (0..self.size()).filter(|&s| self.entry(s, s) > 0.0).collect();

@@ -53,6 +53,16 @@ pub struct Energy {
     by_stretches: bool,
 }
 
+/// Of one deformation gradient.
+struct Invariants {
+    /// `FᵀF`.
+    c: Matrix3<f64>,
+    /// `F a`.
+    fibre: Option<Vector3<f64>>,
+    /// I1, I2, J, I4.
+    values: [f64; 4],
+}
+
 /// Name and text of the files of the folder `materials`, by name.
 pub static SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/materials.rs"));
 
@@ -156,11 +166,7 @@ impl Energy {
 
     /// `P = ∂W/∂F` alone, at a tenth of the cost.
     pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
-        let c = f.transpose() * f;
-        let (i1, j) = (c.trace(), f.determinant());
-        let i2 = (i1 * i1 - (c * c).trace()) / 2.0;
-        let fibre = self.fibre.map(|a| f * a);
-        let i4 = fibre.map_or(1.0, |a| a.norm_squared());
+        let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
         let mut at = vec![i1, i2, j, i4, 1.0, 1.0, 1.0];
         at.extend(&self.constants);
         if self.by_stretches {
@@ -190,6 +196,15 @@ impl Energy {
         stress
     }
 
+    /// `I1 = tr C`, `I2 = (I1² − tr C²)/2`, `J = det F`, `I4 = |F a|²`, one without fibres.
+    fn invariants(&self, f: &Matrix3<f64>) -> Invariants {
+        let c = f.transpose() * f;
+        let i1 = c.trace();
+        let fibre = self.fibre.map(|a| f * a);
+        let i4 = fibre.map_or(1.0, |a| a.norm_squared());
+        Invariants { c, fibre, values: [i1, (i1 * i1 - (c * c).trace()) / 2.0, f.determinant(), i4] }
+    }
+
     /// The energy with its derivatives in the first invariants, or in the stretches.
     fn jet(&self, variables: Vec<Jet>) -> Jet {
         let n = variables[0].gradient.len();
@@ -198,13 +213,9 @@ impl Energy {
         self.expression.jet(&at, n)
     }
 
-    /// The chain rule on `I1 = tr C`, `I2 = (I1² − tr C²)/2`, `J = det F`, `I4 = |F a|²`.
+    /// The chain rule on the invariants.
     fn by_invariants(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
-        let c = f.transpose() * f;
-        let (i1, j) = (c.trace(), f.determinant());
-        let i2 = (i1 * i1 - (c * c).trace()) / 2.0;
-        let fibre = self.fibre.map(|a| f * a);
-        let i4 = fibre.map_or(1.0, |a| a.norm_squared());
+        let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
         let mut variables = Jet::variables(&[i1, i2, j, i4]);
         // The stretches are not asked for here.
         variables.extend([1.0; 3].map(Jet::number));

@@ -32,13 +32,7 @@ impl Body<'_> {
             let d = geometry.dimension;
             let mut local = vec![0.0; nodes.len() * d];
             gather(x, d, nodes, &mut local);
-            let determinant = |grad: &[f64]| {
-                let f = nalgebra::DMatrix::<f64>::from_fn(d, d, |k, l| {
-                    (0..nodes.len()).map(|a| local[a * d + k] * grad[a * d + l]).sum::<f64>()
-                });
-                f.determinant()
-            };
-            inverted += usize::from(geometry.gradients.chunks_exact(nodes.len() * d).any(|g| determinant(g) <= 0.0));
+            inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
             Some(())
         });
         inverted

@@ -17,6 +17,11 @@ use faer::sparse::Triplet;
 /// Entries of the lower triangle of a symmetric matrix; those of the same place add up.
 pub type Entries = Vec<Triplet<usize, usize, f64>>;
 
+/// `x = X + u`, `[points · dimension]`, m.
+pub fn displaced(points: &[f64], u: &[f64]) -> Vec<f64> {
+    points.iter().zip(u).map(|(x, u)| x + u).collect()
+}
+
 /// What a model does with its points at given positions.
 #[derive(Debug, Clone)]
 pub struct Response {

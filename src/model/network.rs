@@ -5,7 +5,7 @@ use super::system::dofs;
 use crate::element::SpringKind;
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
-use crate::springs::{Force, Law, Measure, distance};
+use crate::springs::{Force, Law, Measure, distance, linear};
 use crate::stiffness::gather;
 use crate::symbolic::Expr;
 use faer::sparse::Triplet;
@@ -29,11 +29,6 @@ impl LengthSpring {
     pub fn pull(&self, length: f64) -> [f64; 3] {
         linear(self.constant, length - self.rest)
     }
-}
-
-/// `½ k x²`, `k x`, `k`.
-fn linear(constant: f64, change: f64) -> [f64; 3] {
-    [constant * change * change / 2.0, constant * change, constant]
 }
 
 /// A spring that measures something else of a few points, an angle, an area, a volume, a coupling, a user's measure, or one with

@@ -1,8 +1,8 @@
 //! Tables, CSV and a work-precision plot of a comparison.
 
 use super::table::aligned;
+use super::write_files;
 use crate::error::{Error, Result};
-use crate::file::{create_folder, write_whole};
 use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
@@ -121,13 +121,7 @@ impl Comparison {
     /// Nothing can be plotted; the folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
         let files = [("table.csv", self.csv()), ("plot.svg", self.plot()?)];
-        create_folder(folder)?;
-        let write = |(name, text): (&str, String)| {
-            let path = folder.join(name);
-            write_whole(&path, text.as_bytes())?;
-            Ok(path)
-        };
-        files.into_iter().map(write).collect()
+        write_files(folder, &files)
     }
 
     /// Error against seconds per element, both logarithmic; an SVG file's text.

@@ -60,6 +60,17 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     Ok(written)
 }
 
+/// Writes texts under their names into `folder`, and returns the paths.
+fn write_files(folder: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>> {
+    create_folder(folder)?;
+    let write = |(name, text): &(&str, String)| {
+        let path = folder.join(name);
+        write_whole(&path, text.as_bytes())?;
+        Ok(path)
+    };
+    files.iter().map(write).collect()
+}
+
 /// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
 fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut stems = vec!["mesh".to_string()];

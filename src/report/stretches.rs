@@ -2,8 +2,8 @@
 
 use super::comparison::{COLORS, csv};
 use super::table::aligned;
+use super::write_files;
 use crate::error::{Error, Result};
-use crate::file::{create_folder, write_whole};
 use crate::study::{STRETCHES, StretchedFit, Stretches};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
@@ -71,13 +71,7 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
             )?,
         ),
     ];
-    create_folder(folder)?;
-    let write = |(name, text): (&str, String)| {
-        let path = folder.join(name);
-        write_whole(&path, text.as_bytes())?;
-        Ok(path)
-    };
-    files.into_iter().map(write).collect()
+    write_files(folder, &files)
 }
 
 fn title(study: &Stretches) -> String {

@@ -2,7 +2,7 @@
 
 use super::linear::{Factor, System};
 use crate::error::Result;
-use crate::model::{Elastic, Entries, Response, Support};
+use crate::model::{Elastic, Entries, Response, Support, displaced};
 use faer::sparse::Triplet;
 
 /// How the load is followed.
@@ -106,8 +106,7 @@ impl Newton {
         shifted: &mut usize,
     ) -> Result<(Vec<f64>, bool)> {
         let mut history = Vec::new();
-        let place = |u: &[f64]| -> Vec<f64> { points.iter().zip(u).map(|(x, u)| x + u).collect() };
-        let Some(mut now) = model.respond(&place(u)) else { return Ok((history, false)) };
+        let Some(mut now) = model.respond(&displaced(points, u)) else { return Ok((history, false)) };
         for _ in 0..self.iterations {
             // What is still to be moved of the prescribed displacements.
             let moves: Vec<Option<f64>> =
@@ -129,7 +128,7 @@ impl Newton {
             let mut length = 1.0;
             let accepted = (0..SHORTER).find_map(|_| {
                 let tried: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + length * s).collect();
-                let response = model.respond(&place(&tried));
+                let response = model.respond(&displaced(points, &tried));
                 let good = response.as_ref().is_some_and(|r| {
                     let after: Vec<f64> = forces.iter().zip(&r.force).map(|(f, g)| load * f - g).collect();
                     let falls = potential(r, &tried) <= before + DESCENT * length * slope;

@@ -81,8 +81,7 @@ impl Measure {
 
     /// The pull of a spring with this constant and rest measure at the positions `x`, `[points × dimension]`, m.
     pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> Response {
-        let linear = |c: f64| [constant * (c - rest) * (c - rest) / 2.0, constant * (c - rest), constant];
-        self.respond_by(linear, x, dimension)
+        self.respond_by(|c| linear(constant, c - rest), x, dimension)
     }
 
     /// The pull of a spring whose energy U, force `T = U'` and slope `T'` are `law(c)`.
@@ -97,6 +96,11 @@ impl Measure {
             tangent: hessian.into_iter().enumerate().map(entry).collect(),
         }
     }
+}
+
+/// Energy, force and its slope of a linear spring: `½ k x²`, `k x`, `k`.
+pub fn linear(constant: f64, change: f64) -> [f64; 3] {
+    [constant * change * change / 2.0, constant * change, constant]
 }
 
 /// `ℓ = ‖d‖`, `∇ℓ = (−n, n)`, `∇∇ℓ = ±(I − n nᵀ)/ℓ`.

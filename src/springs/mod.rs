@@ -6,7 +6,7 @@ mod law;
 mod measure;
 
 pub use law::{Force, Law};
-pub use measure::{Measure, Response};
+pub use measure::{Measure, Response, linear};
 
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, Result};

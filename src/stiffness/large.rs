@@ -84,6 +84,14 @@ impl Geometry {
     }
 }
 
+impl Geometry {
+    /// The least det F over the quadrature points, the geometry being that at rest; in the plane of F there.
+    pub fn least_determinant(&self, x: &[f64]) -> f64 {
+        let points = self.gradients.chunks_exact(x.len());
+        points.map(|grad| deformation(grad, x, self.dimension).determinant()).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// `F = Σ_a x_a ∇N_aᵀ`, with the identity across planes and rods.
 fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
     let mut f = Matrix3::identity();

@@ -7,7 +7,7 @@ use super::run::Progress;
 use crate::error::{Error, Result};
 use crate::material::{Energy, State};
 use crate::mesh::Mesh;
-use crate::model::{Body, Elastic};
+use crate::model::{Body, Elastic, displaced};
 use crate::solve::{Ending, Equilibrium, Newton};
 use std::time::Instant;
 
@@ -20,15 +20,15 @@ pub struct LargeBody {
     pub displacements: Vec<Vec<f64>>,
     pub followed: Vec<Followed>,
     seconds: Vec<f64>,
-    /// Name of each load and the positions of all points on the way to it.
-    states: Vec<(String, Vec<Vec<f64>>)>,
+    /// Name of each load and the displacements on the way to it.
+    paths: Vec<(String, Vec<Vec<f64>>)>,
 }
 
 impl LargeBody {
     /// A body without loads.
     pub fn at_rest(energy: Energy, state: State) -> LargeBody {
-        let (newton, displacements, followed, seconds, states) = Default::default();
-        LargeBody { energy, state, newton, displacements, followed, seconds, states }
+        let (newton, displacements, followed, seconds, paths) = Default::default();
+        LargeBody { energy, state, newton, displacements, followed, seconds, paths }
     }
 
     /// # Errors
@@ -52,11 +52,9 @@ impl LargeBody {
             let model = Body { mesh, energy: &body.energy, state };
             let found = newton.solve(&model, &mesh.points, &case.support, &case.forces)?;
             body.seconds.push(start.elapsed().as_secs_f64());
-            let place = |u: &Vec<f64>| mesh.points.iter().zip(u).map(|(x, u)| x + u).collect::<Vec<f64>>();
-            body.states.push((case.name.clone(), found.path.iter().map(place).collect()));
-            let inverted = model.inverted(&place(&found.displacement));
-            body.followed.push(Followed::of(&found, inverted));
+            body.followed.push(Followed::of(&found, &model));
             body.displacements.push(found.displacement);
+            body.paths.push((case.name.clone(), found.path));
         }
         progress("finite elements", cases.len(), cases.len());
         Ok(body)
@@ -66,9 +64,9 @@ impl LargeBody {
     ///
     /// # Errors
     /// None of them was reached in any part.
-    pub fn states(&self, loads: &[String]) -> Result<Vec<Vec<f64>>> {
-        let named = self.states.iter().filter(|(name, _)| loads.contains(name));
-        let states: Vec<Vec<f64>> = named.flat_map(|(_, states)| states).cloned().collect();
+    pub fn states(&self, mesh: &Mesh, loads: &[String]) -> Result<Vec<Vec<f64>>> {
+        let named = self.paths.iter().filter(|(name, _)| loads.contains(name));
+        let states: Vec<Vec<f64>> = named.flat_map(|(_, path)| path).map(|u| displaced(&mesh.points, u)).collect();
         if states.is_empty() && !loads.is_empty() {
             let expected = "loads that the finite elements reach in part at least";
             return Err(Error::expected("shapes.loads", expected, format!("none of {}", loads.join(", "))));
@@ -86,9 +84,7 @@ impl LargeBody {
             let model: &dyn Elastic = &fit.network;
             let found = self.newton.solve(model, &mesh.points, &case.support, &case.forces)?;
             let seconds_lem = start.elapsed().as_secs_f64();
-            let place: Vec<f64> = mesh.points.iter().zip(&found.displacement).map(|(x, u)| x + u).collect();
-            let inverted = Body { mesh, energy: &self.energy, state: self.state }.inverted(&place);
-            let followed = Followed::of(&found, inverted);
+            let followed = Followed::of(&found, &Body { mesh, energy: &self.energy, state: self.state });
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
             let compared = displacement.as_ref().filter(|_| complete(&self.followed[i]));
@@ -106,14 +102,15 @@ impl LargeBody {
 }
 
 impl Followed {
-    fn of(found: &Equilibrium, inverted: usize) -> Followed {
+    /// `body` has the cells that may be turned inside out.
+    fn of(found: &Equilibrium, body: &Body) -> Followed {
         Followed {
             ending: found.ending,
             load: found.load,
             residual: found.residuals.last().and_then(|r| r.last()).copied().unwrap_or(f64::NAN),
             iterations: found.residuals.iter().map(Vec::len).sum(),
             shifted: found.shifted,
-            inverted,
+            inverted: body.inverted(&displaced(&body.mesh.points, &found.displacement)),
         }
     }
 }

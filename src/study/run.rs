@@ -7,7 +7,6 @@ use super::moduli::moduli_of_body;
 use super::outcome::{FitOutcome, Outcome, SampledOutcome, WholeOutcome};
 use super::scene::{NamedFit, Recipe, SampledRecipe, Scene, WholeRecipe};
 use super::stages::stages;
-use crate::element::SpringGroup;
 use crate::error::{Error, Result};
 use crate::fit::{ElementErrors, Fit, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
 use crate::material::Material;
@@ -54,7 +53,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     };
     // Of the fits only those to the whole object need the body's displacements.
     let needed = scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_)));
-    let mut body = if needed { Some(linear(&outcome, progress)?) } else { None };
+    let body = if needed { Some(linear(&outcome, progress)?) } else { None };
     let displacements = body.as_ref().map_or(&[][..], |body| &body.displacements);
     let reference = Reference { large: large.as_ref(), cases: &cases, displacements };
     for (i, fit) in scene.fits.iter().enumerate() {
@@ -75,7 +74,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         (outcome.fem, outcome.followed) = (large.displacements, large.followed);
         return Ok(outcome);
     }
-    let body = match body.take() {
+    let body = match body {
         Some(body) => body,
         None => linear(&outcome, progress)?,
     };
@@ -158,13 +157,13 @@ pub fn fit_mesh(
         Recipe::Forces(recipe) => {
             let expected = "the energy whose forces are sampled";
             let large = reference.large.ok_or_else(|| Error::expected("law", expected, "none"))?;
-            let states = Arc::new(large.states(&recipe.loads)?);
-            let groups = mesh.blocks.iter().flat_map(|block| &block.element.springs);
-            let used = |group: &&SpringGroup| match &named.springs {
-                Some(names) => names.contains(&group.name),
-                None => !group.optional,
-            };
-            recipe.force.check_groups(&groups.filter(used).map(|group| group.name.as_str()).collect::<Vec<_>>())?;
+            let states = Arc::new(large.states(mesh, &recipe.loads)?);
+            let mut known = Vec::new();
+            for block in &mesh.blocks {
+                let used = block.element.select_groups(named.springs.as_deref())?;
+                known.extend(used.iter().map(|group| group.name.as_str()));
+            }
+            recipe.force.check_groups(&known)?;
             let found = each_block(mesh, named, progress, |block, springs, progress| {
                 let fit = recipe.resolve(&block.element, springs, &states)?;
                 let (points, cells) = (&mesh.points, &block.connectivity);

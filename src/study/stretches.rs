@@ -1,14 +1,15 @@
 //! Springs at large deformation: their error against the stretch, and that of a sampled fit against its shapes and run time.
 
+use super::large::LargeBody;
 use super::metrics::displacement_error;
-use super::run::Progress;
+use super::run::{Progress, Reference, fit_mesh};
 use super::scene::{ForceRecipe, NamedFit, Recipe, SampledRecipe};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
-use crate::fit::{Family, Fit, Objective, Sampling, Source, Weight, fit_cells, fit_sampled};
+use crate::fit::{Family, Fit, Objective, Sampling, Source, Weight, fit_sampled};
 use crate::material::{Energy, Material};
 use crate::mesh::{BoxMesh, Mesh, Selection};
-use crate::model::{Body, Elastic, Network, Response, Support};
+use crate::model::{Body, Elastic, Response, Support, displaced};
 use crate::solve::{Ending, Newton};
 use crate::springs::{Law, Springs};
 use std::sync::Arc;
@@ -76,16 +77,18 @@ pub fn compare_stretches(
     let d = element.dimension();
     let cells = vec![if d == 3 { 3 } else { 6 }; d];
     let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
-    let pulled = Pulled { mesh, material, energy };
+    let pulled = Pulled { mesh, material, large: LargeBody::at_rest(energy, material.state()) };
     let recipes = recipes(element, sampled);
     let total = recipes.len() + 1;
     progress("finite elements", 0, total);
-    let body = pulled.follow(&Body { mesh: &pulled.mesh, energy: &pulled.energy, state: material.state() })?;
+    let body = pulled.follow(&Body { mesh: &pulled.mesh, energy: &pulled.large.energy, state: material.state() })?;
     let mut fits = Vec::new();
     for (done, named) in recipes.iter().enumerate() {
         progress(&named.name, done + 1, total);
-        let (network, seconds) = pulled.fit(named)?;
-        let found = pulled.follow(&network)?;
+        let reference = Reference::of_law(Some(&pulled.large));
+        let fitted = fit_mesh(&pulled.mesh, material, &reference, named, &mut |_, _, _| {})?;
+        let seconds = fitted.seconds / pulled.mesh.cell_count() as f64;
+        let found = pulled.follow(&fitted.network)?;
         let both = || body.iter().zip(&found).map(|(fem, lem)| Some((fem.as_ref()?, lem.as_ref()?)));
         let error = |pair: Option<(&Held, &Held)>| {
             pair.and_then(|(fem, lem)| displacement_error(&fem.displacement, &lem.displacement, d)).map(|e| e.rms)
@@ -106,7 +109,7 @@ pub fn compare_stretches(
             runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), shapes)?);
         }
     }
-    Ok(Stretches { element: element.name.clone(), law: pulled.energy.title.clone(), fits, runs })
+    Ok(Stretches { element: element.name.clone(), law: pulled.large.energy.title.clone(), fits, runs })
 }
 
 /// An equilibrium of the box.
@@ -134,8 +137,7 @@ fn recipes(element: &Element, sampled: f64) -> Vec<NamedFit> {
 
 /// Sampled fits with the usual laws of force; with the groups named, or all that are not optional.
 pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) -> Vec<NamedFit> {
-    let used = element.springs.iter().filter(|g| groups.map_or(!g.optional, |names| names.contains(&g.name)));
-    let used: Vec<&SpringGroup> = used.collect();
+    let used = element.select_groups(groups).expect("the groups are those of the element");
     let law = |text: &str| Law::parse(text).expect("a law of this study");
     // Where there is a content spring: exact for a neo-Hookean simplex.
     let by_group = |group: &&SpringGroup| {
@@ -171,7 +173,7 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
 struct Pulled {
     mesh: Mesh,
     material: Material,
-    energy: Energy,
+    large: LargeBody,
 }
 
 impl Pulled {
@@ -192,32 +194,11 @@ impl Pulled {
             if found.ending == Ending::Stalled {
                 return Ok(None);
             }
-            let place: Vec<f64> = self.mesh.points.iter().zip(&found.displacement).map(|(x, u)| x + u).collect();
+            let place = displaced(&self.mesh.points, &found.displacement);
             let total = |r: Response| pulled.iter().map(|p| r.force[p * d + d - 1]).sum();
             Ok(model.respond(&place).map(|r| Held { displacement: found.displacement, force: total(r) }))
         };
         STRETCHES.iter().map(one).collect()
-    }
-
-    /// The network, and the seconds per element.
-    fn fit(&self, named: &NamedFit) -> Result<(Network, f64)> {
-        let block = &self.mesh.blocks[0];
-        let springs = Springs::select(&block.element, named.springs.as_deref())?;
-        let (points, cells) = (&self.mesh.points, &block.connectivity);
-        let start = Instant::now();
-        let fits = match &named.recipe {
-            Recipe::Stiffness(fit) => {
-                fit_cells(&block.element, &springs, points, cells, self.material.moduli(), fit, &mut |_| {})?
-            }
-            Recipe::Whole(_) => return Err(Error::at("objective", "\"whole\" has no part in this study")),
-            Recipe::Forces(recipe) => {
-                let fit = recipe.resolve(&block.element, &springs, &Arc::default())?;
-                let state = self.material.state();
-                fit_sampled(&block.element, &springs, points, cells, &self.energy, state, &fit, &mut |_| {})?.fits
-            }
-        };
-        let seconds = start.elapsed().as_secs_f64() / block.cells().len() as f64;
-        Ok((Network::assemble(&self.mesh, &[fits]), seconds))
     }
 
     /// The first cell alone.
@@ -238,7 +219,16 @@ impl Pulled {
         let run = |fit: &_| {
             let state = self.material.state();
             one.install(|| {
-                fit_sampled(&block.element, &springs, &self.mesh.points, nodes, &self.energy, state, fit, &mut |_| {})
+                fit_sampled(
+                    &block.element,
+                    &springs,
+                    &self.mesh.points,
+                    nodes,
+                    &self.large.energy,
+                    state,
+                    fit,
+                    &mut |_| {},
+                )
             })
         };
         let start = Instant::now();

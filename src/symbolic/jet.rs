@@ -27,13 +27,17 @@ impl Jet {
 
     /// The variables themselves, with both derivatives.
     pub fn variables(at: &[f64]) -> Vec<Jet> {
-        let n = at.len();
+        Jet::variables_of_order(at, at.len() * at.len())
+    }
+
+    /// `second` entries of the Hessian, all or none.
+    fn variables_of_order(at: &[f64], second: usize) -> Vec<Jet> {
         let variable = |i: usize| {
-            let mut gradient = vec![0.0; n];
+            let mut gradient = vec![0.0; at.len()];
             gradient[i] = 1.0;
-            Jet { value: at[i], gradient, hessian: vec![0.0; n * n] }
+            Jet { value: at[i], gradient, hessian: vec![0.0; second] }
         };
-        (0..n).map(variable).collect()
+        (0..at.len()).map(variable).collect()
     }
 
     /// A number that no variable changes.
@@ -49,17 +53,14 @@ impl Jet {
         self.times(other.clone())
     }
 
-    /// `second` entries of the Hessian, all or none.
     fn of_order(expr: &Expr, at: &[f64], second: usize) -> Jet {
-        let n = at.len();
-        let variable = |i: usize| {
-            let mut gradient = vec![0.0; n];
-            gradient[i] = 1.0;
-            Jet { value: at[i], gradient, hessian: vec![0.0; second] }
-        };
-        let variables: Vec<Jet> = (0..n).map(variable).collect();
+        Jet::of_variables(expr, &Jet::variables_of_order(at, second), at.len(), second)
+    }
+
+    /// `expr` of these jets, which have `n` variables; NaN where it has no value.
+    fn of_variables(expr: &Expr, at: &[Jet], n: usize, second: usize) -> Jet {
         let nothing = || Jet { value: f64::NAN, gradient: vec![f64::NAN; n], hessian: vec![f64::NAN; second] };
-        let mut jet = expr.value(&variables).unwrap_or_else(nothing);
+        let mut jet = expr.value(at).unwrap_or_else(nothing);
         jet.gradient.resize(n, 0.0);
         jet.hessian.resize(second, 0.0);
         jet
@@ -80,11 +81,7 @@ impl Jet {
 impl Expr {
     /// The value where the variables are these jets, in `n` variables of their own; NaN where it has none.
     pub fn jet(&self, at: &[Jet], n: usize) -> Jet {
-        let nothing = || Jet { value: f64::NAN, gradient: vec![f64::NAN; n], hessian: vec![f64::NAN; n * n] };
-        let mut jet = self.value(at).unwrap_or_else(nothing);
-        jet.gradient.resize(n, 0.0);
-        jet.hessian.resize(n * n, 0.0);
-        jet
+        Jet::of_variables(self, at, n, n * n)
     }
 }
 

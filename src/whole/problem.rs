@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::model::{Network, Support};
 use crate::solve::{Factor, System};
-use crate::springs::distance;
+use crate::springs::Measure;
 use crate::stiffness::gather;
 
 /// A load and how the object moves under it.
@@ -59,20 +59,17 @@ impl<'a> Problem<'a> {
         let mut network = network.clone();
         let mut gradients = Vec::new();
         let dofs = |points: &[usize]| points.iter().flat_map(|&p| p * d..(p + 1) * d).collect::<Vec<usize>>();
-        for spring in &network.lengths {
-            let [a, b] = spring.points.map(|p| &points[p * d..(p + 1) * d]);
-            let length = distance(a, b);
-            let n: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / length).collect();
-            let g = n.iter().map(|n| -n).chain(n.iter().copied()).collect();
-            gradients.push((dofs(&spring.points), g));
-        }
+        let mut add = |measure: &Measure, of: &[usize]| {
+            let mut x = vec![0.0; of.len() * d];
+            gather(points, d, of, &mut x);
+            gradients.push((dofs(of), measure.gradient(&x, d)));
+        };
+        network.lengths.iter().for_each(|spring| add(&Measure::Length, &spring.points));
         for spring in &network.others {
             if spring.law.is_some() {
                 return Err(Error::expected("force", "linear springs", "springs with a law of force"));
             }
-            let mut x = vec![0.0; spring.points.len() * d];
-            gather(points, d, &spring.points, &mut x);
-            gradients.push((dofs(&spring.points), spring.measure.gradient(&x, d)));
+            add(&spring.measure, &spring.points);
         }
         let least = |constants: &[f64]| {
             let mut positive: Vec<f64> = constants.iter().copied().filter(|k| *k > 0.0).collect();

@@ -367,9 +367,7 @@ impl Sums {
 
     /// `√(Σ w ‖r‖²/Σ w ‖f‖²)` after a step of the unknowns in which the forces are linear.
     pub fn error(&self, step: &[f64]) -> f64 {
-        let work: f64 = self.normal.rhs.iter().zip(step).map(|(b, k)| b * k).sum();
-        let bent: f64 = self.normal.gradient(step).iter().zip(step).map(|(g, k)| g * k).sum::<f64>() + work;
-        let left = self.square - 2.0 * work + bent;
+        let left = self.square - self.normal.fall(step);
         // Below zero by rounding; what is not finite stays so.
         if left < 0.0 { 0.0 } else { (left / self.size).sqrt() }
     }

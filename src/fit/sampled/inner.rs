@@ -1,7 +1,7 @@
 //! Laws that are not linear in their parameters: Levenberg's damped Gauss-Newton steps within bounds, from several starts.
 //!
-//! It works on normal equations that are added up shape by shape, as no shape is kept; known crates of least squares hold all
-//! residuals.
+//! It works on normal equations that are added up shape by shape, as there may be more shapes than room; known crates of least
+//! squares hold all residuals.
 
 use super::cell::{Cell, Sums};
 use super::shapes::{Numbers, Part};
@@ -151,8 +151,6 @@ fn damped(normal: &Normal, unknowns: &[f64], bounds: &[[f64; 2]], damping: f64) 
         crossing.iter().for_each(|&(i, bound)| step[i] = bound - unknowns[i]);
         free.retain(|i| crossing.iter().all(|(crossed, _)| crossed != i));
     }
-    // ‖r‖² − ‖r − J d‖² = 2 bᵀd − dᵀ M d
-    let work: f64 = normal.rhs.iter().zip(&step).map(|(b, d)| b * d).sum();
-    let bent: f64 = normal.gradient(&step).iter().zip(&step).map(|(g, d)| g * d).sum::<f64>() + work;
-    (step, 2.0 * work - bent)
+    let fall = normal.fall(&step);
+    (step, fall)
 }

@@ -2,7 +2,8 @@
 //!
 //! A spring that measures c pulls with `T(c; p) ∇c`; the fit is `min_p Σ_q w_q ‖f(x_q) − Σ_s T_s(c_s(x_q); p_s) ∇c_s(x_q)‖²`.
 //! Where T is linear in its parameters, as of `k (c − c₀)`, that is linear least squares. The equations are added up shape by
-//! shape; no shape is kept.
+//! shape, whatever their number. Only laws that are not linear keep the shapes, as far as there is room, and norms other than the
+//! Euclidean one keep the equations.
 
 mod cell;
 mod inner;

@@ -178,61 +178,74 @@ impl FitEntry {
     /// # Errors
     /// A key has a wrong value, or belongs to another objective.
     pub fn check(self, folder: &Path) -> Result<NamedFit> {
-        let sampled = SampledEntry {
-            force: self.force,
-            norm: self.norm,
-            huber: self.huber,
-            bounds: self.bounds,
-            starts: self.starts,
-            shapes: self.shapes,
-        };
-        let whole = WholeEntry { start: self.start, loads: self.loads, validate: self.validate };
-        if let Some(key) = whole.key().filter(|_| self.objective != "whole") {
-            let problem = format!("belongs to the objective \"whole\", found with \"{}\"", self.objective);
-            return Err(Error::at(key, problem));
-        }
+        self.check_owners()?;
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
-        let recipe = if self.objective == "sampled" {
-            let other = [
-                ("balance", self.balance.is_some()),
-                ("solver", self.solver.is_some()),
-                ("iterations", self.iterations.is_some()),
-            ];
-            if let Some((key, _)) = other.iter().find(|(_, given)| *given) {
-                return Err(Error::at(*key, "does not go with the objective \"sampled\""));
+        let recipe = match self.objective.as_str() {
+            "sampled" => {
+                let sampled = SampledEntry {
+                    force: self.force,
+                    norm: self.norm,
+                    huber: self.huber,
+                    bounds: self.bounds,
+                    starts: self.starts,
+                    shapes: self.shapes,
+                };
+                let mut recipe = sampled.check(folder)?;
+                recipe.fit.weights = match self.weight.as_deref() {
+                    None | Some("relative") => Weights::Relative,
+                    Some("none") => Weights::Alike,
+                    Some(other) => {
+                        let expected = "\"relative\" or \"none\" with the objective \"sampled\"";
+                        return Err(Error::expected("weight", expected, format!("\"{other}\"")));
+                    }
+                };
+                recipe.fit.higher = self.higher.unwrap_or(recipe.fit.higher);
+                (recipe.fit.tied, recipe.fit.nonnegative) = (self.tied, self.nonnegative);
+                Recipe::Forces(Box::new(recipe))
             }
-            let mut recipe = sampled.check(folder)?;
-            recipe.fit.weights = match self.weight.as_deref() {
-                None | Some("relative") => Weights::Relative,
-                Some("none") => Weights::Alike,
-                Some(other) => {
-                    let expected = "\"relative\" or \"none\" with the objective \"sampled\"";
-                    return Err(Error::expected("weight", expected, format!("\"{other}\"")));
-                }
-            };
-            recipe.fit.higher = self.higher.unwrap_or(recipe.fit.higher);
-            (recipe.fit.tied, recipe.fit.nonnegative) = (self.tied, self.nonnegative);
-            Recipe::Forces(Box::new(recipe))
-        } else {
-            if let Some(key) = sampled.key() {
-                let problem = format!("belongs to the objective \"sampled\", found with \"{}\"", self.objective);
-                return Err(Error::at(key, problem));
+            "whole" => {
+                let whole = WholeEntry { start: self.start, loads: self.loads, validate: self.validate };
+                Recipe::Whole(Box::new(whole.check(choices, self.iterations)?))
             }
-            if self.objective == "whole" {
-                if self.tied || self.solver.is_some() {
-                    let key = if self.tied { "tied" } else { "solver" };
-                    return Err(Error::at(key, "does not go with the objective \"whole\""));
-                }
-                let recipe = Recipe::Whole(Box::new(whole.check(choices, self.iterations)?));
-                let name = self.name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
-                return Ok(NamedFit { name, recipe, springs: self.springs });
+            name => {
+                let objective = Objective::named(name, choices)?;
+                let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
+                Recipe::Stiffness(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
             }
-            let objective = Objective::named(&self.objective, choices)?;
-            let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
-            Recipe::Stiffness(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
         };
         let name = self.name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
         Ok(NamedFit { name, recipe, springs: self.springs })
+    }
+
+    /// That no key is given that belongs to another objective, or does not go with this one.
+    fn check_owners(&self) -> Result<()> {
+        let objective = self.objective.as_str();
+        let owned = [
+            ("start", "whole", self.start.is_some()),
+            ("loads", "whole", self.loads.is_some()),
+            ("validate", "whole", self.validate.is_some()),
+            ("force", "sampled", self.force.is_some()),
+            ("norm", "sampled", self.norm.is_some()),
+            ("huber", "sampled", self.huber.is_some()),
+            ("bounds", "sampled", self.bounds.is_some()),
+            ("starts", "sampled", self.starts.is_some()),
+            ("shapes", "sampled", self.shapes.is_some()),
+        ];
+        if let Some((key, owner, _)) = owned.iter().find(|(_, owner, given)| *given && *owner != objective) {
+            let problem = format!("belongs to the objective \"{owner}\", found with \"{objective}\"");
+            return Err(Error::at(*key, problem));
+        }
+        let strange = [
+            ("balance", "sampled", self.balance.is_some()),
+            ("tied", "whole", self.tied),
+            ("solver", "sampled", self.solver.is_some()),
+            ("solver", "whole", self.solver.is_some()),
+            ("iterations", "sampled", self.iterations.is_some()),
+        ];
+        match strange.iter().find(|(_, other, given)| *given && *other == objective) {
+            Some((key, ..)) => Err(Error::at(*key, format!("does not go with the objective \"{objective}\""))),
+            None => Ok(()),
+        }
     }
 }
 

@@ -35,19 +35,6 @@ pub struct ShapesEntry {
 }
 
 impl SampledEntry {
-    /// The first key that is given.
-    pub fn key(&self) -> Option<&'static str> {
-        let given = [
-            ("force", self.force.is_some()),
-            ("norm", self.norm.is_some()),
-            ("huber", self.huber.is_some()),
-            ("bounds", self.bounds.is_some()),
-            ("starts", self.starts.is_some()),
-            ("shapes", self.shapes.is_some()),
-        ];
-        given.into_iter().find(|(_, given)| *given).map(|(key, _)| key)
-    }
-
     /// The recipe, with what is not said as [`SampledRecipe::default`] has it.
     ///
     /// # Errors

@@ -25,13 +25,6 @@ pub struct WholeEntry {
 }
 
 impl WholeEntry {
-    /// The first key that is given.
-    pub fn key(&self) -> Option<&'static str> {
-        let given =
-            [("start", self.start.is_some()), ("loads", self.loads.is_some()), ("validate", self.validate.is_some())];
-        given.into_iter().find(|(_, given)| *given).map(|(key, _)| key)
-    }
-
     /// `choices` are those of the objective at the start.
     ///
     /// # Errors
