@@ -21,6 +21,11 @@ pub fn read_text(path: &Path) -> Result<String> {
     String::from_utf8(read(path)?).map_err(|_| Error::new("expected UTF-8 text, found other bytes").in_file(path))
 }
 
+/// The path's ending without its dot, in small letters; empty if it has none.
+pub fn ending(path: &Path) -> String {
+    path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
 /// Creates `path` with `content`, or replaces it; a failure leaves what was there before.
 ///
 /// # Errors

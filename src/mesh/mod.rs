@@ -1,6 +1,7 @@
 //! Meshes of known elements: points, cells and named groups, in metres.
 
 mod boxes;
+mod field;
 pub mod gmsh;
 mod grouping;
 mod reader;
@@ -9,6 +10,7 @@ mod source;
 pub mod vtk;
 
 pub use boxes::BoxMesh;
+pub use field::Field;
 pub use selection::{CellIndex, Selection, SideIndex};
 pub use source::{Format, MeshSource, SourceBlock};
 

@@ -40,7 +40,7 @@ impl MeshSource {
     /// The file is missing, of another kind, damaged or cut short, or has a coordinate that is not finite.
     pub fn read(path: &Path) -> Result<MeshSource> {
         let bytes = crate::file::read(path)?;
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let ending = crate::file::ending(path);
         let source = match ending.as_str() {
             "msh" => super::gmsh::parse(&bytes),
             "vtu" | "vtk" => super::vtk::parse(&bytes, &ending),

@@ -1,7 +1,7 @@
 //! Legacy `.vtk` files with an unstructured grid, file versions 1 to 5.
 
 use super::legacy_type::Type;
-use super::piece::{Labels, Piece};
+use super::piece::{Labels, Piece, PointArray};
 use crate::error::{Error, Result};
 use crate::mesh::reader::{Encoding, Reader, quoted};
 
@@ -261,14 +261,25 @@ impl File<'_> {
         self.values(kind, name, components, tuples)
     }
 
-    /// Reads the values of an array, and keeps them if they can name groups.
+    /// Reads the values of an array, and keeps them if they can name groups of cells or displace points.
     fn values(&mut self, kind: Type, name: String, components: u64, tuples: u64) -> Result<()> {
-        let labels_cells = matches!(self.place, Place::Cells(count) if count == tuples) && components == 1;
-        if !labels_cells {
-            return kind.skip(&mut self.reader, components.saturating_mul(tuples));
-        }
-        if let Some(values) = kind.whole_numbers(&mut self.reader, tuples)? {
-            self.piece.labels.push(Labels { name, values });
+        let count = components.saturating_mul(tuples);
+        match self.place {
+            Place::Cells(cells) if cells == tuples && components == 1 => {
+                if let Some(values) = kind.whole_numbers(&mut self.reader, count)? {
+                    self.piece.labels.push(Labels { name, values });
+                }
+            }
+            Place::Points(points) if points == tuples => {
+                let mut vectors = None;
+                if kind.is_real() && PointArray::is_vector(components) {
+                    vectors = Some(kind.reals(&mut self.reader, count)?);
+                } else {
+                    kind.skip(&mut self.reader, count)?;
+                }
+                self.piece.point_arrays.push(PointArray { name, components, vectors });
+            }
+            _ => kind.skip(&mut self.reader, count)?,
         }
         Ok(())
     }

@@ -43,6 +43,10 @@ impl Type {
         Ok(kind)
     }
 
+    pub fn is_real(self) -> bool {
+        matches!(self, Type::Float | Type::Double)
+    }
+
     /// Reads `count` numbers as reals.
     pub fn reals(self, reader: &mut Reader, count: u64) -> Result<Vec<f64>> {
         match self {

@@ -12,6 +12,7 @@ mod xml_tag;
 
 use super::source::MeshSource;
 use crate::error::Result;
+pub(super) use piece::{Piece, PointArray};
 pub use write::{Array, Grid, write};
 
 /// Reads an unstructured grid; `ending` tells XML, `vtu`, from the legacy format, `vtk`.
@@ -24,5 +25,13 @@ pub use write::{Array, Grid, write};
 /// The file is of another kind, damaged or cut short, or has cells without a fixed shape such as polygons. A `.vtu`
 /// whose data are appended raw or compressed otherwise than by zlib is not read either.
 pub fn parse(bytes: &[u8], ending: &str) -> Result<MeshSource> {
-    piece::mesh(if ending == "vtu" { xml::parse(bytes)? } else { vec![legacy::parse(bytes)?] })
+    piece::mesh(pieces(bytes, ending)?)
+}
+
+/// The pieces of an unstructured grid as they stand in the file: cells unchecked, points perhaps not finite.
+///
+/// # Errors
+/// As those of [`parse`], except for cells.
+pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Piece>> {
+    if ending == "vtu" { xml::parse(bytes) } else { Ok(vec![legacy::parse(bytes)?]) }
 }

@@ -11,19 +11,35 @@ const MOST_GROUPS: usize = 1000;
 
 /// Points and cells as both file kinds hold them.
 #[derive(Default)]
-pub(super) struct Piece {
+pub(in crate::mesh) struct Piece {
     pub points: Vec<[f64; 3]>,
     pub types: Vec<u8>,
     /// Where each cell ends in `connectivity`.
     pub ends: Vec<u64>,
     pub connectivity: Vec<u64>,
     pub labels: Vec<Labels>,
+    pub point_arrays: Vec<PointArray>,
 }
 
 /// A whole number for each cell.
-pub(super) struct Labels {
+pub(in crate::mesh) struct Labels {
     pub name: String,
     pub values: Vec<i128>,
+}
+
+/// An array with as many components for each point.
+pub(in crate::mesh) struct PointArray {
+    pub name: String,
+    pub components: u64,
+    /// All components of the first point, then of the next; `None` for what is no vector of real numbers.
+    pub vectors: Option<Vec<f64>>,
+}
+
+impl PointArray {
+    /// Whether points of the plane or of space can have such vectors.
+    pub fn is_vector(components: u64) -> bool {
+        components == 2 || components == 3
+    }
 }
 
 /// Cell type, nodes per cell, and the value of each grouping array that the cell's piece has.

@@ -1,6 +1,6 @@
 //! XML `.vtu` files.
 
-use super::piece::{Labels, Piece};
+use super::piece::{Labels, Piece, PointArray};
 use super::xml_arrays::{PieceArrays, checked_arrays};
 use crate::error::{Error, Result};
 use std::cell::Cell;
@@ -54,8 +54,16 @@ fn convert(piece: UnstructuredGridPiece, arrays: &PieceArrays) -> Result<Piece> 
             labels.push(Labels { name: array.name, values });
         }
     }
+    let mut point_arrays = Vec::new();
+    for attribute in piece.data.point {
+        let Attribute::DataArray(array) = attribute else { continue };
+        let components = array.num_comp() as u64;
+        let is_real = matches!(array.data, IOBuffer::F32(_) | IOBuffer::F64(_));
+        let vectors = if is_real && PointArray::is_vector(components) { array.data.cast_into() } else { None };
+        point_arrays.push(PointArray { name: array.name, components, vectors });
+    }
     let points = coordinates.as_chunks().0.to_vec();
-    Ok(Piece { points, types, ends: offsets, connectivity, labels })
+    Ok(Piece { points, types, ends: offsets, connectivity, labels, point_arrays })
 }
 
 /// The decoder leaves out an array that it cannot decode, so the names in the file are compared.

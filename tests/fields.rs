@@ -1,0 +1,432 @@
+//! Reads displacements of a mesh's points from tables and grids: whole, in part, cut short and wrong.
+
+use proptest::prelude::*;
+use springfit::mesh::vtk::{Array, Grid, write};
+use springfit::mesh::{Field, Format, Mesh, MeshSource, SourceBlock};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+const MESHES: [&str; 3] = ["cube_tet", "specimen_hex", "tissue_quad"];
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn scene_mesh(name: &str) -> Mesh {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/meshes/{name}.msh"));
+    Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap()
+}
+
+/// Tetrahedra with the nodes of the unit tetrahedron, each with nodes of its own.
+fn tetrahedra(count: usize) -> Mesh {
+    let block = SourceBlock {
+        dimension: 3,
+        cell_type: 4,
+        nodes_per_cell: 4,
+        connectivity: (0..4 * count).collect(),
+        groups: Vec::new(),
+    };
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    Mesh::resolve(&MeshSource { format: Format::Gmsh, points: corners.repeat(count), blocks: vec![block] }, &[], 1.0)
+        .unwrap()
+}
+
+/// A folder of files to read.
+struct Files(TempDir);
+
+impl Files {
+    fn new() -> Files {
+        Files(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// What is read of a file with this content on the unit tetrahedron.
+    fn read(&self, name: &str, content: impl AsRef<[u8]>) -> Vec<Option<f64>> {
+        fs::write(self.path(name), content).unwrap();
+        Field::read(&self.path(name), &tetrahedra(1), 1.0).unwrap().displacements
+    }
+
+    /// The message, without the folder.
+    fn fault_on(&self, mesh: &Mesh, name: &str, content: impl AsRef<[u8]>, array: Option<&str>) -> String {
+        fs::write(self.path(name), content).unwrap();
+        let error = Field::read_named(&self.path(name), mesh, 1.0, array).unwrap_err();
+        error.to_string().replace(&format!("{}/", self.0.path().display()), "")
+    }
+
+    fn fault(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        self.fault_on(&tetrahedra(1), name, content, None)
+    }
+}
+
+fn numbers(count: usize) -> impl Strategy<Value = Vec<Option<f64>>> {
+    prop::collection::vec(prop::option::weighted(0.8, -1e-2..1e-2), count)
+}
+
+/// A mesh, displacements of its points and an order of its points.
+fn measured() -> impl Strategy<Value = (Mesh, Vec<Option<f64>>, Vec<usize>)> {
+    (0..MESHES.len()).prop_map(|i| scene_mesh(MESHES[i])).prop_flat_map(|mesh| {
+        let order: Vec<usize> = (0..mesh.point_count()).collect();
+        let values = numbers(mesh.points.len());
+        (Just(mesh), values, Just(order).prop_shuffle())
+    })
+}
+
+fn cell(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:?}"))
+}
+
+/// A table of these points; by their numbers unless by their positions.
+fn table(mesh: &Mesh, values: &[Option<f64>], order: &[usize], by_position: bool, mark: &str, prefix: &str) -> String {
+    let d = mesh.dimension;
+    let names = |prefix: &str| AXES[..d].iter().map(|axis| format!("{prefix}{axis}")).collect::<Vec<_>>();
+    let place = if by_position { names("") } else { vec!["Point".to_string()] };
+    let mut text = [names(prefix), vec!["force (N)".into()], place].concat().join(mark) + "\n";
+    for &p in order {
+        let mut cells: Vec<String> = values[p * d..(p + 1) * d].iter().map(|&u| cell(u)).collect();
+        cells.push("n/a".into());
+        match by_position {
+            true => cells.extend(mesh.point(p).iter().map(|&x| cell(Some(x)))),
+            false => cells.push((p + 1).to_string()),
+        }
+        text += &(cells.join(mark) + "\n");
+    }
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn a_table_reads_back((mesh, values, order) in measured(), by_position: bool, mark in 0..4_usize) {
+        let files = Files::new();
+        let text = table(&mesh, &values, &order, by_position, [",", ";", "\t", " ; "][mark], "U");
+        fs::write(files.path("u.csv"), &text).unwrap();
+        prop_assert_eq!(&Field::read(&files.path("u.csv"), &mesh, 1.0).unwrap().displacements, &values);
+        let windows = format!("\u{feff}# made by hand, in m\n\n{}", text.replace('\n', "\r\n\r\n"));
+        fs::write(files.path("u.CSV"), windows).unwrap();
+        prop_assert_eq!(&Field::read(&files.path("u.CSV"), &mesh, 1.0).unwrap().displacements, &values);
+    }
+
+    #[test]
+    fn a_grid_reads_back((mesh, values, order) in measured(), name in 0..4_usize) {
+        let files = Files::new();
+        let grid = grid(&mesh, &values, &order, ["Displacement", "u", "DISP", "u fem pull (m)"][name]);
+        write(&files.path("u.vtu"), &grid).unwrap();
+        prop_assert_eq!(&Field::read(&files.path("u.vtu"), &mesh, 1.0).unwrap().displacements, &values);
+        fs::write(files.path("u.vtk"), legacy(&grid)).unwrap();
+        prop_assert_eq!(Field::read(&files.path("u.vtk"), &mesh, 1.0).unwrap().displacements, values);
+    }
+
+    #[test]
+    fn lengths_are_scaled((mesh, values, order) in measured(), scale in 1e-4..1e4_f64) {
+        let files = Files::new();
+        let mut scaled = mesh.clone();
+        scaled.points.iter_mut().for_each(|x| *x *= scale);
+        fs::write(files.path("u.csv"), table(&mesh, &values, &order, true, ",", "u")).unwrap();
+        let found = Field::read(&files.path("u.csv"), &scaled, scale).unwrap().displacements;
+        prop_assert_eq!(found, values.iter().map(|u| u.map(|u| u * scale)).collect::<Vec<_>>());
+    }
+}
+
+/// The cells of the mesh and this array, the points in `order`; nan for what is not measured.
+fn grid(mesh: &Mesh, values: &[Option<f64>], order: &[usize], name: &str) -> Grid {
+    let d = mesh.dimension;
+    let mut place = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(i, &p)| place[p] = i);
+    let mut grid = Grid::default();
+    let mut vectors = Vec::new();
+    for &p in order {
+        let x = mesh.point(p);
+        grid.points.push(std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0)));
+        vectors.extend((0..3).map(|k| if k < d { values[p * d + k].unwrap_or(f64::NAN) } else { 9.0 }));
+    }
+    for block in &mesh.blocks {
+        let cell_type = block.element.formats.vtk.as_ref().unwrap().cell_type as u8;
+        block.cells().for_each(|nodes| grid.push_cell(cell_type, &nodes.iter().map(|&n| place[n]).collect::<Vec<_>>()));
+    }
+    let mass = vec![1.0; order.len()];
+    grid.point_data = vec![
+        Array { name: "mass (kg)".into(), components: 1, values: mass },
+        Array { name: name.into(), components: 3, values: vectors },
+        Array { name: "Normals".into(), components: 3, values: vec![1.0; 3 * order.len()] },
+    ];
+    grid
+}
+
+/// The grid as a legacy file in binary.
+fn legacy(grid: &Grid) -> Vec<u8> {
+    let (points, cells) = (grid.points.len(), grid.cell_types.len());
+    let header = "# vtk DataFile Version 3.0\n\nBINARY\nDATASET UNSTRUCTURED_GRID\n";
+    let mut file = format!("{header}POINTS {points} double\n").into_bytes();
+    grid.points.as_flattened().iter().for_each(|x| file.extend(x.to_be_bytes()));
+    file.extend(format!("\nCELLS {cells} {}\n", cells + grid.connectivity.len()).bytes());
+    let mut start = 0;
+    for &end in &grid.ends {
+        file.extend(((end - start) as u32).to_be_bytes());
+        grid.connectivity[start..end].iter().for_each(|&node| file.extend((node as u32).to_be_bytes()));
+        start = end;
+    }
+    file.extend(format!("\nCELL_TYPES {cells}\n").bytes());
+    grid.cell_types.iter().for_each(|&kind| file.extend(u32::from(kind).to_be_bytes()));
+    file.extend(format!("\nPOINT_DATA {points}\n").bytes());
+    for array in &grid.point_data {
+        let name = array.name.replace(' ', "%20");
+        let header = match array.components {
+            1 => format!("SCALARS {name} double\nLOOKUP_TABLE default\n"),
+            _ => format!("VECTORS {name} double\n"),
+        };
+        file.extend(header.bytes());
+        array.values.iter().for_each(|value| file.extend(value.to_be_bytes()));
+        file.push(b'\n');
+    }
+    file
+}
+
+#[test]
+fn what_a_table_leaves_out_is_not_measured() {
+    let files = Files::new();
+    let text = "x,y,z,UZ,uy\n0,0,0,0.25,\n\n# the left one\n0,1e-7,1,nan,-NaN\n 1 ,0,0, -1e-3 , 0\n,,,,\n";
+    let some = |values: [Option<f64>; 12]| values.to_vec();
+    let (n, one) = (None, [None, Some(0.0), Some(-1e-3)]);
+    assert_eq!(files.read("u.csv", text), some([n, n, Some(0.25), one[0], one[1], one[2], n, n, n, n, n, n]));
+    let deformed = "point;x_deformed;Z_Deformed;note\n2;1.25;;\"a;\n b\"\n4;;0.5;\n";
+    let expected = some([n, n, n, Some(0.25), n, n, n, n, n, n, n, Some(-0.5)]);
+    assert_eq!(files.read("u.csv", deformed), expected);
+    let both = "point,x,y,z,ux\n2,1,0,0,0.25\n3,0,1,0,0.5\n";
+    assert_eq!(files.read("u.csv", both), some([n, n, n, Some(0.25), n, n, Some(0.5), n, n, n, n, n]));
+}
+
+#[test]
+fn a_name_chooses_among_several() {
+    let files = Files::new();
+    let (path, mesh) = (files.path("u.csv"), tetrahedra(1));
+    fs::write(&path, "point,Left_x,left_y,right_x,ux\n1,1,2,3,4\n").unwrap();
+    let first = |array| Field::read_named(&path, &mesh, 0.5, array).unwrap().displacements[..2].to_vec();
+    assert_eq!(first(Some("left")), [Some(0.5), Some(1.0)]);
+    assert_eq!(first(Some("RIGHT")), [Some(1.5), None]);
+    assert_eq!(first(None), [Some(2.0), None]);
+    let path = files.path("u.vtu");
+    let order: Vec<usize> = (0..4).collect();
+    let mut two = grid(&mesh, &[Some(1.0); 12], &order, "u fem pull (m)");
+    two.point_data.push(Array { name: "u modal pull (m)".into(), components: 3, values: vec![2.0; 12] });
+    write(&path, &two).unwrap();
+    for (name, value) in [("u fem pull (m)", 1.0), ("U MODAL pull (m)", 2.0)] {
+        assert_eq!(Field::read_named(&path, &mesh, 1.0, Some(name)).unwrap().displacements, [Some(value); 12]);
+    }
+    let found = "\"mass (kg)\" (components: 1), \"u fem pull (m)\" (components: 3), \"Normals\" (components: 3), \
+                 \"u modal pull (m)\" (components: 3)";
+    let expected = "one array called \"displacement\", \"displacements\", \"u\", \"disp\", or else a single one of 3 \
+                    real components";
+    let bytes = fs::read(&path).unwrap();
+    assert_eq!(files.fault("u.vtu", &bytes), format!("u.vtu: point data: expected {expected}, found {found}"));
+    let message = files.fault_on(&mesh, "u.vtu", &bytes, Some("mass (kg)"));
+    let expected = "an array \"mass (kg)\" of 2 or 3 real components";
+    assert_eq!(message, format!("u.vtu: point data: expected {expected}, found {found}"));
+    let message = files.fault_on(&mesh, "u.csv", "point,ux\n1,1\n", Some("Left"));
+    let expected = "some of the columns left_x, left_y, left_z";
+    assert_eq!(message, format!("u.csv:1: header: expected {expected}, found \"point\", \"ux\""));
+}
+
+#[test]
+fn points_in_one_place_need_their_numbers() {
+    let (files, mesh) = (Files::new(), tetrahedra(2));
+    let order: Vec<usize> = (0..8).collect();
+    let values: Vec<Option<f64>> = (0..24).map(|i| Some(f64::from(i))).collect();
+    write(&files.path("u.vtu"), &grid(&mesh, &values, &order, "u")).unwrap();
+    assert_eq!(Field::read(&files.path("u.vtu"), &mesh, 1.0).unwrap().displacements, values);
+    fs::write(files.path("u.csv"), table(&mesh, &values, &order, false, ",", "u")).unwrap();
+    assert_eq!(Field::read(&files.path("u.csv"), &mesh, 1.0).unwrap().displacements, values);
+    let message = files.fault_on(&mesh, "u.csv", table(&mesh, &values, &order, true, ",", "u"), None);
+    let found = "points 1 and 5, both at (0.0, 0.0, 0.0) m";
+    assert_eq!(message, format!("u.csv:2: position: expected that of one point of the mesh, found {found}"));
+}
+
+#[test]
+fn table_errors_say_what_was_expected_and_found() {
+    let files = Files::new();
+    let fault = |text: &str| files.fault("u.csv", text);
+    let hint = "is the scale 1.0 m per unit of the file right?";
+    let away = format!("found (2.0, 0.0, 0.0) m, 1.0 m from the nearest, point 2; {hint}");
+    assert_eq!(
+        fault("# by hand\r\n\r\nx,y,z,ux\r\n0,0,0,1\r\n\r\n# far\r\n2,0,0,1\r\n"),
+        format!("u.csv:7: position: expected that of a point of the mesh, {away}")
+    );
+    let near = "u.csv:2: position: expected that of a point of the mesh, found (0.0, 2e-6, 0.0) m, 2e-6 m from";
+    assert!(fault("x,y,z,ux\n0,2e-6,0,1\n").starts_with(near));
+    let twice = "u.csv:5: point 2: expected one row, found a second one, after line 2";
+    assert_eq!(fault("x,y,z,ux\n1,0,0,1\n0,0,0,1\n\n1,0,0,2\n"), twice);
+    for (header, cells, message) in [
+        ("point,ux", "1,inf", "ux: expected a finite length, found inf times the scale 1.0"),
+        ("point,ux", "1,-1e999", "ux: expected a finite length, found -inf times the scale 1.0"),
+        ("point,ux", "1,left", "ux: expected a number, found \"left\""),
+        ("point,ux", "0,1", "point: expected a number from 1 to 4, found \"0\""),
+        ("point,ux", "5,1", "point: expected a number from 1 to 4, found \"5\""),
+        ("point,ux", "1.5,1", "point: expected a number from 1 to 4, found \"1.5\""),
+        ("point,ux", ",1", "point: expected a number from 1 to 4, found \"\""),
+        ("x,y,z,ux", "0,nan,0,1", "y: expected a number, found \"nan\""),
+        ("x,y,z,ux", "0,,0,1", "y: expected a number, found \"\""),
+        ("x,y,z,ux", "0,-inf,0,1", "y: expected a finite length, found -inf times the scale 1.0"),
+        ("point,ux", "1,0,5", "expected 2 cells as in the header, found 3"),
+        ("point;ux;uy", "1;0,5", "expected 3 cells as in the header, found 2"),
+        ("point;ux", "1;0,5", "ux: expected a number, found \"0,5\""),
+        ("point,ux", "1,\"0", "ux: expected a number, found \"0\u{fffd}3,1\""),
+        (
+            "x,y,z,point,ux",
+            "0,0,1,3,5",
+            "point: expected the number, from 1, of the point at (0.0, 0.0, 1.0) m, found 3, 1.4142135623730951 m away",
+        ),
+    ] {
+        assert_eq!(fault(&format!("{header}\n{cells}\n3,1\n")), format!("u.csv:2: {message}"));
+    }
+    for (header, message) in [
+        ("x,y,ux", "header: expected the columns x, y, z, or point, found \"x\", \"y\", \"ux\""),
+        ("X,Y,Z,x,ux", "x: expected one column of this name, in capitals or not, found two"),
+        ("point,Point", "point: expected one column of this name, in capitals or not, found two"),
+        ("point,ux,x_deformed", "header: expected either ux or x_deformed, found both"),
+        (
+            "x;y;z; N ",
+            "header: expected some of the columns ux, uy, uz or x_deformed, y_deformed, z_deformed, \
+             found \"x\", \"y\", \"z\", \"n\"",
+        ),
+    ] {
+        assert_eq!(fault(&format!("\n{header}\n")), format!("u.csv:2: {message}"));
+    }
+    assert_eq!(fault("# no\n\n"), "u.csv: expected a header with the names of the columns, found none");
+    let nothing = "u.csv: the file measures no displacement of any point";
+    assert_eq!(fault("point,ux\n"), nothing);
+    assert_eq!(fault("point,ux\n1,nan\n2,\n"), nothing);
+    assert_eq!(files.fault("u.csv", b"point,ux\n\xff"), "u.csv: expected UTF-8 text, found other bytes");
+    assert_eq!(files.fault("u.txt", ""), "u.txt: expected displacements ending in .csv, .vtu or .vtk");
+    let missing = Field::read(&files.path("none.csv"), &tetrahedra(1), 1.0).unwrap_err().to_string();
+    assert!(missing.contains("none.csv: cannot be read: "), "{missing}");
+    for (scale, found) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+        let error = Field::read(&files.path("u.csv"), &tetrahedra(1), scale).unwrap_err();
+        assert_eq!(error.to_string(), format!("scale: expected a positive number, found {found}"));
+    }
+}
+
+/// A legacy file of the unit tetrahedron, with `more` points and this data on all.
+fn ascii(more: &[[f64; 3]], data: &str) -> String {
+    let points: String = more.iter().map(|[x, y, z]| format!("{x:?} {y:?} {z:?}\n")).collect();
+    let count = 4 + more.len();
+    format!(
+        "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {count} double\n0 0 0\n1 0 0\n0 1 0\n\
+         0 0 1\n{points}CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA {count}\n{data}"
+    )
+}
+
+#[test]
+fn points_of_no_cell_may_lie_anywhere() {
+    let files = Files::new();
+    let data = "FIELD all 2\nid 1 5 int\n1 2 3 4 5\ndisp 2 5 float\n1 2 3 4 5 6 7 nan 9 10\n";
+    let found = files.read("u.vtk", ascii(&[[7.0; 3]], data));
+    let values = [1.0, 2.0, f64::NAN, 3.0, 4.0, f64::NAN, 5.0, 6.0, f64::NAN, 7.0, f64::NAN, f64::NAN];
+    assert_eq!(found, values.map(|v: f64| (!v.is_nan()).then_some(v)));
+}
+
+#[test]
+fn grid_errors_say_what_was_expected_and_found() {
+    let files = Files::new();
+    let fault = |more: &[[f64; 3]], data: &str| files.fault("u.vtk", ascii(more, data));
+    let names = "one array called \"displacement\", \"displacements\", \"u\", \"disp\", or else a single one of 3 real \
+                 components";
+    assert_eq!(fault(&[], ""), format!("u.vtk: point data: expected {names}, found none"));
+    let data = "FIELD all 2\nid 3 4 int\n1 2 3 4 5 6 7 8 9 10 11 12\nT 1 4 float\n1 2 3 4\n";
+    let found = "\"id\" (components: 3, not real), \"T\" (components: 1)";
+    assert_eq!(fault(&[], data), format!("u.vtk: point data: expected {names}, found {found}"));
+    let data = "VECTORS u float\n0 0 0 1 1 1 2 2 2 3 3 3\n";
+    let two = format!("{data}VECTORS Disp double\n0 0 0 1 1 1 2 2 2 3 3 3\n");
+    let found = "\"u\" (components: 3), \"Disp\" (components: 3)";
+    assert_eq!(fault(&[], &two), format!("u.vtk: point data: expected {names}, found {found}"));
+    let inf = data.replace("2 2 2", "2 inf 2");
+    assert_eq!(fault(&[], &inf), "u.vtk: points[2]: expected a finite length, found inf times the scale 1.0");
+    let nothing = data.replace(['0', '1', '2', '3'], "nan");
+    assert_eq!(fault(&[], &nothing), "u.vtk: the file measures no displacement of any point");
+    let one_more = data.replace("3 3 3", "3 3 3 9 0 0");
+    let twice = "expected the displacement of points[1], which is in the same place, found another";
+    let message = fault(&[[1.0, 0.0, 0.0]], &one_more);
+    assert_eq!(message, format!("u.vtk: points[4].displacement: {twice}"));
+    let moved = ascii(&[], data).replace("1 0 0\n", "1 0 0.5\n");
+    let hint = "is the scale 1.0 m per unit of the file right?";
+    let away = format!("found (1.0, 0.0, 0.5) m, 0.5 m from the nearest, point 2; {hint}");
+    let message = files.fault("u.vtk", moved);
+    assert_eq!(message, format!("u.vtk: points[1].position: expected that of a point of the mesh, {away}"));
+    let astray = ascii(&[], data).replace("1 0 0\n", "1 nan 0\n");
+    let coordinates = "expected finite coordinates, found (1.0, NaN, 0.0)";
+    assert_eq!(files.fault("u.vtk", astray), format!("u.vtk: points[1].position: {coordinates}"));
+    assert_eq!(files.fault("u.vtk", ""), "u.vtk:1: expected \"# vtk DataFile Version\" and a number, found \"\"");
+}
+
+#[test]
+fn pieces_may_share_points() {
+    let piece = |array: &str, last: f64| {
+        let vectors = format!("0 0 0 1 1 1 2 2 2 {last} 3 3");
+        format!(
+            "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float32\" Name=\"{array}\" \
+             NumberOfComponents=\"3\" format=\"ascii\">{vectors}</DataArray></PointData><CellData></CellData><Points>\
+             <DataArray type=\"Float64\" Name=\"p\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1\
+             </DataArray></Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3\
+             </DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray \
+             type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells></Piece>"
+        )
+    };
+    let file = |pieces: &str| {
+        let root = "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+                    byte_order=\"LittleEndian\">";
+        format!("{root}<UnstructuredGrid>{pieces}</UnstructuredGrid></VTKFile>")
+    };
+    let files = Files::new();
+    let both = file(&(piece("U", 3.0) + &piece("U", 3.0)));
+    let expected: Vec<_> = [0.0, 1.0, 2.0, 3.0].iter().flat_map(|&v| [Some(v); 3]).collect();
+    assert_eq!(files.read("u.vtu", both), expected);
+    let message = files.fault("u.vtu", file(&(piece("U", 3.0) + &piece("U", 4.0))));
+    let twice = "expected the displacement of points[3], which is in the same place, found another";
+    assert_eq!(message, format!("u.vtu: points[7].displacement: {twice}"));
+    let message = files.fault("u.vtu", file(&(piece("U", 3.0) + &piece("v", 3.0))));
+    assert_eq!(message, "u.vtu: pieces: expected \"U\" in every one, found a piece of 4 points without");
+}
+
+#[test]
+fn no_file_cut_short_or_damaged_makes_the_reader_panic() {
+    let files = Files::new();
+    let mesh = scene_mesh("cube_tet");
+    let order: Vec<usize> = (0..mesh.point_count()).collect();
+    let values: Vec<Option<f64>> = (0..mesh.points.len()).map(|i| Some(1.0 / (i as f64 + 3.0))).collect();
+    let grid = grid(&mesh, &values, &order, "u");
+    write(&files.path("u.vtu"), &grid).unwrap();
+    fs::write(files.path("u.vtk"), legacy(&grid)).unwrap();
+    fs::write(files.path("u.csv"), table(&mesh, &values, &order, true, ",", "u")).unwrap();
+    let mut state = 1_u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for name in ["u.vtu", "u.vtk", "u.csv"] {
+        let whole = fs::read(files.path(name)).unwrap();
+        assert_eq!(Field::read(&files.path(name), &mesh, 1.0).unwrap().displacements, values);
+        let path = files.path(&format!("cut.{name}"));
+        for length in (0..whole.len()).step_by(50) {
+            fs::write(&path, &whole[..length]).unwrap();
+            let read = Field::read(&path, &mesh, 1.0);
+            assert!(name != "u.vtu" || read.is_err(), "cut to {length} bytes");
+        }
+        for round in 0..300 {
+            let mut bytes = whole.clone();
+            for _ in 0..1 + round % 3 {
+                let at = random(bytes.len());
+                match random(4) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => bytes[at] = b"0123456789 -.e\"<>=,\n#"[random(21)],
+                    2 => drop(bytes.remove(at)),
+                    _ => bytes.insert(at, b'9'),
+                }
+            }
+            fs::write(&path, bytes).unwrap();
+            if let Ok(field) = Field::read(&path, &mesh, 1.0) {
+                assert_eq!(field.displacements.len(), mesh.points.len());
+                assert!(field.displacements.iter().flatten().all(|u| u.is_finite()));
+            }
+        }
+    }
+}
