@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::model::{Entries, Support};
 use faer::Side;
+use faer::linalg::solvers::ShapeCore;
 use faer::prelude::{MatMut, Solve};
 use faer::sparse::linalg::solvers::{Llt, Lu};
 use faer::sparse::{SparseColMat, Triplet};
@@ -113,10 +114,14 @@ impl System {
 }
 
 impl Factor {
-    /// `x ← K⁻¹ x` on the free degrees of freedom.
+    /// `x ← K⁻¹ x` on the free degrees of freedom, of as many vectors as stand in x one after the other.
     pub fn solve(&self, x: &mut [f64]) {
-        let rows = x.len();
-        let x = MatMut::from_column_major_slice_mut(x, rows, 1);
+        let rows = match self {
+            Factor::Cholesky(llt) => llt.nrows(),
+            Factor::General(lu) => lu.nrows(),
+        };
+        let columns = x.len().checked_div(rows).unwrap_or(0);
+        let x = MatMut::from_column_major_slice_mut(x, rows, columns);
         match self {
             Factor::Cholesky(llt) => llt.solve_in_place(x),
             Factor::General(lu) => lu.solve_in_place(x),

@@ -1,9 +1,11 @@
-//! Equilibrium of either model, and how the two compare mode by mode.
+//! Equilibrium and natural vibrations of either model, and how the two compare mode by mode.
 
 mod linear;
+mod modes;
 mod newton;
 mod stability;
 
 pub use linear::{Factor, System};
+pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};
 pub use stability::{Stability, Standing, compare_energies};

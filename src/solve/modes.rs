@@ -1,0 +1,192 @@
+//! Natural vibrations of a model whose mass is lumped at its points.
+
+use super::linear::{Factor, System};
+use crate::error::{Error, Result};
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Vectors iterated beyond those wanted: the last wanted one converges by its distance to the first left out.
+const SPARE: usize = 4;
+/// Blocks in the basis before it is condensed to its best two.
+const BLOCKS: usize = 6;
+const ROUNDS: usize = 60;
+/// An eigenpair is found once `‖A y − θ y‖` is below this share of θ …
+const FOUND: f64 = 1e-11;
+/// … or below this share of the largest θ, where rounding begins.
+const ROUNDING: f64 = 1e-14;
+/// Largest relative error of ω² that is let pass. Of slender bodies rounding alone makes 1e-8, the condition of K
+/// times that of a double.
+const TOLERANCE: f64 = 1e-6;
+
+/// The lowest natural vibrations `u(t) = φ cos ωt` of a model: `K φ = ω² M φ` on the free degrees of freedom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modes {
+    /// `ω²`, rad²/s², ascending, `[modes]`.
+    pub squares: Vec<f64>,
+    /// One per mode, on all degrees of freedom `[points · dimension]`, zero where they are held; `φᵀ M φ = 1`,
+    /// kg^(−1/2).
+    pub shapes: Vec<Vec<f64>>,
+}
+
+impl Modes {
+    /// `ω / 2π`, Hz, `[modes]`.
+    pub fn frequencies(&self) -> Vec<f64> {
+        self.squares.iter().map(|square| square.sqrt() / TAU).collect()
+    }
+}
+
+/// The `count` lowest modes of `system`, whose matrix K is `factor`'s; `masses` in kg, `[points]`. The same input gives
+/// the same bits.
+///
+/// They are the largest eigenvalues `θ = 1/ω²` of `A = M^½ K⁻¹ M^½`, with `φ = M^(−½) y`. Each mode is checked with K
+/// itself: `√(rᵀ K⁻¹ r / φᵀ K φ)` of its residual `r = K φ − ω² M φ` bounds the relative distance of ω² to an
+/// eigenvalue (Weinstein's bound in the norm of the energy; the plain norm of r shows the rounding of stiff motions).
+///
+/// # Errors
+/// K is not positive definite, there are fewer free degrees of freedom than modes asked for, a point that may move has
+/// no mass, or a mode's ω² stays uncertain by more than 1e-6.
+pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+    if !factor.is_positive_definite() {
+        return Err(Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance"));
+    }
+    let n = system.size();
+    if count > n {
+        return Err(Error::expected("modes", format!("at most {n}, the free degrees of freedom"), count));
+    }
+    let points = || system.free().iter().map(|dof| dof / dimension);
+    if let Some(p) = points().find(|&p| !(masses[p] > 0.0 && masses[p].is_finite())) {
+        return Err(Error::expected("masses", format!("a mass above zero at point {}", p + 1), masses[p]));
+    }
+    let root = DVector::from_iterator(n, points().map(|p| masses[p].sqrt()));
+    let weigh = |block: &mut DMatrix<f64>| block.column_iter_mut().for_each(|mut y| y.component_mul_assign(&root));
+    let operator = |block: &mut DMatrix<f64>| {
+        weigh(block);
+        factor.solve(block.as_mut_slice());
+        weigh(block);
+    };
+    let mut modes = Modes { squares: Vec::with_capacity(count), shapes: Vec::with_capacity(count) };
+    for (theta, y) in largest_eigenpairs(n, count, operator)? {
+        let (square, phi) = (1.0 / theta, y.component_div(&root));
+        let force = DVector::from_vec(system.apply(phi.as_slice()));
+        let residual = &force - y.component_mul(&root) * square;
+        let mut off = residual.clone();
+        factor.solve(off.as_mut_slice());
+        let error = (residual.dot(&off).abs() / phi.dot(&force)).sqrt();
+        if !(error <= TOLERANCE) {
+            let mode = modes.squares.len() + 1;
+            let found = format!("a relative error up to {error:.1e} in mode {mode} of {count}");
+            return Err(Error::expected("modes", format!("squared frequencies to {TOLERANCE:.0e}"), found));
+        }
+        let mut shape = vec![0.0; masses.len() * dimension];
+        system.free().iter().zip(&phi).for_each(|(&dof, &x)| shape[dof] = x);
+        modes.squares.push(square);
+        modes.shapes.push(shape);
+    }
+    Ok(modes)
+}
+
+/// The `count` largest eigenvalues of a symmetric, positive definite operator on vectors of n entries, descending, with
+/// their unit vectors. `apply` replaces each column by its image.
+///
+/// Block Krylov iteration with Rayleigh's and Ritz' projection; the residuals of the leading pairs extend the basis, and
+/// restarts keep their vectors (Wu, Simon, SIAM J. Matrix Anal. Appl. 22, 2000). The first block is wider than `count`, so
+/// every copy of a repeated eigenvalue is in it. A single vector would hold one copy and meet the others by rounding.
+///
+/// # Errors
+/// The operator gives numbers that are not finite.
+fn largest_eigenpairs(n: usize, count: usize, apply: impl Fn(&mut DMatrix<f64>)) -> Result<Vec<(f64, DVector<f64>)>> {
+    let width = (count + SPARE).min(n);
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let (mut basis, mut images, mut projected) = (DMatrix::zeros(n, 0), DMatrix::zeros(n, 0), DMatrix::zeros(0, 0));
+    let mut random = generator();
+    let mut block = orthonormal(&basis, DMatrix::from_fn(n, width, |_, _| random()));
+    let mut round = 0;
+    loop {
+        round += 1;
+        let old = basis.ncols();
+        basis = beside(basis, &block);
+        apply(&mut block);
+        images = beside(images, &block);
+        let m = basis.ncols();
+        let products = basis.tr_mul(&block);
+        projected = projected.resize(m, m, 0.0);
+        for (j, column) in (old..m).zip(products.column_iter()) {
+            projected.column_mut(j).copy_from(&column);
+            projected.row_mut(j).tr_copy_from(&column);
+        }
+        if projected.iter().any(|x: &f64| !x.is_finite()) {
+            return Err(Error::at("stiffness", "its inverse is beyond the range of numbers"));
+        }
+        let eigen = projected.clone().symmetric_eigen();
+        let mut order: Vec<usize> = (0..m).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let theta = DVector::from_iterator(m, order.iter().map(|&k| eigen.eigenvalues[k]));
+        let is_full = m + width > BLOCKS * width;
+        let kept = if is_full { 2 * width } else { width };
+        let leading = eigen.eigenvectors.select_columns(&order[..kept]);
+        let (vectors, moved) = (&basis * &leading, &images * &leading);
+        let mut residuals: Vec<DVector<f64>> = Vec::new();
+        let mut is_found = true;
+        for k in 0..width {
+            let residual = moved.column(k) - vectors.column(k) * theta[k];
+            if residual.norm() > (FOUND * theta[k]).max(ROUNDING * theta[0]) {
+                is_found &= k >= count;
+                residuals.push(residual);
+            }
+        }
+        if is_full {
+            projected = DMatrix::from_diagonal(&theta.rows(0, kept).into_owned());
+            (basis, images) = (vectors.clone(), moved);
+        }
+        if !is_found && round < ROUNDS {
+            block = orthonormal(&basis, DMatrix::from_columns(&residuals));
+        }
+        if is_found || round == ROUNDS || block.is_empty() {
+            return Ok((0..count).map(|k| (theta[k], vectors.column(k).into_owned())).collect());
+        }
+    }
+}
+
+/// `[matrix columns]`.
+fn beside(matrix: DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let m = matrix.ncols();
+    let mut matrix = matrix.resize_horizontally(m + columns.ncols(), 0.0);
+    matrix.columns_mut(m, columns.ncols()).copy_from(columns);
+    matrix
+}
+
+/// Unit vectors that span what the columns of `block` add to the orthonormal `basis`: Gram's and Schmidt's, twice.
+fn orthonormal(basis: &DMatrix<f64>, mut block: DMatrix<f64>) -> DMatrix<f64> {
+    for _ in 0..2 {
+        let sizes: Vec<f64> = block.column_iter().map(|column| column.norm()).collect();
+        block -= basis * basis.tr_mul(&block);
+        let mut added: Vec<DVector<f64>> = Vec::new();
+        for (column, size) in block.column_iter().zip(&sizes) {
+            let mut column = column.into_owned();
+            added.iter().for_each(|q| column.axpy(-q.dot(&column), q, 1.0));
+            // What is left of a dependent vector is rounding.
+            if column.norm() > 1e-8 * size {
+                column.normalize_mut();
+                added.push(column);
+            }
+        }
+        if added.is_empty() {
+            return DMatrix::zeros(block.nrows(), 0);
+        }
+        block = DMatrix::from_columns(&added);
+    }
+    block
+}
+
+/// Numbers between −½ and ½, the same on every machine.
+fn generator() -> impl FnMut() -> f64 {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    move || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    }
+}

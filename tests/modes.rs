@@ -1,0 +1,249 @@
+//! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
+
+use nalgebra::DMatrix;
+use springfit::element::Element;
+use springfit::material::Material;
+use springfit::mesh::{BoxMesh, Mesh, Selection};
+use springfit::model::{LengthSpring, Network, Support, finite_elements, masses};
+use springfit::solve::{Factor, Modes, System, lowest_modes};
+use springfit::study::Scene;
+use std::f64::consts::PI;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A model held somewhere.
+struct Model {
+    system: System,
+    factor: Factor,
+    masses: Vec<f64>,
+    dimension: usize,
+}
+
+impl Model {
+    fn new(entries: &springfit::model::Entries, support: &Support, masses: Vec<f64>, dimension: usize) -> Model {
+        let system = System::new(entries, support).unwrap();
+        let factor = system.factorize().unwrap();
+        Model { system, factor, masses, dimension }
+    }
+
+    /// Springs along x between neighbours of a row of points, in the plane; infinite masses are held.
+    fn chain(constants: &[f64], masses: &[f64]) -> Model {
+        let spring = |(i, &constant): (usize, &f64)| LengthSpring { points: [i, i + 1], constant, rest: 1.0 };
+        let lengths = constants.iter().enumerate().filter(|(_, k)| **k != 0.0).map(spring).collect();
+        let network = Network { dimension: 2, lengths, others: Vec::new() };
+        let points: Vec<f64> = (0..masses.len()).flat_map(|i| [i as f64, 0.0]).collect();
+        let held = |m: &f64| [(*m == f64::INFINITY).then_some(0.0), Some(0.0)];
+        let support = Support { prescribed: masses.iter().flat_map(held).collect() };
+        Model::new(&network.stiffness(&points), &support, masses.to_vec(), 2)
+    }
+
+    /// Finite elements of 1 kg/m³ and 1 Pa, held where x = 0.
+    fn body(mesh: &Mesh, poisson: f64) -> Model {
+        let material = Material::for_body(3, 1.0, poisson, None, None).unwrap();
+        let held: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
+        let mut support = Support::free(mesh);
+        support.fix(&held, &[0, 1, 2], 3);
+        Model::new(&finite_elements(mesh, material.moduli()), &support, masses(mesh, 1.0, 1.0), 3)
+    }
+
+    fn modes(&self, count: usize) -> Modes {
+        lowest_modes(&self.system, &self.factor, &self.masses, self.dimension, count).unwrap()
+    }
+
+    fn error(&self, count: usize) -> String {
+        lowest_modes(&self.system, &self.factor, &self.masses, self.dimension, count).unwrap_err().to_string()
+    }
+
+    /// On the free degrees of freedom.
+    fn mass(&self) -> Vec<f64> {
+        self.system.free().iter().map(|dof| self.masses[dof / self.dimension]).collect()
+    }
+
+    /// All squares, from `M^(−½) K M^(−½)` as a dense matrix, ascending.
+    fn dense_squares(&self) -> Vec<f64> {
+        let (n, mass) = (self.system.size(), self.mass());
+        let mut matrix = DMatrix::zeros(n, n);
+        for j in 0..n {
+            let mut unit = vec![0.0; n];
+            unit[j] = 1.0 / mass[j].sqrt();
+            let column = self.system.apply(&unit);
+            (0..n).for_each(|i| matrix[(i, j)] = column[i] / mass[i].sqrt());
+        }
+        let mut squares: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
+        squares.sort_by(f64::total_cmp);
+        squares
+    }
+
+    /// Shapes are M-orthonormal, zero where held, and solve the equation.
+    fn check(&self, modes: &Modes, residual: f64) {
+        let mass = self.mass();
+        let free = |shape: &[f64]| self.system.free().iter().map(|&dof| shape[dof]).collect::<Vec<f64>>();
+        let shapes: Vec<Vec<f64>> = modes.shapes.iter().map(|shape| free(shape)).collect();
+        for (i, a) in shapes.iter().enumerate() {
+            for (j, b) in shapes.iter().enumerate() {
+                let product: f64 = (0..a.len()).map(|k| a[k] * mass[k] * b[k]).sum();
+                let expected = if i == j { 1.0 } else { 0.0 };
+                assert!((product - expected).abs() < 1e-10, "{i} {j}: {product}");
+            }
+            let force = self.system.apply(a);
+            let left: f64 = (0..a.len()).map(|k| (force[k] - modes.squares[i] * mass[k] * a[k]).powi(2)).sum();
+            let size: f64 = force.iter().map(|f| f * f).sum();
+            assert!((left / size).sqrt() < residual, "mode {i}: {:e}", (left / size).sqrt());
+            let whole = &modes.shapes[i];
+            assert_eq!(whole.len(), self.masses.len() * self.dimension);
+            let nonzero = whole.iter().filter(|x| **x != 0.0).count();
+            assert!(nonzero <= a.iter().filter(|x| **x != 0.0).count(), "a held point moves");
+        }
+    }
+}
+
+fn bar(size: [f64; 3], cells: [usize; 3]) -> Mesh {
+    let element = Arc::new(Element::load("hex8").unwrap());
+    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; 3] }.build().unwrap()
+}
+
+fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found / expected - 1.0).abs() < tolerance, "{found} instead of {expected}");
+}
+
+/// n masses m between walls: `ω_j = 2 √(k/m) sin(jπ / (2(n + 1)))`, Lagrange's loaded string.
+#[test]
+fn a_chain_between_walls_has_lagranges_frequencies() {
+    let (k, m) = (300.0, 0.02);
+    for n in [1, 2, 3, 8, 60, 150] {
+        let mut row = vec![m; n + 2];
+        (row[0], row[n + 1]) = (f64::INFINITY, f64::INFINITY);
+        let chain = Model::chain(&vec![k; n + 1], &row);
+        for count in (1..=n.min(20)).chain([n / 2, n]) {
+            let modes = chain.modes(count);
+            assert_eq!((modes.squares.len(), modes.shapes.len()), (count, count));
+            chain.check(&modes, 1e-8);
+            for (j, (frequency, square)) in modes.frequencies().iter().zip(&modes.squares).enumerate() {
+                let omega = 2.0 * (k / m).sqrt() * ((j + 1) as f64 * PI / (2.0 * (n + 1) as f64)).sin();
+                assert_near(*square, omega * omega, 1e-10);
+                assert_near(*frequency, omega / (2.0 * PI), 1e-10);
+            }
+        }
+    }
+}
+
+/// Wall, spring a, mass m, spring b, mass p: `m p ω⁴ − ((a + b) p + b m) ω² + a b = 0`.
+#[test]
+fn two_masses_swing_as_their_quadratic_says() {
+    let (a, b, m, p) = (5.0f64, 0.3, 2.0, 0.01);
+    let model = Model::chain(&[a, b], &[f64::INFINITY, m, p]);
+    let half = ((a + b) * p + b * m) / (2.0 * m * p);
+    let root = (half * half - a * b / (m * p)).sqrt();
+    let modes = model.modes(2);
+    assert_near(modes.squares[0], half - root, 1e-12);
+    assert_near(modes.squares[1], half + root, 1e-12);
+    model.check(&modes, 1e-10);
+}
+
+/// Twelve chains alike side by side: each of Lagrange's frequencies comes twelve times.
+#[test]
+fn every_copy_of_a_frequency_is_found() {
+    let (copies, n) = (12, 40);
+    let (mut constants, mut row) = (Vec::new(), Vec::new());
+    for _ in 0..copies {
+        constants.extend(vec![1.0; n + 1]);
+        constants.push(0.0);
+        row.push(f64::INFINITY);
+        row.extend(vec![1.0; n]);
+        row.push(f64::INFINITY);
+    }
+    constants.pop();
+    let model = Model::chain(&constants, &row);
+    for count in (1..=20).chain([30, 100]) {
+        let modes = model.modes(count);
+        model.check(&modes, 1e-8);
+        for (i, square) in modes.squares.iter().enumerate() {
+            let j = (i / copies + 1) as f64;
+            assert_near(*square, (2.0 * (j * PI / (2.0 * (n + 1) as f64)).sin()).powi(2), 1e-9);
+        }
+    }
+}
+
+/// A square section bends to either side alike.
+#[test]
+fn square_bars_have_pairs_of_bending_modes() {
+    for (size, cells) in [([3.0, 1.0, 1.0], [6, 2, 2]), ([1.0, 1.0, 1.0], [4, 4, 4]), ([1.0, 1.0, 1.0], [1, 1, 1])] {
+        let model = Model::body(&bar(size, cells), 0.3);
+        let dense = model.dense_squares();
+        for count in (1..=20).filter(|count| *count <= model.system.size()) {
+            let modes = model.modes(count);
+            assert_eq!(modes, model.modes(count), "the same input gives the same bits");
+            model.check(&modes, 1e-8);
+            modes.squares.iter().zip(&dense).for_each(|(found, dense)| assert_near(*found, *dense, 1e-9));
+            // A single cell twists before it bends.
+            if count > 1 && cells[0] > 1 {
+                assert_near(modes.squares[1], modes.squares[0], 1e-8);
+            }
+        }
+    }
+}
+
+/// Without Poisson's effect the body swings lengthwise as its axis does: N elements of lumped mass have
+/// `ω = (2N/L) √(E/ρ) sin(π/4N)`, half of Lagrange's chain of 2N − 1 masses; that is `1 − (π/4N)²/6` of the rod's
+/// `f = √(E/ρ) / 4L`.
+#[test]
+fn a_bar_swings_lengthwise_as_a_rod() {
+    let (length, cells) = (2.0, 8);
+    let model = Model::body(&bar([length, 0.8, 0.8], [cells, 3, 3]), 0.0);
+    let modes = model.modes(10);
+    let along = |shape: &Vec<f64>| shape.chunks(3).zip(&model.masses).map(|(u, m)| m * u[0] * u[0]).sum::<f64>();
+    let mode = modes.shapes.iter().position(|shape| along(shape) > 0.999).unwrap();
+    let angle = PI / (4 * cells) as f64;
+    assert_near(modes.squares[mode].sqrt(), 2.0 * cells as f64 / length * angle.sin(), 1e-10);
+    assert_near(modes.frequencies()[mode], 0.25 / length * (1.0 - angle * angle / 6.0), 1e-5);
+    model.check(&modes, 1e-8);
+}
+
+/// The condition of a slender bar is 1e10; its pairs stand, and the beam's first frequency
+/// `ω = 1.8751² √(EI/ρA) / L²`, `I/A = b²/12` (Timoshenko), up to the trilinear element's parasitic shear: with ν = 0 that adds
+/// `½ (length/height)²` of its own to a layer's bending stiffness, here half of the quarter that two layers bend by.
+#[test]
+fn slender_bars_pass() {
+    let model = Model::body(&bar([100.0, 1.0, 1.0], [200, 2, 2]), 0.0);
+    let modes = model.modes(8);
+    for pair in modes.squares.chunks(2) {
+        assert_near(pair[1], pair[0], 1e-6);
+    }
+    let omega = 1.875_104_068_7f64.powi(2) * (1.0f64 / 12.0).sqrt() / 1e4;
+    assert_near(modes.squares[0].sqrt(), omega * (9.0f64 / 8.0).sqrt(), 2e-4);
+    model.check(&modes, 1e-5);
+}
+
+#[test]
+fn modes_of_a_mesh_are_those_of_dense_matrices() {
+    for (name, held) in [("cube_tet", "fixed"), ("cube_hex", "zmin")] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"));
+        let scene = Scene::load(&path).unwrap();
+        let mesh = scene.build_mesh().unwrap();
+        let material = scene.material(3).unwrap();
+        let mut support = Support::free(&mesh);
+        support.fix(&Selection::Group(held.into()).points(&mesh).unwrap(), &[0, 1, 2], 3);
+        let entries = finite_elements(&mesh, material.moduli());
+        let model = Model::new(&entries, &support, masses(&mesh, 1000.0, 1.0), 3);
+        let modes = model.modes(10);
+        model.check(&modes, 1e-8);
+        modes.squares.iter().zip(&model.dense_squares()).for_each(|(found, dense)| assert_near(*found, *dense, 1e-9));
+    }
+}
+
+#[test]
+fn faults_are_named() {
+    let row = [f64::INFINITY, 1.0, 1.0];
+    let model = Model::chain(&[1.0, 1.0], &row);
+    assert_eq!(model.error(3), "modes: expected at most 2, the free degrees of freedom, found 3");
+    assert_eq!(model.modes(0), Modes { squares: Vec::new(), shapes: Vec::new() });
+    let massless = Model { masses: vec![0.0, 1.0, 0.0], ..Model::chain(&[1.0, 1.0], &row) };
+    assert_eq!(massless.error(1), "masses: expected a mass above zero at point 3, found 0");
+    let negative = Model { masses: vec![0.0, -2.5, 1.0], ..Model::chain(&[1.0, 1.0], &row) };
+    assert_eq!(negative.error(1), "masses: expected a mass above zero at point 2, found -2.5");
+    let indefinite = Model::chain(&[1.0, -0.2], &row);
+    assert_eq!(
+        indefinite.error(1),
+        "stiffness: expected a positive definite matrix, found motions that meet no resistance"
+    );
+}
