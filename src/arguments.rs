@@ -91,6 +91,9 @@ pub struct RunArguments {
     /// Where the report goes [default: out/NAME of the scene]
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Where whole-object fits save their state, and what they go on from if it is there; Ctrl-C ends them at their best point
+    #[arg(long)]
+    pub checkpoint: Option<PathBuf>,
     /// Say which stages will run and which are left out, and stop
     #[arg(long)]
     pub explain: bool,
@@ -106,9 +109,12 @@ pub struct FitArguments {
     /// Poisson's ratio
     #[arg(long, allow_hyphen_values = true)]
     pub poisson: f64,
-    /// frobenius, offdiag, modal, spectral, divergence or sampled [default: offdiag with --nonnegative]
+    /// frobenius, offdiag, modal, spectral, divergence, sampled or whole [default: offdiag with --nonnegative]
     #[arg(long)]
     pub objective: Option<String>,
+    /// A group of the mesh that is held; may be repeated (whole only)
+    #[arg(long)]
+    pub fix: Vec<String>,
     /// Energy whose forces are sampled: a shipped name such as neo-hookean, or a file (sampled only)
     #[arg(long)]
     pub law: Option<String>,

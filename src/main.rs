@@ -11,17 +11,20 @@ use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::{ClosedForm, Weight};
 use springfit::material::{Energy, Material, Plane, parse_pressure};
-use springfit::mesh::{Mesh, MeshSource, vtk};
+use springfit::mesh::{Mesh, MeshSource, Selection, vtk};
+use springfit::model::Support;
 use springfit::report::Comparison;
 use springfit::springs::Springs;
 use springfit::study::{
-    FitEntry, LargeBody, Recipe, Reference, Scene, ShapesEntry, fit_mesh, load_elements, run, stages,
+    Controls, FitEntry, LargeBody, Recipe, Reference, Scene, ShapesEntry, WholeBody, fit_mesh, load_elements, run_with,
+    stages,
 };
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
@@ -55,14 +58,30 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
     let stem = arguments.scene.file_stem().unwrap_or_default();
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
     springfit::check_folder(&folder)?;
+    let controls = Arc::new(Controls { checkpoint: arguments.checkpoint.clone(), ..Controls::default() });
+    if scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_))) {
+        end_early(&controls);
+    }
     let mut bar = Bar::new();
-    let outcome = run(&scene, &mut |stage, done, total| bar.show(stage, done, total))?;
+    let outcome = run_with(&scene, &controls, &mut |stage, done, total| bar.show(stage, done, total))?;
     bar.clear();
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
     for note in report::notes(&outcome) {
         eprintln!("note: {note}");
     }
     written(&report::write_outputs(&outcome, &scene.output, &folder)?)
+}
+
+/// The first interrupt ends whole-object fits at their best point, the second the program.
+fn end_early(controls: &Arc<Controls>) {
+    let controls = controls.clone();
+    // Without a handler an interrupt ends the program at once, as it does anyway.
+    let _ = ctrlc::set_handler(move || {
+        if controls.cancelled.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("ending the whole-object fits where they are; again to end at once");
+    });
 }
 
 fn fit(arguments: &FitArguments) -> Result<()> {
@@ -88,8 +107,13 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         shapes: Some(shapes).filter(|s| *s != ShapesEntry::default()),
         ..FitEntry::default()
     };
-    let named = entry.check(Path::new("")).map_err(|e| e.placed(Error::of_option))?;
+    let named = entry.check(Path::new("")).map_err(|e| e.placed(Error::of_option))?.remove(0);
     let sampled = matches!(named.recipe, Recipe::Forces(_));
+    let whole = matches!(named.recipe, Recipe::Whole(_));
+    if whole == arguments.fix.is_empty() {
+        let problem = "goes with the objective \"whole\", and that with it: a group of the mesh that is held";
+        return Err(Error::at("--fix", problem));
+    }
     if sampled != arguments.law.is_some() {
         let problem = "goes with the objective \"sampled\", and that with it: the energy whose forces are sampled";
         return Err(Error::at("--law", problem));
@@ -112,9 +136,21 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let large = energy
         .map_err(|e| e.placed(|e| Error::at("--law", e.problem())))?
         .map(|energy| LargeBody::at_rest(energy, material.state()));
+    let mut support = Support::free(&mesh);
+    let directions: Vec<usize> = (0..mesh.dimension).collect();
+    for group in &arguments.fix {
+        let points = Selection::Group(group.clone()).points(&mesh).map_err(|e| Error::at("--fix", e.problem()))?;
+        support.fix(&points, &directions, mesh.dimension);
+    }
+    let controls = Arc::new(Controls::default());
+    if whole {
+        end_early(&controls);
+    }
+    let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
+    let reference = Reference { large: large.as_ref(), whole: body.as_ref() };
     let mut bar = Bar::new();
     let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
-    let outcome = fit_mesh(&mesh, material, &Reference::of_law(large.as_ref()), &named, &mut progress);
+    let outcome = fit_mesh(&mesh, material, &reference, &named, &mut progress);
     let outcome = outcome.map_err(|e| if sampled { e.placed(Error::of_option) } else { e })?;
     bar.clear();
     let masses = arguments.density.map(|density| model::masses(&mesh, density, material.thickness()));

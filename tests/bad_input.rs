@@ -265,7 +265,7 @@ fn keys_and_types() {
                 "group = \"zmax\"",
                 "groop = \"zmax\"",
                 "scene.toml:11: load[0].groop: unknown field \"groop\", expected one of \"name\", \"group\", \
-                 \"where\", \"traction\", \"force\", \"body\", \"displacement\"",
+                 \"where\", \"traction\", \"force\", \"body\", \"displacement\", \"measured\"",
             ),
             ("[material]\nyoung = 10e3\npoisson = 0.3\n", "", "scene.toml:1: missing field \"material\""),
             ("young = 10e3\n", "", "scene.toml:3: material: missing field \"young\""),
@@ -358,7 +358,7 @@ fn fits() {
             (
                 "\"modal\"",
                 "\"modular\"",
-                "scene.toml: fit[0].objective: expected one of frobenius, offdiag, modal, spectral, divergence, found \"modular\"",
+                "scene.toml: fit[0].objective: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, whole, found \"modular\"",
             ),
             (
                 "\"modal\"",
@@ -1294,7 +1294,7 @@ fn options_by_their_names() {
             "1kPa",
             "0.3",
             &["--objective", "least"],
-            "--objective: expected one of frobenius, offdiag, modal, spectral, divergence, found \"least\"".into(),
+            "--objective: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, whole, found \"least\"".into(),
         ),
         (
             "1kPa",
@@ -1497,26 +1497,68 @@ fn sampled_fits_and_laws() {
 fn whole_object_fits() {
     let fit = "objective = \"modal\"";
     let edits = [
-        ("objective = \"whole\"", "fit[0].loads: expected names of loads of the scene to fit, found none"),
+        (
+            "objective = \"whole\"\nloads = []",
+            "fit[0].loads: expected names of loads of the scene to fit, or \"made\", found none",
+        ),
         (
             "objective = \"whole\"\nloads = [\"push\"]",
             "fit[0].loads: expected loads of the scene (load 1), found \"push\"",
+        ),
+        (
+            "objective = \"whole\"\nvalidate = [\"push\"]",
+            "fit[0].validate: expected loads of the scene (load 1), found \"push\"",
+        ),
+        (
+            "objective = \"whole\"\nvalidate = []",
+            "fit[0].validate: expected names of loads of the scene, \"made\", or \"leave-one-out\" alone, found none",
         ),
         (
             "objective = \"whole\"\nloads = [\"load 1\"]\nvalidate = [\"load 1\"]",
             "fit[0].validate: expected loads that are not fitted, found \"load 1\"",
         ),
         (
-            "objective = \"whole\"\nloads = [\"load 1\"]\nstart = \"rest\"",
-            "fit[0].start: expected one of frobenius, offdiag, modal, spectral, divergence, found \"rest\"",
+            "objective = \"whole\"\nloads = [\"load 1\"]\nvalidate = [\"leave-one-out\"]",
+            "fit[0].validate: expected at least two loads to leave one out, found 1",
         ),
         (
-            "objective = \"whole\"\nloads = [\"load 1\"]\niterations = 0",
-            "fit[0].iterations: expected a number above 0, found 0",
+            "objective = \"whole\"\nvalidate = [\"made\"]\nregularization = 1e-3",
+            "fit[0].regularization: is chosen by \"validate\" or given, found both",
         ),
         (
-            "objective = \"whole\"\nloads = [\"load 1\"]\ntied = true",
-            "fit[0].tied: does not go with the objective \"whole\"",
+            "objective = \"whole\"\nregularization = -1",
+            "fit[0].regularization: expected a number of at least 0, found -1",
+        ),
+        (
+            "objective = \"whole\"\nstart = \"rest\"",
+            "fit[0].start: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, equal, found \"rest\"",
+        ),
+        (
+            "objective = \"whole\"\nstart = [\"offdiag\", \"offdiag\"]",
+            "fit[0].start: expected an objective or \"equal\", or a list of them, each once",
+        ),
+        (
+            "objective = \"whole\"\nstart = 3",
+            "fit[0].start: expected an objective or \"equal\", or a list of them, each once",
+        ),
+        ("objective = \"whole\"\niterations = 0", "fit[0].iterations: expected a number above 0, found 0"),
+        (
+            "objective = \"whole\"\nsolver = \"native\"",
+            "fit[0].solver: expected \"gauss-newton\" or \"l-bfgs\" with the objective \"whole\", found \"native\"",
+        ),
+        (
+            "objective = \"whole\"\nresidual = \"energy\"",
+            "fit[0].residual: expected \"displacements\", \"forces\" or \"forces-first\", found \"energy\"",
+        ),
+        (
+            "objective = \"whole\"\nunknowns = \"cell\"",
+            "fit[0].unknowns: expected one of spring, group, region, element, found \"cell\"",
+        ),
+        ("objective = \"whole\"\nfrequencies = 3", "fit[0].frequencies: expected a density in [material], found none"),
+        ("objective = \"whole\"\ntied = true", "fit[0].tied: does not go with the objective \"whole\""),
+        (
+            "objective = \"modal\"\nfrequencies = 3",
+            "fit[0].frequencies: belongs to the objective \"whole\", found with \"modal\"",
         ),
         (
             "objective = \"modal\"\nloads = [\"load 1\"]",
@@ -1527,15 +1569,59 @@ fn whole_object_fits() {
     let edits: Vec<Edit> = edits.iter().zip(&messages).map(|((to, _), message)| (fit, *to, message.as_str())).collect();
     refuses_edits(BRICK, &edits);
     let mut refusals = Refusals::default();
-    let large = edited(BRICK, fit, "objective = \"whole\"\nloads = [\"load 1\"]");
-    refusals.expect_of_scene(
-        &edited(&large, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\""),
-        "scene.toml: fit[0].objective: the objective \"whole\" is known for small displacements, found a material with a law",
+    let whole = edited(BRICK, fit, "objective = \"whole\"");
+    let expect = |refusals: &mut Refusals, scene: &str, message: &str| {
+        refusals.expect_of_scene(scene, &format!("scene.toml: fit[0].{message}"));
+    };
+    expect(
+        &mut refusals,
+        &edited(&whole, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\""),
+        "loads: expected loads of the scene, where the material has a law, found \"made\"",
     );
-    let moved = edited(&large, "traction = [0, 0, 1]", "displacement = [0, 0, 0.1]");
+    let free = edited(&whole, "[[fix]]\ngroup = \"zmin\"\n", "");
+    let held = "[[load]]\nwhere = \"z < 0.1\"\ndisplacement = [0, 0, 0]";
+    let by_load = edited(&free, "[[load]]\ngroup = \"zmax\"\ntraction = [0, 0, 1]", held);
+    expect(
+        &mut refusals,
+        &by_load,
+        "loads: expected supports in [[fix]] that hold every body, whatever the loads hold, found 6 rigid motions left \
+         to one of 8 points",
+    );
+    let still = edited(&whole, "traction = [0, 0, 1]", "traction = [0, 0, 0]");
+    expect(
+        &mut refusals,
+        &edited(&still, "objective = \"whole\"", "objective = \"whole\"\nloads = [\"load 1\"]"),
+        "loads: expected loads under which something moves, found \"load 1\"",
+    );
+    let counted = edited(&whole, "poisson = 0.3", "poisson = 0.3\ndensity = 1000");
+    expect(
+        &mut refusals,
+        &edited(&counted, "objective = \"whole\"", "objective = \"whole\"\nfrequencies = 13"),
+        "frequencies: expected at most 12, the free degrees of freedom, found 13",
+    );
+    refusals.finish();
+}
+
+#[test]
+fn loads_that_vary_and_measurements() {
+    let load = "traction = [0, 0, 1]";
+    let edits = [
+        (
+            "traction = [0, 0, \"x*\"]",
+            "load[0].traction[2]: column 3: expected a number, a name or '(', found the end in \"x*\"",
+        ),
+        ("traction = [0, 0, \"w\"]", "load[0].traction[2]: expected one of x, y, z, found the name \"w\" in \"w\""),
+        ("traction = [0, 0, \"1/(z - 1)\"]", "load[0]: is not finite everywhere on the selected part"),
+    ];
+    let mut refusals = Refusals::default();
+    for (to, message) in edits {
+        refusals.expect_of_scene(&edited(BRICK, load, to), &format!("scene.toml: {message}"));
+    }
+    let measured = edited(BRICK, load, "traction = [0, 0, 1]\nmeasured = { file = \"u.csv\" }");
+    refusals.expect_of_scene(&measured, "u.csv: cannot be read: No such file or directory (os error 2)");
     refusals.expect_of_scene(
-        &moved,
-        "scene.toml: fit[0].fix: expected points that are held at rest, found a prescribed displacement",
+        &edited(PLATE, "traction = [0, 1]", "traction = [0, \"z\"]"),
+        "scene.toml: load[0].traction[1]: expected an expression of x and y in a plane mesh, found z",
     );
     refusals.finish();
 }

@@ -239,7 +239,7 @@ fn interior_share(mesh: &Mesh, face: &[usize]) -> f64 {
     let d = mesh.dimension;
     let mut unit = vec![0.0; d];
     unit[0] = 1.0;
-    let traction = springfit::model::Action::Traction(unit);
+    let traction = springfit::model::Action::traction(&unit);
     let f = springfit::model::nodal_forces(mesh, &Selection::Group("xmax".into()), &traction, 1.0).unwrap();
     let area: f64 = f.iter().sum();
     assert!((area - 1.0).abs() < 1e-12, "the face has the area {area}");

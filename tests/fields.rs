@@ -87,7 +87,7 @@ fn table(mesh: &Mesh, values: &[Option<f64>], order: &[usize], by_position: bool
         cells.push("n/a".into());
         match by_position {
             true => cells.extend(mesh.point(p).iter().map(|&x| cell(Some(x)))),
-            false => cells.push((p + 1).to_string()),
+            false => cells.push(p.to_string()),
         }
         text += &(cells.join(mark) + "\n");
     }
@@ -190,10 +190,10 @@ fn what_a_table_leaves_out_is_not_measured() {
     let some = |values: [Option<f64>; 12]| values.to_vec();
     let (n, one) = (None, [None, Some(0.0), Some(-1e-3)]);
     assert_eq!(files.read("u.csv", text), some([n, n, Some(0.25), one[0], one[1], one[2], n, n, n, n, n, n]));
-    let deformed = "point;x_deformed;Z_Deformed;note\n2;1.25;;\"a;\n b\"\n4;;0.5;\n";
+    let deformed = "point;x_deformed;Z_Deformed;note\n1;1.25;;\"a;\n b\"\n3;;0.5;\n";
     let expected = some([n, n, n, Some(0.25), n, n, n, n, n, n, n, Some(-0.5)]);
     assert_eq!(files.read("u.csv", deformed), expected);
-    let both = "point,x,y,z,ux\n2,1,0,0,0.25\n3,0,1,0,0.5\n";
+    let both = "point,x,y,z,ux\n1,1,0,0,0.25\n2,0,1,0,0.5\n";
     assert_eq!(files.read("u.csv", both), some([n, n, n, Some(0.25), n, n, Some(0.5), n, n, n, n, n]));
 }
 
@@ -201,7 +201,7 @@ fn what_a_table_leaves_out_is_not_measured() {
 fn a_name_chooses_among_several() {
     let files = Files::new();
     let (path, mesh) = (files.path("u.csv"), tetrahedra(1));
-    fs::write(&path, "point,Left_x,left_y,right_x,ux\n1,1,2,3,4\n").unwrap();
+    fs::write(&path, "point,Left_x,left_y,right_x,ux\n0,1,2,3,4\n").unwrap();
     let first = |array| Field::read_named(&path, &mesh, 0.5, array).unwrap().displacements[..2].to_vec();
     assert_eq!(first(Some("left")), [Some(0.5), Some(1.0)]);
     assert_eq!(first(Some("RIGHT")), [Some(1.5), None]);
@@ -238,7 +238,7 @@ fn points_in_one_place_need_their_numbers() {
     fs::write(files.path("u.csv"), table(&mesh, &values, &order, false, ",", "u")).unwrap();
     assert_eq!(Field::read(&files.path("u.csv"), &mesh, 1.0).unwrap().displacements, values);
     let message = files.fault_on(&mesh, "u.csv", table(&mesh, &values, &order, true, ",", "u"), None);
-    let found = "points 1 and 5, both at (0.0, 0.0, 0.0) m";
+    let found = "points 0 and 4, both at (0.0, 0.0, 0.0) m";
     assert_eq!(message, format!("u.csv:2: position: expected that of one point of the mesh, found {found}"));
 }
 
@@ -247,23 +247,23 @@ fn table_errors_say_what_was_expected_and_found() {
     let files = Files::new();
     let fault = |text: &str| files.fault("u.csv", text);
     let hint = "is the scale 1.0 m per unit of the file right?";
-    let away = format!("found (2.0, 0.0, 0.0) m, 1.0 m from the nearest, point 2; {hint}");
+    let away = format!("found (2.0, 0.0, 0.0) m, 1.0 m from the nearest, point 1; {hint}");
     assert_eq!(
         fault("# by hand\r\n\r\nx,y,z,ux\r\n0,0,0,1\r\n\r\n# far\r\n2,0,0,1\r\n"),
         format!("u.csv:7: position: expected that of a point of the mesh, {away}")
     );
     let near = "u.csv:2: position: expected that of a point of the mesh, found (0.0, 2e-6, 0.0) m, 2e-6 m from";
     assert!(fault("x,y,z,ux\n0,2e-6,0,1\n").starts_with(near));
-    let twice = "u.csv:5: point 2: expected one row, found a second one, after line 2";
+    let twice = "u.csv:5: point 1: expected one row, found a second one, after line 2";
     assert_eq!(fault("x,y,z,ux\n1,0,0,1\n0,0,0,1\n\n1,0,0,2\n"), twice);
     for (header, cells, message) in [
         ("point,ux", "1,inf", "ux: expected a finite length, found inf times the scale 1.0"),
         ("point,ux", "1,-1e999", "ux: expected a finite length, found -inf times the scale 1.0"),
         ("point,ux", "1,left", "ux: expected a number, found \"left\""),
-        ("point,ux", "0,1", "point: expected a number from 1 to 4, found \"0\""),
-        ("point,ux", "5,1", "point: expected a number from 1 to 4, found \"5\""),
-        ("point,ux", "1.5,1", "point: expected a number from 1 to 4, found \"1.5\""),
-        ("point,ux", ",1", "point: expected a number from 1 to 4, found \"\""),
+        ("point,ux", "-1,1", "point: expected a number from 0 to 3, found \"-1\""),
+        ("point,ux", "4,1", "point: expected a number from 0 to 3, found \"4\""),
+        ("point,ux", "1.5,1", "point: expected a number from 0 to 3, found \"1.5\""),
+        ("point,ux", ",1", "point: expected a number from 0 to 3, found \"\""),
         ("x,y,z,ux", "0,nan,0,1", "y: expected a number, found \"nan\""),
         ("x,y,z,ux", "0,,0,1", "y: expected a number, found \"\""),
         ("x,y,z,ux", "0,-inf,0,1", "y: expected a finite length, found -inf times the scale 1.0"),
@@ -273,8 +273,8 @@ fn table_errors_say_what_was_expected_and_found() {
         ("point,ux", "1,\"0", "ux: expected a number, found \"0\u{fffd}3,1\""),
         (
             "x,y,z,point,ux",
-            "0,0,1,3,5",
-            "point: expected the number, from 1, of the point at (0.0, 0.0, 1.0) m, found 3, 1.4142135623730951 m away",
+            "0,0,1,2,5",
+            "point: expected the number, from 0, of the point at (0.0, 0.0, 1.0) m, found 2, 1.4142135623730951 m away",
         ),
     ] {
         assert_eq!(fault(&format!("{header}\n{cells}\n3,1\n")), format!("u.csv:2: {message}"));
@@ -349,7 +349,7 @@ fn grid_errors_say_what_was_expected_and_found() {
     assert_eq!(message, format!("u.vtk: points[4].displacement: {twice}"));
     let moved = ascii(&[], data).replace("1 0 0\n", "1 0 0.5\n");
     let hint = "is the scale 1.0 m per unit of the file right?";
-    let away = format!("found (1.0, 0.0, 0.5) m, 0.5 m from the nearest, point 2; {hint}");
+    let away = format!("found (1.0, 0.0, 0.5) m, 0.5 m from the nearest, point 1; {hint}");
     let message = files.fault("u.vtk", moved);
     assert_eq!(message, format!("u.vtk: points[1].position: expected that of a point of the mesh, {away}"));
     let astray = ascii(&[], data).replace("1 0 0\n", "1 nan 0\n");

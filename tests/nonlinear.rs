@@ -118,7 +118,7 @@ fn pulled(mesh: &Mesh, traction: f64) -> (Support, Vec<f64>) {
     support.fix(&Selection::Group("xmin".into()).points(mesh).unwrap(), &all, d);
     let mut pull = vec![0.0; d];
     pull[0] = traction;
-    let forces = nodal_forces(mesh, &Selection::Group("xmax".into()), &Action::Traction(pull), 1.0).unwrap();
+    let forces = nodal_forces(mesh, &Selection::Group("xmax".into()), &Action::traction(&pull), 1.0).unwrap();
     (support, forces)
 }
 

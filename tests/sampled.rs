@@ -303,7 +303,7 @@ fn sampled_springs_follow_large_deformations() {
         support.fix(&Selection::Group("zmin".into()).points(&mesh).unwrap(), &[0, 1, 2], 3);
         let newton = Newton { steps: 2, ..Newton::default() };
         let solve = |model: &dyn Elastic, load: &[f64; 3]| {
-            let action = Action::Traction(load.to_vec());
+            let action = Action::traction(load);
             let forces = nodal_forces(&mesh, &Selection::Group("zmax".into()), &action, 1.0).unwrap();
             let found = newton.solve(model, &mesh.points, &support, &forces).unwrap();
             assert_eq!(found.ending, Ending::Converged, "{:?}", found.residuals);

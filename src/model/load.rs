@@ -1,22 +1,51 @@
 //! Loads as nodal forces, consistent with the shape functions; the same for both models.
 
-use super::system::{each_cell, shares};
-use crate::element::Tabulation;
+use super::system::each_cell;
+use crate::element::{SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Selection, SideIndex};
 use crate::stiffness::gather;
+use crate::symbolic::Expr;
 
 /// What acts on the selected part of the mesh; one entry per direction.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Force per area on sides, Pa.
-    Traction(Vec<f64>),
+    Traction(Vec<Component>),
     /// Force in all, N: spread evenly over the sides, or over the points where the part has no sides.
     Force(Vec<f64>),
     /// Force per volume on cells, N/m³.
-    Body(Vec<f64>),
+    Body(Vec<Component>),
     /// Given displacement of points, m; `None` leaves a direction free.
     Displacement(Vec<Option<f64>>),
+}
+
+/// One direction of a load, the same everywhere or a function of the place x, y (, z) in m.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Component {
+    Constant(f64),
+    Varying(Expr),
+}
+
+impl Component {
+    fn at(&self, x: &[f64]) -> f64 {
+        match self {
+            Component::Constant(value) => *value,
+            Component::Varying(expression) => expression.evaluate(x),
+        }
+    }
+}
+
+impl Action {
+    /// The same traction everywhere, Pa.
+    pub fn traction(traction: &[f64]) -> Action {
+        Action::Traction(traction.iter().copied().map(Component::Constant).collect())
+    }
+
+    /// The same force per volume everywhere, N/m³.
+    pub fn body(body: &[f64]) -> Action {
+        Action::Body(body.iter().copied().map(Component::Constant).collect())
+    }
 }
 
 /// `f_a = ∫ N_a t dA` and `f_a = ∫ N_a b dV`, `[points · dimension]`, N. A displacement gives none.
@@ -24,17 +53,16 @@ pub enum Action {
 /// `thickness` in m, 1 for a solid.
 ///
 /// # Errors
-/// The part has no sides, points or cells to act on.
+/// The part has no sides, points or cells to act on, or the load is not finite somewhere.
 pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f64) -> Result<Vec<f64>> {
     let nothing = |what: &str| Err(Error::at("load", format!("acts on nothing: the selected part has no {what}")));
-    match action {
+    let forces = match action {
         Action::Traction(traction) => {
             let sides = part.sides(mesh)?;
             if sides.is_empty() {
                 return nothing("sides");
             }
-            let weights = side_weights(mesh, &sides);
-            Ok(spread(mesh, &weights, &traction.iter().map(|t| t * thickness).collect::<Vec<_>>()))
+            side_forces(mesh, &sides, &|x, _| traction.iter().map(|t| t.at(x)).collect(), thickness)
         }
         Action::Force(force) => {
             let sides = part.sides(mesh)?;
@@ -47,7 +75,7 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             if weights.is_empty() {
                 return nothing("points");
             }
-            Ok(spread(mesh, &weights, &force.iter().map(|f| f / total).collect::<Vec<_>>()))
+            spread(mesh, &weights, &force.iter().map(|f| f / total).collect::<Vec<_>>())
         }
         Action::Body(body) => {
             let mut chosen: Vec<Vec<bool>> = mesh.blocks.iter().map(|b| vec![false; b.cells().len()]).collect();
@@ -56,21 +84,39 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
                 return nothing("cells");
             }
             cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
-            let mut weights = Vec::new();
-            each_cell(mesh, |cell, nodes, geometry| {
-                if chosen[cell.block][cell.cell] {
-                    shares(mesh, cell, geometry, |a, share| weights.push((nodes[a], share)));
-                }
-            });
-            Ok(spread(mesh, &weights, &body.iter().map(|b| b * thickness).collect::<Vec<_>>()))
+            body_forces(mesh, &chosen, body, thickness)
         }
         Action::Displacement(_) => {
             if part.points(mesh)?.is_empty() {
                 return nothing("points");
             }
-            Ok(vec![0.0; mesh.points.len()])
+            vec![0.0; mesh.points.len()]
         }
+    };
+    match forces.iter().all(|f| f.is_finite()) {
+        true => Ok(forces),
+        false => Err(Error::at("load", "is not finite everywhere on the selected part")),
     }
+}
+
+fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &[Component], thickness: f64) -> Vec<f64> {
+    let d = mesh.dimension;
+    let mut forces = vec![0.0; mesh.points.len()];
+    each_cell(mesh, |cell, nodes, geometry| {
+        if !chosen[cell.block][cell.cell] {
+            return;
+        }
+        let values = mesh.blocks[cell.block].element.tabulation.values.chunks_exact(nodes.len());
+        for (values, volume) in values.zip(&geometry.volumes) {
+            let at = |k: usize| nodes.iter().zip(values).map(|(&p, n)| n * mesh.point(p)[k]).sum();
+            let x: Vec<f64> = (0..d).map(at).collect();
+            let b: Vec<f64> = body.iter().map(|b| thickness * b.at(&x)).collect();
+            for (&node, n) in nodes.iter().zip(values) {
+                (0..d).for_each(|k| forces[node * d + k] += n * volume * b[k]);
+            }
+        }
+    });
+    forces
 }
 
 fn spread(mesh: &Mesh, weights: &[(usize, f64)], per_unit: &[f64]) -> Vec<f64> {
@@ -85,21 +131,82 @@ fn spread(mesh: &Mesh, weights: &[(usize, f64)], per_unit: &[f64]) -> Vec<f64> {
 
 /// `∫ N_a dA` of every node of every side, m² (m in two dimensions).
 fn side_weights(mesh: &Mesh, sides: &[SideIndex]) -> Vec<(usize, f64)> {
-    let d = mesh.dimension;
     let mut weights = Vec::new();
     for index in sides {
-        let block = &mesh.blocks[index.cell.block];
-        let n = block.element.nodes();
-        let cell = &block.connectivity[index.cell.cell * n..(index.cell.cell + 1) * n];
-        let side = &block.element.sides()[index.side];
-        let nodes: Vec<usize> = side.nodes.iter().map(|&a| cell[a]).collect();
-        let mut x = vec![0.0; nodes.len() * d];
-        gather(&mesh.points, d, &nodes, &mut x);
-        for (values, area) in side.tabulation.values.chunks_exact(nodes.len()).zip(areas(&side.tabulation, &x, d)) {
+        let (nodes, x, _) = side_points(mesh, index);
+        let table = &side_of(mesh, index).tabulation;
+        for (values, area) in table.values.chunks_exact(nodes.len()).zip(areas(table, &x, mesh.dimension)) {
             weights.extend(nodes.iter().zip(values).map(|(&node, n)| (node, n * area)));
         }
     }
     weights
+}
+
+/// Force per area, Pa, as a function of the place and of the normal, which points outwards and, on a surface in space, along it.
+pub type Traction<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
+
+/// `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N.
+pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: f64) -> Vec<f64> {
+    let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
+    side_forces(mesh, &sides, traction, thickness)
+}
+
+fn side_forces(mesh: &Mesh, sides: &[SideIndex], traction: &Traction, thickness: f64) -> Vec<f64> {
+    let d = mesh.dimension;
+    let mut forces = vec![0.0; mesh.points.len()];
+    for index in sides {
+        let (nodes, x, centre) = side_points(mesh, index);
+        let table = &side_of(mesh, index).tabulation;
+        let (count, tangents) = (nodes.len(), table.dimension);
+        let values = table.values.chunks_exact(count);
+        let gradients = table.gradients.chunks_exact(count * tangents);
+        for ((values, gradients), area) in values.zip(gradients).zip(areas(table, &x, d)) {
+            let at: Vec<f64> = (0..d).map(|k| (0..count).map(|a| values[a] * x[a * d + k]).sum()).collect();
+            let mut basis: Vec<Vec<f64>> = Vec::new();
+            for l in 0..tangents {
+                let along = |k: usize| (0..count).map(|a| x[a * d + k] * gradients[a * tangents + l]).sum();
+                basis.push(unit(&across((0..d).map(along).collect(), &basis)));
+            }
+            // What of the way from the middle of the cell is across all tangents.
+            let way: Vec<f64> = at.iter().zip(&centre).map(|(x, c)| x - c).collect();
+            let t = traction(&at, &unit(&across(way, &basis)));
+            for (&node, n) in nodes.iter().zip(values) {
+                (0..d).for_each(|k| forces[node * d + k] += n * area * thickness * t[k]);
+            }
+        }
+    }
+    forces
+}
+
+/// Nodes of a side and where they are, and the middle of its cell.
+fn side_points(mesh: &Mesh, index: &SideIndex) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
+    let d = mesh.dimension;
+    let block = &mesh.blocks[index.cell.block];
+    let n = block.element.nodes();
+    let cell = &block.connectivity[index.cell.cell * n..(index.cell.cell + 1) * n];
+    let nodes: Vec<usize> = side_of(mesh, index).nodes.iter().map(|&a| cell[a]).collect();
+    let mut x = vec![0.0; nodes.len() * d];
+    gather(&mesh.points, d, &nodes, &mut x);
+    let centre = (0..d).map(|k| cell.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / n as f64).collect();
+    (nodes, x, centre)
+}
+
+fn side_of<'a>(mesh: &'a Mesh, index: &SideIndex) -> &'a SideTable {
+    &mesh.blocks[index.cell.block].element.sides()[index.side]
+}
+
+/// What of a vector is orthogonal to unit vectors.
+fn across(mut v: Vec<f64>, basis: &[Vec<f64>]) -> Vec<f64> {
+    for e in basis {
+        let along: f64 = v.iter().zip(e).map(|(v, e)| v * e).sum();
+        v.iter_mut().zip(e).for_each(|(v, e)| *v -= along * e);
+    }
+    v
+}
+
+fn unit(v: &[f64]) -> Vec<f64> {
+    let size = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    v.iter().map(|v| v / size).collect()
 }
 
 /// `w_q ‖∂x/∂s₁ × ∂x/∂s₂‖` (`w_q ‖∂x/∂s‖` of a curve) at each quadrature point of a side.

@@ -122,12 +122,32 @@ impl Network {
         entries
     }
 
+    /// The network whose springs pull `factors` times as hard, `[springs]`, lengths first. Of a law the parameters that the force
+    /// is proportional to are scaled.
+    pub fn scaled(&self, factors: &[f64]) -> Network {
+        let mut network = self.clone();
+        let (lengths, others) = factors.split_at(network.lengths.len());
+        network.lengths.iter_mut().zip(lengths).for_each(|(s, factor)| s.constant *= factor);
+        for (spring, factor) in network.others.iter_mut().zip(others) {
+            spring.constant *= factor;
+            let outer = spring.law.iter().flat_map(|law| law.outer());
+            spring.parameters.iter_mut().zip(outer).filter(|(_, outer)| **outer).for_each(|(p, _)| *p *= factor);
+        }
+        network
+    }
+
     pub fn len(&self) -> usize {
         self.lengths.len() + self.others.len()
     }
 
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The largest constant of a length spring, as a multiple of the least.
+    pub fn range(&self) -> f64 {
+        let constants = || self.lengths.iter().map(|s| s.constant);
+        constants().fold(0.0, f64::max) / constants().fold(f64::INFINITY, f64::min)
     }
 
     /// How many constants are below zero.

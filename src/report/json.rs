@@ -1,8 +1,12 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
+use super::agreement::{Agreement, SAME, agreements};
 use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, ForceRecipe, LoadOutcome, Outcome, Recipe, SampledRecipe};
+use crate::study::{
+    FitOutcome, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Recipe, SampledRecipe, Start, WholeRecipe,
+};
+use crate::whole::{Errors, Method, Residual};
 use serde_json::{Value, json};
 
 /// The report as text.
@@ -20,22 +24,36 @@ pub fn report(outcome: &Outcome) -> String {
         "law": outcome.law,
         "loads_followed": outcome.followed.iter().map(followed).collect::<Vec<_>>(),
         "left_out": outcome.left_out,
+        "measured": outcome.measured.iter().map(measured).collect::<Vec<_>>(),
+        "starts": agreements(outcome).iter().map(agreement).collect::<Vec<_>>(),
         "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count(), outcome.material.thickness())).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&value).expect("a value of finite numbers and text is JSON") + "\n"
+}
+
+fn measured(load: &MeasuredLoad) -> Value {
+    json!({
+        "load": load.name,
+        "points": load.points,
+        "fem_e_rms": load.error.map(|e| e.rms),
+        "fem_e_max": load.error.map(|e| e.max),
+    })
+}
+
+fn agreement(agreement: &Agreement) -> Value {
+    json!({
+        "fits": agreement.fits,
+        "load": agreement.load,
+        "difference": agreement.difference,
+        "agree": agreement.difference <= SAME,
+    })
 }
 
 fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
     let mut value = match &outcome.fit.recipe {
         Recipe::Stiffness(fit) => of_stiffness(fit),
         Recipe::Forces(recipe) => of_forces(recipe),
-        Recipe::Whole(recipe) => json!({
-            "objective": "whole",
-            "start": recipe.start.objective.name(),
-            "weight": recipe.start.objective.weight().map(|w| w.name()),
-            "higher": recipe.start.objective.higher(),
-            "solver": "l-bfgs",
-        }),
+        Recipe::Whole(recipe) => of_whole(recipe),
     };
     let rest = json!({
         "name": outcome.fit.name,
@@ -65,7 +83,11 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
             "validated": w.validated,
             "regularization": w.regularization,
             "largest_change": w.change,
-            "evaluations": w.evaluations,
+            "range": w.range,
+            "steps": w.steps,
+            "cancelled": w.cancelled,
+            "relative_errors_fitted": errors(&w.trained),
+            "relative_errors_validated": errors(&w.judged),
         })),
         "sampled": outcome.sampled.as_ref().map(|s| json!({
             "shapes": s.shapes,
@@ -130,6 +152,40 @@ fn of_forces(recipe: &SampledRecipe) -> Value {
         "perturbation": fit.sampling.perturbation,
         "seed": fit.sampling.seed,
     })
+}
+
+fn of_whole(recipe: &WholeRecipe) -> Value {
+    let objective = match &recipe.start {
+        Start::Fit(fit) => Some(fit.objective),
+        Start::Sampled(_) | Start::Equal => None,
+    };
+    json!({
+        "objective": "whole",
+        "start": match &recipe.start {
+            Start::Fit(fit) => json!(fit.objective.name()),
+            Start::Sampled(recipe) => of_forces(recipe),
+            Start::Equal => json!("equal"),
+        },
+        "weight": objective.and_then(|objective| objective.weight()).map(|w| w.name()),
+        "higher": objective.and_then(|objective| objective.higher()),
+        "unknowns": recipe.unknowns.name(),
+        "residual": match recipe.settings.residual {
+            Residual::Displacements => "displacements",
+            Residual::Forces => "forces",
+            Residual::ForcesFirst => "forces-first",
+        },
+        "solver": match recipe.settings.method {
+            Method::GaussNewton(_) => "gauss-newton",
+            Method::Lbfgs { .. } => "l-bfgs",
+        },
+        "frequencies": recipe.frequencies,
+        "seed": recipe.seed,
+    })
+}
+
+fn errors([before, after]: &[Errors; 2]) -> Value {
+    let of = |errors: &Errors| json!({ "loads": errors.loads, "frequencies": errors.frequencies });
+    json!({ "before": of(before), "after": of(after) })
 }
 
 fn spread(spread: Spread) -> Value {

@@ -1,5 +1,6 @@
 //! What a person or a program reads of an outcome.
 
+mod agreement;
 mod check;
 mod comparison;
 mod derivation;

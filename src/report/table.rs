@@ -1,9 +1,10 @@
 //! The table on the terminal.
 
+use super::agreement::{Agreement, SAME, agreements};
 use super::json::status;
 use crate::fit::Spread;
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, Outcome};
+use crate::study::{FitOutcome, Followed, Outcome, WholeOutcome};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
 use std::fmt::Write;
@@ -109,7 +110,15 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
     let loads = outcome.fits.first().map_or(&[][..], |fit| &fit.loads);
     let finite = loads.iter().zip(&outcome.followed).filter_map(|(load, followed)| trouble(&load.name, followed));
     let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
-    finite.chain(outcome.fits.iter().flat_map(|fit| note(outcome, fit))).collect()
+    let measured = outcome.measured.iter().map(|load| {
+        let error = load.error.map_or("-".into(), |e| format!("%e_rms / %e_max {:.2} / {:.2}", e.rms, e.max));
+        format!(
+            "errors under {} are those from what was measured at {} points; finite elements: {error}",
+            load.name, load.points
+        )
+    });
+    let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
+    finite.chain(measured).chain(own).chain(agreements(outcome).iter().map(agreed)).collect()
 }
 
 /// What is wrong with an equilibrium.
@@ -177,16 +186,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         }
     }
     if let Some(whole) = &fit.whole {
-        let validated = match &whole.validated[..] {
-            [] => String::new(),
-            loads => format!("; rho was chosen by {}", loads.join(", ")),
-        };
-        notes.push(format!(
-            "{name}: fitted to {}, whose errors are not held out{validated}; rho {:.0e}, constants changed by up to {:.1}",
-            whole.loads.join(", "),
-            whole.regularization,
-            whole.change
-        ));
+        notes.push(format!("{name}: {}", seen(whole)));
     }
     for load in &fit.loads {
         if let Some(trouble) = load.followed.and_then(|followed| trouble(&load.name, &followed)) {
@@ -216,6 +216,35 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         )),
     }
     notes
+}
+
+fn agreed(agreement: &Agreement) -> String {
+    let percent = 100.0 * agreement.difference;
+    let verdict = match agreement.difference <= SAME {
+        true => format!("agree within {percent:.0} %"),
+        false => format!("do not agree: they differ by up to {percent:.0} %"),
+    };
+    format!("{}: held-out errors {verdict} ({})", agreement.fits.join(", "), agreement.load)
+}
+
+/// What a whole-object fit has seen and done.
+fn seen(whole: &WholeOutcome) -> String {
+    let validated = match &whole.validated[..] {
+        [] => String::new(),
+        loads => format!(", rho chosen by {}", loads.join(", ")),
+    };
+    let done = match whole.regularization {
+        Some(rho) => {
+            let (change, range) = (whole.change, whole.range);
+            format!(
+                "rho {rho:.0e}, {} steps, constants changed by factors up to {change:.1}, range {range:.0}",
+                whole.steps
+            )
+        }
+        None => format!("no rho did better than the start, {} steps", whole.steps),
+    };
+    let ended = if whole.cancelled { "; ended before its time" } else { "" };
+    format!("fitted to {}, whose errors are not held out{validated}: {done}{ended}", whole.loads.join(", "))
 }
 
 fn points(outcome: &Outcome, points: &[usize]) -> String {

@@ -5,8 +5,10 @@ use crate::model::{Entries, Support};
 use faer::Side;
 use faer::linalg::solvers::ShapeCore;
 use faer::prelude::{MatMut, Solve};
-use faer::sparse::linalg::solvers::{Llt, Lu};
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::linalg::solvers::{Llt, Lu, SymbolicLlt};
+use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
 
 /// The equations of the free degrees of freedom.
 #[derive(Debug, Clone)]
@@ -15,9 +17,22 @@ pub struct System {
     matrix: SparseColMat<usize, f64>,
     /// Forces of the prescribed displacements on the free degrees of freedom: `K_fp u_p`, `[free]`.
     reaction: Vec<f64>,
+    prescribed: Vec<Option<f64>>,
+    pattern: Arc<Pattern>,
+}
+
+/// What systems whose entries stand in the same places share.
+#[derive(Debug)]
+struct Pattern {
     /// The free degrees of freedom.
     free: Vec<usize>,
-    prescribed: Vec<Option<f64>>,
+    /// The row of each degree of freedom, `usize::MAX` where it is held.
+    place: Vec<usize>,
+    symbolic: SymbolicSparseColMat<usize>,
+    /// From the order of the entries to that of the matrix.
+    order: Argsort<usize>,
+    /// Analysed when first needed.
+    cholesky: OnceLock<Option<SymbolicLlt<usize>>>,
 }
 
 /// A factorisation of the matrix of a [`System`].
@@ -36,44 +51,59 @@ impl System {
         let mut place = vec![usize::MAX; support.prescribed.len()];
         let free: Vec<usize> = (0..place.len()).filter(|&dof| !support.is_fixed(dof)).collect();
         free.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
-        let mut inner = Entries::with_capacity(2 * entries.len());
-        let mut reaction = vec![0.0; free.len()];
-        let mut add = |row: usize, column: usize, value: f64| {
-            if place[row] == usize::MAX {
-                return;
+        let mut places = Vec::with_capacity(2 * entries.len());
+        each_value(entries, &place, |row, column, _| {
+            if place[column] != usize::MAX {
+                places.push(Pair::new(place[row], place[column]));
             }
-            match support.prescribed[column] {
-                Some(u) => reaction[place[row]] += value * u,
-                None => inner.push(Triplet::new(place[row], place[column], value)),
-            }
-        };
-        for entry in entries {
-            add(entry.row, entry.col, entry.val);
-            if entry.row != entry.col {
-                add(entry.col, entry.row, entry.val);
-            }
-        }
-        let matrix = SparseColMat::try_new_from_triplets(free.len(), free.len(), &inner)
+        });
+        let (symbolic, order) = SymbolicSparseColMat::try_new_from_indices(free.len(), free.len(), &places)
             .map_err(|e| Error::new(format!("the stiffness matrix cannot be built: {e:?}")))?;
-        Ok(System { matrix, reaction, free, prescribed: support.prescribed.clone() })
+        let cholesky = OnceLock::new();
+        System::of(Arc::new(Pattern { free, place, symbolic, order, cholesky }), entries, support)
+    }
+
+    /// The equations with other values at the same places in the same order, and other prescribed displacements of the same
+    /// degrees of freedom: what depends on the places alone is not worked out again.
+    ///
+    /// # Errors
+    /// The matrix does not fit into memory.
+    pub(crate) fn renewed(&self, entries: &Entries, support: &Support) -> Result<System> {
+        System::of(self.pattern.clone(), entries, support)
+    }
+
+    fn of(pattern: Arc<Pattern>, entries: &Entries, support: &Support) -> Result<System> {
+        let mut values = Vec::with_capacity(2 * entries.len());
+        let mut reaction = vec![0.0; pattern.free.len()];
+        each_value(entries, &pattern.place, |row, column, value| match support.prescribed[column] {
+            Some(u) => reaction[pattern.place[row]] += value * u,
+            None => values.push(value),
+        });
+        let matrix = SparseColMat::new_from_argsort(pattern.symbolic.clone(), &pattern.order, &values)
+            .map_err(|e| Error::new(format!("the stiffness matrix cannot be built: {e:?}")))?;
+        Ok(System { matrix, reaction, prescribed: support.prescribed.clone(), pattern })
     }
 
     /// The number of free degrees of freedom.
     pub fn size(&self) -> usize {
-        self.free.len()
+        self.pattern.free.len()
     }
 
     /// The free degrees of freedom, ascending.
     pub fn free(&self) -> &[usize] {
-        &self.free
+        &self.pattern.free
     }
 
     /// Cholesky's factor, or the pivoted one where the matrix is not positive definite; `None` where it is singular.
     pub fn factorize(&self) -> Option<Factor> {
-        if let Ok(llt) = self.matrix.sp_cholesky(Side::Lower) {
-            return Some(Factor::Cholesky(llt));
-        }
-        self.matrix.sp_lu().ok().map(|lu| Factor::General(Box::new(lu)))
+        self.cholesky().or_else(|| self.matrix.sp_lu().ok().map(|lu| Factor::General(Box::new(lu))))
+    }
+
+    /// Cholesky's factor; `None` where the matrix is not positive definite.
+    pub fn cholesky(&self) -> Option<Factor> {
+        let analyse = || SymbolicLlt::try_new(self.matrix.symbolic(), Side::Lower).ok();
+        let symbolic = self.pattern.cholesky.get_or_init(analyse).clone()?;
+        Llt::try_new_with_symbolic(symbolic, self.matrix.as_ref(), Side::Lower).ok().map(Factor::Cholesky)
     }
 
     /// `K x` on the free degrees of freedom.
@@ -91,7 +121,7 @@ impl System {
     /// The displacements of all degrees of freedom under the nodal forces `f`, `[points · dimension]`, after one step
     /// of iterative refinement, and the relative residual `‖f − K u‖/‖f‖` that is left.
     pub fn solve(&self, factor: &Factor, f: &[f64]) -> (Vec<f64>, f64) {
-        let rhs: Vec<f64> = self.free.iter().zip(&self.reaction).map(|(&dof, r)| f[dof] - r).collect();
+        let rhs: Vec<f64> = self.free().iter().zip(&self.reaction).map(|(&dof, r)| f[dof] - r).collect();
         let mut u = rhs.clone();
         factor.solve(&mut u);
         let mut residual = self.residual(&rhs, &u);
@@ -103,9 +133,37 @@ impl System {
             (u, residual) = (refined, refined_residual);
         }
         let mut all: Vec<f64> = self.prescribed.iter().map(|p| p.unwrap_or(0.0)).collect();
-        self.free.iter().zip(&u).for_each(|(&dof, &u)| all[dof] = u);
+        self.free().iter().zip(&u).for_each(|(&dof, &u)| all[dof] = u);
         let size = norm(&rhs);
         (all, if size > 0.0 { norm(&residual) / size } else { 0.0 })
+    }
+
+    /// The displacements under each of some nodal forces, without refinement.
+    pub fn solve_all(&self, factor: &Factor, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let held: Vec<f64> = self.prescribed.iter().map(|p| p.unwrap_or(0.0)).collect();
+        self.columns(factor, forces, &self.reaction, &held)
+    }
+
+    /// How the displacements change when the nodal forces change so.
+    pub fn respond_all(&self, factor: &Factor, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        self.columns(factor, forces, &vec![0.0; self.size()], &vec![0.0; self.prescribed.len()])
+    }
+
+    fn columns(&self, factor: &Factor, forces: &[Vec<f64>], reaction: &[f64], held: &[f64]) -> Vec<Vec<f64>> {
+        let free = self.free();
+        let part = forces.len().div_ceil(rayon::current_num_threads()).max(1);
+        let solve = |forces: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            let rhs = |f: &Vec<f64>| free.iter().zip(reaction).map(|(&dof, r)| f[dof] - r).collect::<Vec<f64>>();
+            let mut columns: Vec<f64> = forces.iter().flat_map(rhs).collect();
+            factor.solve(&mut columns);
+            let all = |column: &[f64]| {
+                let mut u = held.to_vec();
+                free.iter().zip(column).for_each(|(&dof, x)| u[dof] = *x);
+                u
+            };
+            columns.chunks_exact(free.len().max(1)).map(all).collect()
+        };
+        forces.par_chunks(part).flat_map_iter(solve).collect()
     }
 
     fn residual(&self, rhs: &[f64], u: &[f64]) -> Vec<f64> {
@@ -130,6 +188,18 @@ impl Factor {
 
     pub fn is_positive_definite(&self) -> bool {
         matches!(self, Factor::Cholesky(_))
+    }
+}
+
+/// Calls `visit(row, column, value)` for every entry of both triangles in a free row.
+fn each_value(entries: &Entries, place: &[usize], mut visit: impl FnMut(usize, usize, f64)) {
+    for entry in entries {
+        if place[entry.row] != usize::MAX {
+            visit(entry.row, entry.col, entry.val);
+        }
+        if entry.row != entry.col && place[entry.col] != usize::MAX {
+            visit(entry.col, entry.row, entry.val);
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Statics at large deformation: Newton's method with load steps and a line search, on the finite elements or on a network.
 
-use super::linear::{Factor, System};
+use super::linear::System;
 use crate::error::Result;
 use crate::model::{Elastic, Entries, Response, Support, displaced};
 use faer::sparse::Triplet;
@@ -60,6 +60,7 @@ impl Newton {
     /// # Errors
     /// The tangent does not fit into memory.
     pub fn solve(&self, model: &dyn Elastic, points: &[f64], support: &Support, forces: &[f64]) -> Result<Equilibrium> {
+        let mut statics = Statics { newton: *self, model, points, support, forces, known: None, shifted: 0 };
         let mut found = Equilibrium {
             ending: Ending::Converged,
             displacement: vec![0.0; points.len()],
@@ -73,7 +74,7 @@ impl Newton {
         while found.load < 1.0 {
             let target = if found.load + step > 1.0 - 1e-12 { 1.0 } else { found.load + step };
             let mut u = found.displacement.clone();
-            match self.settle(model, points, support, forces, target, &mut u, &mut found.shifted)? {
+            match statics.settle(target, &mut u)? {
                 (history, true) => {
                     found.residuals.push(history);
                     found.path.push(u.clone());
@@ -90,24 +91,49 @@ impl Newton {
                 }
             }
         }
+        found.shifted = statics.shifted;
         Ok(found)
     }
 
-    /// Newton's method at one load; the residuals, and whether they came below the tolerance.
-    #[allow(clippy::too_many_arguments)]
-    fn settle(
+    /// The equilibrium under the whole load next to the displacements `guess`; `None` where none is found from there.
+    ///
+    /// # Errors
+    /// The tangent does not fit into memory.
+    pub fn settle(
         &self,
         model: &dyn Elastic,
         points: &[f64],
         support: &Support,
         forces: &[f64],
-        load: f64,
-        u: &mut Vec<f64>,
-        shifted: &mut usize,
-    ) -> Result<(Vec<f64>, bool)> {
+        guess: &[f64],
+    ) -> Result<Option<Vec<f64>>> {
+        let mut statics = Statics { newton: *self, model, points, support, forces, known: None, shifted: 0 };
+        let mut u = guess.to_vec();
+        let (_, converged) = statics.settle(1.0, &mut u)?;
+        Ok(converged.then_some(u))
+    }
+}
+
+/// A model that is held and loaded.
+struct Statics<'a> {
+    newton: Newton,
+    model: &'a dyn Elastic,
+    points: &'a [f64],
+    support: &'a Support,
+    forces: &'a [f64],
+    /// The equations of the last tangent: all have the same pattern.
+    known: Option<System>,
+    /// Iterations whose tangent had to be shifted.
+    shifted: usize,
+}
+
+impl Statics<'_> {
+    /// Newton's method at one load; the residuals, and whether they came below the tolerance.
+    fn settle(&mut self, load: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, bool)> {
+        let Statics { newton, model, points, support, forces, known, shifted } = self;
         let mut history = Vec::new();
         let Some(mut now) = model.respond(&displaced(points, u)) else { return Ok((history, false)) };
-        for _ in 0..self.iterations {
+        for _ in 0..newton.iterations {
             // What is still to be moved of the prescribed displacements.
             let moves: Vec<Option<f64>> =
                 support.prescribed.iter().zip(&*u).map(|(p, u)| p.map(|p| load * p - u)).collect();
@@ -117,10 +143,12 @@ impl Newton {
             let acting = size(&now.force).max(load * size(forces));
             let residual = if acting > 0.0 { free(&rest) / acting } else { 0.0 };
             history.push(residual);
-            if moved && residual <= self.tolerance {
+            if moved && residual <= newton.tolerance {
                 return Ok((history, true));
             }
-            let Some((step, shift)) = direction(&now.tangent, moves, &rest)? else { return Ok((history, false)) };
+            let Some((step, shift)) = direction(&now.tangent, moves, &rest, known)? else {
+                return Ok((history, false));
+            };
             *shifted += usize::from(shift);
             // Of the energy less the work of the load; while supports move it says nothing.
             let potential = |r: &Response, u: &[f64]| r.energy - load * dot(forces, u);
@@ -146,27 +174,31 @@ impl Newton {
 }
 
 /// The Newton step, with the tangent shifted until it is positive definite; `None` if that takes more than its own size.
-fn direction(tangent: &Entries, moves: Vec<Option<f64>>, rest: &[f64]) -> Result<Option<(Vec<f64>, bool)>> {
+fn direction(
+    tangent: &Entries,
+    moves: Vec<Option<f64>>,
+    rest: &[f64],
+    known: &mut Option<System>,
+) -> Result<Option<(Vec<f64>, bool)>> {
     let support = Support { prescribed: moves };
     let diagonal = tangent.iter().filter(|e| e.row == e.col).map(|e| e.val.abs()).fold(0.0, f64::max);
     let mut shift = 0.0;
+    let mut shifted = tangent.clone();
     loop {
-        let mut shifted = tangent.clone();
-        if shift > 0.0 {
-            shifted.extend((0..rest.len()).map(|i| Triplet::new(i, i, shift * diagonal)));
+        shifted.truncate(tangent.len());
+        shifted.extend((0..rest.len()).map(|i| Triplet::new(i, i, shift * diagonal)));
+        let system = match known.take() {
+            Some(known) => known.renewed(&shifted, &support)?,
+            None => System::new(&shifted, &support)?,
+        };
+        let system = known.insert(system);
+        if let Some(factor) = system.cholesky() {
+            let (step, _) = system.solve(&factor, rest);
+            return Ok(step.iter().all(|s| s.is_finite()).then_some((step, shift > 0.0)));
         }
-        let system = System::new(&shifted, &support)?;
-        match system.factorize() {
-            Some(factor) if factor.is_positive_definite() => {
-                let (step, _) = system.solve(&factor, rest);
-                return Ok(step.iter().all(|s| s.is_finite()).then_some((step, shift > 0.0)));
-            }
-            Some(Factor::General(_)) | Some(Factor::Cholesky(_)) | None => {
-                shift = if shift == 0.0 { 1e-4 } else { 10.0 * shift };
-                if shift > 10.0 {
-                    return Ok(None);
-                }
-            }
+        shift = if shift == 0.0 { 1e-4 } else { 10.0 * shift };
+        if shift > 10.0 {
+            return Ok(None);
         }
     }
 }

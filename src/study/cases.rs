@@ -1,21 +1,60 @@
 //! The loads of a scene on its mesh.
 
-use super::scene::Scene;
+use super::metrics::{DisplacementError, displacement_error};
+use super::outcome::MeasuredLoad;
+use super::scene::{MeasuredEntry, Scene};
 use crate::error::{Error, Result};
 use crate::material::Material;
-use crate::mesh::{Mesh, Selection};
-use crate::model::{Action, Support, nodal_forces, unheld_bodies};
+use crate::mesh::{Field, Mesh, Selection};
+use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
+use std::path::Path;
 
 /// A load on this mesh: what is held, and the nodal forces.
 pub struct Case {
     pub name: String,
     pub support: Support,
     pub forces: Vec<f64>,
+    /// Displacements that were measured under it, `[points · dimension]`, m, where known.
+    pub measured: Option<Field>,
 }
 
+impl Case {
+    /// How far displacements are from those measured under the load, at the points that were measured, or else from those of the
+    /// finite elements.
+    pub fn error(&self, fem: &[f64], found: &[f64], dimension: usize) -> Option<DisplacementError> {
+        let Some(field) = &self.measured else { return displacement_error(fem, found, dimension) };
+        let (mut wanted, mut own) = (Vec::new(), Vec::new());
+        for (measured, u) in field.displacements.chunks_exact(dimension).zip(found.chunks_exact(dimension)) {
+            if measured.iter().any(Option::is_some) {
+                // A direction that was not measured is no difference.
+                wanted.extend(measured.iter().zip(u).map(|(m, u)| m.unwrap_or(*u)));
+                own.extend(u);
+            }
+        }
+        displacement_error(&wanted, &own, dimension)
+    }
+}
+
+/// What was measured, and how far the finite elements are from it.
+pub fn measured_loads(cases: &[Case], fem: &[Vec<f64>], dimension: usize) -> Vec<MeasuredLoad> {
+    let of = |(case, u): (&Case, &Vec<f64>)| {
+        let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
+        let points = case.measured.as_ref()?.displacements.chunks_exact(dimension).filter(known).count();
+        Some(MeasuredLoad { name: case.name.clone(), points, error: case.error(u, u, dimension) })
+    };
+    cases.iter().zip(fem).filter_map(of).collect()
+}
+
+fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Field> {
+    let folder = scene.path.parent().unwrap_or(Path::new(""));
+    Field::read_named(&folder.join(&entry.file), mesh, entry.scale, entry.array.as_deref())
+}
+
+/// What `[[fix]]` holds, and the loads.
+///
 /// # Errors
 /// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
-pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<Vec<Case>> {
+pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Support, Vec<Case>)> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
     for (i, (part, axes)) in scene.supports.iter().enumerate() {
@@ -43,6 +82,15 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<Vec<
         if entries != d {
             return Err(at(Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), entries)));
         }
+        if let (Action::Traction(v) | Action::Body(v), 2) = (&load.action, d) {
+            if let Some(i) = v.iter().position(|c| matches!(c, Component::Varying(e) if e.uses(2))) {
+                return Err(at(Error::expected(
+                    format!("{key}[{i}]"),
+                    "an expression of x and y in a plane mesh",
+                    "z",
+                )));
+            }
+        }
         let selection: Selection = load.part.selection(d).map_err(at)?;
         let forces = nodal_forces(mesh, &selection, &load.action, material.thickness()).map_err(|e| match e.key() {
             Some("load") => at(Error::new(e.problem())),
@@ -66,7 +114,9 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<Vec<
             );
             return Err(Error::expected("fix", expected, found).in_file(&scene.path));
         }
-        cases.push(Case { name: load.name.clone(), support, forces });
+        let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
+        let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;
+        cases.push(Case { name: load.name.clone(), support, forces, measured });
     }
-    Ok(cases)
+    Ok((fixed, cases))
 }

@@ -1,15 +1,17 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
+use super::cases::load_cases;
 use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
 use super::random::Random;
 use super::run::{Progress, run};
-use super::scene::{NamedFit, Scene};
+use super::scene::{NamedFit, Recipe, Scene, WholeRecipe};
 use super::stretches::sampled_fits;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
 use crate::material::Material;
+use crate::model::unheld_bodies;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use std::sync::Arc;
@@ -126,12 +128,24 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let higher_modes = mesh.blocks.iter().any(|block| block.element.has_higher_modes());
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
+    // Loads made from the mesh are linear, and need supports that hold the body without those of the scene.
+    let support = load_cases(scene, &mesh, scene.material(mesh.cell_dimension())?)?.0;
+    let whole = scene.law().is_none() && unheld_bodies(&mesh, &support).is_empty();
     let mut scene = scene.clone();
     scene.fits = Vec::new();
     let all = optional.then_some(Some(every));
     for groups in std::iter::once(None).chain(all) {
         for objective in objectives(higher_modes) {
             let mut named = NamedFit::new(Fit::new(objective), None);
+            if let Some(groups) = &groups {
+                named.name += " + all";
+                named.springs = Some(groups.clone());
+            }
+            scene.fits.push(named);
+        }
+        if whole {
+            let recipe = WholeRecipe::default();
+            let mut named = NamedFit::of(Recipe::Whole(Box::new(recipe)), None);
             if let Some(groups) = &groups {
                 named.name += " + all";
                 named.springs = Some(groups.clone());
@@ -145,6 +159,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
             }
         }
     }
+    scene.entry_of = (0..scene.fits.len()).collect();
     run(&scene, progress)
 }
 

@@ -1,7 +1,6 @@
 //! The loads of a scene at small deformation: one linear system for each model and support.
 
 use super::cases::Case;
-use super::metrics::displacement_error;
 use super::outcome::{FitOutcome, LoadOutcome};
 use super::run::Progress;
 use crate::error::{Error, Result};
@@ -95,9 +94,7 @@ impl LinearBody {
             let displacement = displacement.map(|(u, _)| u);
             fit.loads.push(LoadOutcome {
                 name: case.name.clone(),
-                error: displacement
-                    .as_ref()
-                    .and_then(|u| displacement_error(&self.displacements[i], u, mesh.dimension)),
+                error: displacement.as_ref().and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,

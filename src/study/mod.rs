@@ -2,6 +2,7 @@
 
 mod cases;
 mod check;
+mod checkpoint;
 mod comparison;
 mod large;
 mod linear;
@@ -13,17 +14,20 @@ mod run;
 mod scene;
 mod stages;
 mod stretches;
+mod whole;
 
 pub use check::{Inspection, Mark, Property, inspect};
+pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
 pub use large::LargeBody;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
-pub use outcome::{FitOutcome, Followed, LoadOutcome, Outcome, SampledOutcome, WholeOutcome};
-pub use run::{Progress, Reference, fit_mesh, run};
+pub use outcome::{FitOutcome, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
+pub use run::{Progress, Reference, fit_mesh, run, run_with};
 pub use scene::{
-    BoxEntry, FitEntry, ForceRecipe, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,
-    ShapesEntry, WholeRecipe, load_elements,
+    BoxEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,
+    ShapesEntry, Start, WholeRecipe, load_elements,
 };
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
+pub use whole::WholeBody;

@@ -8,6 +8,7 @@ use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::solve::{Ending, Stability};
+use crate::whole::Errors;
 
 /// What came out of a scene.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub struct Outcome {
     /// Where the material has a law, what it is called, and how far the finite elements followed each load.
     pub law: Option<String>,
     pub followed: Vec<Followed>,
+    /// What was measured: errors under these loads are those from it.
+    pub measured: Vec<MeasuredLoad>,
     pub fits: Vec<FitOutcome>,
     /// What the scene did not ask for and was not done.
     pub left_out: Vec<String>,
@@ -75,6 +78,16 @@ pub struct LoadOutcome {
     pub followed: Option<Followed>,
 }
 
+/// A load under which displacements were measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredLoad {
+    pub name: String,
+    /// Points of which something is known.
+    pub points: usize,
+    /// Of the finite elements.
+    pub error: Option<DisplacementError>,
+}
+
 /// How far an equilibrium was followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Followed {
@@ -96,10 +109,19 @@ pub struct WholeOutcome {
     /// The loads that were fitted, and those that chose the regularization.
     pub loads: Vec<String>,
     pub validated: Vec<String>,
-    pub regularization: f64,
+    /// `None` where the start was best.
+    pub regularization: Option<f64>,
+    /// Of the loads and frequencies that were fitted, before and after.
+    pub trained: [Errors; 2],
+    /// Of the loads that chose the regularization.
+    pub judged: [Errors; 2],
     /// The largest factor by which a constant changed.
     pub change: f64,
-    pub evaluations: usize,
+    /// The largest constant of a length spring, as a multiple of the least.
+    pub range: f64,
+    pub steps: usize,
+    /// Whether it was ended before its time.
+    pub cancelled: bool,
 }
 
 /// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.
@@ -118,7 +140,7 @@ pub struct SampledOutcome {
 impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
-        let (fem, law, followed, left_out) = Default::default();
-        Outcome { scene: name, mesh, material, masses, fem, law, followed, fits: vec![fit], left_out }
+        let (fem, law, followed, measured, left_out) = Default::default();
+        Outcome { scene: name, mesh, material, masses, fem, law, followed, measured, fits: vec![fit], left_out }
     }
 }

@@ -1,19 +1,21 @@
 //! Runs a scene: fit each objective, solve each load with both models, compare.
 
-use super::cases::{Case, load_cases};
+use super::cases::{load_cases, measured_loads};
+use super::checkpoint::Controls;
 use super::large::LargeBody;
 use super::linear::LinearBody;
 use super::moduli::moduli_of_body;
 use super::outcome::{FitOutcome, Outcome, SampledOutcome, WholeOutcome};
-use super::scene::{NamedFit, Recipe, SampledRecipe, Scene, WholeRecipe};
+use super::scene::{NamedFit, Recipe, SampledRecipe, Scene};
 use super::stages::stages;
+use super::whole::WholeBody;
 use crate::error::{Error, Result};
 use crate::fit::{ElementErrors, Fit, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
 use crate::material::Material;
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::{Network, Support, masses};
+use crate::model::{Network, masses};
 use crate::springs::Springs;
-use crate::whole::{Problem, Target, WholeFit, fit_whole};
+use crate::whole::raise_idle;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -25,10 +27,18 @@ pub type Progress<'a> = dyn FnMut(&str, usize, usize) + 'a;
 /// # Errors
 /// An input is wrong: a group, a support, a load, the mesh. A network that does not stand is no error.
 pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
+    run_with(scene, &Controls::default(), progress)
+}
+
+/// As [`run`]; whole-object fits may be ended early and gone on with.
+///
+/// # Errors
+/// As there, and the checkpoint is wrong or cannot be written.
+pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     let mesh = scene.build_mesh()?;
     let material = scene.material(mesh.cell_dimension())?;
     drawable(scene, &mesh)?;
-    let cases = load_cases(scene, &mesh, material)?;
+    let (support, cases) = load_cases(scene, &mesh, material)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(&scene.path));
     let large = match scene.energy(material)? {
         Some(energy) => {
@@ -44,6 +54,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         fem: Vec::new(),
         law: large.as_ref().map(|large| large.energy.title.clone()),
         followed: Vec::new(),
+        measured: Vec::new(),
         fits: Vec::new(),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
@@ -52,13 +63,24 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         LinearBody::solve(&outcome.mesh, material.moduli(), &cases, progress).map_err(in_scene)
     };
     // Of the fits only those to the whole object need the body's displacements.
-    let needed = scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_)));
+    let needed = large.is_none() && scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_)));
     let body = if needed { Some(linear(&outcome, progress)?) } else { None };
-    let displacements = body.as_ref().map_or(&[][..], |body| &body.displacements);
-    let reference = Reference { large: large.as_ref(), cases: &cases, displacements };
-    for (i, fit) in scene.fits.iter().enumerate() {
+    let displacements: Vec<Option<&Vec<f64>>> = match (&large, &body) {
+        (Some(large), _) => large.complete().collect(),
+        (None, Some(body)) => body.displacements.iter().map(Some).collect(),
+        (None, None) => Vec::new(),
+    };
+    let mesh = outcome.mesh.clone();
+    let masses = outcome.masses.clone();
+    let mut whole = WholeBody::new(&mesh, material, &support, controls);
+    whole.cases = &cases;
+    whole.displacements = displacements;
+    whole.newton = large.as_ref().map(|_| scene.newton);
+    whole.masses = masses.as_deref();
+    let reference = Reference { large: large.as_ref(), whole: Some(&whole) };
+    for (fit, entry) in scene.fits.iter().zip(&scene.entry_of) {
         let fitted = fit_mesh(&outcome.mesh, material, &reference, fit, progress);
-        outcome.fits.push(fitted.map_err(|e| scene.at(&format!("fit[{i}]"), e))?);
+        outcome.fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&format!("fit[{entry}]"), e)))?);
     }
     if scene.output.moduli {
         for (done, fit) in outcome.fits.iter_mut().enumerate() {
@@ -72,6 +94,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
             large.compare(&outcome.mesh, &cases, fit)?;
         }
         (outcome.fem, outcome.followed) = (large.displacements, large.followed);
+        outcome.measured = measured_loads(&cases, &outcome.fem, mesh.dimension);
         return Ok(outcome);
     }
     let body = match body {
@@ -83,6 +106,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
         body.compare(&outcome.mesh, &cases, fit)?;
     }
     outcome.fem = body.displacements;
+    outcome.measured = measured_loads(&cases, &outcome.fem, mesh.dimension);
     Ok(outcome)
 }
 
@@ -102,32 +126,8 @@ fn drawable(scene: &Scene, mesh: &Mesh) -> Result<()> {
 pub struct Reference<'a> {
     /// For sampled fits.
     pub large: Option<&'a LargeBody>,
-    /// For whole-object fits: loads and the displacements under them.
-    pub(super) cases: &'a [Case],
-    pub(super) displacements: &'a [Vec<f64>],
-}
-
-impl<'a> Reference<'a> {
-    /// Of a body with a law and without loads.
-    pub fn of_law(large: Option<&'a LargeBody>) -> Reference<'a> {
-        Reference { large, ..Reference::default() }
-    }
-
-    /// # Errors
-    /// The loads are not there, or held in another way than the first of them.
-    fn targets(&self, names: &[String]) -> Result<(Vec<Target>, Option<&Support>)> {
-        let mut support: Option<&Support> = None;
-        let mut targets = Vec::new();
-        for (case, displacement) in self.cases.iter().zip(self.displacements).filter(|(c, _)| names.contains(&c.name)) {
-            if **support.get_or_insert(&case.support) != case.support {
-                let expected = "loads that are held in the same way";
-                return Err(Error::expected("loads", expected, format!("\"{}\"", case.name)));
-            }
-            let (name, forces, displacement) = (case.name.clone(), case.forces.clone(), displacement.clone());
-            targets.push(Target { name, forces, displacement, weight: 1.0 });
-        }
-        Ok((targets, support))
-    }
+    /// For whole-object fits.
+    pub whole: Option<&'a WholeBody<'a>>,
 }
 
 /// Fits one objective on every cell and assembles the network; `reference` is needed by sampled and whole-object fits.
@@ -146,15 +146,8 @@ pub fn fit_mesh(
     rayon::broadcast(|_| ());
     let start = Instant::now();
     let mut sampled: Option<SampledOutcome> = None;
-    let at_rest = |fit: &Fit, progress: &mut Progress| {
-        each_block(mesh, named, progress, |block, springs, progress| {
-            fit_cells(&block.element, springs, &mesh.points, &block.connectivity, moduli, fit, progress)
-        })
-    };
-    let fits = match &named.recipe {
-        Recipe::Stiffness(fit) => at_rest(fit, progress)?,
-        Recipe::Whole(recipe) => at_rest(&recipe.start, progress)?,
-        Recipe::Forces(recipe) => {
+    let mut fits = match (named.recipe.at_rest(), named.recipe.sampled()) {
+        (_, Some(recipe)) => {
             let expected = "the energy whose forces are sampled";
             let large = reference.large.ok_or_else(|| Error::expected("law", expected, "none"))?;
             let states = Arc::new(large.states(mesh, &recipe.loads)?);
@@ -172,16 +165,23 @@ pub fn fit_mesh(
             sampled = Some(SampledOutcome::of(recipe, &found));
             found.into_iter().map(|found| found.fits).collect()
         }
+        (Some(fit), None) => each_block(mesh, named, progress, |block, springs, progress| {
+            fit_cells(&block.element, springs, &mesh.points, &block.connectivity, moduli, &fit, progress)
+        })?,
+        (None, None) => unreachable!("every recipe is or starts from one of both"),
     };
     let seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
+    if matches!(&named.recipe, Recipe::Whole(_)) {
+        raise_idle(&mut fits);
+    }
     let mut network = Network::assemble(mesh, &fits);
     let seconds_assembly = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut whole = None;
     if let Recipe::Whole(recipe) = &named.recipe {
-        progress(&named.name, 0, 1);
-        let found = fit_object(mesh, &network, recipe, reference)?;
+        let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
+        let found = reference.whole.ok_or_else(missing)?.fit(named, recipe, &fits, &network, progress)?;
         whole = Some(WholeOutcome::of(recipe, &found));
         network = found.network;
     }
@@ -215,28 +215,6 @@ pub fn fit_mesh(
         loose_points: Vec::new(),
         loads: Vec::new(),
     })
-}
-
-fn fit_object(mesh: &Mesh, network: &Network, recipe: &WholeRecipe, reference: &Reference) -> Result<WholeFit> {
-    let names = [&recipe.loads[..], &recipe.validated].concat();
-    let (targets, support) = reference.targets(&names)?;
-    let support = support.ok_or_else(|| Error::expected("loads", "loads of a scene", "none"))?;
-    let (trained, validated): (Vec<Target>, Vec<Target>) =
-        targets.into_iter().partition(|target| recipe.loads.contains(&target.name));
-    let mut problem = Problem::new(network, &mesh.points, support, 0.0)?;
-    fit_whole(&mut problem, &trained, &validated, &recipe.settings)
-}
-
-impl WholeOutcome {
-    fn of(recipe: &WholeRecipe, found: &WholeFit) -> WholeOutcome {
-        WholeOutcome {
-            loads: recipe.loads.clone(),
-            validated: recipe.validated.clone(),
-            regularization: found.regularization,
-            change: found.change,
-            evaluations: found.evaluations,
-        }
-    }
 }
 
 /// `fit` of every block with its springs; the progress it tells is that of all cells.

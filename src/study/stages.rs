@@ -18,7 +18,9 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     for fit in &scene.fits {
         let shapes = match &fit.recipe {
             Recipe::Stiffness(_) => String::new(),
-            Recipe::Whole(recipe) => format!(" to the finite element displacements under {}", recipe.loads.join(", ")),
+            Recipe::Whole(recipe) => {
+                format!(" to the finite element displacements under {}", recipe.loads.words().join(", "))
+            }
             Recipe::Forces(recipe) => {
                 let sampling = &recipe.fit.sampling;
                 format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)

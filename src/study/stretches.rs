@@ -85,7 +85,7 @@ pub fn compare_stretches(
     let mut fits = Vec::new();
     for (done, named) in recipes.iter().enumerate() {
         progress(&named.name, done + 1, total);
-        let reference = Reference::of_law(Some(&pulled.large));
+        let reference = Reference { large: Some(&pulled.large), whole: None };
         let fitted = fit_mesh(&pulled.mesh, material, &reference, named, &mut |_, _, _| {})?;
         let seconds = fitted.seconds / pulled.mesh.cell_count() as f64;
         let found = pulled.follow(&fitted.network)?;

@@ -1,69 +1,158 @@
-//! Loads that show how an object moves: tension, shears, torsion and bending of a face, gravity to the side.
+//! Loads made from a mesh and its supports, to see how the object moves.
 
-use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Selection};
-use crate::model::{Action, nodal_forces};
+use crate::model::{Action, Support, boundary_forces, nodal_forces};
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
 
 /// A named set of nodal forces, `[points · dimension]`, N.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NodalLoad {
-    pub name: &'static str,
+    pub name: String,
     pub forces: Vec<f64>,
 }
 
-/// On a face opposite to where the object is held, about the axis from there to its middle, each of unit size: tension, a shear
-/// (two of solids), torsion of solids, bending, gravity to the side. The traction of torsion and bending grows from the middle
-/// of the face; its nodal forces are lumped.
+/// Waves across the object in the random fields.
+const WAVES: f64 = 0.5;
+/// Sines that a component of a random field is the sum of.
+const SINES: usize = 4;
+
+/// Tractions `t = σ n` on the boundary and body forces, of size 1 Pa and 1 N/m³:
 ///
-/// # Errors
-/// The face or the held part has no points.
-pub fn standard_loads(mesh: &Mesh, held: &Selection, face: &Selection, thickness: f64) -> Result<Vec<NodalLoad>> {
+/// - "stress xx", "stress xy", …: σ one at all points, in each of its components;
+/// - "torsion" of solids, `σ = (a × r) aᵀ + a (a × r)ᵀ`, and "bending" about each axis across, `σ = (e·r) a aᵀ`: a points from
+///   what is held to the middle of the object, r is the place from there in units of the object's size; both leave the inside of
+///   the object in balance;
+/// - "gravity x", …: a body force.
+pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLoad> {
     let d = mesh.dimension;
-    let along = |k: usize| (0..d).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
-    let areas: Vec<f64> = {
-        let forces = nodal_forces(mesh, face, &Action::Traction(along(0)), thickness)?;
-        forces.into_iter().step_by(d).collect()
+    let names = ["x", "y", "z"];
+    let e = |k: usize| (0..d).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
+    let frame = Frame::of(mesh, support);
+    let on_boundary = |name: String, traction: &dyn Fn(&[f64], &[f64]) -> Vec<f64>| NodalLoad {
+        name,
+        forces: boundary_forces(mesh, traction, thickness),
     };
-    let total: f64 = areas.iter().sum();
-    let held = held.points(mesh)?;
-    if held.is_empty() || total <= 0.0 {
-        return Err(Error::new("expected a held part and a face with points"));
+    let mut loads = Vec::new();
+    for k in 0..d {
+        for l in 0..=k {
+            let name = format!("stress {}{}", names[l], names[k]);
+            let traction = |_: &[f64], n: &[f64]| {
+                let mut t = vec![0.0; d];
+                t[k] = n[l];
+                t[l] = n[k];
+                t
+            };
+            loads.push(on_boundary(name, &traction));
+        }
     }
-    let middle: Vec<f64> =
-        (0..d).map(|k| (0..areas.len()).map(|p| areas[p] * mesh.point(p)[k]).sum::<f64>() / total).collect();
-    let foot: Vec<f64> =
-        (0..d).map(|k| held.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / held.len() as f64).collect();
-    let axis = unit(&middle.iter().zip(&foot).map(|(a, b)| a - b).collect::<Vec<f64>>());
-    // The coordinate direction that is farthest from the axis, made orthogonal to it.
-    let farthest = (0..d).min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
-    let across =
-        unit(&(0..d).map(|k| f64::from(u8::from(k == farthest)) - axis[farthest] * axis[k]).collect::<Vec<f64>>());
-    let on_face = |traction: &dyn Fn(&[f64]) -> Vec<f64>| -> Vec<f64> {
-        let force = |(p, &area): (usize, &f64)| {
-            let from: Vec<f64> = mesh.point(p).iter().zip(&middle).map(|(x, c)| x - c).collect();
-            let t = if area == 0.0 { vec![0.0; d] } else { traction(&from) };
-            t.into_iter().map(move |t| t * area)
-        };
-        areas.iter().enumerate().flat_map(force).collect()
-    };
-    let mut loads = vec![
-        NodalLoad { name: "tension", forces: on_face(&|_| axis.clone()) },
-        NodalLoad { name: "shear", forces: on_face(&|_| across.clone()) },
-    ];
     if d == 3 {
-        let third = cross(&axis, &across);
-        loads.push(NodalLoad { name: "shear across", forces: on_face(&|_| third.clone()) });
-        loads.push(NodalLoad { name: "torsion", forces: on_face(&|x| cross(&axis, x)) });
+        let twist = |x: &[f64], n: &[f64]| {
+            let around = cross(&frame.axis, &frame.from_middle(x));
+            let (along, turned) = (dot(&frame.axis, n), dot(&around, n));
+            around.iter().zip(&frame.axis).map(|(t, a)| t * along + a * turned).collect()
+        };
+        loads.push(on_boundary("torsion".into(), &twist));
     }
-    let lever = |x: &[f64]| -> f64 { x.iter().zip(&across).map(|(x, e)| x * e).sum() };
-    loads.push(NodalLoad { name: "bending", forces: on_face(&|x| axis.iter().map(|a| a * lever(x)).collect()) });
-    let gravity = nodal_forces(mesh, &Selection::Everything, &Action::Body(across.clone()), thickness)?;
-    loads.push(NodalLoad { name: "side gravity", forces: gravity });
-    Ok(loads)
+    for (i, lever) in frame.across.iter().enumerate() {
+        let bend = |x: &[f64], n: &[f64]| {
+            let size = dot(lever, &frame.from_middle(x)) * dot(&frame.axis, n);
+            frame.axis.iter().map(|a| a * size).collect()
+        };
+        let name = if frame.across.len() == 1 { "bending".to_string() } else { format!("bending {}", i + 1) };
+        loads.push(on_boundary(name, &bend));
+    }
+    loads.extend((0..d).map(|k| {
+        NodalLoad {
+            name: format!("gravity {}", names[k]),
+            forces: nodal_forces(mesh, &Selection::Everything, &Action::body(&e(k)), thickness)
+                .expect("a mesh has cells to act on"),
+        }
+    }));
+    // A load that moves nothing tells nothing: no sides of a chain of rods, or all of them held.
+    let acts = |load: &NodalLoad| load.forces.iter().zip(&support.prescribed).any(|(f, p)| p.is_none() && *f != 0.0);
+    loads.into_iter().filter(acts).collect()
+}
+
+/// "random 1", …: smooth body forces, each component a sum of sines with up to 1.5 waves across the object; a seed gives the same
+/// ones always.
+pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize, seed: u64) -> Vec<NodalLoad> {
+    let d = mesh.dimension;
+    let frame = Frame::of(mesh, support);
+    let mut random = StdRng::seed_from_u64(seed);
+    let weights = nodal_forces(mesh, &Selection::Everything, &Action::body(&vec![1.0; d]), thickness)
+        .expect("a mesh has cells to act on");
+    let mut field = |index: usize| {
+        let sines: Vec<(Vec<f64>, f64, f64)> = (0..d * SINES)
+            .map(|_| {
+                let wave = (0..d).map(|_| std::f64::consts::TAU * WAVES * random.random_range(-1.0..1.0)).collect();
+                (wave, random.random_range(0.0..std::f64::consts::TAU), random.random_range(-1.0..1.0))
+            })
+            .collect();
+        let at = |(dof, weight): (usize, &f64)| {
+            let r = frame.from_middle(mesh.point(dof / d));
+            let own = &sines[dof % d * SINES..(dof % d + 1) * SINES];
+            weight * own.iter().map(|(wave, phase, size)| size * (dot(wave, &r) + phase).sin()).sum::<f64>()
+        };
+        NodalLoad { name: format!("random {index}"), forces: weights.iter().enumerate().map(at).collect() }
+    };
+    (1..=count).map(&mut field).collect()
+}
+
+/// Where the object is, and which way it points away from what holds it.
+struct Frame {
+    middle: Vec<f64>,
+    /// The longest side of the box around it, m.
+    size: f64,
+    axis: Vec<f64>,
+    /// Unit vectors orthogonal to the axis and to each other.
+    across: Vec<Vec<f64>>,
+}
+
+impl Frame {
+    fn of(mesh: &Mesh, support: &Support) -> Frame {
+        let d = mesh.dimension;
+        let mean = |points: &[usize]| -> Vec<f64> {
+            (0..d).map(|k| points.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / points.len().max(1) as f64).collect()
+        };
+        let all: Vec<usize> = (0..mesh.point_count()).collect();
+        let held: Vec<usize> = all.iter().copied().filter(|p| (0..d).any(|k| support.is_fixed(p * d + k))).collect();
+        let range = |k: usize| {
+            let coordinates = || all.iter().map(|&p| mesh.point(p)[k]);
+            (coordinates().fold(f64::MAX, f64::min), coordinates().fold(f64::MIN, f64::max))
+        };
+        let sides: Vec<f64> = (0..d).map(|k| range(k).1 - range(k).0).collect();
+        let size = sides.iter().copied().fold(0.0, f64::max);
+        let middle = mean(&all);
+        let mut axis: Vec<f64> = middle.iter().zip(mean(&held)).map(|(a, b)| a - b).collect();
+        // Held all around, it has no direction: its longest side serves.
+        if held.is_empty() || !(dot(&axis, &axis).sqrt() > 0.05 * size) {
+            axis = (0..d).map(|k| sides[k]).collect();
+            let longest = (0..d).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
+            axis.iter_mut().enumerate().for_each(|(k, a)| *a = f64::from(u8::from(k == longest)));
+        }
+        axis = unit(&axis);
+        // The coordinate direction that is farthest from the axis, made orthogonal to it.
+        let farthest = (0..d).fold(0, |best, k| if axis[k].abs() < axis[best].abs() { k } else { best });
+        let first: Vec<f64> = (0..d).map(|k| f64::from(u8::from(k == farthest)) - axis[farthest] * axis[k]).collect();
+        let mut across = vec![unit(&first)];
+        if d == 3 {
+            across.push(cross(&axis, &across[0]));
+        }
+        Frame { middle, size, axis, across }
+    }
+
+    fn from_middle(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.middle).map(|(x, c)| (x - c) / self.size).collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn unit(v: &[f64]) -> Vec<f64> {
-    let size = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let size = dot(v, v).sqrt();
     v.iter().map(|v| v / size).collect()
 }
 

@@ -1,13 +1,28 @@
-//! Spring constants from the displacements of the whole object: the network is fitted to move like the finite elements under a set
-//! of loads, and judged under others.
+//! Spring constants from the displacements of the whole object: the network is fitted to move like the finite elements, or like a
+//! measured object, under a set of loads, and judged under others.
 //!
-//! `min_θ Σ_l w_l ‖u_l − u_l^FEM‖²/‖u_l^FEM‖² + ρ mean_s (θ_s − θ_s⁰)²`, `θ_s = ln k_s`, `K(k) u_l = f_l`: constants stay positive,
-//! and the second term keeps them near those of the elements.
+//! `min_θ Σ_l w_l ‖u_l − ū_l‖²_W/‖ū_l‖²_W + Σ_i w_ω (ln ω_i/ω̄_i)² + (ρ/m) ‖θ‖²`, where m unknowns `θ` are logarithms of factors on
+//! the constants at the start, `F(u_l; k(θ)) = f_l`: constants stay positive, and the last term keeps them near those of the
+//! elements. Products with the Jacobian and its transpose cost one solve per load on the factor of the tangent.
 
+mod balance;
 mod descent;
+mod displacements;
+mod gauss_newton;
+mod gradients;
+mod linearized;
 mod loads;
-mod problem;
+mod object;
+mod path;
+mod target;
+mod unknowns;
 
-pub use descent::{WholeFit, WholeSettings, fit_whole};
-pub use loads::{NodalLoad, standard_loads};
-pub use problem::{Problem, Target};
+pub use balance::Balance;
+pub use displacements::{Displacements, Errors};
+pub use gauss_newton::GaussNewton;
+pub use linearized::{LeastSquares, Linearized};
+pub use loads::{NodalLoad, made_loads, random_loads};
+pub use object::{Object, raise_idle};
+pub use path::{Method, Residual, Snapshot, Validation, Wanted, Watch, WholeFit, WholeSettings, fit_whole};
+pub use target::{Frequencies, Target};
+pub use unknowns::Unknowns;

@@ -25,7 +25,7 @@ impl Field {
     /// displacements, are multiplied by `scale`, metres per unit of the file.
     ///
     /// A table has a header with the names of its columns, between commas, semicolons or tabs. `x`, `y` (and `z`) are
-    /// the position of the point at rest, or `point` is its number in the mesh, from 1; where both are there they must
+    /// the position of the point at rest, or `point` is its number in the mesh, from 0; where both are there they must
     /// agree. `ux`, `uy`, `uz` are the displacement, or `x_deformed`, `y_deformed`, `z_deformed` the position after it;
     /// some directions may be missing. Capitals, other columns, blank lines and those that begin with `#` do not
     /// count. An empty cell or `nan` is not measured.
@@ -103,13 +103,13 @@ impl Reading<'_> {
             (&[], _) => {
                 let (point, distance) = self.locator.nearest(position);
                 let hint = format!("is the scale {:?} m per unit of the file right?", self.scale);
-                let nearest = format!("{distance:?} m from the nearest, point {}", point + 1);
+                let nearest = format!("{distance:?} m from the nearest, point {}", point);
                 let found = format!("{} m, {nearest}; {hint}", listed(position));
                 Err(Error::expected("position", "that of a point of the mesh", found))
             }
             (_, Some(point)) if found.contains(&point) => Ok(point),
             (&[first, second, ..], _) => {
-                let found = format!("points {} and {}, both at {} m", first + 1, second + 1, listed(position));
+                let found = format!("points {} and {}, both at {} m", first, second, listed(position));
                 Err(Error::expected("position", "that of one point of the mesh", found))
             }
         }

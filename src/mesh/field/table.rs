@@ -53,7 +53,7 @@ pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Re
                 let point = columns.point(&row, reading).map_err(placed)?;
                 if let Some(before) = reading.claim(point, start) {
                     let found = format!("a second one, after line {}", line_from(text, before));
-                    return Err(placed(Error::expected(format!("point {}", point + 1), "one row", found)));
+                    return Err(placed(Error::expected(format!("point {}", point), "one row", found)));
                 }
                 columns.displace(point, &row, reading).map_err(placed)?;
             }
@@ -138,9 +138,9 @@ impl Columns {
         }
         let count = reading.mesh.point_count();
         let numbered = |&column: &usize| {
-            let number = row[column].trim().parse().ok().filter(|number| (1..=count).contains(number));
-            let expected = || Error::expected("point", format!("a number from 1 to {count}"), cell(row, column));
-            number.map(|number| number - 1).ok_or_else(expected)
+            let number = row[column].trim().parse().ok().filter(|number| (0..count).contains(number));
+            let expected = || Error::expected("point", format!("a number from 0 to {}", count - 1), cell(row, column));
+            number.ok_or_else(expected)
         };
         let number = self.point.as_ref().map(numbered).transpose()?;
         let coordinate = |&column: &usize| {
@@ -152,8 +152,8 @@ impl Columns {
         if !position.is_empty() {
             let (distance, near) = reading.locator.distance(point, &position);
             if !near {
-                let expected = format!("the number, from 1, of the point at {} m", listed(&position));
-                return Err(Error::expected("point", expected, format!("{}, {distance:?} m away", point + 1)));
+                let expected = format!("the number, from 0, of the point at {} m", listed(&position));
+                return Err(Error::expected("point", expected, format!("{point}, {distance:?} m away")));
             }
         }
         Ok(point)

@@ -1,17 +1,17 @@
 //! The scene file as it is written, key by key, and what each entry must satisfy on its own.
 
-use super::recipe::Recipe;
+use super::recipe::{Recipe, SampledRecipe};
 use super::sampled::{SampledEntry, ShapesEntry};
-use super::whole::WholeEntry;
+use super::value::{Given, Pressure, Varying};
+use super::whole::{Start, WholeEntry};
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective, Solver, Weights};
-use crate::material::{Material, Plane, parse_pressure};
-use crate::model::Action;
+use crate::material::{Material, Plane};
+use crate::model::{Action, Component};
 use crate::solve::Newton;
+use crate::symbolic::Scope;
 use serde::Deserialize;
-use serde::de::{self, Deserializer, Visitor};
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -116,9 +116,15 @@ pub struct FitEntry {
     pub bounds: Option<toml::Table>,
     pub starts: Option<usize>,
     pub shapes: Option<ShapesEntry>,
-    pub start: Option<String>,
+    /// One, or a list of them.
+    pub start: Option<toml::Value>,
     pub loads: Option<Vec<String>>,
     pub validate: Option<Vec<String>>,
+    pub unknowns: Option<String>,
+    pub residual: Option<String>,
+    pub regularization: Option<f64>,
+    pub frequencies: Option<usize>,
+    pub seed: Option<u64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -138,19 +144,26 @@ pub struct LoadEntry {
     pub group: Option<String>,
     #[serde(rename = "where")]
     pub condition: Option<String>,
-    pub traction: Option<Vec<f64>>,
+    pub traction: Option<Vec<Varying>>,
     pub force: Option<Vec<f64>>,
-    pub body: Option<Vec<f64>>,
+    pub body: Option<Vec<Varying>>,
     pub displacement: Option<Vec<Given>>,
+    /// What was measured under it.
+    pub measured: Option<MeasuredEntry>,
 }
 
-/// One direction of a prescribed displacement: a number of metres, or `"free"`.
-#[derive(Debug, Clone, Copy)]
-pub struct Given(pub Option<f64>);
-
-/// A number of Pa, or a text with a unit.
-#[derive(Debug, Clone, Copy)]
-pub struct Pressure(pub f64);
+/// A file of displacements.
+#[derive(Debug, Clone, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredEntry {
+    /// Relative to the scene.
+    pub file: PathBuf,
+    /// Metres per unit of the file.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Of several.
+    pub array: Option<String>,
+}
 
 fn one() -> f64 {
     1.0
@@ -173,57 +186,95 @@ impl MaterialEntry {
 }
 
 impl FitEntry {
-    /// The fit that it stands for; files are relative to `folder`.
+    /// The fits that it stands for, one for each start; files are relative to `folder`.
     ///
     /// # Errors
     /// A key has a wrong value, or belongs to another objective.
-    pub fn check(self, folder: &Path) -> Result<NamedFit> {
+    pub fn check(self, folder: &Path) -> Result<Vec<NamedFit>> {
         self.check_owners()?;
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         let recipe = match self.objective.as_str() {
-            "sampled" => {
-                let sampled = SampledEntry {
-                    force: self.force,
-                    norm: self.norm,
-                    huber: self.huber,
-                    bounds: self.bounds,
-                    starts: self.starts,
-                    shapes: self.shapes,
-                };
-                let mut recipe = sampled.check(folder)?;
-                recipe.fit.weights = match self.weight.as_deref() {
-                    None | Some("relative") => Weights::Relative,
-                    Some("none") => Weights::Alike,
-                    Some(other) => {
-                        let expected = "\"relative\" or \"none\" with the objective \"sampled\"";
-                        return Err(Error::expected("weight", expected, format!("\"{other}\"")));
-                    }
-                };
-                recipe.fit.higher = self.higher.unwrap_or(recipe.fit.higher);
-                (recipe.fit.tied, recipe.fit.nonnegative) = (self.tied, self.nonnegative);
-                Recipe::Forces(Box::new(recipe))
-            }
+            "sampled" => Recipe::Forces(Box::new(self.sampled(folder)?)),
             "whole" => {
-                let whole = WholeEntry { start: self.start, loads: self.loads, validate: self.validate };
-                Recipe::Whole(Box::new(whole.check(choices, self.iterations)?))
+                let whole = WholeEntry {
+                    loads: self.loads.clone(),
+                    validate: self.validate.clone(),
+                    unknowns: self.unknowns.clone(),
+                    residual: self.residual.clone(),
+                    regularization: self.regularization,
+                    frequencies: self.frequencies,
+                    seed: self.seed,
+                    solver: self.solver.clone(),
+                    iterations: self.iterations,
+                };
+                let starts = starts(self.start.as_ref())?;
+                let several = starts.len() > 1;
+                let mut fits = Vec::new();
+                for start in starts {
+                    let begin = match start.as_str() {
+                        "sampled" => Start::Sampled(Box::new(self.sampled(folder)?)),
+                        name => Start::named(name, choices)?,
+                    };
+                    let recipe = Recipe::Whole(Box::new(whole.clone().check(begin)?));
+                    let own = |name: &String| if several { format!("{name} from {start}") } else { name.clone() };
+                    let name = self.name.as_ref().map_or_else(|| recipe.name(self.springs.as_deref()), own);
+                    fits.push(NamedFit { name, recipe, springs: self.springs.clone() });
+                }
+                return Ok(fits);
             }
             name => {
-                let objective = Objective::named(name, choices)?;
+                let objective = Objective::named(name, choices).map_err(|e| match e.key() {
+                    Some("objective") => {
+                        let expected = format!("one of {}, sampled, whole", Objective::NAMES.join(", "));
+                        Error::expected("objective", expected, format!("\"{name}\""))
+                    }
+                    _ => e,
+                })?;
                 let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
                 Recipe::Stiffness(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
             }
         };
         let name = self.name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
-        Ok(NamedFit { name, recipe, springs: self.springs })
+        Ok(vec![NamedFit { name, recipe, springs: self.springs }])
+    }
+
+    fn sampled(&self, folder: &Path) -> Result<SampledRecipe> {
+        let sampled = SampledEntry {
+            force: self.force.clone(),
+            norm: self.norm.clone(),
+            huber: self.huber,
+            bounds: self.bounds.clone(),
+            starts: self.starts,
+            shapes: self.shapes.clone(),
+        };
+        let mut recipe = sampled.check(folder)?;
+        recipe.fit.weights = match self.weight.as_deref() {
+            None | Some("relative") => Weights::Relative,
+            Some("none") => Weights::Alike,
+            Some(other) => {
+                let expected = "\"relative\" or \"none\" with the objective \"sampled\"";
+                return Err(Error::expected("weight", expected, format!("\"{other}\"")));
+            }
+        };
+        recipe.fit.higher = self.higher.unwrap_or(recipe.fit.higher);
+        (recipe.fit.tied, recipe.fit.nonnegative) = (self.tied, self.nonnegative);
+        Ok(recipe)
     }
 
     /// That no key is given that belongs to another objective, or does not go with this one.
     fn check_owners(&self) -> Result<()> {
         let objective = self.objective.as_str();
+        let from_sampled =
+            objective == "whole" && starts(self.start.as_ref()).is_ok_and(|s| s.contains(&"sampled".into()));
         let owned = [
             ("start", "whole", self.start.is_some()),
             ("loads", "whole", self.loads.is_some()),
             ("validate", "whole", self.validate.is_some()),
+            ("unknowns", "whole", self.unknowns.is_some()),
+            ("residual", "whole", self.residual.is_some()),
+            ("regularization", "whole", self.regularization.is_some()),
+            ("frequencies", "whole", self.frequencies.is_some()),
+            ("seed", "whole", self.seed.is_some()),
             ("force", "sampled", self.force.is_some()),
             ("norm", "sampled", self.norm.is_some()),
             ("huber", "sampled", self.huber.is_some()),
@@ -231,7 +282,8 @@ impl FitEntry {
             ("starts", "sampled", self.starts.is_some()),
             ("shapes", "sampled", self.shapes.is_some()),
         ];
-        if let Some((key, owner, _)) = owned.iter().find(|(_, owner, given)| *given && *owner != objective) {
+        let foreign = |owner: &str| owner != objective && !(owner == "sampled" && from_sampled);
+        if let Some((key, owner, _)) = owned.iter().find(|(_, owner, given)| *given && foreign(owner)) {
             let problem = format!("belongs to the objective \"{owner}\", found with \"{objective}\"");
             return Err(Error::at(*key, problem));
         }
@@ -239,7 +291,6 @@ impl FitEntry {
             ("balance", "sampled", self.balance.is_some()),
             ("tied", "whole", self.tied),
             ("solver", "sampled", self.solver.is_some()),
-            ("solver", "whole", self.solver.is_some()),
             ("iterations", "sampled", self.iterations.is_some()),
         ];
         match strange.iter().find(|(_, other, given)| *given && *other == objective) {
@@ -247,6 +298,19 @@ impl FitEntry {
             None => Ok(()),
         }
     }
+}
+
+/// The starts of a whole-object fit.
+fn starts(value: Option<&toml::Value>) -> Result<Vec<String>> {
+    let Some(value) = value else { return Ok(vec!["offdiag".into()]) };
+    let names: Option<Vec<String>> = match value {
+        toml::Value::String(name) => Some(vec![name.clone()]),
+        toml::Value::Array(list) => list.iter().map(|name| name.as_str().map(String::from)).collect(),
+        _ => None,
+    };
+    let once = |names: &Vec<String>| !names.is_empty() && (1..names.len()).all(|i| !names[..i].contains(&names[i]));
+    let wrong = || Error::at("start", "expected an objective or \"equal\", or a list of them, each once");
+    names.filter(once).ok_or_else(wrong)
 }
 
 impl NewtonEntry {
@@ -295,15 +359,25 @@ impl LoadEntry {
             Some(x) => Err(Error::expected(key, "finite numbers", x)),
             None => Ok(v),
         };
+        let varying = |key: &str, v: Vec<Varying>| -> Result<Vec<Component>> {
+            let scope = Scope::new(&["x", "y", "z"]);
+            let component = |(i, v): (usize, Varying)| match v {
+                Varying::Number(value) => Ok(Component::Constant(finite(key, vec![value])?[0])),
+                Varying::Text(text) => {
+                    scope.expression(&text).map(Component::Varying).map_err(|e| e.under(format!("{key}[{i}]")))
+                }
+            };
+            v.into_iter().enumerate().map(component).collect()
+        };
         let mut actions = Vec::new();
         if let Some(v) = self.traction {
-            actions.push(Action::Traction(finite("traction", v)?));
+            actions.push(Action::Traction(varying("traction", v)?));
         }
         if let Some(v) = self.force {
             actions.push(Action::Force(finite("force", v)?));
         }
         if let Some(v) = self.body {
-            actions.push(Action::Body(finite("body", v)?));
+            actions.push(Action::Body(varying("body", v)?));
         }
         if let Some(v) = self.displacement {
             actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
@@ -317,50 +391,6 @@ impl LoadEntry {
         if part == Part::Everything && !matches!(action, Action::Body(_)) {
             return Err(Error::new("expected \"group\" or \"where\", found neither"));
         }
-        Ok(LoadCase { name, part, action })
-    }
-}
-
-impl<'de> Deserialize<'de> for Given {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Given, D::Error> {
-        struct GivenVisitor;
-        impl Visitor<'_> for GivenVisitor {
-            type Value = Given;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a finite number of metres or \"free\"")
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Given, E> {
-                Ok(Given(Some(v as f64)))
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Given, E> {
-                if v.is_finite() { Ok(Given(Some(v))) } else { Err(E::invalid_value(de::Unexpected::Float(v), &self)) }
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Given, E> {
-                if v == "free" { Ok(Given(None)) } else { Err(E::invalid_value(de::Unexpected::Str(v), &self)) }
-            }
-        }
-        deserializer.deserialize_any(GivenVisitor)
-    }
-}
-
-impl<'de> Deserialize<'de> for Pressure {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Pressure, D::Error> {
-        struct PressureVisitor;
-        impl Visitor<'_> for PressureVisitor {
-            type Value = Pressure;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number of Pa or a text such as \"10kPa\"")
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Pressure, E> {
-                Ok(Pressure(v as f64))
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Pressure, E> {
-                Ok(Pressure(v))
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Pressure, E> {
-                parse_pressure(v).map(Pressure).map_err(|e| E::custom(e.problem()))
-            }
-        }
-        deserializer.deserialize_any(PressureVisitor)
+        Ok(LoadCase { name, part, action, measured: self.measured })
     }
 }

@@ -3,12 +3,13 @@
 mod entry;
 mod recipe;
 mod sampled;
+mod value;
 mod whole;
 
-pub use entry::{BoxEntry, FitEntry, MeshInput, Output};
+pub use entry::{BoxEntry, FitEntry, MeasuredEntry, MeshInput, Output};
 pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
 pub use sampled::ShapesEntry;
-pub use whole::WholeRecipe;
+pub use whole::{Judge, Named, Sharing, Start, WholeRecipe};
 
 use crate::element::Element;
 use crate::error::{Error, Result};
@@ -31,6 +32,8 @@ pub struct Scene {
     pub mesh: MeshInput,
     material: MaterialEntry,
     pub fits: Vec<NamedFit>,
+    /// The place in the file of the `[[fit]]` of each.
+    pub entry_of: Vec<usize>,
     /// The parts that are held, and in which directions (all if absent).
     pub supports: Vec<(Part, Option<Vec<usize>>)>,
     pub loads: Vec<LoadCase>,
@@ -53,6 +56,8 @@ pub struct LoadCase {
     pub name: String,
     pub part: Part,
     pub action: Action,
+    /// Displacements that were measured under it.
+    pub measured: Option<MeasuredEntry>,
 }
 
 /// A part of the mesh as a scene names it; a condition is parsed once the mesh's dimension is known.
@@ -87,15 +92,17 @@ impl Scene {
             return Err(Error::expected("fit", "at least one [[fit]]", "none"));
         }
         entry.material.check()?;
-        let mut fits: Vec<NamedFit> = Vec::new();
+        let (mut fits, mut entry_of): (Vec<NamedFit>, Vec<usize>) = Default::default();
         let folder = path.parent().unwrap_or(Path::new(""));
         for (i, fit) in entry.fit.into_iter().enumerate() {
-            let fit = fit.check(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))?;
-            if fits.iter().any(|f| f.name == fit.name) {
-                let expected = "a name of its own";
-                return Err(Error::expected(format!("fit[{i}].name"), expected, format!("\"{}\" again", fit.name)));
+            for fit in fit.check(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))? {
+                if fits.iter().any(|f| f.name == fit.name) {
+                    let expected = "a name of its own";
+                    return Err(Error::expected(format!("fit[{i}].name"), expected, format!("\"{}\" again", fit.name)));
+                }
+                fits.push(fit);
+                entry_of.push(i);
             }
-            fits.push(fit);
         }
         let mut supports = Vec::new();
         for (i, fix) in entry.fix.into_iter().enumerate() {
@@ -114,7 +121,7 @@ impl Scene {
             return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
         }
         let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
-        for (i, fit) in fits.iter().enumerate() {
+        for (fit, i) in fits.iter().zip(&entry_of) {
             let unknown =
                 |key: &str, wanted: &[String]| match wanted.iter().find(|w| loads.iter().all(|l| l.name != **w)) {
                     Some(name) => {
@@ -124,21 +131,17 @@ impl Scene {
                     }
                     None => Ok(()),
                 };
-            match (&fit.recipe, &entry.material.law) {
-                (Recipe::Stiffness(_), _) => {}
-                (Recipe::Forces(_), None) => {
+            if let Some(recipe) = fit.recipe.sampled() {
+                if entry.material.law.is_none() {
                     let expected = format!("the energy whose forces fit[{i}] samples, such as \"neo-hookean\"");
                     return Err(Error::expected("material.law", expected, "none"));
                 }
-                (Recipe::Forces(recipe), Some(_)) => unknown("shapes.loads", &recipe.loads)?,
-                (Recipe::Whole(_), Some(_)) => {
-                    let problem =
-                        "the objective \"whole\" is known for small displacements, found a material with a law";
-                    return Err(Error::at(format!("fit[{i}].objective"), problem));
-                }
-                (Recipe::Whole(recipe), None) => {
-                    unknown("loads", &recipe.loads)?;
-                    unknown("validate", &recipe.validated)?;
+                unknown("shapes.loads", &recipe.loads)?;
+            }
+            if let Recipe::Whole(recipe) = &fit.recipe {
+                unknown("loads", &recipe.loads.names)?;
+                if let Judge::Loads(named) = &recipe.validation {
+                    unknown("validate", &named.names)?;
                 }
             }
         }
@@ -149,6 +152,7 @@ impl Scene {
             mesh,
             material: entry.material,
             fits,
+            entry_of,
             supports,
             loads,
             newton,

@@ -1,9 +1,9 @@
 //! What a fit of a scene is made from.
 
-use super::whole::WholeRecipe;
+use super::whole::{Start, WholeRecipe};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
-use crate::fit::{Fit, SampledFit, Solver, Source};
+use crate::fit::{Fit, Objective, SampledFit, Solver, Source, Weight};
 use crate::springs::{Force, Law, Springs};
 use std::sync::Arc;
 
@@ -111,7 +111,7 @@ impl ForceRecipe {
         }
     }
 
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         match self {
             ForceRecipe::Linear => String::new(),
             ForceRecipe::FreeRest => " free rest".into(),
@@ -140,6 +140,32 @@ impl SampledRecipe {
 }
 
 impl Recipe {
+    /// The sampled fit that it is or starts from.
+    pub fn sampled(&self) -> Option<&SampledRecipe> {
+        match self {
+            Recipe::Forces(recipe) => Some(recipe),
+            Recipe::Whole(recipe) => match &recipe.start {
+                Start::Sampled(recipe) => Some(recipe),
+                Start::Fit(_) | Start::Equal => None,
+            },
+            Recipe::Stiffness(_) => None,
+        }
+    }
+
+    /// The fit to stiffness at rest that it is or starts from.
+    pub fn at_rest(&self) -> Option<Fit> {
+        match self {
+            Recipe::Stiffness(fit) => Some(*fit),
+            Recipe::Whole(recipe) => match &recipe.start {
+                Start::Fit(fit) => Some(*fit),
+                // Its springs are what matters, not their constants.
+                Start::Equal => Some(Fit::new(Objective::Frobenius(Weight::None))),
+                Start::Sampled(_) => None,
+            },
+            Recipe::Forces(_) => None,
+        }
+    }
+
     /// What says how it is made, such as `modal 0.1 +bulk k>=0`.
     pub fn name(&self, springs: Option<&[String]>) -> String {
         let groups: String = springs.unwrap_or_default().iter().map(|group| format!(" +{group}")).collect();
@@ -151,7 +177,7 @@ impl Recipe {
                 };
                 (fit.objective.title() + &groups + &solver, fit.tied, fit.nonnegative)
             }
-            Recipe::Whole(recipe) => (format!("whole from {}{groups}", recipe.start.objective.title()), false, false),
+            Recipe::Whole(recipe) => (format!("whole from {}{groups}", recipe.start.title()), false, false),
             Recipe::Forces(recipe) => {
                 let name = format!("sampled{}{groups}", recipe.force.name());
                 (name, recipe.fit.tied, recipe.fit.nonnegative)

@@ -1,52 +1,212 @@
 //! The keys of a `[[fit]]` whose objective is "whole".
 
+use super::recipe::SampledRecipe;
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective};
-use crate::whole::WholeSettings;
+use crate::whole::{GaussNewton, Method, Residual, WholeSettings};
 
 /// A whole-object fit before the mesh is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WholeRecipe {
-    /// The constants it starts from; none is below zero.
-    pub start: Fit,
-    /// Loads of the scene that are fitted.
-    pub loads: Vec<String>,
-    /// Loads of the scene that choose the regularization.
-    pub validated: Vec<String>,
+    pub start: Start,
+    pub unknowns: Sharing,
+    /// Loads of the scene that are fitted, and whether those made from the mesh are.
+    pub loads: Named,
+    pub validation: Judge,
     pub settings: WholeSettings,
+    /// How many natural frequencies of the finite elements are fitted as well.
+    pub frequencies: usize,
+    /// Of the random loads.
+    pub seed: u64,
+}
+
+/// The constants it starts from; none is below zero.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Start {
+    Fit(Fit),
+    /// Large deformation.
+    Sampled(Box<SampledRecipe>),
+    /// One constant for all springs of a kind.
+    Equal,
+}
+
+/// What has a factor of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sharing {
+    #[default]
+    Spring,
+    Group,
+    Region,
+    Element,
+}
+
+/// Loads of the scene, and perhaps a set that is made from the mesh.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Named {
+    pub names: Vec<String>,
+    pub made: bool,
+}
+
+/// What chooses the regularization.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Judge {
+    Loads(Named),
+    LeaveOneOut,
+    /// Nothing: the last regularization is taken.
+    Given,
 }
 
 /// What only a whole-object fit has.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WholeEntry {
-    pub start: Option<String>,
     pub loads: Option<Vec<String>>,
     pub validate: Option<Vec<String>>,
+    pub unknowns: Option<String>,
+    pub residual: Option<String>,
+    pub regularization: Option<f64>,
+    pub frequencies: Option<usize>,
+    pub seed: Option<u64>,
+    pub solver: Option<String>,
+    pub iterations: Option<u64>,
+}
+
+/// What stands for the loads that are made from the mesh.
+pub const MADE: &str = "made";
+const LEAVE_ONE_OUT: &str = "leave-one-out";
+/// Pairs that L-BFGS remembers.
+const MEMORY: usize = 10;
+const SEED: u64 = 2010;
+
+impl Start {
+    /// # Errors
+    /// The name is no objective; `choices` are those of it.
+    pub fn named(name: &str, choices: Choices) -> Result<Start> {
+        if name == "equal" {
+            return Ok(Start::Equal);
+        }
+        let objective = Objective::named(name, choices).map_err(|e| match e.key() {
+            Some("objective") => {
+                let expected = format!("one of {}, sampled, equal", Objective::NAMES.join(", "));
+                Error::expected("start", expected, format!("\"{name}\""))
+            }
+            _ => e,
+        })?;
+        Ok(Start::Fit(Fit { nonnegative: true, ..Fit::new(objective) }))
+    }
+
+    pub fn title(&self) -> String {
+        match self {
+            Start::Fit(fit) => fit.objective.title(),
+            Start::Sampled(recipe) => format!("sampled{}", recipe.force.name()),
+            Start::Equal => "equal".into(),
+        }
+    }
+}
+
+impl Sharing {
+    pub const NAMES: [&'static str; 4] = ["spring", "group", "region", "element"];
+
+    pub fn name(self) -> &'static str {
+        Sharing::NAMES[self as usize]
+    }
+}
+
+impl Default for WholeRecipe {
+    fn default() -> WholeRecipe {
+        let start = Start::named("offdiag", Choices::default()).expect("this is an objective");
+        WholeEntry::default().check(start).expect("all keys have defaults")
+    }
+}
+
+impl Named {
+    fn new(names: Vec<String>) -> Named {
+        let made = names.iter().any(|name| name == MADE);
+        Named { names: names.into_iter().filter(|name| name != MADE).collect(), made }
+    }
+
+    /// In the words of the scene.
+    pub fn words(&self) -> Vec<String> {
+        let made = self.made.then(|| "loads made from the mesh".to_string());
+        self.names.iter().cloned().chain(made).collect()
+    }
 }
 
 impl WholeEntry {
-    /// `choices` are those of the objective at the start.
-    ///
     /// # Errors
-    /// No loads are named, or one of them twice, or the start is no objective.
-    pub fn check(self, choices: Choices, iterations: Option<u64>) -> Result<WholeRecipe> {
-        let objective = Objective::named(self.start.as_deref().unwrap_or("offdiag"), choices)
-            .map_err(|e| if e.key() == Some("objective") { Error::at("start", e.problem()) } else { e })?;
-        let loads = self.loads.filter(|loads| !loads.is_empty());
-        let loads = loads.ok_or_else(|| Error::expected("loads", "names of loads of the scene to fit", "none"))?;
-        let validated = self.validate.unwrap_or_default();
-        if let Some(name) = validated.iter().find(|name| loads.contains(name)) {
-            return Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\"")));
+    /// A value is unknown or out of range, or a load is fitted and validates as well.
+    pub fn check(self, start: Start) -> Result<WholeRecipe> {
+        let loads = self.loads.unwrap_or_else(|| vec![MADE.into()]);
+        if loads.is_empty() {
+            return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
         }
-        let mut settings = WholeSettings::default();
-        if validated.is_empty() {
-            // Nothing tells when to stop: not too far from the start.
-            settings.regularizations.retain(|rho| *rho >= 1e-4);
-        }
-        settings.iterations = iterations.unwrap_or(settings.iterations);
+        let settings = WholeSettings::default();
+        let mut settings = WholeSettings {
+            iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
+            method: match self.solver.as_deref().unwrap_or("gauss-newton") {
+                "gauss-newton" => Method::GaussNewton(GaussNewton::default()),
+                "l-bfgs" => Method::Lbfgs { memory: MEMORY },
+                other => {
+                    let expected = "\"gauss-newton\" or \"l-bfgs\" with the objective \"whole\"";
+                    return Err(Error::expected("solver", expected, format!("\"{other}\"")));
+                }
+            },
+            residual: match self.residual.as_deref().unwrap_or("displacements") {
+                "displacements" => Residual::Displacements,
+                "forces" => Residual::Forces,
+                "forces-first" => Residual::ForcesFirst,
+                other => {
+                    let expected = "\"displacements\", \"forces\" or \"forces-first\"";
+                    return Err(Error::expected("residual", expected, format!("\"{other}\"")));
+                }
+            },
+            ..settings
+        };
         if settings.iterations == 0 {
             return Err(Error::expected("iterations", "a number above 0", 0));
         }
-        Ok(WholeRecipe { start: Fit { nonnegative: true, ..Fit::new(objective) }, loads, validated, settings })
+        let validation = match (self.validate, self.regularization) {
+            (Some(_), Some(_)) => {
+                return Err(Error::at("regularization", "is chosen by \"validate\" or given, found both"));
+            }
+            (None, Some(rho)) if !(rho >= 0.0 && rho.is_finite()) => {
+                return Err(Error::expected("regularization", "a number of at least 0", rho));
+            }
+            (None, Some(rho)) => {
+                settings.regularizations.retain(|larger| *larger > rho);
+                settings.regularizations.push(rho);
+                Judge::Given
+            }
+            (None, None) => Judge::Loads(Named::new(vec![MADE.into()])),
+            (Some(names), None) if names == [LEAVE_ONE_OUT] => Judge::LeaveOneOut,
+            (Some(names), None) => {
+                if names.is_empty() {
+                    let expected = "names of loads of the scene, \"made\", or \"leave-one-out\" alone";
+                    return Err(Error::expected("validate", expected, "none"));
+                }
+                if let Some(name) = names.iter().find(|name| *name != MADE && loads.contains(name)) {
+                    return Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\"")));
+                }
+                Judge::Loads(Named::new(names))
+            }
+        };
+        let unknowns = match self.unknowns.as_deref().unwrap_or("spring") {
+            "spring" => Sharing::Spring,
+            "group" => Sharing::Group,
+            "region" => Sharing::Region,
+            "element" => Sharing::Element,
+            other => {
+                let expected = format!("one of {}", Sharing::NAMES.join(", "));
+                return Err(Error::expected("unknowns", expected, format!("\"{other}\"")));
+            }
+        };
+        Ok(WholeRecipe {
+            start,
+            unknowns,
+            loads: Named::new(loads),
+            validation,
+            settings,
+            frequencies: self.frequencies.unwrap_or(0),
+            seed: self.seed.unwrap_or(SEED),
+        })
     }
 }

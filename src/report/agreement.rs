@@ -1,0 +1,48 @@
+//! Whether whole-object fits from several starts come to the same.
+
+use crate::study::{FitOutcome, Judge, Outcome, Recipe, Start, WholeRecipe};
+
+/// Whole-object fits that differ in their start alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    pub fits: Vec<String>,
+    /// The held-out load under which the errors differ most, and by which share of the least of them.
+    pub load: String,
+    pub difference: f64,
+}
+
+/// Up to this share they are said to agree.
+pub const SAME: f64 = 0.2;
+
+/// The fits of a scene from several starts.
+pub fn agreements(outcome: &Outcome) -> Vec<Agreement> {
+    let mut families: Vec<(WholeRecipe, Vec<&FitOutcome>)> = Vec::new();
+    for fit in &outcome.fits {
+        let Recipe::Whole(recipe) = &fit.fit.recipe else { continue };
+        let recipe = WholeRecipe { start: Start::Equal, ..WholeRecipe::clone(recipe) };
+        match families.iter_mut().find(|(known, fits)| *known == recipe && fits[0].fit.springs == fit.fit.springs) {
+            Some((_, fits)) => fits.push(fit),
+            None => families.push((recipe, vec![fit])),
+        }
+    }
+    families.iter().filter(|(_, fits)| fits.len() > 1).filter_map(|(recipe, fits)| agreement(recipe, fits)).collect()
+}
+
+fn agreement(recipe: &WholeRecipe, fits: &[&FitOutcome]) -> Option<Agreement> {
+    let validated = match &recipe.validation {
+        Judge::Loads(named) => &named.names[..],
+        Judge::LeaveOneOut | Judge::Given => &[],
+    };
+    let difference = |l: usize| {
+        let errors: Option<Vec<f64>> = fits.iter().map(|fit| fit.loads[l].error.map(|e| e.rms)).collect();
+        let (least, largest) = errors?.into_iter().fold((f64::MAX, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
+        Some((fits[0].loads[l].name.clone(), largest / least - 1.0))
+    };
+    let held_out = |l: &usize| {
+        let name = &fits[0].loads[*l].name;
+        !recipe.loads.names.contains(name) && !validated.contains(name)
+    };
+    let differences = (0..fits[0].loads.len()).filter(held_out).filter_map(difference);
+    let (load, difference) = differences.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Agreement { fits: fits.iter().map(|fit| fit.fit.name.clone()).collect(), load, difference })
+}

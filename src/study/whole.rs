@@ -1,0 +1,184 @@
+//! Whole-object fits of a scene: what they are to meet, and what came out.
+
+use super::cases::Case;
+use super::checkpoint::{Controls, Saved};
+use super::outcome::WholeOutcome;
+use super::run::Progress;
+use super::scene::{Judge, Named, NamedFit, Sharing, Start, WholeRecipe};
+use crate::error::{Error, Result};
+use crate::fit::CellFits;
+use crate::material::Material;
+use crate::mesh::Mesh;
+use crate::model::{Entries, Network, Support, finite_elements, unheld_bodies};
+use crate::solve::{Newton, System, lowest_modes};
+use crate::whole::{
+    Displacements, Frequencies, NodalLoad, Object, Snapshot, Target, Unknowns, Validation, Wanted, WholeFit, fit_whole,
+    made_loads, random_loads,
+};
+use std::sync::OnceLock;
+
+/// How many random loads choose the regularization.
+const RANDOM: usize = 4;
+
+/// The body that whole-object fits of a scene are fitted to.
+pub struct WholeBody<'a> {
+    mesh: &'a Mesh,
+    material: Material,
+    /// What `[[fix]]` holds.
+    support: &'a Support,
+    pub(super) cases: &'a [Case],
+    /// Of the finite elements, one per case; `None` where the load was not reached.
+    pub(super) displacements: Vec<Option<&'a Vec<f64>>>,
+    /// At large deformation.
+    pub(super) newton: Option<Newton>,
+    /// `[points]`, kg.
+    pub masses: Option<&'a [f64]>,
+    controls: &'a Controls,
+    entries: OnceLock<Entries>,
+}
+
+impl<'a> WholeBody<'a> {
+    /// At small deformation, without loads of its own.
+    pub fn new(mesh: &'a Mesh, material: Material, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
+        let (cases, displacements, newton, masses, entries) = Default::default();
+        WholeBody { mesh, material, support, cases, displacements, newton, masses, controls, entries }
+    }
+
+    /// The stiffness of the finite elements at rest.
+    fn entries(&self) -> &Entries {
+        self.entries.get_or_init(|| finite_elements(self.mesh, self.material.moduli()))
+    }
+
+    fn targets(&self, key: &str, named: &Named, make: impl Fn() -> Vec<NodalLoad>) -> Result<Vec<Target>> {
+        let mut targets = Vec::new();
+        for (case, displacement) in self.cases.iter().zip(&self.displacements) {
+            if !named.names.contains(&case.name) {
+                continue;
+            }
+            let (displacement, weights) = match (&case.measured, displacement) {
+                (Some(field), _) => field.displacements.iter().map(|u| u.map_or((0.0, 0.0), |u| (u, 1.0))).unzip(),
+                (None, Some(u)) => (u.to_vec(), vec![1.0; u.len()]),
+                (None, None) => {
+                    let expected = "loads that the finite elements reach";
+                    return Err(Error::expected(key, expected, format!("\"{}\"", case.name)));
+                }
+            };
+            let (name, support, forces) = (case.name.clone(), case.support.clone(), case.forces.clone());
+            targets.push(Target { name, support, forces, displacement, weights, weight: 1.0 });
+        }
+        if !named.made {
+            return Ok(targets);
+        }
+        if self.newton.is_some() {
+            let expected = "loads of the scene, where the material has a law";
+            return Err(Error::expected(key, expected, "\"made\""));
+        }
+        let system = self.held_system(key)?;
+        let factor = system.cholesky().ok_or_else(|| Error::new("the finite elements do not stand"))?;
+        for load in make() {
+            let displacement = system.solve(&factor, &load.forces).0;
+            let weights = vec![1.0; displacement.len()];
+            let support = self.support.clone();
+            targets.push(Target { name: load.name, support, forces: load.forces, displacement, weights, weight: 1.0 });
+        }
+        Ok(targets)
+    }
+
+    /// The equations with what `[[fix]]` holds; the key is what needs them.
+    fn held_system(&self, key: &str) -> Result<System> {
+        if let Some(body) = unheld_bodies(self.mesh, self.support).first() {
+            let expected = "supports in [[fix]] that hold every body, whatever the loads hold";
+            let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
+            return Err(Error::expected(key, expected, found));
+        }
+        System::new(self.entries(), self.support)
+    }
+
+    fn frequencies(&self, count: usize) -> Result<Option<Frequencies>> {
+        if count == 0 {
+            return Ok(None);
+        }
+        let missing = || Error::expected("frequencies", "a density in [material]", "none");
+        let masses = self.masses.ok_or_else(missing)?.to_vec();
+        let system = self.held_system("frequencies")?;
+        let factor = system.cholesky().ok_or_else(|| Error::new("the finite elements do not stand"))?;
+        let modes = lowest_modes(&system, &factor, &masses, self.mesh.dimension, count)
+            .map_err(|e| Error::at("frequencies", e.problem()))?;
+        // As much as one load in all.
+        let weight = 1.0 / count as f64;
+        Ok(Some(Frequencies { support: self.support.clone(), masses, squares: modes.squares, weight }))
+    }
+
+    fn wanted(&self, recipe: &WholeRecipe) -> Result<Wanted> {
+        let thickness = self.material.thickness();
+        let trained = self.targets("loads", &recipe.loads, || made_loads(self.mesh, self.support, thickness))?;
+        let validation = match &recipe.validation {
+            Judge::Given => Validation::None,
+            Judge::LeaveOneOut => Validation::LeaveOneOut,
+            Judge::Loads(named) => Validation::Loads(self.targets("validate", named, || {
+                random_loads(self.mesh, self.support, thickness, RANDOM, recipe.seed)
+            })?),
+        };
+        let frequencies = self.frequencies(recipe.frequencies)?;
+        Ok(Wanted { trained, validation, frequencies, body: Some(self.entries().clone()) })
+    }
+
+    /// Fits the constants of `network`, which was assembled from `fits`.
+    pub(super) fn fit(
+        &self,
+        named: &NamedFit,
+        recipe: &WholeRecipe,
+        fits: &[CellFits],
+        network: &Network,
+        progress: &mut Progress,
+    ) -> Result<WholeFit> {
+        let (mut saved, snapshot) = Saved::open(self.controls, named, network)?;
+        let wanted = self.wanted(recipe)?;
+        let unknowns = match recipe.unknowns {
+            Sharing::Spring => Unknowns::per_spring(network),
+            Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
+            Sharing::Region => Unknowns::per_region(self.mesh, fits, network)?,
+            Sharing::Element => Unknowns::per_element(self.mesh, fits, network)?,
+        };
+        let mut object = Object::new(network, &self.mesh.points, unknowns, self.newton)?;
+        if recipe.start == Start::Equal {
+            object = object.alike();
+            let theta = vec![0.0; object.unknowns().count()];
+            let problem = Displacements::new(&object, wanted.trained.iter().collect(), None)?;
+            let factor = problem.best_factor(&theta)?.unwrap_or(1.0);
+            object = object.scaled(factor);
+        }
+        let mut kept = Ok(());
+        let stages = recipe.settings.regularizations.len();
+        let mut watch = |snapshot: Option<&Snapshot>| {
+            progress(&named.name, snapshot.map_or(0, |snapshot| snapshot.stage), stages);
+            let ends = self.controls.cancelled();
+            if let (Some(snapshot), Ok(())) = (snapshot, &kept) {
+                kept = saved.keep(snapshot, ends || snapshot.stage == stages);
+            }
+            !ends && kept.is_ok()
+        };
+        let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch)?;
+        kept.map(|()| found)
+    }
+}
+
+impl WholeOutcome {
+    pub(super) fn of(recipe: &WholeRecipe, found: &WholeFit) -> WholeOutcome {
+        WholeOutcome {
+            loads: recipe.loads.words(),
+            validated: match &recipe.validation {
+                Judge::Loads(named) => named.words(),
+                Judge::LeaveOneOut => vec!["each of these, left out".into()],
+                Judge::Given => Vec::new(),
+            },
+            regularization: found.regularization,
+            trained: found.trained.clone(),
+            judged: found.validated.clone(),
+            change: found.change,
+            range: found.range,
+            steps: found.steps,
+            cancelled: found.cancelled,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Forces that are out of balance at the displacements that are wanted.
+
+use super::displacements::Displacements;
+use super::gradients::SpringGradients;
+use super::linearized::{LeastSquares, Linearized, Tangent};
+use super::object::Object;
+use super::target::Target;
+use crate::error::{Error, Result};
+use crate::model::{Entries, displaced};
+use crate::solve::System;
+use std::sync::Arc;
+
+/// `r_l = √w_l R⁻¹ (f_l − F(ū_l; θ))/‖ū_l‖`, R the stiffness of the finite elements at rest: linear in the constants, so that the
+/// sum of squares without regularization has one minimum only.
+#[derive(Debug)]
+pub struct Balance<'a> {
+    object: &'a Object<'a>,
+    scales: Vec<Vec<f64>>,
+    targets: Vec<&'a Target>,
+    /// With the pulls of the springs at the displacements that are wanted.
+    tangents: Vec<Tangent>,
+}
+
+impl<'a> Balance<'a> {
+    /// `body` is the stiffness of the finite elements.
+    ///
+    /// # Errors
+    /// It is not positive definite, a load moves nothing, or a displacement is not known of every point.
+    pub fn new(object: &'a Object<'a>, targets: Vec<&'a Target>, body: &Entries) -> Result<Balance<'a>> {
+        let displacements = Displacements::new(object, targets, None)?;
+        let Displacements { targets, scales, groups, .. } = displacements;
+        if let Some(target) = targets.iter().find(|target| target.weights.contains(&0.0)) {
+            let expected = "loads whose displacements are known at every point, for the residual of forces";
+            return Err(Error::expected("loads", expected, format!("\"{}\"", target.name)));
+        }
+        let mut all = Vec::new();
+        for group in groups {
+            let system = System::new(body, &targets[group[0]].support)?;
+            let factor = system.cholesky().ok_or_else(|| Error::new("the finite elements do not stand"))?;
+            let (system, factor) = (Arc::new(system), Arc::new(factor));
+            if object.newton.is_none() {
+                let loads = group.iter().map(|&l| (l, Arc::new(object.pulls(&targets[l].displacement)))).collect();
+                all.push(Tangent { system, factor, gradients: object.gradients.clone(), loads });
+                continue;
+            }
+            for l in group {
+                let (gradients, pulls) =
+                    SpringGradients::at(&object.network, &displaced(object.points, &targets[l].displacement));
+                let (system, factor) = (system.clone(), factor.clone());
+                let loads = vec![(l, Arc::new(pulls))];
+                all.push(Tangent { system, factor, gradients: Arc::new(gradients), loads });
+            }
+        }
+        Ok(Balance { object, scales, targets, tangents: all })
+    }
+}
+
+impl LeastSquares for Balance<'_> {
+    fn unknowns(&self) -> usize {
+        self.object.unknowns.count()
+    }
+
+    fn at(&self, theta: &[f64]) -> Result<Option<Linearized<'_>>> {
+        let factors = self.object.unknowns.factors(theta);
+        let mut residuals = vec![Vec::new(); self.targets.len()];
+        for tangent in &self.tangents {
+            let rest = |(l, pulls): &(usize, Arc<Vec<f64>>)| {
+                let pulls = pulls.iter().zip(&factors).map(|(pull, c)| -pull * c);
+                let mut rest = tangent.gradients.sum(pulls, self.scales[*l].len());
+                rest.iter_mut().zip(&self.targets[*l].forces).for_each(|(r, f)| *r += f);
+                rest
+            };
+            let forces: Vec<Vec<f64>> = tangent.loads.iter().map(rest).collect();
+            for ((l, _), mut r) in tangent.loads.iter().zip(tangent.system.respond_all(&tangent.factor, &forces)) {
+                r.iter_mut().zip(&self.scales[*l]).for_each(|(r, s)| *r *= s);
+                residuals[*l] = r;
+            }
+        }
+        let tangents = self.tangents.clone();
+        let (unknowns, scales) = (&self.object.unknowns, &self.scales[..]);
+        Ok(Some(Linearized { residuals, theta: theta.to_vec(), unknowns, tangents, scales, rows: Vec::new() }))
+    }
+}

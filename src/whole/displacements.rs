@@ -1,0 +1,209 @@
+//! Distances of the network's displacements and frequencies from those that are wanted.
+
+use super::gradients::SpringGradients;
+use super::linearized::{LeastSquares, Linearized, Tangent};
+use super::object::Object;
+use super::target::{Frequencies, Target};
+use crate::error::{Error, Result};
+use crate::model::{Elastic, Entries, Network, Support, displaced};
+use crate::solve::{Factor, System, lowest_modes};
+use rayon::prelude::*;
+use std::sync::{Arc, Mutex};
+
+/// `r_l = √w_l (u_l(θ) − ū_l)/‖ū_l‖` of some loads, and `½ √w_ω ln(ω_i²/ω̄_i²)` of some frequencies.
+#[derive(Debug)]
+pub struct Displacements<'a> {
+    object: &'a Object<'a>,
+    pub(super) targets: Vec<&'a Target>,
+    frequencies: Option<&'a Frequencies>,
+    pub(super) scales: Vec<Vec<f64>>,
+    /// Loads of equal support.
+    pub(super) groups: Vec<Vec<usize>>,
+    /// The equations of each group, whose pattern stays.
+    systems: Mutex<Vec<Option<System>>>,
+    /// Where the next search for an equilibrium begins.
+    guesses: Mutex<Vec<Option<Vec<f64>>>>,
+}
+
+/// Relative errors of a network.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Errors {
+    /// `‖u_l − ū_l‖_W/‖ū_l‖_W` of each load.
+    pub loads: Vec<f64>,
+    /// `ω_i/ω̄_i − 1`.
+    pub frequencies: Vec<f64>,
+}
+
+impl<'a> Displacements<'a> {
+    /// # Errors
+    /// A load moves nothing.
+    pub fn new(
+        object: &'a Object<'a>,
+        targets: Vec<&'a Target>,
+        frequencies: Option<&'a Frequencies>,
+    ) -> Result<Displacements<'a>> {
+        for target in &targets {
+            if !(target.size() > 0.0) {
+                let expected = "loads under which something moves";
+                return Err(Error::expected("loads", expected, format!("\"{}\"", target.name)));
+            }
+        }
+        let scales = targets.iter().map(|target| target.scale()).collect();
+        let guesses = Mutex::new(vec![None; targets.len()]);
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (index, target) in targets.iter().enumerate() {
+            match groups.iter_mut().find(|group| targets[group[0]].support == target.support) {
+                Some(group) => group.push(index),
+                None => groups.push(vec![index]),
+            }
+        }
+        // The last group is that of the frequencies.
+        let systems = Mutex::new(vec![None; groups.len() + 1]);
+        Ok(Displacements { object, targets, frequencies, scales, groups, systems, guesses })
+    }
+
+    /// How far the displacements and frequencies are off at θ; `None` where the network does not stand.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn errors(&self, theta: &[f64]) -> Result<Option<Errors>> {
+        let Some(at) = self.at(theta)? else { return Ok(None) };
+        let (loads, rest) = at.residuals.split_at(self.targets.len());
+        let error = |(r, t): (&Vec<f64>, &&Target)| (r.iter().map(|r| r * r).sum::<f64>() / t.weight).sqrt();
+        let root = self.frequencies.map_or(1.0, |f| f.weight.sqrt());
+        Ok(Some(Errors {
+            loads: loads.iter().zip(&self.targets).map(error).collect(),
+            frequencies: rest.iter().flatten().map(|r| (r / root).exp() - 1.0).collect(),
+        }))
+    }
+
+    /// The factor on all constants that brings the displacements at small loads nearest to those wanted: `u ∝ 1/α`.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn best_factor(&self, theta: &[f64]) -> Result<Option<f64>> {
+        let Some(at) = self.at(theta)? else { return Ok(None) };
+        let (mut own, mut both) = (0.0, 0.0);
+        for ((target, scale), r) in self.targets.iter().zip(&self.scales).zip(&at.residuals) {
+            for ((wanted, s), r) in target.displacement.iter().zip(scale).zip(r) {
+                let u = r + s * wanted;
+                own += u * u;
+                both += u * s * wanted;
+            }
+        }
+        Ok(Some(own / both).filter(|alpha| *alpha > 0.0 && alpha.is_finite()))
+    }
+
+    /// The stiffness with the springs at rest, factorised for each support; `None` where it is not positive definite.
+    fn factorize(
+        &self,
+        group: usize,
+        entries: &Entries,
+        support: &Support,
+    ) -> Result<Option<(Arc<System>, Arc<Factor>)>> {
+        let known = self.systems.lock().expect("nothing panics while it holds the systems")[group].take();
+        let system = match known {
+            Some(known) => known.renewed(entries, support)?,
+            None => System::new(entries, support)?,
+        };
+        let factor = system.cholesky();
+        self.systems.lock().expect("nothing panics while it holds the systems")[group] = Some(system.clone());
+        Ok(factor.map(|factor| (Arc::new(system), Arc::new(factor))))
+    }
+
+    /// Displacements of every load, and the tangents at them.
+    fn small(&self, entries: &Entries) -> Result<Option<(Vec<Vec<f64>>, Vec<Tangent>)>> {
+        let mut displacements = vec![Vec::new(); self.targets.len()];
+        let mut tangents = Vec::new();
+        for (index, group) in self.groups.iter().enumerate() {
+            let support = &self.targets[group[0]].support;
+            let Some((system, factor)) = self.factorize(index, entries, support)? else { return Ok(None) };
+            let forces: Vec<Vec<f64>> = group.iter().map(|&l| self.targets[l].forces.clone()).collect();
+            let gradients = &self.object.gradients;
+            let mut loads = Vec::new();
+            for (&l, u) in group.iter().zip(system.solve_all(&factor, &forces)) {
+                loads.push((l, Arc::new(self.object.pulls(&u))));
+                displacements[l] = u;
+            }
+            tangents.push(Tangent { system, factor, gradients: gradients.clone(), loads });
+        }
+        Ok(Some((displacements, tangents)))
+    }
+
+    /// The same at large displacements; each load has a tangent of its own.
+    fn large(&self, network: &Network) -> Result<Option<(Vec<Vec<f64>>, Vec<Tangent>)>> {
+        let newton = self.object.newton.expect("this is called at large displacements only");
+        let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
+        let points = self.object.points;
+        let one = |(l, target): (usize, &&Target)| -> Result<Option<(Vec<f64>, Tangent)>> {
+            let near = match &guesses[l] {
+                Some(guess) => newton.settle(network, points, &target.support, &target.forces, guess)?,
+                None => None,
+            };
+            let u = match near {
+                Some(u) => u,
+                None => {
+                    let found = newton.solve(network, points, &target.support, &target.forces)?;
+                    if found.load < 1.0 {
+                        return Ok(None);
+                    }
+                    found.displacement
+                }
+            };
+            let x = displaced(points, &u);
+            let Some(response) = network.respond(&x) else { return Ok(None) };
+            let system = System::new(&response.tangent, &target.support)?;
+            let Some(factor) = system.cholesky() else { return Ok(None) };
+            let (gradients, pulls) = SpringGradients::at(&self.object.network, &x);
+            let (system, factor, gradients) = (Arc::new(system), Arc::new(factor), Arc::new(gradients));
+            Ok(Some((u, Tangent { system, factor, gradients, loads: vec![(l, Arc::new(pulls))] })))
+        };
+        let found: Result<Vec<_>> = self.targets.par_iter().enumerate().map(one).collect();
+        let Some(found) = found?.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
+        let (displacements, tangents): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let mut guesses = self.guesses.lock().expect("nothing panics while it holds the guesses");
+        guesses.iter_mut().zip(&displacements).for_each(|(guess, u)| *guess = Some(u.clone()));
+        Ok(Some((displacements, tangents)))
+    }
+
+    /// Residuals of the frequencies and `∂/∂c_s = ½ √w T⁰_s (∇c_s·φ_i)²/ω_i²` of each.
+    fn vibrations(&self, entries: &Entries) -> Result<Option<(Vec<f64>, Vec<Vec<f64>>)>> {
+        let Some(wanted) = self.frequencies else { return Ok(Some((Vec::new(), Vec::new()))) };
+        let (object, count) = (self.object, wanted.squares.len());
+        let Some((system, factor)) = self.factorize(self.groups.len(), entries, &wanted.support)? else {
+            return Ok(None);
+        };
+        let modes = lowest_modes(&system, &factor, &wanted.masses, object.network.dimension, count)?;
+        let root = 0.5 * wanted.weight.sqrt();
+        let residuals = modes.squares.iter().zip(&wanted.squares).map(|(a, b)| root * (a / b).ln()).collect();
+        let row = |(square, shape): (&f64, &Vec<f64>)| {
+            let energies = object.gradients.along(shape).zip(object.slopes());
+            energies.map(|(along, slope)| root * slope * along * along / square).collect()
+        };
+        Ok(Some((residuals, modes.squares.iter().zip(&modes.shapes).map(row).collect())))
+    }
+}
+
+impl LeastSquares for Displacements<'_> {
+    fn unknowns(&self) -> usize {
+        self.object.unknowns.count()
+    }
+
+    fn at(&self, theta: &[f64]) -> Result<Option<Linearized<'_>>> {
+        let network = self.object.network(theta);
+        let small = self.object.newton.is_none();
+        let entries =
+            if small || self.frequencies.is_some() { network.stiffness(self.object.points) } else { Entries::new() };
+        let found = if small { self.small(&entries)? } else { self.large(&network)? };
+        let Some((displacements, tangents)) = found else { return Ok(None) };
+        let residual = |(l, u): (usize, Vec<f64>)| {
+            let lack = u.iter().zip(&self.targets[l].displacement).zip(&self.scales[l]);
+            lack.map(|((u, wanted), s)| s * (u - wanted)).collect()
+        };
+        let mut residuals: Vec<Vec<f64>> = displacements.into_iter().enumerate().map(residual).collect();
+        let Some((lacks, rows)) = self.vibrations(&entries)? else { return Ok(None) };
+        residuals.extend((!rows.is_empty()).then_some(lacks));
+        let (unknowns, scales) = (&self.object.unknowns, &self.scales[..]);
+        Ok(Some(Linearized { residuals, theta: theta.to_vec(), unknowns, tangents, scales, rows }))
+    }
+}

@@ -1,0 +1,119 @@
+//! Gauss and Newton's method without matrices: conjugate gradients on the linearized residuals within a trust region.
+
+use super::linearized::{LeastSquares, Linearized};
+use crate::error::Result;
+
+/// How the Gauss–Newton steps are made (Nocedal and Wright 2006, algorithms 4.1 and 7.2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaussNewton {
+    /// Products with the Jacobian and its transpose for one step.
+    pub products: usize,
+    /// Of the residual of the linear equations, where a step is good enough.
+    pub accuracy: f64,
+    /// It ends where a step lowers the objective by a smaller share.
+    pub decrease: f64,
+}
+
+impl Default for GaussNewton {
+    fn default() -> GaussNewton {
+        GaussNewton { products: 40, accuracy: 0.1, decrease: 1e-2 }
+    }
+}
+
+/// First radius of the trust region: the root mean square of a step, in logarithms.
+const RADIUS: f64 = 1.0;
+/// Smaller ones end the search.
+const LEAST_RADIUS: f64 = 1e-6;
+/// The share of the decrease that the linearized residuals promise which a step must bring.
+const ACCEPTED: f64 = 1e-3;
+
+impl GaussNewton {
+    /// Goes down from θ in at most `iterations` steps; returns the lowest point. `visit` is told each point and may end the search
+    /// by returning false.
+    pub(super) fn descend(
+        &self,
+        problem: &dyn LeastSquares,
+        rho: f64,
+        theta: &[f64],
+        iterations: usize,
+        visit: &mut dyn FnMut(&[f64], f64) -> bool,
+    ) -> Result<Vec<f64>> {
+        let mut theta = theta.to_vec();
+        let Some(mut now) = problem.at(&theta)? else { return Ok(theta) };
+        let (mut value, mut gradient) = now.objective(rho);
+        let root = (theta.len().max(1) as f64).sqrt();
+        let mut radius = RADIUS * root;
+        for _ in 0..iterations {
+            let (lowered, found) = loop {
+                let (step, promised) = self.step(&now, rho, &gradient, radius);
+                let length = dot(&step, &step).sqrt();
+                let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + s).collect();
+                let next = problem.at(&tried)?;
+                let share = rho / root.powi(2);
+                let after = next.as_ref().map(|next| next.square() + share * dot(&tried, &tried));
+                let after = after.filter(|after| after.is_finite()).unwrap_or(f64::INFINITY);
+                let kept = (value - after) / promised;
+                if kept < 0.25 {
+                    radius = 0.25 * length;
+                } else if kept > 0.75 && length > 0.99 * radius {
+                    radius *= 2.0;
+                }
+                match next.filter(|_| kept > ACCEPTED) {
+                    Some(next) => break (value - after, Some((tried, next))),
+                    None if !(radius > LEAST_RADIUS * root) => break (0.0, None),
+                    None => {}
+                }
+            };
+            let Some((tried, next)) = found else { break };
+            (theta, now) = (tried, next);
+            let enough = lowered <= self.decrease * value;
+            (value, gradient) = now.objective(rho);
+            if !visit(&theta, value) || enough {
+                break;
+            }
+        }
+        Ok(theta)
+    }
+
+    /// A step towards the least of `gᵀd + dᵀ(JᵀJ + ρ/m)d` with `‖d‖ ≤ radius`, and how much it promises (Steihaug 1983).
+    fn step(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> (Vec<f64>, f64) {
+        let share = rho / gradient.len().max(1) as f64;
+        let mut step = vec![0.0; gradient.len()];
+        let mut residual: Vec<f64> = gradient.iter().map(|g| -0.5 * g).collect();
+        let mut direction = residual.clone();
+        let mut square = dot(&residual, &residual);
+        let (first, mut promised) = (square, 0.0);
+        for _ in 0..self.products {
+            if !(square > self.accuracy * self.accuracy * first) {
+                break;
+            }
+            let moved = at.forward(&direction);
+            let curvature = moved.iter().flatten().map(|r| r * r).sum::<f64>() + share * dot(&direction, &direction);
+            let mut length = square / curvature;
+            // How far to the edge of the trust region.
+            let (a, b, c) = (dot(&direction, &direction), dot(&step, &direction), dot(&step, &step) - radius * radius);
+            let edge = ((b * b - a * c).max(0.0).sqrt() - b) / a;
+            let ends = !(length < edge);
+            if ends {
+                length = edge;
+            }
+            promised += 2.0 * length * square - length * length * curvature;
+            step.iter_mut().zip(&direction).for_each(|(s, d)| *s += length * d);
+            if ends {
+                break;
+            }
+            let back = at.adjoint(&moved);
+            for ((r, b), d) in residual.iter_mut().zip(&back).zip(&direction) {
+                *r -= length * (b + share * d);
+            }
+            let next = dot(&residual, &residual);
+            direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + next / square * *d);
+            square = next;
+        }
+        (step, promised)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,100 @@
+//! Residuals of a whole-object fit at one point, and products with their Jacobian by solves with one factor.
+
+use super::gradients::SpringGradients;
+use super::unknowns::Unknowns;
+use crate::error::Result;
+use crate::solve::{Factor, System};
+use std::sync::Arc;
+
+/// A sum of squares to be made small.
+pub trait LeastSquares {
+    /// How many θ there are.
+    fn unknowns(&self) -> usize;
+
+    /// The residuals at θ; `None` where there are none, as where the network does not stand.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    fn at(&self, theta: &[f64]) -> Result<Option<Linearized<'_>>>;
+}
+
+/// Residual vectors `r_l = s_l ∘ (u_l − ū_l)`, one per load, then one of frequencies, with
+/// `∂r_l/∂c = −s_l ∘ K⁻¹ Σ_s T_sl ∇c_s`, c the factors on the springs and T_sl how hard spring s pulls at factor 1.
+#[derive(Debug)]
+pub struct Linearized<'a> {
+    pub residuals: Vec<Vec<f64>>,
+    pub(super) theta: Vec<f64>,
+    pub(super) unknowns: &'a Unknowns,
+    pub(super) tangents: Vec<Tangent>,
+    /// s_l: of each load, on its degrees of freedom.
+    pub(super) scales: &'a [Vec<f64>],
+    /// Of the residuals of frequencies, by every factor.
+    pub(super) rows: Vec<Vec<f64>>,
+}
+
+/// Loads that share a factor.
+#[derive(Debug, Clone)]
+pub(super) struct Tangent {
+    pub system: Arc<System>,
+    pub factor: Arc<Factor>,
+    pub gradients: Arc<SpringGradients>,
+    /// Index of each load, and its T_sl, `[springs]`.
+    pub loads: Vec<(usize, Arc<Vec<f64>>)>,
+}
+
+impl Linearized<'_> {
+    /// `Σ ‖r_l‖²`.
+    pub fn square(&self) -> f64 {
+        self.residuals.iter().flatten().map(|r| r * r).sum()
+    }
+
+    /// `J v`.
+    pub fn forward(&self, v: &[f64]) -> Vec<Vec<f64>> {
+        let change = self.unknowns.forward(&self.theta, v);
+        let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
+        for tangent in &self.tangents {
+            let force = |(load, pulls): &(usize, Arc<Vec<f64>>)| {
+                let along = pulls.iter().zip(&change).map(|(pull, c)| -pull * c);
+                tangent.gradients.sum(along, self.scales[*load].len())
+            };
+            let forces: Vec<Vec<f64>> = tangent.loads.iter().map(force).collect();
+            let moves = tangent.system.respond_all(&tangent.factor, &forces);
+            for ((load, _), mut u) in tangent.loads.iter().zip(moves) {
+                u.iter_mut().zip(&self.scales[*load]).for_each(|(u, s)| *u *= s);
+                all[*load] = u;
+            }
+        }
+        if let Some(last) = all.last_mut().filter(|_| !self.rows.is_empty()) {
+            *last = self.rows.iter().map(|row| row.iter().zip(&change).map(|(a, c)| a * c).sum()).collect();
+        }
+        all
+    }
+
+    /// `Jᵀ w`, by one adjoint solve per load.
+    pub fn adjoint(&self, w: &[Vec<f64>]) -> Vec<f64> {
+        let mut total = vec![0.0; self.unknowns.springs()];
+        for tangent in &self.tangents {
+            let pull = |(load, _): &(usize, Arc<Vec<f64>>)| {
+                w[*load].iter().zip(&self.scales[*load]).map(|(w, s)| w * s).collect()
+            };
+            let pulls: Vec<Vec<f64>> = tangent.loads.iter().map(pull).collect();
+            let adjoints = tangent.system.respond_all(&tangent.factor, &pulls);
+            for ((_, pulls), adjoint) in tangent.loads.iter().zip(&adjoints) {
+                let along = tangent.gradients.along(adjoint).zip(pulls.iter());
+                total.iter_mut().zip(along).for_each(|(t, (along, pull))| *t -= pull * along);
+            }
+        }
+        for (row, w) in self.rows.iter().zip(w.last().into_iter().flatten()) {
+            total.iter_mut().zip(row).for_each(|(t, a)| *t += a * w);
+        }
+        self.unknowns.adjoint(&self.theta, &total)
+    }
+
+    /// `Σ ‖r_l‖² + (ρ/m) ‖θ‖²` and its gradient.
+    pub fn objective(&self, rho: f64) -> (f64, Vec<f64>) {
+        let share = rho / self.theta.len().max(1) as f64;
+        let value = self.square() + share * self.theta.iter().map(|t| t * t).sum::<f64>();
+        let slope = self.adjoint(&self.residuals);
+        (value, slope.iter().zip(&self.theta).map(|(g, t)| 2.0 * (g + share * t)).collect())
+    }
+}

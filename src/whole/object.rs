@@ -1,0 +1,120 @@
+//! A network on its points, with what is varied.
+
+use super::gradients::SpringGradients;
+use super::unknowns::Unknowns;
+use crate::error::{Error, Result};
+use crate::fit::CellFits;
+use crate::model::Network;
+use crate::solve::Newton;
+use crate::springs::{Force, distance};
+use std::sync::Arc;
+
+/// A network whose constants are to be found.
+#[derive(Debug)]
+pub struct Object<'a> {
+    /// With the constants at θ = 0, all above zero where the springs are linear.
+    pub(super) network: Network,
+    /// At rest, `[points × dimension]`, m.
+    pub(super) points: &'a [f64],
+    pub(super) unknowns: Unknowns,
+    /// How loads are followed; absent at small displacements.
+    pub(super) newton: Option<Newton>,
+    /// At rest.
+    pub(super) gradients: Arc<SpringGradients>,
+}
+
+/// Constants that are not positive start at this share of the median.
+const LEAST: f64 = 0.03;
+
+impl<'a> Object<'a> {
+    /// `newton` says how loads are followed where displacements are large.
+    ///
+    /// # Errors
+    /// The network has no springs or none above zero, at small displacements one pulls at rest, or a law has no factor.
+    pub fn new(network: &Network, points: &'a [f64], unknowns: Unknowns, newton: Option<Newton>) -> Result<Object<'a>> {
+        if network.is_empty() {
+            return Err(Error::expected("springs", "a network with springs", "none"));
+        }
+        let mut network = network.clone();
+        raise(network.lengths.iter_mut().map(|s| &mut s.constant).collect());
+        raise(network.others.iter_mut().filter(|s| s.law.is_none()).map(|s| &mut s.constant).collect());
+        if network.lengths.iter().any(|s| !(s.constant > 0.0)) {
+            return Err(Error::expected("springs", "a network with a constant above zero", "none"));
+        }
+        if let Some(law) = network.others.iter().filter_map(|s| s.law.as_ref()).find(|law| !law.outer().contains(&true))
+        {
+            let expected = "laws with a parameter that the force is proportional to";
+            return Err(Error::expected("force", expected, format!("\"{}\"", law.text)));
+        }
+        let (gradients, pulls) = SpringGradients::at(&network, points);
+        let largest = network.lengths.iter().map(|s| s.constant * s.rest).fold(0.0, f64::max);
+        if newton.is_none() && pulls[..network.lengths.len()].iter().any(|pull| pull.abs() > 1e-9 * largest) {
+            return Err(Error::expected("force", "springs that do not pull at rest", "rest lengths of their own"));
+        }
+        Ok(Object { network, points, unknowns, newton, gradients: Arc::new(gradients) })
+    }
+
+    pub fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
+    }
+
+    /// How hard each spring pulls at factor 1 under small displacements: `T_s = k_s g_s·u`.
+    pub(super) fn pulls(&self, u: &[f64]) -> Vec<f64> {
+        self.gradients.along(u).zip(self.slopes()).map(|(along, slope)| slope * along).collect()
+    }
+
+    /// `∂T_s/∂c_s` at rest, at factor 1.
+    pub(super) fn slopes(&self) -> impl Iterator<Item = f64> + '_ {
+        let others = self.network.others.iter().map(|s| s.pull(s.rest)[2]);
+        self.network.lengths.iter().map(|s| s.constant).chain(others)
+    }
+
+    /// With all length springs alike, and others as stiff against the strain of what they measure.
+    #[must_use]
+    pub fn alike(mut self) -> Object<'a> {
+        let d = self.network.dimension;
+        let point = |p: usize| &self.points[p * d..(p + 1) * d];
+        let (mut squares, mut count) = (0.0, 0.0);
+        for spring in &mut self.network.lengths {
+            squares += distance(point(spring.points[0]), point(spring.points[1])).powi(2);
+            count += 1.0;
+            spring.constant = 1.0;
+        }
+        for spring in self.network.others.iter_mut().filter(|s| s.law.is_none() && s.rest != 0.0) {
+            spring.constant = squares / count / (spring.rest * spring.rest);
+        }
+        self
+    }
+
+    /// With all constants `factor` times as large.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Object<'a> {
+        self.network = self.network.scaled(&vec![factor; self.network.len()]);
+        self
+    }
+
+    /// The network at θ.
+    pub fn network(&self, theta: &[f64]) -> Network {
+        self.network.scaled(&self.unknowns.factors(theta))
+    }
+}
+
+/// Raises the constants of linear springs that are not above zero, so that the fit can make something of them: to a share of the
+/// median of those in the same spring group.
+pub fn raise_idle(fits: &mut [CellFits]) {
+    for fit in fits.iter_mut().filter(|fit| fit.force == Force::Linear) {
+        let m = fit.springs.len().max(1);
+        for group in 0..fit.springs.names.len() {
+            let own = |place: usize| fit.springs.groups[place % m] == group;
+            raise(fit.constants.iter_mut().enumerate().filter(|(place, _)| own(*place)).map(|(_, k)| k).collect());
+        }
+    }
+}
+
+/// Raises what is not above zero to a share of the median of what is.
+fn raise(constants: Vec<&mut f64>) {
+    let mut positive: Vec<f64> = constants.iter().map(|k| **k).filter(|k| *k > 0.0).collect();
+    positive.sort_by(f64::total_cmp);
+    let Some(median) = positive.get(positive.len() / 2) else { return };
+    constants.into_iter().filter(|k| !(**k > 0.0)).for_each(|k| *k = LEAST * median);
+}

@@ -1,0 +1,140 @@
+//! What a whole-object fit varies: factors on the constants at the start, each with springs of its own or shared by many.
+
+use crate::error::{Error, Result};
+use crate::fit::CellFits;
+use crate::mesh::{CellIndex, Mesh};
+use crate::model::Network;
+use crate::springs::Force;
+use std::collections::{BTreeMap, HashMap};
+
+/// `factor_s = Σ_p share_sp exp θ_p`, the shares of a spring adding up to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unknowns {
+    /// Where the shares of each spring begin, `[springs + 1]`.
+    starts: Vec<usize>,
+    /// Unknown and share.
+    shares: Vec<(usize, f64)>,
+    count: usize,
+}
+
+impl Unknowns {
+    /// One for each spring of the network.
+    pub fn per_spring(network: &Network) -> Unknowns {
+        let count = network.len();
+        Unknowns { starts: (0..=count).collect(), shares: (0..count).map(|s| (s, 1.0)).collect(), count }
+    }
+
+    /// One for each spring group of the elements.
+    ///
+    /// # Errors
+    /// Those of [`Unknowns::per_element`].
+    pub fn per_group(mesh: &Mesh, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
+        let name = |cell: CellIndex, spring: usize| group(&fits[cell.block], spring);
+        Unknowns::labelled(mesh, fits, network, name)
+    }
+
+    /// One for each spring group in each region of the mesh: cells that belong to the same physical groups.
+    ///
+    /// # Errors
+    /// Those of [`Unknowns::per_element`].
+    pub fn per_region(mesh: &Mesh, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
+        let mut regions: Vec<Vec<Vec<&str>>> = mesh.blocks.iter().map(|b| vec![Vec::new(); b.cells().len()]).collect();
+        for (name, group) in &mesh.groups {
+            group.cells.iter().for_each(|cell| regions[cell.block][cell.cell].push(name));
+        }
+        Unknowns::labelled(mesh, fits, network, |cell, spring| {
+            (regions[cell.block][cell.cell].clone(), group(&fits[cell.block], spring))
+        })
+    }
+
+    /// One for each spring of each element, before springs between the same two points are added up.
+    ///
+    /// # Errors
+    /// The springs have laws of force or rest lengths of their own: only whole springs can be scaled then.
+    pub fn per_element(mesh: &Mesh, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
+        Unknowns::labelled(mesh, fits, network, |cell, spring| (cell.block, cell.cell, spring))
+    }
+
+    /// One for each label that a spring of a cell can have.
+    fn labelled<L: Ord>(
+        mesh: &Mesh,
+        fits: &[CellFits],
+        network: &Network,
+        label: impl Fn(CellIndex, usize) -> L,
+    ) -> Result<Unknowns> {
+        if fits.iter().any(|fit| fit.force != Force::Linear) {
+            let expected = "\"spring\" where springs have laws of force or rest lengths of their own";
+            return Err(Error::expected("unknowns", expected, "unknowns that are shared"));
+        }
+        let place: HashMap<[usize; 2], usize> =
+            network.lengths.iter().enumerate().map(|(s, spring)| (spring.points, s)).collect();
+        let mut known: BTreeMap<L, usize> = BTreeMap::new();
+        let mut shares: Vec<Vec<(usize, f64)>> = vec![Vec::new(); network.len()];
+        let mut next = network.lengths.len();
+        for (index, (block, fit)) in mesh.blocks.iter().zip(fits).enumerate() {
+            let m = fit.springs.len();
+            for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m.max(1))).enumerate() {
+                for (spring, &constant) in constants.iter().enumerate().filter(|(_, k)| **k != 0.0) {
+                    let at = match fit.springs.pairs.get(spring) {
+                        Some(&[a, b]) => place.get(&[nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]).copied(),
+                        None => {
+                            next += 1;
+                            Some(next - 1)
+                        }
+                    };
+                    // Constants of opposite sign may cancel, and leave no spring.
+                    let Some(at) = at else { continue };
+                    let count = known.len();
+                    let unknown = *known.entry(label(CellIndex { block: index, cell }, spring)).or_insert(count);
+                    match shares[at].iter_mut().find(|(p, _)| *p == unknown) {
+                        Some((_, sum)) => *sum += constant,
+                        None => shares[at].push((unknown, constant)),
+                    }
+                }
+            }
+        }
+        let mut unknowns = Unknowns { starts: vec![0], shares: Vec::new(), count: known.len() };
+        for own in &shares {
+            let total: f64 = own.iter().map(|(_, k)| k).sum();
+            unknowns.shares.extend(own.iter().map(|(p, k)| (*p, k / total)));
+            unknowns.starts.push(unknowns.shares.len());
+        }
+        Ok(unknowns)
+    }
+
+    pub fn springs(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The factor on each spring, `[springs]`.
+    pub fn factors(&self, theta: &[f64]) -> Vec<f64> {
+        self.each().map(|own| own.iter().map(|(p, share)| share * theta[*p].exp()).sum()).collect()
+    }
+
+    /// How fast the factors change when the unknowns do at the rate v: `Σ_p share_sp exp θ_p v_p`.
+    pub fn forward(&self, theta: &[f64], v: &[f64]) -> Vec<f64> {
+        self.each().map(|own| own.iter().map(|(p, share)| share * theta[*p].exp() * v[*p]).sum()).collect()
+    }
+
+    /// The transpose of [`Unknowns::forward`].
+    pub fn adjoint(&self, theta: &[f64], w: &[f64]) -> Vec<f64> {
+        let mut total = vec![0.0; self.count];
+        for (own, w) in self.each().zip(w) {
+            own.iter().for_each(|(p, share)| total[*p] += share * w);
+        }
+        total.iter_mut().zip(theta).for_each(|(t, theta)| *t *= theta.exp());
+        total
+    }
+
+    fn each(&self) -> impl Iterator<Item = &[(usize, f64)]> {
+        self.starts.windows(2).map(|at| &self.shares[at[0]..at[1]])
+    }
+}
+
+fn group(fit: &CellFits, spring: usize) -> &str {
+    &fit.springs.names[fit.springs.groups[spring]]
+}
