@@ -61,15 +61,21 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
     let controls = Arc::new(Controls { checkpoint: arguments.checkpoint.clone(), ..Controls::default() });
     if scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_))) {
         end_early(&controls);
+    } else if arguments.checkpoint.is_some() {
+        return Err(Error::at("--checkpoint", "goes with fits whose objective is \"whole\", found none in the scene"));
     }
     let mut bar = Bar::new();
     let outcome = run_with(&scene, &controls, &mut |stage, done, total| bar.show(stage, done, total))?;
     bar.clear();
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
-    for note in report::notes(&outcome) {
+    tell(&outcome);
+    written(&report::write_outputs(&outcome, &scene.output, &folder)?)
+}
+
+fn tell(outcome: &study::Outcome) {
+    for note in report::notes(outcome) {
         eprintln!("note: {note}");
     }
-    written(&report::write_outputs(&outcome, &scene.output, &folder)?)
 }
 
 /// The first interrupt ends whole-object fits at their best point, the second the program.
@@ -151,7 +157,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let mut bar = Bar::new();
     let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
     let outcome = fit_mesh(&mesh, material, &reference, &named, &mut progress);
-    let outcome = outcome.map_err(|e| if sampled { e.placed(Error::of_option) } else { e })?;
+    let outcome = outcome.map_err(|e| if sampled || whole { e.placed(Error::of_option) } else { e })?;
     bar.clear();
     let masses = arguments.density.map(|density| model::masses(&mesh, density, material.thickness()));
     match ending {
@@ -161,6 +167,9 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     }
     let outcome = study::Outcome::of_fit(arguments.mesh.display().to_string(), mesh, material, masses, outcome);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
+    if whole {
+        tell(&outcome);
+    }
     print(&format!("written: {}\n", arguments.output.display()))
 }
 

@@ -1541,6 +1541,10 @@ fn whole_object_fits() {
             "objective = \"whole\"\nstart = 3",
             "fit[0].start: expected an objective or \"equal\", or a list of them, each once",
         ),
+        (
+            "objective = \"whole\"\nrange = 0.5",
+            "fit[0].range: expected a factor of at least 1 between constants, found 0.5",
+        ),
         ("objective = \"whole\"\niterations = 0", "fit[0].iterations: expected a number above 0, found 0"),
         (
             "objective = \"whole\"\nsolver = \"native\"",
@@ -1556,6 +1560,23 @@ fn whole_object_fits() {
         ),
         ("objective = \"whole\"\nfrequencies = 3", "fit[0].frequencies: expected a density in [material], found none"),
         ("objective = \"whole\"\ntied = true", "fit[0].tied: does not go with the objective \"whole\""),
+        ("objective = \"whole\"\nnonnegative = true", "fit[0].nonnegative: does not go with the objective \"whole\""),
+        (
+            "objective = \"whole\"\nloads = [\"load 1\", \"load 1\"]",
+            "fit[0].loads: expected each load once, found \"load 1\" again",
+        ),
+        (
+            "objective = \"whole\"\nstart = \"equal\"\nhigher = 0.1",
+            "fit[0].higher: belongs to an objective, found with the start \"equal\"",
+        ),
+        (
+            "objective = \"whole\"\nresidual = \"forces\"\nfrequencies = 2",
+            "fit[0].frequencies: does not go with residual = \"forces\", which has no displacements",
+        ),
+        (
+            "objective = \"whole\"\nrange = 10\nregularization = 1",
+            "fit[0].range: limits what \"validate\" may choose, found with a regularization that is given",
+        ),
         (
             "objective = \"modal\"\nfrequencies = 3",
             "fit[0].frequencies: belongs to the objective \"whole\", found with \"modal\"",
@@ -1591,7 +1612,11 @@ fn whole_object_fits() {
     expect(
         &mut refusals,
         &edited(&still, "objective = \"whole\"", "objective = \"whole\"\nloads = [\"load 1\"]"),
-        "loads: expected loads under which something moves, found \"load 1\"",
+        "loads: expected loads under which free points are known to move, found \"load 1\"",
+    );
+    refusals.expect_of_scene(
+        &edited(&whole, "traction = [0, 0, 1]", "traction = [0, 0, 1]\nname = \"made\""),
+        "scene.toml: load[0].name: expected a name other than made, leave-one-out, found \"made\"",
     );
     let counted = edited(&whole, "poisson = 0.3", "poisson = 0.3\ndensity = 1000");
     expect(

@@ -7,7 +7,7 @@ mod support;
 mod system;
 
 pub use elastic::{Body, Elastic};
-pub use load::{Action, Component, boundary_forces, nodal_forces};
+pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use network::{LengthSpring, MeasureSpring, Network};
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};

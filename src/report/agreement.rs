@@ -6,10 +6,14 @@ use crate::study::{FitOutcome, Judge, Outcome, Recipe, Start, WholeRecipe};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub fits: Vec<String>,
-    /// The held-out load under which the errors differ most, and by which share of the least of them.
+    /// The held-out load under which the errors differ most.
     pub load: String,
+    /// By which share of the least of them, or of 0.1 % where that is less; infinite where a network does not stand.
     pub difference: f64,
 }
+
+/// %e_rms below which errors are as good as none.
+const NONE: f64 = 0.1;
 
 /// Up to this share they are said to agree.
 pub const SAME: f64 = 0.2;
@@ -34,15 +38,16 @@ fn agreement(recipe: &WholeRecipe, fits: &[&FitOutcome]) -> Option<Agreement> {
         Judge::LeaveOneOut | Judge::Given => &[],
     };
     let difference = |l: usize| {
-        let errors: Option<Vec<f64>> = fits.iter().map(|fit| fit.loads[l].error.map(|e| e.rms)).collect();
-        let (least, largest) = errors?.into_iter().fold((f64::MAX, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
-        Some((fits[0].loads[l].name.clone(), largest / least - 1.0))
+        let errors = fits.iter().map(|fit| fit.loads[l].error.map_or(f64::INFINITY, |e| e.rms));
+        let (least, largest) = errors.fold((f64::INFINITY, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
+        let share = if largest.is_finite() { (largest - least) / least.max(NONE) } else { f64::INFINITY };
+        (fits[0].loads[l].name.clone(), share)
     };
     let held_out = |l: &usize| {
         let name = &fits[0].loads[*l].name;
         !recipe.loads.names.contains(name) && !validated.contains(name)
     };
-    let differences = (0..fits[0].loads.len()).filter(held_out).filter_map(difference);
+    let differences = (0..fits[0].loads.len()).filter(held_out).map(difference);
     let (load, difference) = differences.max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Agreement { fits: fits.iter().map(|fit| fit.fit.name.clone()).collect(), load, difference })
 }

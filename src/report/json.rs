@@ -4,9 +4,10 @@ use super::agreement::{Agreement, SAME, agreements};
 use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
 use crate::solve::{Ending, Standing};
 use crate::study::{
-    FitOutcome, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Recipe, SampledRecipe, Start, WholeRecipe,
+    FitOutcome, FittedLoad, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Recipe, SampledRecipe, Start,
+    WholeRecipe,
 };
-use crate::whole::{Errors, Method, Residual};
+use crate::whole::{Method, Residual};
 use serde_json::{Value, json};
 
 /// The report as text.
@@ -84,10 +85,13 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
             "regularization": w.regularization,
             "largest_change": w.change,
             "range": w.range,
+            "limited_by_range": w.limited,
             "steps": w.steps,
             "cancelled": w.cancelled,
-            "relative_errors_fitted": errors(&w.trained),
-            "relative_errors_validated": errors(&w.judged),
+            "stands": w.stands,
+            "relative_errors_fitted": w.fitted.iter().map(fitted).collect::<Vec<_>>(),
+            "relative_errors_validated": w.judged.iter().map(fitted).collect::<Vec<_>>(),
+            "relative_errors_of_frequencies": { "before": w.frequencies[0], "after": w.frequencies[1] },
         })),
         "sampled": outcome.sampled.as_ref().map(|s| json!({
             "shapes": s.shapes,
@@ -183,9 +187,8 @@ fn of_whole(recipe: &WholeRecipe) -> Value {
     })
 }
 
-fn errors([before, after]: &[Errors; 2]) -> Value {
-    let of = |errors: &Errors| json!({ "loads": errors.loads, "frequencies": errors.frequencies });
-    json!({ "before": of(before), "after": of(after) })
+fn fitted(load: &FittedLoad) -> Value {
+    json!({ "load": load.name, "before": load.before, "after": load.after })
 }
 
 fn spread(spread: Spread) -> Value {

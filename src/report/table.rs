@@ -222,7 +222,8 @@ fn agreed(agreement: &Agreement) -> String {
     let percent = 100.0 * agreement.difference;
     let verdict = match agreement.difference <= SAME {
         true => format!("agree within {percent:.0} %"),
-        false => format!("do not agree: they differ by up to {percent:.0} %"),
+        false if percent.is_finite() => format!("do not agree: they differ by up to {percent:.0} %"),
+        false => "do not agree: one of them is not known".into(),
     };
     format!("{}: held-out errors {verdict} ({})", agreement.fits.join(", "), agreement.load)
 }
@@ -241,9 +242,20 @@ fn seen(whole: &WholeOutcome) -> String {
                 whole.steps
             )
         }
-        None => format!("no rho did better than the start, {} steps", whole.steps),
+        None if !whole.stands => "at the start it does not stand under each of them, so it is left as it was".into(),
+        None => format!("none of the rho tried did better than the start, {} steps", whole.steps),
     };
-    let ended = if whole.cancelled { "; ended before its time" } else { "" };
+    let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
+    let [before, after] = [0, 1].map(|i| largest(&whole.frequencies[i]));
+    let done = match whole.frequencies[0].len() {
+        0 => done,
+        count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
+    };
+    let ended = match (whole.cancelled, whole.limited) {
+        (true, _) => "; ended before its time",
+        (_, true) => "; a smaller rho goes beyond the range that is allowed",
+        _ => "",
+    };
     format!("fitted to {}, whose errors are not held out{validated}: {done}{ended}", whole.loads.join(", "))
 }
 

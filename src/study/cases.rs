@@ -26,9 +26,8 @@ impl Case {
         let (mut wanted, mut own) = (Vec::new(), Vec::new());
         for (measured, u) in field.displacements.chunks_exact(dimension).zip(found.chunks_exact(dimension)) {
             if measured.iter().any(Option::is_some) {
-                // A direction that was not measured is no difference.
-                wanted.extend(measured.iter().zip(u).map(|(m, u)| m.unwrap_or(*u)));
-                own.extend(u);
+                wanted.extend(measured.iter().map(|m| m.unwrap_or(0.0)));
+                own.extend(measured.iter().zip(u).map(|(m, u)| m.map_or(0.0, |_| *u)));
             }
         }
         displacement_error(&wanted, &own, dimension)
@@ -82,14 +81,10 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         if entries != d {
             return Err(at(Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), entries)));
         }
-        if let (Action::Traction(v) | Action::Body(v), 2) = (&load.action, d) {
-            if let Some(i) = v.iter().position(|c| matches!(c, Component::Varying(e) if e.uses(2))) {
-                return Err(at(Error::expected(
-                    format!("{key}[{i}]"),
-                    "an expression of x and y in a plane mesh",
-                    "z",
-                )));
-            }
+        if let (Action::Traction(v) | Action::Body(v), 2) = (&load.action, d)
+            && let Some(i) = v.iter().position(|c| matches!(c, Component::Varying(e) if e.uses(2)))
+        {
+            return Err(at(Error::expected(format!("{key}[{i}]"), "an expression of x and y in a plane mesh", "z")));
         }
         let selection: Selection = load.part.selection(d).map_err(at)?;
         let forces = nodal_forces(mesh, &selection, &load.action, material.thickness()).map_err(|e| match e.key() {

@@ -4,11 +4,10 @@ use super::scene::NamedFit;
 use crate::error::{Error, Result};
 use crate::file;
 use crate::model::Network;
-use crate::whole::Snapshot;
+use crate::whole::{Snapshot, Target, Validation, Wanted};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -29,8 +28,7 @@ struct Checkpoint {
 
 #[derive(Debug, Serialize, Deserialize)]
 struct State {
-    /// Of what the fit begins with.
-    fingerprint: u64,
+    fingerprint: Fingerprint,
     snapshot: Snapshot,
 }
 
@@ -40,13 +38,26 @@ const INTERVAL: Duration = Duration::from_secs(5);
 pub(super) struct Saved<'a> {
     controls: &'a Controls,
     name: &'a str,
-    fingerprint: u64,
+    fingerprint: Fingerprint,
     last: Instant,
 }
 
 impl Controls {
     pub(super) fn cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Asked for before the work.
+    ///
+    /// # Errors
+    /// What is there is no checkpoint, or none can be written.
+    pub(super) fn check(&self) -> Result<()> {
+        let Some(path) = &self.checkpoint else { return Ok(()) };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            return Err(Error::new("expected a folder that exists, for the checkpoint").in_file(folder));
+        }
+        self.read().map(|_| ())
     }
 
     fn read(&self) -> Result<Checkpoint> {
@@ -63,24 +74,32 @@ impl<'a> Saved<'a> {
     ///
     /// # Errors
     /// The file is no checkpoint, or its state is that of another fit of this name.
-    pub fn open(controls: &'a Controls, fit: &'a NamedFit, network: &Network) -> Result<(Saved<'a>, Option<Snapshot>)> {
-        let mut hasher = DefaultHasher::new();
-        format!("{:?} {:?}", fit.recipe, fit.springs).hash(&mut hasher);
-        for spring in &network.lengths {
-            (spring.points, spring.constant.to_bits(), spring.rest.to_bits()).hash(&mut hasher);
-        }
-        network.others.iter().for_each(|s| (&s.points, s.constant.to_bits(), s.rest.to_bits()).hash(&mut hasher));
-        let fingerprint = hasher.finish();
+    pub fn open(
+        controls: &'a Controls,
+        fit: &'a NamedFit,
+        fingerprint: Fingerprint,
+    ) -> Result<(Saved<'a>, Option<Snapshot>)> {
         let mut known = controls.read()?;
-        let snapshot = match (known.fits.remove(&fit.name), &controls.checkpoint) {
-            (Some(state), Some(path)) if state.fingerprint != fingerprint => {
+        let snapshot = match known.fits.remove(&fit.name) {
+            Some(state) if state.fingerprint != fingerprint => {
                 let expected = "the state of this fit, or a file that does not exist yet";
-                let found = "that of a fit with other springs, constants or keys";
-                return Err(Error::expected(format!("fits.{}", fit.name), expected, found).in_file(path));
+                let found = "that of a fit with other springs, loads or keys";
+                let error = Error::expected(format!("fits.{}", fit.name), expected, found);
+                return Err(controls.checkpoint.iter().fold(error, |e, path| e.in_file(path)));
             }
-            (state, _) => state.map(|state| state.snapshot),
+            state => state.map(|state| state.snapshot),
         };
         Ok((Saved { controls, name: &fit.name, fingerprint, last: Instant::now() }, snapshot))
+    }
+
+    /// Names the checkpoint in an error about the state that was read from it.
+    pub fn blame(&self, error: Error) -> Error {
+        match (&self.controls.checkpoint, error.key()) {
+            (Some(path), Some("snapshot")) => {
+                Error::at(format!("fits.{}.snapshot", self.name), error.problem()).in_file(path)
+            }
+            _ => error,
+        }
     }
 
     /// Writes the state beside those of other fits, if the last time is a while ago.
@@ -93,9 +112,61 @@ impl<'a> Saved<'a> {
         };
         self.last = Instant::now();
         let mut all = self.controls.read()?;
-        let state = State { fingerprint: self.fingerprint, snapshot: snapshot.clone() };
-        all.fits.insert(self.name.into(), state);
+        all.fits.insert(self.name.into(), State { fingerprint: self.fingerprint, snapshot: snapshot.clone() });
         let text = serde_json::to_string(&all).expect("a state of finite numbers is JSON");
         file::write_whole(path, text.as_bytes())
+    }
+}
+
+/// Of all that a fit begins with: the same on every machine (FNV-1a).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Fingerprint(u64);
+
+impl Fingerprint {
+    pub fn of(fit: &NamedFit, points: &[f64], network: &Network, wanted: &Wanted, newton: &str) -> Fingerprint {
+        let mut all = Fingerprint(0xcbf2_9ce4_8422_2325);
+        all.text(&format!("{:?} {:?} {newton}", fit.recipe, fit.springs));
+        all.numbers(points);
+        for spring in &network.lengths {
+            spring.points.iter().for_each(|p| all.word(*p as u64));
+            all.numbers(&[spring.constant, spring.rest]);
+        }
+        for spring in &network.others {
+            spring.points.iter().for_each(|p| all.word(*p as u64));
+            all.numbers(&[spring.constant, spring.rest]);
+            all.numbers(&spring.parameters);
+        }
+        wanted.trained.iter().for_each(|target| all.target(target));
+        if let Validation::Loads(targets) = &wanted.validation {
+            targets.iter().for_each(|target| all.target(target));
+        }
+        if let Some(frequencies) = &wanted.frequencies {
+            all.numbers(&frequencies.masses);
+            all.numbers(&frequencies.squares);
+        }
+        all
+    }
+
+    fn target(&mut self, target: &Target) {
+        self.text(&target.name);
+        for numbers in [&target.forces, &target.displacement, &target.weights] {
+            self.numbers(numbers);
+        }
+        let held: Vec<f64> = target.support.prescribed.iter().map(|p| p.unwrap_or(f64::NAN)).collect();
+        self.numbers(&held);
+    }
+
+    fn text(&mut self, text: &str) {
+        text.bytes().for_each(|byte| self.word(u64::from(byte)));
+    }
+
+    fn numbers(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|x| self.word(x.to_bits()));
+    }
+
+    fn word(&mut self, word: u64) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        }
     }
 }

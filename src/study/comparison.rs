@@ -1,17 +1,18 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
 use super::cases::load_cases;
+use super::checkpoint::Controls;
 use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
 use super::random::Random;
 use super::run::{Progress, run};
 use super::scene::{NamedFit, Recipe, Scene, WholeRecipe};
 use super::stretches::sampled_fits;
+use super::whole::WholeBody;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
 use crate::material::Material;
-use crate::model::unheld_bodies;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use std::sync::Arc;
@@ -130,7 +131,9 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
     // Loads made from the mesh are linear, and need supports that hold the body without those of the scene.
     let support = load_cases(scene, &mesh, scene.material(mesh.cell_dimension())?)?.0;
-    let whole = scene.law().is_none() && unheld_bodies(&mesh, &support).is_empty();
+    let controls = Controls::default();
+    let body = WholeBody::new(&mesh, scene.material(mesh.cell_dimension())?, &support, &controls);
+    let whole = scene.law().is_none() && body.held("loads").is_ok();
     let mut scene = scene.clone();
     scene.fits = Vec::new();
     let all = optional.then_some(Some(every));

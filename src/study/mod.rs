@@ -22,7 +22,7 @@ pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shape
 pub use large::LargeBody;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
-pub use outcome::{FitOutcome, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
+pub use outcome::{FitOutcome, FittedLoad, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
 pub use run::{Progress, Reference, fit_mesh, run, run_with};
 pub use scene::{
     BoxEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,

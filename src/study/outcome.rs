@@ -8,7 +8,6 @@ use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::solve::{Ending, Stability};
-use crate::whole::Errors;
 
 /// What came out of a scene.
 #[derive(Debug)]
@@ -111,17 +110,30 @@ pub struct WholeOutcome {
     pub validated: Vec<String>,
     /// `None` where the start was best.
     pub regularization: Option<f64>,
-    /// Of the loads and frequencies that were fitted, before and after.
-    pub trained: [Errors; 2],
-    /// Of the loads that chose the regularization.
-    pub judged: [Errors; 2],
+    /// The loads of the fit, and those that chose the regularization.
+    pub fitted: Vec<FittedLoad>,
+    pub judged: Vec<FittedLoad>,
+    /// `ω_i/ω̄_i − 1` of the frequencies that were fitted, before and after.
+    pub frequencies: [Vec<f64>; 2],
     /// The largest factor by which a constant changed.
     pub change: f64,
     /// The largest constant of a length spring, as a multiple of the least.
     pub range: f64,
+    /// Whether a smaller ρ was left because the range would have been too large.
+    pub limited: bool,
     pub steps: usize,
+    /// Whether the network stands under every load at the start; else it is left as it is.
+    pub stands: bool,
     /// Whether it was ended before its time.
     pub cancelled: bool,
+}
+
+/// `‖u_l − ū_l‖/‖ū_l‖` of a load before and after a whole-object fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedLoad {
+    pub name: String,
+    pub before: f64,
+    pub after: f64,
 }
 
 /// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.

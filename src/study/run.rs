@@ -5,12 +5,12 @@ use super::checkpoint::Controls;
 use super::large::LargeBody;
 use super::linear::LinearBody;
 use super::moduli::moduli_of_body;
-use super::outcome::{FitOutcome, Outcome, SampledOutcome, WholeOutcome};
+use super::outcome::{FitOutcome, Outcome, SampledOutcome};
 use super::scene::{NamedFit, Recipe, SampledRecipe, Scene};
 use super::stages::stages;
 use super::whole::WholeBody;
 use crate::error::{Error, Result};
-use crate::fit::{ElementErrors, Fit, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
+use crate::fit::{ElementErrors, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
 use crate::material::Material;
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::{Network, masses};
@@ -35,6 +35,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
 /// # Errors
 /// As there, and the checkpoint is wrong or cannot be written.
 pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
+    controls.check()?;
     let mesh = scene.build_mesh()?;
     let material = scene.material(mesh.cell_dimension())?;
     drawable(scene, &mesh)?;
@@ -181,9 +182,15 @@ pub fn fit_mesh(
     let mut whole = None;
     if let Recipe::Whole(recipe) = &named.recipe {
         let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
-        let found = reference.whole.ok_or_else(missing)?.fit(named, recipe, &fits, &network, progress)?;
-        whole = Some(WholeOutcome::of(recipe, &found));
-        network = found.network;
+        let body = reference.whole.ok_or_else(missing)?;
+        let (found, outcome) = body.fit(named, recipe, &fits, &network, progress)?;
+        (network, whole) = (found, Some(outcome));
+        // What is known of the start is not so of what came of it.
+        sampled = None;
+        for fit in &mut fits {
+            (fit.deficient, fit.unreached, fit.reused) = (0, 0, 0);
+            fit.certificates.clear();
+        }
     }
     let seconds = seconds + start.elapsed().as_secs_f64();
     let mut errors = ElementErrors::default();

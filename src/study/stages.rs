@@ -1,6 +1,6 @@
 //! What a scene asks for, before any of it is done.
 
-use super::scene::{NamedFit, Recipe, Scene};
+use super::scene::{Recipe, Scene};
 
 /// The stages of a scene in order: what will run, or why it is left out.
 pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
@@ -14,24 +14,29 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     if let Some(law) = scene.law() {
         stages.push(run(format!("compile the energy {law}")));
     }
-    let sampled = |fit: &NamedFit| matches!(fit.recipe, Recipe::Forces(_));
     for fit in &scene.fits {
-        let shapes = match &fit.recipe {
-            Recipe::Stiffness(_) => String::new(),
-            Recipe::Whole(recipe) => {
-                format!(" to the finite element displacements under {}", recipe.loads.words().join(", "))
-            }
-            Recipe::Forces(recipe) => {
-                let sampling = &recipe.fit.sampling;
-                format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)
-            }
-        };
-        stages.push(run(format!("fit {}{shapes}, assemble its network, measure its matrix errors", fit.name)));
+        let shapes = fit.recipe.sampled().map_or(String::new(), |recipe| {
+            let sampling = &recipe.fit.sampling;
+            format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)
+        });
+        stages.push(run(match &fit.recipe {
+            Recipe::Whole(recipe) => format!(
+                "fit {}: start from {}{shapes}, assemble its network, fit it to displacements under {}{}",
+                fit.name,
+                recipe.start.title(),
+                recipe.loads.words().join(", "),
+                match recipe.validation.words().join(", ") {
+                    none if none.is_empty() => String::new(),
+                    words => format!(", rho chosen by {words}"),
+                }
+            ),
+            _ => format!("fit {}{shapes}, assemble its network, measure its matrix errors", fit.name),
+        }));
     }
     if scene.law().is_none() {
         stages.push(skip("hyperelastic energy, Newton's method", "the material has no law"));
     }
-    if !scene.fits.iter().any(sampled) {
+    if !scene.fits.iter().any(|fit| fit.recipe.sampled().is_some()) {
         stages.push(skip("sampled shapes", "no [[fit]] has the objective \"sampled\""));
     }
     if scene.loads.is_empty() {

@@ -1,8 +1,8 @@
 //! Whole-object fits of a scene: what they are to meet, and what came out.
 
 use super::cases::Case;
-use super::checkpoint::{Controls, Saved};
-use super::outcome::WholeOutcome;
+use super::checkpoint::{Controls, Fingerprint, Saved};
+use super::outcome::{FittedLoad, WholeOutcome};
 use super::run::Progress;
 use super::scene::{Judge, Named, NamedFit, Sharing, Start, WholeRecipe};
 use crate::error::{Error, Result};
@@ -10,10 +10,10 @@ use crate::fit::CellFits;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::model::{Entries, Network, Support, finite_elements, unheld_bodies};
-use crate::solve::{Newton, System, lowest_modes};
+use crate::solve::{Factor, Newton, System, lowest_modes};
 use crate::whole::{
-    Displacements, Frequencies, NodalLoad, Object, Snapshot, Target, Unknowns, Validation, Wanted, WholeFit, fit_whole,
-    made_loads, random_loads,
+    Displacements, Errors, Frequencies, NodalLoad, Object, Residual, Snapshot, Target, Unknowns, Validation, Wanted,
+    WholeFit, fit_whole, made_loads, random_loads,
 };
 use std::sync::OnceLock;
 
@@ -35,13 +35,14 @@ pub struct WholeBody<'a> {
     pub masses: Option<&'a [f64]>,
     controls: &'a Controls,
     entries: OnceLock<Entries>,
+    held: OnceLock<(System, Factor)>,
 }
 
 impl<'a> WholeBody<'a> {
     /// At small deformation, without loads of its own.
     pub fn new(mesh: &'a Mesh, material: Material, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
-        let (cases, displacements, newton, masses, entries) = Default::default();
-        WholeBody { mesh, material, support, cases, displacements, newton, masses, controls, entries }
+        let (cases, displacements, newton, masses, entries, held) = Default::default();
+        WholeBody { mesh, material, support, cases, displacements, newton, masses, controls, entries, held }
     }
 
     /// The stiffness of the finite elements at rest.
@@ -51,10 +52,9 @@ impl<'a> WholeBody<'a> {
 
     fn targets(&self, key: &str, named: &Named, make: impl Fn() -> Vec<NodalLoad>) -> Result<Vec<Target>> {
         let mut targets = Vec::new();
-        for (case, displacement) in self.cases.iter().zip(&self.displacements) {
-            if !named.names.contains(&case.name) {
-                continue;
-            }
+        for name in &named.names {
+            let mut cases = self.cases.iter().zip(&self.displacements);
+            let Some((case, displacement)) = cases.find(|(case, _)| case.name == *name) else { continue };
             let (displacement, weights) = match (&case.measured, displacement) {
                 (Some(field), _) => field.displacements.iter().map(|u| u.map_or((0.0, 0.0), |u| (u, 1.0))).unzip(),
                 (None, Some(u)) => (u.to_vec(), vec![1.0; u.len()]),
@@ -73,10 +73,9 @@ impl<'a> WholeBody<'a> {
             let expected = "loads of the scene, where the material has a law";
             return Err(Error::expected(key, expected, "\"made\""));
         }
-        let system = self.held_system(key)?;
-        let factor = system.cholesky().ok_or_else(|| Error::new("the finite elements do not stand"))?;
+        let (system, factor) = self.held(key)?;
         for load in make() {
-            let displacement = system.solve(&factor, &load.forces).0;
+            let displacement = system.solve(factor, &load.forces).0;
             let weights = vec![1.0; displacement.len()];
             let support = self.support.clone();
             targets.push(Target { name: load.name, support, forces: load.forces, displacement, weights, weight: 1.0 });
@@ -84,14 +83,22 @@ impl<'a> WholeBody<'a> {
         Ok(targets)
     }
 
-    /// The equations with what `[[fix]]` holds; the key is what needs them.
-    fn held_system(&self, key: &str) -> Result<System> {
+    /// The finite elements with what `[[fix]]` holds; the key is what needs them.
+    ///
+    /// # Errors
+    /// A body can move as a whole, or some motion meets no stiffness.
+    pub(super) fn held(&self, key: &str) -> Result<&(System, Factor)> {
+        if let Some(known) = self.held.get() {
+            return Ok(known);
+        }
+        let expected = "supports in [[fix]] that hold every body, whatever the loads hold";
         if let Some(body) = unheld_bodies(self.mesh, self.support).first() {
-            let expected = "supports in [[fix]] that hold every body, whatever the loads hold";
             let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
             return Err(Error::expected(key, expected, found));
         }
-        System::new(self.entries(), self.support)
+        let system = System::new(self.entries(), self.support)?;
+        let factor = system.cholesky().ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
+        Ok(self.held.get_or_init(|| (system, factor)))
     }
 
     fn frequencies(&self, count: usize) -> Result<Option<Frequencies>> {
@@ -100,9 +107,8 @@ impl<'a> WholeBody<'a> {
         }
         let missing = || Error::expected("frequencies", "a density in [material]", "none");
         let masses = self.masses.ok_or_else(missing)?.to_vec();
-        let system = self.held_system("frequencies")?;
-        let factor = system.cholesky().ok_or_else(|| Error::new("the finite elements do not stand"))?;
-        let modes = lowest_modes(&system, &factor, &masses, self.mesh.dimension, count)
+        let (system, factor) = self.held("frequencies")?;
+        let modes = lowest_modes(system, factor, &masses, self.mesh.dimension, count)
             .map_err(|e| Error::at("frequencies", e.problem()))?;
         // As much as one load in all.
         let weight = 1.0 / count as f64;
@@ -120,7 +126,8 @@ impl<'a> WholeBody<'a> {
             })?),
         };
         let frequencies = self.frequencies(recipe.frequencies)?;
-        Ok(Wanted { trained, validation, frequencies, body: Some(self.entries().clone()) })
+        let balances = recipe.settings.residual != Residual::Displacements;
+        Ok(Wanted { trained, validation, frequencies, body: balances.then(|| self.entries().clone()) })
     }
 
     /// Fits the constants of `network`, which was assembled from `fits`.
@@ -131,9 +138,11 @@ impl<'a> WholeBody<'a> {
         fits: &[CellFits],
         network: &Network,
         progress: &mut Progress,
-    ) -> Result<WholeFit> {
-        let (mut saved, snapshot) = Saved::open(self.controls, named, network)?;
+    ) -> Result<(Network, WholeOutcome)> {
         let wanted = self.wanted(recipe)?;
+        let newton = format!("{:?}", self.newton);
+        let fingerprint = Fingerprint::of(named, &self.mesh.points, network, &wanted, &newton);
+        let (mut saved, snapshot) = Saved::open(self.controls, named, fingerprint)?;
         let unknowns = match recipe.unknowns {
             Sharing::Spring => Unknowns::per_spring(network),
             Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
@@ -143,10 +152,16 @@ impl<'a> WholeBody<'a> {
         let mut object = Object::new(network, &self.mesh.points, unknowns, self.newton)?;
         if recipe.start == Start::Equal {
             object = object.alike();
-            let theta = vec![0.0; object.unknowns().count()];
-            let problem = Displacements::new(&object, wanted.trained.iter().collect(), None)?;
-            let factor = problem.best_factor(&theta)?.unwrap_or(1.0);
-            object = object.scaled(factor);
+            if self.newton.is_none() {
+                let theta = vec![0.0; object.unknowns().count()];
+                let problem = Displacements::new(&object, wanted.trained.iter().collect(), None)?;
+                let factor = problem.best_factor(&theta)?.unwrap_or(1.0);
+                object = object.scaled(factor);
+            }
+        }
+        if let Some(snapshot) = &snapshot {
+            let stages = recipe.settings.regularizations.len();
+            snapshot.check(object.unknowns().count(), stages).map_err(|e| saved.blame(e))?;
         }
         let mut kept = Ok(());
         let stages = recipe.settings.regularizations.len();
@@ -159,25 +174,34 @@ impl<'a> WholeBody<'a> {
             !ends && kept.is_ok()
         };
         let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch)?;
-        kept.map(|()| found)
+        kept.map(|()| WholeOutcome::of(recipe, &wanted, &found)).map(|outcome| (found.network, outcome))
     }
 }
 
 impl WholeOutcome {
-    pub(super) fn of(recipe: &WholeRecipe, found: &WholeFit) -> WholeOutcome {
+    fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit) -> WholeOutcome {
+        let errors = |targets: &[Target], [before, after]: &[Errors; 2]| {
+            let name = targets.iter().map(|target| target.name.clone());
+            let before = before.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
+            let after = after.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
+            name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
+        };
+        let judges = match &wanted.validation {
+            Validation::Loads(loads) => &loads[..],
+            _ => &[],
+        };
         WholeOutcome {
             loads: recipe.loads.words(),
-            validated: match &recipe.validation {
-                Judge::Loads(named) => named.words(),
-                Judge::LeaveOneOut => vec!["each of these, left out".into()],
-                Judge::Given => Vec::new(),
-            },
+            validated: recipe.validation.words(),
             regularization: found.regularization,
-            trained: found.trained.clone(),
-            judged: found.validated.clone(),
+            fitted: errors(&wanted.trained, &found.trained),
+            judged: errors(judges, &found.validated),
+            frequencies: found.trained.clone().map(|errors| errors.frequencies),
             change: found.change,
             range: found.range,
+            limited: found.limited,
             steps: found.steps,
+            stands: found.stands,
             cancelled: found.cancelled,
         }
     }

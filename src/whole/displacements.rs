@@ -20,10 +20,15 @@ pub struct Displacements<'a> {
     /// Loads of equal support.
     pub(super) groups: Vec<Vec<usize>>,
     /// The equations of each group, whose pattern stays.
-    systems: Mutex<Vec<Option<System>>>,
+    systems: Mutex<Vec<Option<Arc<System>>>>,
     /// Where the next search for an equilibrium begins.
     guesses: Mutex<Vec<Option<Vec<f64>>>>,
 }
+
+/// The displacements of every load, and the tangents there.
+type Moved = (Vec<Vec<f64>>, Vec<Tangent>);
+/// The residuals of frequencies, and their derivatives by every factor.
+type Vibrating = (Vec<f64>, Vec<Vec<f64>>);
 
 /// Relative errors of a network.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -42,13 +47,18 @@ impl<'a> Displacements<'a> {
         targets: Vec<&'a Target>,
         frequencies: Option<&'a Frequencies>,
     ) -> Result<Displacements<'a>> {
-        for target in &targets {
-            if !(target.size() > 0.0) {
-                let expected = "loads under which something moves";
-                return Err(Error::expected("loads", expected, format!("\"{}\"", target.name)));
-            }
+        if frequencies.is_some() && object.pulls_at_rest {
+            let expected = "springs that do not pull at rest";
+            return Err(Error::expected("frequencies", expected, "laws of force or rest lengths that do"));
         }
-        let scales = targets.iter().map(|target| target.scale()).collect();
+        let mut scales = Vec::new();
+        for target in &targets {
+            let nothing = || {
+                let expected = "loads under which free points are known to move";
+                Error::expected("loads", expected, format!("\"{}\"", target.name))
+            };
+            scales.push(target.scale().ok_or_else(nothing)?);
+        }
         let guesses = Mutex::new(vec![None; targets.len()]);
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (index, target) in targets.iter().enumerate() {
@@ -77,7 +87,7 @@ impl<'a> Displacements<'a> {
         }))
     }
 
-    /// The factor on all constants that brings the displacements at small loads nearest to those wanted: `u ∝ 1/α`.
+    /// The factor on all constants that brings displacements nearest to those wanted, as far as they are small and by forces: `u ∝ 1/α`.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -85,6 +95,9 @@ impl<'a> Displacements<'a> {
         let Some(at) = self.at(theta)? else { return Ok(None) };
         let (mut own, mut both) = (0.0, 0.0);
         for ((target, scale), r) in self.targets.iter().zip(&self.scales).zip(&at.residuals) {
+            if target.support.prescribed.iter().flatten().any(|u| *u != 0.0) {
+                continue;
+            }
             for ((wanted, s), r) in target.displacement.iter().zip(scale).zip(r) {
                 let u = r + s * wanted;
                 own += u * u;
@@ -102,17 +115,16 @@ impl<'a> Displacements<'a> {
         support: &Support,
     ) -> Result<Option<(Arc<System>, Arc<Factor>)>> {
         let known = self.systems.lock().expect("nothing panics while it holds the systems")[group].take();
-        let system = match known {
+        let system = Arc::new(match known {
             Some(known) => known.renewed(entries, support)?,
             None => System::new(entries, support)?,
-        };
-        let factor = system.cholesky();
+        });
         self.systems.lock().expect("nothing panics while it holds the systems")[group] = Some(system.clone());
-        Ok(factor.map(|factor| (Arc::new(system), Arc::new(factor))))
+        Ok(system.cholesky().map(|factor| (system, Arc::new(factor))))
     }
 
     /// Displacements of every load, and the tangents at them.
-    fn small(&self, entries: &Entries) -> Result<Option<(Vec<Vec<f64>>, Vec<Tangent>)>> {
+    fn small(&self, entries: &Entries) -> Result<Option<Moved>> {
         let mut displacements = vec![Vec::new(); self.targets.len()];
         let mut tangents = Vec::new();
         for (index, group) in self.groups.iter().enumerate() {
@@ -131,7 +143,7 @@ impl<'a> Displacements<'a> {
     }
 
     /// The same at large displacements; each load has a tangent of its own.
-    fn large(&self, network: &Network) -> Result<Option<(Vec<Vec<f64>>, Vec<Tangent>)>> {
+    fn large(&self, network: &Network) -> Result<Option<Moved>> {
         let newton = self.object.newton.expect("this is called at large displacements only");
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let points = self.object.points;
@@ -167,7 +179,7 @@ impl<'a> Displacements<'a> {
     }
 
     /// Residuals of the frequencies and `∂/∂c_s = ½ √w T⁰_s (∇c_s·φ_i)²/ω_i²` of each.
-    fn vibrations(&self, entries: &Entries) -> Result<Option<(Vec<f64>, Vec<Vec<f64>>)>> {
+    fn vibrations(&self, entries: &Entries) -> Result<Option<Vibrating>> {
         let Some(wanted) = self.frequencies else { return Ok(Some((Vec::new(), Vec::new()))) };
         let (object, count) = (self.object, wanted.squares.len());
         let Some((system, factor)) = self.factorize(self.groups.len(), entries, &wanted.support)? else {

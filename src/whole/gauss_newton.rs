@@ -46,6 +46,10 @@ impl GaussNewton {
         for _ in 0..iterations {
             let (lowered, found) = loop {
                 let (step, promised) = self.step(&now, rho, &gradient, radius);
+                // Where the gradient is zero there is nowhere to go.
+                if !(promised > 0.0) {
+                    break (0.0, None);
+                }
                 let length = dot(&step, &step).sqrt();
                 let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + s).collect();
                 let next = problem.at(&tried)?;

@@ -38,6 +38,11 @@ impl SpringGradients {
         self.each().map(|(dofs, values)| dofs.iter().zip(values).map(|(&i, g)| v[i] * g).sum())
     }
 
+    /// `‖∇c_s‖²` of every spring.
+    pub fn squares(&self) -> impl Iterator<Item = f64> + '_ {
+        self.each().map(|(_, values)| values.iter().map(|g| g * g).sum())
+    }
+
     /// `Σ_s p_s ∇c_s` over `size` degrees of freedom.
     pub fn sum(&self, pulls: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {
         let mut total = vec![0.0; size];

@@ -1,7 +1,7 @@
 //! Loads made from a mesh and its supports, to see how the object moves.
 
 use crate::mesh::{Mesh, Selection};
-use crate::model::{Action, Support, boundary_forces, nodal_forces};
+use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -29,10 +29,8 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLo
     let names = ["x", "y", "z"];
     let e = |k: usize| (0..d).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
     let frame = Frame::of(mesh, support);
-    let on_boundary = |name: String, traction: &dyn Fn(&[f64], &[f64]) -> Vec<f64>| NodalLoad {
-        name,
-        forces: boundary_forces(mesh, traction, thickness),
-    };
+    let on_boundary =
+        |name: String, traction: &Traction| NodalLoad { name, forces: boundary_forces(mesh, traction, thickness) };
     let mut loads = Vec::new();
     for k in 0..d {
         for l in 0..=k {
@@ -48,7 +46,7 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLo
     }
     if d == 3 {
         let twist = |x: &[f64], n: &[f64]| {
-            let around = cross(&frame.axis, &frame.from_middle(x));
+            let around = cross(&frame.axis, &frame.away(x));
             let (along, turned) = (dot(&frame.axis, n), dot(&around, n));
             around.iter().zip(&frame.axis).map(|(t, a)| t * along + a * turned).collect()
         };
@@ -56,7 +54,7 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLo
     }
     for (i, lever) in frame.across.iter().enumerate() {
         let bend = |x: &[f64], n: &[f64]| {
-            let size = dot(lever, &frame.from_middle(x)) * dot(&frame.axis, n);
+            let size = dot(lever, &frame.away(x)) * dot(&frame.axis, n);
             frame.axis.iter().map(|a| a * size).collect()
         };
         let name = if frame.across.len() == 1 { "bending".to_string() } else { format!("bending {}", i + 1) };
@@ -90,7 +88,7 @@ pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize
             })
             .collect();
         let at = |(dof, weight): (usize, &f64)| {
-            let r = frame.from_middle(mesh.point(dof / d));
+            let r = frame.away(mesh.point(dof / d));
             let own = &sines[dof % d * SINES..(dof % d + 1) * SINES];
             weight * own.iter().map(|(wave, phase, size)| size * (dot(wave, &r) + phase).sin()).sum::<f64>()
         };
@@ -142,7 +140,7 @@ impl Frame {
         Frame { middle, size, axis, across }
     }
 
-    fn from_middle(&self, x: &[f64]) -> Vec<f64> {
+    fn away(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.middle).map(|(x, c)| (x - c) / self.size).collect()
     }
 }

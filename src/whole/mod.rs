@@ -8,6 +8,7 @@
 mod balance;
 mod descent;
 mod displacements;
+mod fit;
 mod gauss_newton;
 mod gradients;
 mod linearized;
@@ -19,10 +20,11 @@ mod unknowns;
 
 pub use balance::Balance;
 pub use displacements::{Displacements, Errors};
+pub use fit::{Method, Residual, Validation, Wanted, WholeFit, WholeSettings, fit_whole};
 pub use gauss_newton::GaussNewton;
 pub use linearized::{LeastSquares, Linearized};
 pub use loads::{NodalLoad, made_loads, random_loads};
 pub use object::{Object, raise_idle};
-pub use path::{Method, Residual, Snapshot, Validation, Wanted, Watch, WholeFit, WholeSettings, fit_whole};
+pub use path::{Best, Snapshot, Watch};
 pub use target::{Frequencies, Target};
 pub use unknowns::Unknowns;

@@ -21,10 +21,13 @@ pub struct Object<'a> {
     pub(super) newton: Option<Newton>,
     /// At rest.
     pub(super) gradients: Arc<SpringGradients>,
+    pub(super) pulls_at_rest: bool,
 }
 
-/// Constants that are not positive start at this share of the median.
+/// Constants that are next to nothing start at this share of the median.
 const LEAST: f64 = 0.03;
+/// The share of the median up to which they are.
+const NOTHING: f64 = 1e-4;
 
 impl<'a> Object<'a> {
     /// `newton` says how loads are followed where displacements are large.
@@ -47,11 +50,13 @@ impl<'a> Object<'a> {
             return Err(Error::expected("force", expected, format!("\"{}\"", law.text)));
         }
         let (gradients, pulls) = SpringGradients::at(&network, points);
-        let largest = network.lengths.iter().map(|s| s.constant * s.rest).fold(0.0, f64::max);
-        if newton.is_none() && pulls[..network.lengths.len()].iter().any(|pull| pull.abs() > 1e-9 * largest) {
+        let slopes = network.lengths.iter().map(|s| s.constant * s.rest);
+        let slopes = slopes.chain(network.others.iter().map(|s| s.pull(s.rest)[2] * s.rest));
+        let pulls_at_rest = pulls.iter().zip(slopes).any(|(pull, size)| pull.abs() > 1e-9 * size.abs());
+        if newton.is_none() && pulls_at_rest {
             return Err(Error::expected("force", "springs that do not pull at rest", "rest lengths of their own"));
         }
-        Ok(Object { network, points, unknowns, newton, gradients: Arc::new(gradients) })
+        Ok(Object { network, points, unknowns, newton, gradients: Arc::new(gradients), pulls_at_rest })
     }
 
     pub fn unknowns(&self) -> &Unknowns {
@@ -69,21 +74,22 @@ impl<'a> Object<'a> {
         self.network.lengths.iter().map(|s| s.constant).chain(others)
     }
 
-    /// With all length springs alike, and others as stiff against the strain of what they measure.
+    /// With all length springs alike, others as stiff against the strain of what they measure, and the trace of the stiffness
+    /// `Σ_s k_s ‖g_s‖²` as before.
     #[must_use]
     pub fn alike(mut self) -> Object<'a> {
         let d = self.network.dimension;
         let point = |p: usize| &self.points[p * d..(p + 1) * d];
-        let (mut squares, mut count) = (0.0, 0.0);
-        for spring in &mut self.network.lengths {
-            squares += distance(point(spring.points[0]), point(spring.points[1])).powi(2);
-            count += 1.0;
-            spring.constant = 1.0;
-        }
+        let trace = |object: &Object| object.slopes().zip(object.gradients.squares()).map(|(k, g)| k * g).sum::<f64>();
+        let before = trace(&self);
+        let squares = self.network.lengths.iter().map(|s| distance(point(s.points[0]), point(s.points[1])).powi(2));
+        let mean = squares.sum::<f64>() / self.network.lengths.len().max(1) as f64;
+        self.network.lengths.iter_mut().for_each(|s| s.constant = 1.0);
         for spring in self.network.others.iter_mut().filter(|s| s.law.is_none() && s.rest != 0.0) {
-            spring.constant = squares / count / (spring.rest * spring.rest);
+            spring.constant = mean / (spring.rest * spring.rest);
         }
-        self
+        let after = trace(&self);
+        self.scaled(before / after)
     }
 
     /// With all constants `factor` times as large.
@@ -99,7 +105,7 @@ impl<'a> Object<'a> {
     }
 }
 
-/// Raises the constants of linear springs that are not above zero, so that the fit can make something of them: to a share of the
+/// Raises the constants of linear springs that are next to nothing, so that the fit can make something of them: to a share of the
 /// median of those in the same spring group.
 pub fn raise_idle(fits: &mut [CellFits]) {
     for fit in fits.iter_mut().filter(|fit| fit.force == Force::Linear) {
@@ -111,10 +117,10 @@ pub fn raise_idle(fits: &mut [CellFits]) {
     }
 }
 
-/// Raises what is not above zero to a share of the median of what is.
+/// Raises what is next to nothing to a share of the median of what is above zero.
 fn raise(constants: Vec<&mut f64>) {
     let mut positive: Vec<f64> = constants.iter().map(|k| **k).filter(|k| *k > 0.0).collect();
     positive.sort_by(f64::total_cmp);
     let Some(median) = positive.get(positive.len() / 2) else { return };
-    constants.into_iter().filter(|k| !(**k > 0.0)).for_each(|k| *k = LEAST * median);
+    constants.into_iter().filter(|k| !(**k > NOTHING * median)).for_each(|k| *k = LEAST * median);
 }

@@ -3,76 +3,11 @@
 use super::balance::Balance;
 use super::descent::lbfgs;
 use super::displacements::{Displacements, Errors};
-use super::gauss_newton::GaussNewton;
+use super::fit::{Method, Residual, Validation, Wanted, WholeSettings};
 use super::linearized::LeastSquares;
 use super::object::Object;
-use super::target::{Frequencies, Target};
 use crate::error::{Error, Result};
-use crate::model::{Entries, Network};
 use serde::{Deserialize, Serialize};
-
-/// What minimises the objective.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
-    GaussNewton(GaussNewton),
-    /// With so many pairs of steps and gradients.
-    Lbfgs {
-        memory: usize,
-    },
-}
-
-/// What is made small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Residual {
-    #[default]
-    Displacements,
-    /// See [`Balance`].
-    Forces,
-    /// Of forces at the largest ρ, then of displacements.
-    ForcesFirst,
-}
-
-/// How a whole-object fit goes on.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WholeSettings {
-    /// Values of ρ from the first to the last, each started where the one before ended.
-    pub regularizations: Vec<f64>,
-    /// Steps with each.
-    pub iterations: usize,
-    pub method: Method,
-    pub residual: Residual,
-    /// A ρ with which a length spring becomes so many times as stiff as another is not taken, unless they are at the start.
-    pub range: f64,
-}
-
-impl WholeSettings {
-    /// Values of ρ where loads tell which of them is best.
-    pub const REGULARIZATIONS: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-}
-
-impl Default for WholeSettings {
-    fn default() -> WholeSettings {
-        WholeSettings {
-            regularizations: WholeSettings::REGULARIZATIONS.to_vec(),
-            iterations: 20,
-            method: Method::GaussNewton(GaussNewton::default()),
-            residual: Residual::default(),
-            range: 1e3,
-        }
-    }
-}
-
-/// What chooses ρ.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Validation {
-    /// The last one is taken.
-    #[default]
-    None,
-    /// That of least error on these loads, which are not fitted.
-    Loads(Vec<Target>),
-    /// That of least error on the loads of the fit, each left out once (Stone 1974).
-    LeaveOneOut,
-}
 
 /// Where a fit stands, to go on from later.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -82,6 +17,10 @@ pub struct Snapshot {
     pub theta: Vec<f64>,
     /// Of least error on the validation so far.
     pub best: Best,
+    /// Whether a ρ was better but its range too large.
+    pub limited: bool,
+    /// How many stages are gone through, where leaving loads out has told.
+    pub stages: Option<usize>,
 }
 
 /// The best of the stages that are done.
@@ -94,152 +33,83 @@ pub struct Best {
     pub stage: Option<usize>,
 }
 
-/// What a whole-object fit found.
-#[derive(Debug, Clone)]
-pub struct WholeFit {
-    pub network: Network,
-    /// The ρ that was taken; `None` where the start was best.
-    pub regularization: Option<f64>,
-    /// Of the loads of the fit and of frequencies, before and after.
-    pub trained: [Errors; 2],
-    /// Of the loads of the validation.
-    pub validated: [Errors; 2],
-    /// Steps that were made.
-    pub steps: usize,
-    /// The largest factor by which a constant changed.
-    pub change: f64,
-    /// The largest constant of a length spring, as a multiple of the least.
-    pub range: f64,
-    /// Whether it was ended before its time.
-    pub cancelled: bool,
-}
-
 /// Told where the fit stands after each step, nothing while it tries what to leave out; ends it by returning false.
 pub type Watch<'a> = dyn FnMut(Option<&Snapshot>) -> bool + 'a;
 
-/// What is to be met: the loads of the fit, what chooses ρ, frequencies, and the stiffness of the finite elements where forces are
-/// balanced.
-#[derive(Debug, Clone, Default)]
-pub struct Wanted {
-    pub trained: Vec<Target>,
-    pub validation: Validation,
-    pub frequencies: Option<Frequencies>,
-    pub body: Option<Entries>,
-}
+/// Stages without a gain after which the path ends.
+const PATIENCE: usize = 2;
+/// No constant changes by more than the exponential of this.
+const LARGEST: f64 = 100.0;
 
-/// Fits the constants of the object. `from` is where an earlier run of the same fit stood.
-///
-/// # Errors
-/// There is no load, the network does not stand, the snapshot is of another fit, or the equations do not fit into memory.
-pub fn fit_whole(
-    object: &Object,
-    wanted: &Wanted,
-    settings: &WholeSettings,
-    from: Option<Snapshot>,
-    watch: &mut Watch,
-) -> Result<WholeFit> {
-    let m = object.unknowns().count();
-    if wanted.trained.is_empty() || settings.regularizations.is_empty() {
-        return Err(Error::expected("loads", "at least one load and one regularization", "none"));
+impl Snapshot {
+    /// # Errors
+    /// It is not one of a fit with m unknowns and so many stages.
+    pub fn check(&self, m: usize, stages: usize) -> Result<()> {
+        let fits = |theta: &[f64]| theta.len() == m && theta.iter().all(|t| t.abs() <= LARGEST);
+        let known = |stage: Option<usize>| stage.is_none_or(|stage| stage < stages);
+        if fits(&self.theta) && fits(&self.best.theta) && self.stage <= stages && known(self.best.stage) {
+            return Ok(());
+        }
+        let expected = format!("the state of a fit with {m} unknowns and {stages} regularizations");
+        Err(Error::expected("snapshot", expected, "another"))
     }
-    let none: &[Target] = &[];
-    let judges = match &wanted.validation {
-        Validation::Loads(loads) => &loads[..],
-        _ => none,
-    };
-    let trained: Vec<&Target> = wanted.trained.iter().collect();
-    let problem = Displacements::new(object, trained.clone(), wanted.frequencies.as_ref())?;
-    let judge = Displacements::new(object, judges.iter().collect(), None)?;
-    let start = vec![0.0; m];
-    let trained_before = errors(&problem, &start)?;
-    let validated_before = errors(&judge, &start)?;
-    let stages = settings.regularizations.len();
-    let mut steps = 0;
-    let mut cancelled = false;
-    let mut count = |snapshot: Option<&Snapshot>| {
-        steps += 1;
-        cancelled |= !watch(snapshot);
-        !cancelled
-    };
-    let mut last = stages;
-    if wanted.validation == Validation::LeaveOneOut {
-        last = 1 + leave_one_out(object, wanted, settings, &mut count)?;
-    }
-    let path = Path { object, wanted, settings, last };
-    let first = Best { error: mean(&validated_before), theta: start.clone(), stage: None };
-    let snapshot = from.unwrap_or(Snapshot { stage: 0, theta: start, best: first });
-    if snapshot.theta.len() != m || snapshot.best.theta.len() != m || snapshot.stage > stages {
-        let expected = format!("a snapshot of this fit, with {m} unknowns");
-        return Err(Error::expected("snapshot", expected, snapshot.theta.len()));
-    }
-    let last = path.follow(&problem, &judge, snapshot, &mut count)?;
-    // What was ended early is gone on with from where it stood, what came to its end from there.
-    let end = Snapshot { stage: if cancelled { last.stage } else { stages }, ..last };
-    watch(Some(&end));
-    let best = end.best;
-    Ok(WholeFit {
-        range: object.network(&best.theta).range(),
-        network: object.network(&best.theta),
-        regularization: best.stage.map(|stage| settings.regularizations[stage]),
-        trained: [trained_before, errors(&problem, &best.theta)?],
-        validated: [validated_before, errors(&judge, &best.theta)?],
-        steps,
-        change: object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max),
-        cancelled,
-    })
 }
 
 /// What stays the same along the regularizations.
-struct Path<'a> {
-    object: &'a Object<'a>,
-    wanted: &'a Wanted,
-    settings: &'a WholeSettings,
-    /// Stages that are gone through at most.
-    last: usize,
+pub(super) struct Path<'a> {
+    pub object: &'a Object<'a>,
+    pub wanted: &'a Wanted,
+    pub settings: &'a WholeSettings,
 }
 
 impl Path<'_> {
-    /// Goes on from a snapshot until the judge sees no gain, the path ends, or `watch` says so.
-    fn follow(
+    /// Goes on from a snapshot until the judge sees no gain any more, the path ends, or `watch` says so; the best that was found,
+    /// which is that of the snapshot unless a stage was ended early.
+    pub fn follow(
         &self,
         problem: &Displacements,
         judge: &Displacements,
-        mut snapshot: Snapshot,
+        snapshot: &mut Snapshot,
         watch: &mut Watch,
-    ) -> Result<Snapshot> {
-        while snapshot.stage < self.last {
-            let (stage, best) = (snapshot.stage, snapshot.best.clone());
+    ) -> Result<Best> {
+        let range = |theta: &[f64]| self.object.network(theta).range();
+        let limit = self.settings.range.max(range(&vec![0.0; snapshot.theta.len()]));
+        let stages = self.settings.regularizations.len();
+        while snapshot.stage < snapshot.stages.unwrap_or(stages).min(stages) {
+            let stage = snapshot.stage;
+            let mut now = snapshot.clone();
             let mut goes_on = true;
             let mut visit = |theta: &[f64], _: f64| {
-                let now = Snapshot { stage, theta: theta.to_vec(), best: best.clone() };
+                now.theta.copy_from_slice(theta);
                 goes_on = watch(Some(&now));
                 goes_on
             };
             let theta = self.stage(problem, stage, &snapshot.theta, &mut visit)?;
-            if !goes_on {
-                // The stage is not done: what it reached counts, but it is gone on with.
-                snapshot.theta = theta.clone();
-            }
             let error = judge.errors(&theta)?.and_then(|errors| mean(&errors));
-            let better = match (error, best.error) {
+            let better = match (error, snapshot.best.error) {
                 (Some(now), Some(before)) => now < before,
                 // Without a judge each stage is better than the one before.
-                _ => best.error.is_none(),
+                _ => snapshot.best.error.is_none(),
             };
-            let range = |theta: &[f64]| self.object.network(theta).range();
-            let better = better && range(&theta) <= self.settings.range.max(range(&vec![0.0; theta.len()]));
-            if better {
-                snapshot.best = Best { error, theta: theta.clone(), stage: Some(stage) };
-            }
+            // A ρ that was asked for is taken whatever comes of it.
+            let wide = self.wanted.validation != Validation::None && range(&theta) > limit;
+            let best = if better && !wide {
+                Best { error, theta: theta.clone(), stage: Some(stage) }
+            } else {
+                snapshot.best.clone()
+            };
             if !goes_on {
-                break;
+                // What is reached counts, but the stage is not done.
+                snapshot.theta = theta;
+                return Ok(best);
             }
-            (snapshot.theta, snapshot.stage) = (theta, stage + 1);
-            if !better {
+            *snapshot = Snapshot { stage: stage + 1, theta, best, limited: better && wide, stages: snapshot.stages };
+            // The largest ρ may keep too near to a start that is good under some loads by chance.
+            if wide || snapshot.best.stage.is_some_and(|best| stage >= best + PATIENCE) {
                 break;
             }
         }
-        Ok(snapshot)
+        Ok(snapshot.best.clone())
     }
 
     fn stage(
@@ -254,7 +124,8 @@ impl Path<'_> {
         let forces = match self.settings.residual {
             Residual::Displacements => false,
             Residual::Forces => true,
-            Residual::ForcesFirst => stage == 0,
+            // One that is gone on with has left the start.
+            Residual::ForcesFirst => stage == 0 && theta.iter().all(|t| *t == 0.0),
         };
         if forces {
             let missing = || Error::expected("residual", "the stiffness of the finite elements for it", "none");
@@ -283,42 +154,43 @@ impl Path<'_> {
     }
 }
 
-/// The stage of least error on loads that are left out, one at a time.
-fn leave_one_out(object: &Object, wanted: &Wanted, settings: &WholeSettings, watch: &mut Watch) -> Result<usize> {
+/// The number of stages after which the error on loads that are left out, one at a time, is least; `None` where `watch` ended it.
+pub(super) fn leave_one_out(
+    object: &Object,
+    wanted: &Wanted,
+    settings: &WholeSettings,
+    watch: &mut Watch,
+) -> Result<Option<usize>> {
     let count = wanted.trained.len();
     if count < 2 {
         return Err(Error::expected("validate", "at least two loads to leave one out", count));
     }
     let stages = settings.regularizations.len();
     let mut sums = vec![0.0; stages];
-    let mut goes_on = true;
-    let mut watch = |_: Option<&Snapshot>| {
-        goes_on = goes_on && watch(None);
-        goes_on
-    };
+    let path = Path { object, wanted, settings };
     for out in 0..count {
         let others = (0..count).filter(|l| *l != out).map(|l| &wanted.trained[l]).collect();
         let problem = Displacements::new(object, others, wanted.frequencies.as_ref())?;
         let judge = Displacements::new(object, vec![&wanted.trained[out]], None)?;
         let mut theta = vec![0.0; object.unknowns().count()];
         for (stage, sum) in sums.iter_mut().enumerate() {
-            let path = Path { object, wanted, settings, last: stage + 1 };
-            let best = Best { error: None, theta: theta.clone(), stage: None };
-            theta = path.follow(&problem, &judge, Snapshot { stage, theta, best }, &mut watch)?.theta;
+            let mut goes_on = true;
+            let mut visit = |_: &[f64], _: f64| {
+                goes_on = watch(None);
+                goes_on
+            };
+            theta = path.stage(&problem, stage, &theta, &mut visit)?;
+            if !goes_on {
+                return Ok(None);
+            }
             *sum += judge.errors(&theta)?.and_then(|errors| mean(&errors)).unwrap_or(f64::INFINITY);
         }
     }
-    Ok((0..stages).min_by(|&a, &b| sums[a].total_cmp(&sums[b])).unwrap_or(0))
-}
-
-fn errors(problem: &Displacements, theta: &[f64]) -> Result<Errors> {
-    problem
-        .errors(theta)?
-        .ok_or_else(|| Error::expected("springs", "a network that stands under every load", "one that does not"))
+    Ok((0..stages).min_by(|&a, &b| sums[a].total_cmp(&sums[b])).map(|stage| stage + 1))
 }
 
 /// Of the logarithms.
-fn mean(errors: &Errors) -> Option<f64> {
+pub(super) fn mean(errors: &Errors) -> Option<f64> {
     let sum: f64 = errors.loads.iter().map(|e| e.ln()).sum();
     (!errors.loads.is_empty()).then(|| sum / errors.loads.len() as f64)
 }

@@ -30,14 +30,14 @@ pub struct Frequencies {
 }
 
 impl Target {
-    /// `‖ū_l‖²_W`.
-    pub(super) fn size(&self) -> f64 {
-        self.displacement.iter().zip(&self.weights).map(|(u, w)| w * u * u).sum()
-    }
-
-    /// `√(w_l W)/‖ū_l‖_W`.
-    pub(super) fn scale(&self) -> Vec<f64> {
-        let factor = self.weight / self.size();
-        self.weights.iter().map(|w| (factor * w).sqrt()).collect()
+    /// `√(w_l W)/‖ū_l‖_W`; `None` where nothing that is free to move is known to.
+    pub(super) fn scale(&self) -> Option<Vec<f64>> {
+        let known = || self.displacement.iter().zip(&self.weights).map(|(u, w)| w.sqrt() * u);
+        // Its square may be beyond the range of numbers.
+        let largest = known().fold(0.0, |a: f64, u| a.max(u.abs()));
+        let size = largest * known().map(|u| (u / largest).powi(2)).sum::<f64>().sqrt();
+        let free = self.weights.iter().zip(&self.support.prescribed).any(|(w, p)| *w > 0.0 && p.is_none());
+        let scale = |w: &f64| self.weight.sqrt() / size * w.sqrt();
+        (free && size > 0.0 && size.is_finite()).then(|| self.weights.iter().map(scale).collect())
     }
 }

@@ -123,6 +123,7 @@ pub struct FitEntry {
     pub unknowns: Option<String>,
     pub residual: Option<String>,
     pub regularization: Option<f64>,
+    pub range: Option<f64>,
     pub frequencies: Option<usize>,
     pub seed: Option<u64>,
 }
@@ -202,6 +203,7 @@ impl FitEntry {
                     unknowns: self.unknowns.clone(),
                     residual: self.residual.clone(),
                     regularization: self.regularization,
+                    range: self.range,
                     frequencies: self.frequencies,
                     seed: self.seed,
                     solver: self.solver.clone(),
@@ -273,6 +275,7 @@ impl FitEntry {
             ("unknowns", "whole", self.unknowns.is_some()),
             ("residual", "whole", self.residual.is_some()),
             ("regularization", "whole", self.regularization.is_some()),
+            ("range", "whole", self.range.is_some()),
             ("frequencies", "whole", self.frequencies.is_some()),
             ("seed", "whole", self.seed.is_some()),
             ("force", "sampled", self.force.is_some()),
@@ -290,6 +293,7 @@ impl FitEntry {
         let strange = [
             ("balance", "sampled", self.balance.is_some()),
             ("tied", "whole", self.tied),
+            ("nonnegative", "whole", self.nonnegative && !from_sampled),
             ("solver", "sampled", self.solver.is_some()),
             ("iterations", "sampled", self.iterations.is_some()),
         ];

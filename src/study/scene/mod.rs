@@ -9,6 +9,7 @@ mod whole;
 pub use entry::{BoxEntry, FitEntry, MeasuredEntry, MeshInput, Output};
 pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
 pub use sampled::ShapesEntry;
+use whole::RESERVED;
 pub use whole::{Judge, Named, Sharing, Start, WholeRecipe};
 
 use crate::element::Element;
@@ -139,11 +140,17 @@ impl Scene {
                 unknown("shapes.loads", &recipe.loads)?;
             }
             if let Recipe::Whole(recipe) = &fit.recipe {
+                let at = |e: Error| e.under(format!("fit[{i}]"));
                 unknown("loads", &recipe.loads.names)?;
                 if let Judge::Loads(named) = &recipe.validation {
                     unknown("validate", &named.names)?;
                 }
+                recipe.check(entry.material.law.is_some(), entry.material.density.is_some()).map_err(at)?;
             }
+        }
+        if let Some(i) = loads.iter().position(|load| RESERVED.contains(&load.name.as_str())) {
+            let expected = format!("a name other than {}", RESERVED.join(", "));
+            return Err(Error::expected(format!("load[{i}].name"), expected, format!("\"{}\"", loads[i].name)));
         }
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Scene {

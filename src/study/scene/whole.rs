@@ -64,6 +64,7 @@ pub struct WholeEntry {
     pub unknowns: Option<String>,
     pub residual: Option<String>,
     pub regularization: Option<f64>,
+    pub range: Option<f64>,
     pub frequencies: Option<usize>,
     pub seed: Option<u64>,
     pub solver: Option<String>,
@@ -71,8 +72,10 @@ pub struct WholeEntry {
 }
 
 /// What stands for the loads that are made from the mesh.
-pub const MADE: &str = "made";
+const MADE: &str = "made";
 const LEAVE_ONE_OUT: &str = "leave-one-out";
+/// Names that no load of a scene may have.
+pub const RESERVED: [&str; 2] = [MADE, LEAVE_ONE_OUT];
 /// Pairs that L-BFGS remembers.
 const MEMORY: usize = 10;
 const SEED: u64 = 2010;
@@ -82,7 +85,15 @@ impl Start {
     /// The name is no objective; `choices` are those of it.
     pub fn named(name: &str, choices: Choices) -> Result<Start> {
         if name == "equal" {
-            return Ok(Start::Equal);
+            let given = [
+                ("weight", choices.weight.is_some()),
+                ("higher", choices.higher.is_some()),
+                ("balance", choices.balance.is_some()),
+            ];
+            return match given.iter().find(|(_, given)| *given) {
+                Some((key, _)) => Err(Error::at(*key, "belongs to an objective, found with the start \"equal\"")),
+                None => Ok(Start::Equal),
+            };
         }
         let objective = Objective::named(name, choices).map_err(|e| match e.key() {
             Some("objective") => {
@@ -118,6 +129,26 @@ impl Default for WholeRecipe {
     }
 }
 
+impl WholeRecipe {
+    /// What of it goes with the material.
+    ///
+    /// # Errors
+    /// Loads are made where displacements are large, or frequencies wanted without a density.
+    pub fn check(&self, law: bool, density: bool) -> Result<()> {
+        let judged = matches!(&self.validation, Judge::Loads(named) if named.made);
+        for (key, made) in [("loads", self.loads.made), ("validate", judged)] {
+            if law && made {
+                let expected = "loads of the scene, where the material has a law";
+                return Err(Error::expected(key, expected, "\"made\""));
+            }
+        }
+        if self.frequencies > 0 && !density {
+            return Err(Error::expected("frequencies", "a density in [material]", "none"));
+        }
+        Ok(())
+    }
+}
+
 impl Named {
     fn new(names: Vec<String>) -> Named {
         let made = names.iter().any(|name| name == MADE);
@@ -131,6 +162,20 @@ impl Named {
     }
 }
 
+impl Judge {
+    /// In the words of the scene.
+    pub fn words(&self) -> Vec<String> {
+        match self {
+            Judge::Loads(named) if named.made && named.names.is_empty() => {
+                vec!["random loads made from the mesh".into()]
+            }
+            Judge::Loads(named) => named.words(),
+            Judge::LeaveOneOut => vec!["each of them left out in turn".into()],
+            Judge::Given => Vec::new(),
+        }
+    }
+}
+
 impl WholeEntry {
     /// # Errors
     /// A value is unknown or out of range, or a load is fitted and validates as well.
@@ -138,6 +183,12 @@ impl WholeEntry {
         let loads = self.loads.unwrap_or_else(|| vec![MADE.into()]);
         if loads.is_empty() {
             return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
+        }
+        for (key, names) in [("loads", Some(&loads)), ("validate", self.validate.as_ref())] {
+            let names = names.map_or(&[][..], |names| names);
+            if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+                return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
+            }
         }
         let settings = WholeSettings::default();
         let mut settings = WholeSettings {
@@ -161,8 +212,21 @@ impl WholeEntry {
             },
             ..settings
         };
+        settings.range = self.range.unwrap_or(settings.range);
+        if !(settings.range >= 1.0) {
+            return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
+        }
         if settings.iterations == 0 {
             return Err(Error::expected("iterations", "a number above 0", 0));
+        }
+        if settings.residual == Residual::Forces && self.frequencies.is_some() {
+            return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
+        }
+        if self.range.is_some() && self.regularization.is_some() {
+            return Err(Error::at(
+                "range",
+                "limits what \"validate\" may choose, found with a regularization that is given",
+            ));
         }
         let validation = match (self.validate, self.regularization) {
             (Some(_), Some(_)) => {

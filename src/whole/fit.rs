@@ -1,0 +1,178 @@
+//! Whole-object fits from what is wanted to what was found.
+
+use super::displacements::{Displacements, Errors};
+use super::gauss_newton::GaussNewton;
+use super::object::Object;
+use super::path::{Best, Path, Snapshot, Watch, leave_one_out, mean};
+use super::target::{Frequencies, Target};
+use crate::error::{Error, Result};
+use crate::model::{Entries, Network};
+
+/// What minimises the objective.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    GaussNewton(GaussNewton),
+    /// With so many pairs of steps and gradients.
+    Lbfgs {
+        memory: usize,
+    },
+}
+
+/// What is made small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Residual {
+    #[default]
+    Displacements,
+    /// See [`Balance`].
+    Forces,
+    /// Of forces at the largest ρ, then of displacements.
+    ForcesFirst,
+}
+
+/// How a whole-object fit goes on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WholeSettings {
+    /// Values of ρ from the first to the last, each started where the one before ended.
+    pub regularizations: Vec<f64>,
+    /// Steps with each.
+    pub iterations: usize,
+    pub method: Method,
+    pub residual: Residual,
+    /// A ρ with which a length spring becomes so many times as stiff as another is not taken, unless they are at the start.
+    pub range: f64,
+}
+
+impl WholeSettings {
+    /// Values of ρ where loads tell which of them is best.
+    pub const REGULARIZATIONS: [f64; 8] = [1e1, 1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+}
+
+impl Default for WholeSettings {
+    fn default() -> WholeSettings {
+        WholeSettings {
+            regularizations: WholeSettings::REGULARIZATIONS.to_vec(),
+            iterations: 20,
+            method: Method::GaussNewton(GaussNewton::default()),
+            residual: Residual::default(),
+            range: 1e3,
+        }
+    }
+}
+
+/// What chooses ρ.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Validation {
+    /// The last one is taken.
+    #[default]
+    None,
+    /// That of least error on these loads, which are not fitted.
+    Loads(Vec<Target>),
+    /// That of least error on the loads of the fit, each left out once (Stone 1974).
+    LeaveOneOut,
+}
+
+/// What a whole-object fit found.
+#[derive(Debug, Clone)]
+pub struct WholeFit {
+    pub network: Network,
+    /// The ρ that was taken; `None` where the start was best.
+    pub regularization: Option<f64>,
+    /// Of the loads of the fit and of frequencies, before and after.
+    pub trained: [Errors; 2],
+    /// Of the loads of the validation.
+    pub validated: [Errors; 2],
+    /// Steps that were made.
+    pub steps: usize,
+    /// The largest factor by which a constant changed.
+    pub change: f64,
+    /// The largest constant of a length spring, as a multiple of the least.
+    pub range: f64,
+    /// Whether a smaller ρ was left because the range would have been too large.
+    pub limited: bool,
+    /// Whether the network stands under every load at the start; else it is left as it is.
+    pub stands: bool,
+    /// Whether it was ended before its time.
+    pub cancelled: bool,
+}
+
+/// What is to be met: the loads of the fit, what chooses ρ, frequencies, and the stiffness of the finite elements where forces are
+/// balanced.
+#[derive(Debug, Clone, Default)]
+pub struct Wanted {
+    pub trained: Vec<Target>,
+    pub validation: Validation,
+    pub frequencies: Option<Frequencies>,
+    pub body: Option<Entries>,
+}
+
+/// Fits the constants of the object. `from` is where an earlier run of the same fit stood. A network that does not stand at the start
+/// is no error.
+///
+/// # Errors
+/// There is no load or one moves nothing, the snapshot is of another fit, or the equations do not fit into memory.
+pub fn fit_whole(
+    object: &Object,
+    wanted: &Wanted,
+    settings: &WholeSettings,
+    from: Option<Snapshot>,
+    watch: &mut Watch,
+) -> Result<WholeFit> {
+    let m = object.unknowns().count();
+    if wanted.trained.is_empty() || settings.regularizations.is_empty() {
+        return Err(Error::expected("loads", "loads that act on a free point, and regularizations", "none"));
+    }
+    let judges = match &wanted.validation {
+        Validation::Loads(loads) => &loads[..],
+        _ => &[],
+    };
+    let problem = Displacements::new(object, wanted.trained.iter().collect(), wanted.frequencies.as_ref())?;
+    let judge =
+        Displacements::new(object, judges.iter().collect(), None).map_err(|e| Error::at("validate", e.problem()))?;
+    let start = vec![0.0; m];
+    let stages = settings.regularizations.len();
+    let mut found = WholeFit {
+        network: object.network(&start),
+        regularization: None,
+        trained: Default::default(),
+        validated: Default::default(),
+        steps: 0,
+        change: 1.0,
+        range: object.network(&start).range(),
+        limited: false,
+        stands: false,
+        cancelled: false,
+    };
+    let (Some(trained), Some(validated)) = (problem.errors(&start)?, judge.errors(&start)?) else { return Ok(found) };
+    found.stands = true;
+    let first = Best { error: mean(&validated), theta: start.clone(), stage: None };
+    let mut snapshot = from.unwrap_or(Snapshot { stage: 0, theta: start, best: first, limited: false, stages: None });
+    snapshot.check(m, stages)?;
+    let (mut steps, mut cancelled) = (0, false);
+    let mut count = |snapshot: Option<&Snapshot>| {
+        steps += 1;
+        cancelled |= !watch(snapshot);
+        !cancelled
+    };
+    if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
+        snapshot.stages = leave_one_out(object, wanted, settings, &mut count)?;
+    }
+    // Ended while it tried what to leave out, it has not begun.
+    let best = if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
+        snapshot.best.clone()
+    } else {
+        Path { object, wanted, settings }.follow(&problem, &judge, &mut snapshot, &mut count)?
+    };
+    if !cancelled {
+        snapshot.stage = stages;
+    }
+    watch(Some(&snapshot));
+    found.network = object.network(&best.theta);
+    found.range = found.network.range();
+    found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
+    let after = |problem: &Displacements| problem.errors(&best.theta).map(Option::unwrap_or_default);
+    found.trained = [trained, after(&problem)?];
+    found.validated = [validated, after(&judge)?];
+    found.change = object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);
+    (found.steps, found.limited, found.cancelled) = (steps, snapshot.limited, cancelled);
+    Ok(found)
+}
