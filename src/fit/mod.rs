@@ -14,6 +14,7 @@ mod nodal;
 mod normal;
 mod norms;
 mod objective;
+pub mod published;
 mod reduction;
 mod residual;
 mod sampled;

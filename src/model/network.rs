@@ -5,9 +5,8 @@ use super::system::dofs;
 use crate::element::SpringKind;
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
-use crate::springs::{Force, Law, Measure, distance, linear};
+use crate::springs::{Force, FunctionSpring, Law, Measure, distance, linear};
 use crate::stiffness::gather;
-use crate::symbolic::Expr;
 use faer::sparse::Triplet;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -162,14 +161,16 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
     let (d, springs) = (mesh.dimension, &fit.springs);
     let (m, first) = (springs.len(), springs.pairs.len());
     let every: Vec<usize> = (0..springs.nodes).collect();
-    let in_space = |kind: SpringKind, nodes: usize, function: Option<&Arc<Expr>>| match function {
-        Some(function) if springs.space == springs.dimension => Measure::Function(function.clone()),
-        None if springs.space == springs.dimension => Measure::Content(block.element.clone()),
-        _ => Measure::Function(Arc::new(Measure::of_kind(kind, nodes, d).expect("a kind has a formula in any space"))),
+    let function = |f: &FunctionSpring| Measure::Function(f.in_space.as_ref().unwrap_or(&f.function).clone());
+    let functions = springs.functions.iter().map(|f| (f.kind, &f.nodes, function(f)));
+    let of_cell = |kind: SpringKind| match springs.space == springs.dimension {
+        true => Measure::Content(block.element.clone()),
+        false => {
+            let formula = Measure::of_kind(kind, springs.nodes, d);
+            Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space")))
+        }
     };
-    let functions =
-        springs.functions.iter().map(|f| (f.kind, &f.nodes, in_space(f.kind, f.nodes.len(), Some(&f.function))));
-    let content = springs.content.map(|kind| (kind, &every, in_space(kind, springs.nodes, None)));
+    let content = springs.content.map(|kind| (kind, &every, of_cell(kind)));
     let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(content).collect();
     let mut all = Vec::new();
     if kinds.is_empty() {

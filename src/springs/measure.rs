@@ -48,6 +48,34 @@ impl Measure {
         formula.scope.expression(&text)
     }
 
+    /// The squared distances of the points 0-1, 2-3, … added up, m².
+    ///
+    /// # Errors
+    /// Those of an expression.
+    pub fn squared_lengths(pairs: usize, dimension: usize) -> Result<Expr> {
+        let formula = Formula::new(2 * pairs, dimension);
+        let square = |pair: usize| {
+            let u = formula.vector(2 * pair, 2 * pair + 1);
+            dot(&u, &u)
+        };
+        formula.scope.expression(&(0..pairs).map(square).collect::<Vec<_>>().join(" + "))
+    }
+
+    /// The distance of the centre of the first `side` points from that of the `side` others, m.
+    ///
+    /// # Errors
+    /// Those of an expression.
+    pub fn extent(side: usize, dimension: usize) -> Result<Expr> {
+        let formula = Formula::new(2 * side, dimension);
+        let between: Vec<Vec<String>> = (0..side).map(|i| formula.vector(i, side + i)).collect();
+        let mean = |k: usize| {
+            let sum = between.iter().map(|u| u[k].clone()).collect::<Vec<_>>().join(" + ");
+            format!("(({sum})/{side})")
+        };
+        let u: Vec<String> = (0..dimension).map(mean).collect();
+        formula.scope.expression(&format!("sqrt({})", dot(&u, &u)))
+    }
+
     /// c and its derivatives at the positions `x`, `[points × dimension]`, m.
     pub fn jet(&self, x: &[f64], dimension: usize) -> Jet {
         match self {

@@ -46,6 +46,8 @@ pub struct FunctionSpring {
     pub nodes: Vec<usize>,
     /// Of their coordinates, in this order.
     pub function: Arc<Expr>,
+    /// On a surface or curve in space: the same of the coordinates in space.
+    pub in_space: Option<Arc<Expr>>,
 }
 
 impl Springs {
@@ -87,22 +89,58 @@ impl Springs {
                 continue;
             }
             for nodes in &group.nodes {
-                let function = match (&group.measure, springs.functions.last()) {
-                    (Some(measure), _) => Arc::new(measure.clone()),
+                let (function, in_space) = match (&group.measure, springs.functions.last()) {
+                    (Some(measure), _) => (Arc::new(measure.clone()), None),
                     (_, Some(last)) if last.kind == group.kind && last.nodes.len() == nodes.len() => {
-                        last.function.clone()
+                        (last.function.clone(), last.in_space.clone())
                     }
                     _ => {
-                        let known = Measure::of_kind(group.kind, nodes.len(), springs.dimension);
-                        Arc::new(known.map_err(|e| Error::at(format!("springs.{}", group.name), e.problem()))?)
+                        let known = |d: usize| {
+                            let known = Measure::of_kind(group.kind, nodes.len(), d).map(Arc::new);
+                            known.map_err(|e| Error::at(format!("springs.{}", group.name), e.problem()))
+                        };
+                        (known(springs.dimension)?, embedded.then(|| known(springs.space)).transpose()?)
                     }
                 };
-                springs.functions.push(FunctionSpring { kind: group.kind, nodes: nodes.clone(), function });
+                let nodes = nodes.clone();
+                springs.functions.push(FunctionSpring { kind: group.kind, nodes, function, in_space });
             }
         }
         springs.touching = sharing(&springs.pairs, 1);
         springs.parallel = sharing(&springs.pairs, 2);
         Ok(springs)
+    }
+
+    /// The length springs of these indices, then springs on functions and on the content, each with the name of its group.
+    pub(crate) fn with(
+        &self,
+        lengths: &[usize],
+        functions: Vec<(&str, FunctionSpring)>,
+        content: Option<(&str, SpringKind)>,
+    ) -> Springs {
+        let mut springs = Springs {
+            pairs: lengths.iter().map(|&s| self.pairs[s]).collect(),
+            functions: Vec::new(),
+            content: content.map(|(_, kind)| kind),
+            groups: Vec::new(),
+            names: Vec::new(),
+            touching: Vec::new(),
+            parallel: Vec::new(),
+            ..*self
+        };
+        let own = lengths.iter().map(|&s| self.names[self.groups[s]].as_str());
+        let others = functions.iter().map(|(name, _)| *name).chain(content.iter().map(|(name, _)| *name));
+        for name in own.chain(others) {
+            let known = springs.names.iter().position(|n| n == name);
+            springs.groups.push(known.unwrap_or(springs.names.len()));
+            if known.is_none() {
+                springs.names.push(name.to_string());
+            }
+        }
+        springs.functions = functions.into_iter().map(|(_, function)| function).collect();
+        springs.touching = sharing(&springs.pairs, 1);
+        springs.parallel = sharing(&springs.pairs, 2);
+        springs
     }
 
     /// Nodes and measure of every spring of the element.

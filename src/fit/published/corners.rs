@@ -1,0 +1,95 @@
+//! What joins the corners of a cell: edges, diagonals, opposite sides; from the cell's geometry alone.
+
+use super::method::Joint;
+use crate::element::{Cell, Element};
+use crate::error::{Error, Result};
+
+/// The corners of a cell as nodes of an element that has no others.
+#[derive(Debug)]
+pub struct Corners {
+    /// Every two nodes.
+    pub joints: Vec<([usize; 2], Joint)>,
+    /// Of each two opposite sides of a quadrilateral or hexahedron the nodes, first those of the one.
+    pub facing: Vec<Vec<usize>>,
+}
+
+impl Corners {
+    /// # Errors
+    /// The nodes are not just the corners of the cell.
+    pub fn of(element: &Element) -> Result<Corners> {
+        let (cell, d) = (element.cell, element.dimension());
+        let corners = cell.corners();
+        let here = |a: usize, corner: &[f64]| {
+            element.positions[a * d..(a + 1) * d].iter().zip(corner).all(|(x, c)| (x - c).abs() < 1e-9)
+        };
+        let node = |corner: &&[f64]| (0..element.nodes()).find(|&a| here(a, corner));
+        let nodes: Option<Vec<usize>> = corners.iter().map(node).collect();
+        let Some(nodes) = nodes.filter(|_| element.nodes() == corners.len()) else {
+            let expected = format!("{} nodes at the corners of the cell", corners.len());
+            return Err(Error::expected(&element.name, expected, format!("{} nodes", element.nodes())));
+        };
+        let edges = edges(cell);
+        let together = |pair: &[usize; 2]| cell.sides().iter().any(|s| pair.iter().all(|i| s.corners.contains(i)));
+        let joint = |pair: [usize; 2]| match edges.contains(&pair) {
+            true => Joint::Edge,
+            false if together(&pair) => Joint::FaceDiagonal,
+            false => Joint::Diagonal,
+        };
+        let pairs = (0..corners.len()).flat_map(|i| (i + 1..corners.len()).map(move |j| [i, j]));
+        let joints = pairs.map(|pair| (pair.map(|i| nodes[i]), joint(pair))).collect();
+        let mut facing = Vec::new();
+        for (i, side) in cell.sides().iter().enumerate().filter(|_| cell.is_box()) {
+            for other in &cell.sides()[..i] {
+                if !side.corners.iter().any(|corner| other.corners.contains(corner)) {
+                    facing.push(other.corners.iter().chain(side.corners).map(|&corner| nodes[corner]).collect());
+                }
+            }
+        }
+        Ok(Corners { joints, facing })
+    }
+
+    /// What lies between two nodes.
+    pub fn joint(&self, [a, b]: [usize; 2]) -> Option<Joint> {
+        self.joints.iter().find(|(pair, _)| *pair == [a, b] || *pair == [b, a]).map(|(_, joint)| *joint)
+    }
+
+    /// The pairs of that kind.
+    pub fn joined(&self, by: Joint) -> impl Iterator<Item = [usize; 2]> {
+        self.joints.iter().filter(move |(_, joint)| *joint == by).map(|(pair, _)| *pair)
+    }
+
+    /// Which two of the opposite sides an edge goes between.
+    pub fn direction(&self, edge: [usize; 2]) -> Option<usize> {
+        let first = |nodes: &[usize], a: usize| nodes[..nodes.len() / 2].contains(&a);
+        self.facing.iter().position(|nodes| first(nodes, edge[0]) != first(nodes, edge[1]))
+    }
+
+    /// The mean length of the edges in each direction of a quadrilateral or hexahedron with nodes at `x`, m.
+    pub fn extents(&self, length: impl Fn([usize; 2]) -> f64) -> Vec<f64> {
+        let mean = |direction: usize| {
+            let along = self.joined(Joint::Edge).filter(|&edge| self.direction(edge) == Some(direction));
+            let lengths: Vec<f64> = along.map(&length).collect();
+            lengths.iter().sum::<f64>() / lengths.len() as f64
+        };
+        (0..self.facing.len()).map(mean).collect()
+    }
+}
+
+/// The edges of a cell by its corners, the lower one first.
+fn edges(cell: Cell) -> Vec<[usize; 2]> {
+    let mut edges: Vec<[usize; 2]> = match cell.dimension() {
+        1 => vec![[0, 1]],
+        2 => cell.sides().iter().map(|side| [side.corners[0], side.corners[1]]).collect(),
+        _ => {
+            let of_side = |side: &crate::element::Side| {
+                let own = side.cell.sides().iter();
+                own.map(|edge| [0, 1].map(|end| side.corners[edge.corners[end]])).collect::<Vec<_>>()
+            };
+            cell.sides().iter().flat_map(of_side).collect()
+        }
+    };
+    edges.iter_mut().for_each(|edge| edge.sort_unstable());
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

@@ -1,0 +1,206 @@
+//! The methods by name, with what each covers and takes for granted.
+
+use super::shape::Shape;
+use crate::element::{Cell, Element};
+use crate::error::{Error, Result};
+
+/// A published way to choose spring constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    VanGelder,
+    VanGelderSimple,
+    Lloyd,
+    LloydPreserving,
+    Baudet,
+    BaudetCorrected,
+    DelingetteQuadratic,
+    DelingetteBiquadratic,
+    MacielUniform,
+}
+
+/// What a method does on one kind of cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cover {
+    pub cell: Cell,
+    /// The corners between which it needs springs.
+    pub joints: &'static [Joint],
+    pub poisson: Ratio,
+    /// The shape that the formula is made for; any other is taken for one like it, see [`unmet`](super::unmet).
+    pub shape: Option<Shape>,
+}
+
+/// Two corners of a cell, by what of the cell lies between them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joint {
+    Edge,
+    /// A side of a solid.
+    FaceDiagonal,
+    /// The inside.
+    Diagonal,
+}
+
+/// The Poisson's ratios for which a method keeps what it promises.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ratio {
+    /// The formula takes that of the material.
+    Any,
+    /// Any other of the material is no fault, but not met either.
+    Only(f64),
+    /// Below it there are no such springs.
+    AtLeast(f64),
+}
+
+const EDGES: &[Joint] = &[Joint::Edge];
+const CROSSED: &[Joint] = &[Joint::Edge, Joint::Diagonal];
+/// What springs with a centre of symmetry have: Cauchy's relation λ = μ.
+const PLANE: f64 = 1.0 / 3.0;
+const SOLID: f64 = 1.0 / 4.0;
+
+const fn cover(cell: Cell, joints: &'static [Joint], poisson: Ratio, shape: Option<Shape>) -> Cover {
+    Cover { cell, joints, poisson, shape }
+}
+
+impl Method {
+    pub const ALL: [Method; 9] = [
+        Method::VanGelder,
+        Method::VanGelderSimple,
+        Method::Lloyd,
+        Method::LloydPreserving,
+        Method::Baudet,
+        Method::BaudetCorrected,
+        Method::DelingetteQuadratic,
+        Method::DelingetteBiquadratic,
+        Method::MacielUniform,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::VanGelder => "van-gelder",
+            Method::VanGelderSimple => "van-gelder-simple",
+            Method::Lloyd => "lloyd",
+            Method::LloydPreserving => "lloyd-preserving",
+            Method::Baudet => "baudet",
+            Method::BaudetCorrected => "baudet-corrected",
+            Method::DelingetteQuadratic => "delingette-quadratic",
+            Method::DelingetteBiquadratic => "delingette-biquadratic",
+            Method::MacielUniform => "maciel-uniform",
+        }
+    }
+
+    /// The method called `name`.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn of_name(name: &str) -> Result<Method> {
+        Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
+            Error::expected("method", format!("one of {}", names.join(", ")), format!("\"{name}\""))
+        })
+    }
+
+    /// Where it is published.
+    pub fn reference(self) -> &'static str {
+        match self {
+            Method::VanGelder | Method::VanGelderSimple => {
+                "A. Van Gelder, Approximate simulation of elastic membranes by triangulated spring meshes, Journal of \
+                 Graphics Tools 3 (1998) 21-41"
+            }
+            Method::Lloyd | Method::LloydPreserving => {
+                "B. A. Lloyd, G. Székely, M. Harders, Identification of spring parameters for deformable object \
+                 simulation, IEEE Transactions on Visualization and Computer Graphics 13 (2007) 1081-1094"
+            }
+            Method::Baudet | Method::BaudetCorrected => {
+                "V. Baudet, M. Beuve, F. Jaillet, B. Shariat, F. Zara, Integrating tensile parameters in hexahedral \
+                 mass-spring system for simulation, WSCG 2009; in the plane: New mass-spring system integrating \
+                 elasticity parameters in 2D, LIRIS research report, 2007"
+            }
+            Method::DelingetteQuadratic | Method::DelingetteBiquadratic => {
+                "H. Delingette, Triangular springs for modeling nonlinear membranes, IEEE Transactions on \
+                 Visualization and Computer Graphics 14 (2008) 329-341"
+            }
+            Method::MacielUniform => {
+                "A. Maciel, R. Boulic, D. Thalmann, Deformable tissue parameterized by properties of real biological \
+                 tissue, Surgery Simulation and Soft Tissue Modeling, LNCS 2673 (2003) 74-87"
+            }
+        }
+    }
+
+    /// The cells it has a formula for.
+    pub fn covers(self) -> &'static [Cover] {
+        use Cell::{Hexahedron, Pentagon, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
+        use Ratio::{Any, AtLeast, Only};
+        const REGULAR: Option<Shape> = Some(Shape::Regular);
+        match self {
+            Method::VanGelder => {
+                const { &[cover(Triangle, EDGES, Any, None), cover(Tetrahedron, EDGES, Only(SOLID), None)] }
+            }
+            Method::VanGelderSimple => const { &[cover(Triangle, EDGES, Only(0.0), None)] },
+            Method::Lloyd => {
+                const {
+                    &[
+                        cover(Triangle, EDGES, Only(PLANE), REGULAR),
+                        cover(Quadrilateral, CROSSED, Only(PLANE), REGULAR),
+                        cover(Tetrahedron, EDGES, Only(SOLID), REGULAR),
+                    ]
+                }
+            }
+            Method::LloydPreserving => {
+                const {
+                    &[
+                        cover(Triangle, EDGES, AtLeast(PLANE), REGULAR),
+                        cover(Quadrilateral, CROSSED, AtLeast(PLANE), REGULAR),
+                        cover(Tetrahedron, EDGES, AtLeast(SOLID), REGULAR),
+                    ]
+                }
+            }
+            Method::Baudet => {
+                const {
+                    &[
+                        cover(Quadrilateral, CROSSED, Only(PLANE), Some(Shape::Rectangle)),
+                        cover(Hexahedron, CROSSED, Only(SOLID), REGULAR),
+                    ]
+                }
+            }
+            Method::BaudetCorrected => {
+                const {
+                    &[
+                        cover(Quadrilateral, CROSSED, Any, Some(Shape::Rectangle)),
+                        cover(Hexahedron, CROSSED, Any, REGULAR),
+                    ]
+                }
+            }
+            Method::DelingetteQuadratic | Method::DelingetteBiquadratic => {
+                const { &[cover(Triangle, EDGES, Any, None)] }
+            }
+            Method::MacielUniform => {
+                const {
+                    &[
+                        cover(Triangle, EDGES, Only(PLANE), None),
+                        cover(Quadrilateral, EDGES, Only(PLANE), None),
+                        cover(Pentagon, EDGES, Only(PLANE), None),
+                        cover(Tetrahedron, EDGES, Only(SOLID), None),
+                        cover(Hexahedron, EDGES, Only(SOLID), None),
+                        cover(Wedge, EDGES, Only(SOLID), None),
+                        cover(Pyramid, EDGES, Only(SOLID), None),
+                    ]
+                }
+            }
+        }
+    }
+
+    /// What it does on this element's cell.
+    ///
+    /// # Errors
+    /// It has no formula for such a cell.
+    pub fn cover(self, element: &Element) -> Result<&'static Cover> {
+        self.covers().iter().find(|cover| cover.cell == element.cell).ok_or_else(|| {
+            let cells: Vec<String> = self.covers().iter().map(|cover| word(cover.cell)).collect();
+            let found = format!("{}, a {}", element.name, word(element.cell));
+            Error::expected(self.name(), format!("an element of the cell {}", cells.join(", ")), found)
+        })
+    }
+}
+
+fn word(cell: Cell) -> String {
+    format!("{cell:?}").to_lowercase()
+}

@@ -1,0 +1,147 @@
+//! Spring constants by published formulas, to compare fits with: of the shape of a cell and the material, without R.
+//!
+//! In the plane, E and ν are those of the plane and E holds the thickness h: `E h` and ν in plane stress,
+//! `E h/(1 − ν²)` and `ν/(1 − ν)` in plane strain.
+
+mod baudet;
+mod corners;
+mod delingette;
+mod lloyd;
+mod maciel;
+mod method;
+mod pattern;
+mod shape;
+mod van_gelder;
+
+pub use method::{Cover, Joint, Method, Ratio};
+pub use shape::{Shape, Unmet, unmet};
+
+use super::{CellFits, each_cell};
+use crate::element::{Cell, Element};
+use crate::error::{Error, Result};
+use crate::material::{Material, Moduli, State};
+use crate::springs::{Springs, distance};
+use corners::Corners;
+use pattern::Pattern;
+
+/// The constants of all cells by a published method: `connectivity` is `[cells × nodes]` into `points`,
+/// `[points × space]`, m.
+///
+/// Of the length springs in `springs` those that the method needs are taken; what it measures besides, sums of two
+/// lengths, distances of sides, the content, is added. No spring pulls at rest.
+///
+/// # Errors
+/// The method has no formula for the element's cell, the element has nodes beside the corners, a length spring is
+/// missing, Poisson's ratio is out of the method's range, the material is of another dimension, or a cell is reversed,
+/// tangled or flat. A cell of another [`Shape`] than the method's and another Poisson's ratio than it assumes are no
+/// errors: [`unmet`] tells them.
+pub fn fit(
+    method: Method,
+    element: &Element,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    material: Material,
+) -> Result<CellFits> {
+    let cover = method.cover(element)?;
+    let corners = Corners::of(element)?;
+    let bulk = Elasticity::of(element, material)?;
+    if let Ratio::AtLeast(least) = cover.poisson
+        && bulk.poisson < least - 1e-12
+    {
+        let expected = format!("a ratio of at least {least:.4} for {}", method.name());
+        return Err(Error::expected("poisson", expected, bulk.poisson));
+    }
+    let Pattern { pairs, springs } = Pattern::new(method, cover, &corners, element, springs)?;
+    let (m, d) = (springs.len(), element.dimension());
+    let mut fits = CellFits::new(springs);
+    fits.constants = vec![0.0; connectivity.len() / element.nodes() * m];
+    let mut content = 0.0;
+    each_cell(element, points, connectivity, 0, |cell, x, geometry| {
+        let length = |&[a, b]: &[usize; 2]| distance(&x[a * d..(a + 1) * d], &x[b * d..(b + 1) * d]);
+        let shape = CellShape {
+            dimension: d,
+            corners: &corners,
+            pairs: &pairs,
+            lengths: pairs.iter().map(length).collect(),
+            content: geometry.content(),
+        };
+        content += shape.content;
+        constants(method, cover.cell, &shape, &bulk, &mut fits.constants[cell * m..(cell + 1) * m]);
+    })?;
+    if method == Method::MacielUniform {
+        maciel::constants(&fits.springs, points, connectivity, content, &bulk, &mut fits.constants);
+    }
+    Ok(fits)
+}
+
+/// Writes the constants of one cell, `[springs]`; nothing where they are not a cell's own affair.
+fn constants(method: Method, cell: Cell, shape: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
+    let (own, more) = k.split_at_mut(shape.pairs.len());
+    match (method, cell) {
+        (Method::VanGelder, Cell::Triangle) => van_gelder::triangle(shape, bulk, own),
+        (Method::VanGelder | Method::VanGelderSimple, _) => van_gelder::simple(shape, bulk, own),
+        (Method::Lloyd | Method::LloydPreserving, _) => {
+            match cell {
+                Cell::Triangle => lloyd::triangle(bulk, own),
+                Cell::Quadrilateral => lloyd::quadrilateral(shape, bulk, own),
+                _ => lloyd::tetrahedron(shape, bulk, own),
+            }
+            more.fill(lloyd::preserving(shape, bulk));
+        }
+        (Method::Baudet | Method::BaudetCorrected, _) => {
+            match cell {
+                Cell::Quadrilateral => baudet::rectangle(shape, bulk, own),
+                _ => baudet::cube(shape, bulk, own),
+            }
+            if !more.is_empty() {
+                baudet::correction(shape, bulk, more);
+            }
+        }
+        (Method::DelingetteQuadratic, _) => delingette::quadratic(shape, bulk, k),
+        (Method::DelingetteBiquadratic, _) => delingette::biquadratic(shape, bulk, k),
+        (Method::MacielUniform, _) => {}
+    }
+}
+
+/// What a formula knows of a cell.
+struct CellShape<'a> {
+    dimension: usize,
+    corners: &'a Corners,
+    /// Nodes that the formula joins, and their distances, m.
+    pairs: &'a [[usize; 2]],
+    lengths: Vec<f64>,
+    /// Area or volume, m² or m³.
+    content: f64,
+}
+
+impl CellShape<'_> {
+    /// The mean length of the edges in each direction, m; zero where the formula joins no edges.
+    fn extents(&self) -> Vec<f64> {
+        let place = |[a, b]: [usize; 2]| self.pairs.iter().position(|p| *p == [a, b] || *p == [b, a]);
+        self.corners.extents(|pair| place(pair).map_or(0.0, |s| self.lengths[s]))
+    }
+}
+
+/// The material in the dimensions of the cell.
+struct Elasticity {
+    /// Pa; in the plane N/m.
+    young: f64,
+    poisson: f64,
+    moduli: Moduli,
+}
+
+impl Elasticity {
+    fn of(element: &Element, material: Material) -> Result<Elasticity> {
+        let (e, nu, moduli) = (material.young(), material.poisson(), material.moduli());
+        match (material.state(), element.dimension()) {
+            (State::Solid, 3) => Ok(Elasticity { young: e, poisson: nu, moduli }),
+            (State::PlaneStress { thickness }, 2) => Ok(Elasticity { young: e * thickness, poisson: nu, moduli }),
+            (State::PlaneStrain { thickness }, 2) => {
+                let young = e * thickness / ((1.0 + nu) * (1.0 - nu));
+                Ok(Elasticity { young, poisson: nu / (1.0 - nu), moduli })
+            }
+            (_, d) => Err(Error::at("material", format!("is not one of a body of {d} dimensions"))),
+        }
+    }
+}
