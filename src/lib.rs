@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod dynamics;
 pub mod element;
 pub mod error;
 mod file;

@@ -4,7 +4,7 @@ use springfit::element::SHIPPED;
 use std::path::{Path, PathBuf};
 
 /// A module may import those before it; a folder counts as one.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 16] = [
     "error",
     "file",
     "scalar",
@@ -17,6 +17,7 @@ const LAYERS: [&str; 15] = [
     "mesh",
     "model",
     "solve",
+    "dynamics",
     "whole",
     "study",
     "report",

@@ -1,6 +1,7 @@
 //! Meshes of known elements: points, cells and named groups, in metres.
 
 mod boxes;
+mod disc;
 mod field;
 pub mod gmsh;
 mod grouping;
@@ -10,6 +11,7 @@ mod source;
 pub mod vtk;
 
 pub use boxes::BoxMesh;
+pub use disc::DiscMesh;
 pub use field::Field;
 pub use selection::{CellIndex, Selection, SideIndex};
 pub use source::{Format, MeshSource, SourceBlock};

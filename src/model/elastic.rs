@@ -5,7 +5,6 @@ use super::system::{self, dofs};
 use super::{Entries, Response};
 use crate::material::{Energy, State};
 use crate::mesh::Mesh;
-use crate::springs::Measure;
 use crate::stiffness::{Geometry, gather};
 use faer::sparse::Triplet;
 
@@ -14,6 +13,30 @@ pub trait Elastic {
     /// The response with the points at `x`, `[points × dimension]`, m; `None` where there is none, as in a cell turned
     /// inside out.
     fn respond(&self, x: &[f64]) -> Option<Response>;
+
+    /// The energy of [`Elastic::respond`] alone, J.
+    fn energy(&self, x: &[f64]) -> Option<f64> {
+        self.respond(x).map(|response| response.energy)
+    }
+
+    /// The force of [`Elastic::respond`] alone, `[points × dimension]`, N, into `force`; false where there is none.
+    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
+        self.respond(x).map(|response| force.copy_from_slice(&response.force)).is_some()
+    }
+
+    /// [`Elastic::respond`] into memory that is there: the force, the values of the tangent's entries, whose places and order
+    /// are those at rest, and the energy.
+    fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+        let response = self.respond(x)?;
+        force.copy_from_slice(&response.force);
+        tangent.iter_mut().zip(&response.tangent).for_each(|(value, entry)| *value = entry.val);
+        Some(response.energy)
+    }
+
+    /// The same with a tangent near the right one that is positive semidefinite, where the model knows such; else the right one.
+    fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+        self.refill(x, force, tangent)
+    }
 }
 
 /// Hyperelastic finite elements.
@@ -69,32 +92,45 @@ impl Elastic for Body<'_> {
         })?;
         Some(total)
     }
+
+    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
+        let d = self.mesh.dimension;
+        force.fill(0.0);
+        let all = self.each_cell(|nodes, geometry| {
+            let (mut local, mut own) = (vec![0.0; nodes.len() * d], vec![0.0; nodes.len() * d]);
+            gather(x, d, nodes, &mut local);
+            if !geometry.forces(self.energy, self.state, &local, f64::NEG_INFINITY, &mut own) {
+                return None;
+            }
+            dofs(nodes, d).zip(&own).for_each(|(dof, f)| force[dof] += f);
+            Some(())
+        });
+        all.is_some()
+    }
 }
 
 impl Elastic for Network {
     fn respond(&self, x: &[f64]) -> Option<Response> {
-        let d = self.dimension;
-        let mut total = Response { energy: 0.0, force: vec![0.0; x.len()], tangent: Entries::new() };
-        let mut add = |measure: &Measure, points: &[usize], law: &dyn Fn(f64) -> [f64; 3]| -> Option<()> {
-            let mut local = vec![0.0; points.len() * d];
-            gather(x, d, points, &mut local);
-            let spring = measure.respond_by(law, &local, d);
-            let size = local.len();
-            total.energy += spring.energy;
-            for (i, row) in dofs(points, d).enumerate() {
-                total.force[row] -= spring.force[i];
-                for (j, column) in dofs(points, d).enumerate().filter(|(_, column)| row >= *column) {
-                    total.tangent.push(Triplet::new(row, column, spring.tangent[i * size + j]));
-                }
-            }
-            spring.energy.is_finite().then_some(())
-        };
-        for spring in &self.lengths {
-            add(&Measure::Length, &spring.points, &|length| spring.pull(length))?;
-        }
-        for spring in &self.others {
-            add(&spring.measure, &spring.points, &|c| spring.pull(c))?;
-        }
-        Some(total)
+        let mut tangent: Entries = self.places().map(|(row, column)| Triplet::new(row, column, 0.0)).collect();
+        let (mut force, mut values) = (vec![0.0; x.len()], vec![0.0; tangent.len()]);
+        let energy = self.refill(x, &mut force, &mut values)?;
+        tangent.iter_mut().zip(values).for_each(|(entry, value)| entry.val = value);
+        Some(Response { energy, force, tangent })
+    }
+
+    fn energy(&self, x: &[f64]) -> Option<f64> {
+        self.stored(x)
+    }
+
+    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
+        self.pull(x, force)
+    }
+
+    fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+        self.pull_and_stiffen(x, force, tangent, false)
+    }
+
+    fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+        self.pull_and_stiffen(x, force, tangent, true)
     }
 }

@@ -1,13 +1,16 @@
 //! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
 
 mod elastic;
+mod forces;
 mod load;
+mod lumping;
 mod network;
 mod support;
 mod system;
 
 pub use elastic::{Body, Elastic};
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
+pub use lumping::{Lumping, lumped_masses};
 pub use network::{LengthSpring, MeasureSpring, Network};
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};

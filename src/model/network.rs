@@ -59,6 +59,14 @@ impl MeasureSpring {
             ],
         }
     }
+
+    /// The force of [`MeasureSpring::pull`] alone; the energy of a law is an integral.
+    pub fn tension(&self, c: f64) -> f64 {
+        match &self.law {
+            None => linear(self.constant, c - self.rest)[1],
+            Some(law) => law.force(c, self.rest, &self.parameters),
+        }
+    }
 }
 
 /// Springs on the points of a mesh. Springs whose constant is zero are not in it.

@@ -6,6 +6,7 @@ mod newton;
 mod stability;
 
 pub use linear::{Factor, System};
+pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};
 pub use stability::{Stability, Standing, compare_energies};

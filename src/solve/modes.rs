@@ -181,7 +181,7 @@ fn orthonormal(basis: &DMatrix<f64>, mut block: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Numbers between −½ and ½, the same on every machine.
-fn generator() -> impl FnMut() -> f64 {
+pub(crate) fn generator() -> impl FnMut() -> f64 {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     move || {
         seed ^= seed << 13;

@@ -1,0 +1,152 @@
+//! Forces against velocities.
+
+use crate::error::{Error, Result};
+use crate::model::{Network, Support};
+use crate::springs::Measure;
+use crate::stiffness::gather;
+
+/// `C = α M + β K₀ + Σ_s c_s ∇c_s ∇c_sᵀ`, K₀ the tangent at rest.
+#[derive(Debug, Clone, Default)]
+pub struct Damping {
+    /// Rayleigh's α, 1/s. A mode of circular frequency ω is damped by the ratio `ζ = (α/ω + β ω)/2`.
+    pub mass: f64,
+    /// Rayleigh's β, s.
+    pub stiffness: f64,
+    pub dampers: Option<Dampers>,
+}
+
+impl Damping {
+    pub(super) fn check(&self, points: usize) -> Result<()> {
+        for (key, value) in [("damping.mass", self.mass), ("damping.stiffness", self.stiffness)] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(Error::expected(key, "a number that is not negative", value));
+            }
+        }
+        let of = self.dampers.as_ref().map_or(points, |dampers| dampers.points);
+        match of == points {
+            true => Ok(()),
+            false => Err(Error::expected("damping.dampers", format!("dampers of {points} points"), of)),
+        }
+    }
+}
+
+/// A damper beside each spring: it pulls with `c_s ċ` along the gradient of what the spring measures.
+#[derive(Debug, Clone)]
+pub struct Dampers {
+    dimension: usize,
+    /// Of the model.
+    points: usize,
+    /// `[dampers]`; lengths first.
+    measures: Vec<Measure>,
+    /// In kg/s where the spring measures a length.
+    pub coefficients: Vec<f64>,
+    /// Where each damper's degrees of freedom begin in `dofs`, `[dampers + 1]`.
+    starts: Vec<usize>,
+    dofs: Vec<usize>,
+}
+
+impl Dampers {
+    /// `c_s = 2 ζ √(k_s m_s)`, `1/m_s = Σ_i |∂c/∂x_i|²/m_i` over the points that may move: with it a single spring between two
+    /// free masses is damped by the ratio ζ, 1 being critical. `k_s` is the slope of the spring's force at `points`,
+    /// `[points × dimension]`, m, where it is at rest; springs that do not resist there have no damper. `masses` in kg, `[points]`.
+    ///
+    /// # Errors
+    /// The ratio is negative, or a spring's point that may move has no mass.
+    pub fn of_ratio(
+        network: &Network,
+        points: &[f64],
+        masses: &[f64],
+        support: &Support,
+        ratio: f64,
+    ) -> Result<Dampers> {
+        if !(ratio >= 0.0 && ratio.is_finite()) {
+            return Err(Error::expected("ratio", "a damping ratio that is not negative", ratio));
+        }
+        let d = network.dimension;
+        let mut dampers = Dampers {
+            dimension: d,
+            points: masses.len(),
+            measures: Vec::new(),
+            coefficients: Vec::new(),
+            starts: vec![0],
+            dofs: Vec::new(),
+        };
+        let lengths = network.lengths.iter().map(|s| (&s.points[..], Measure::Length, s.constant));
+        let others = network.others.iter().map(|s| {
+            let mut x = vec![0.0; s.points.len() * d];
+            gather(points, d, &s.points, &mut x);
+            (&s.points[..], s.measure.clone(), s.pull(s.measure.value(&x, d))[2])
+        });
+        for (nodes, measure, slope) in lengths.chain(others) {
+            let mut x = vec![0.0; nodes.len() * d];
+            gather(points, d, nodes, &mut x);
+            let dofs = || nodes.iter().flat_map(|p| p * d..(p + 1) * d);
+            let mut inverse = 0.0;
+            for (dof, g) in dofs().zip(measure.gradient(&x, d)).filter(|(dof, _)| !support.is_fixed(*dof)) {
+                if !(masses[dof / d] > 0.0) {
+                    let expected = format!("a mass above zero at point {}", dof / d + 1);
+                    return Err(Error::expected("masses", expected, masses[dof / d]));
+                }
+                inverse += g * g / masses[dof / d];
+            }
+            if slope > 0.0 && inverse > 0.0 && ratio > 0.0 {
+                dampers.dofs.extend(dofs());
+                dampers.starts.push(dampers.dofs.len());
+                dampers.measures.push(measure);
+                dampers.coefficients.push(2.0 * ratio * (slope / inverse).sqrt());
+            }
+        }
+        Ok(dampers)
+    }
+
+    /// Places of the entries of `Σ c_s ∇c_s ∇c_sᵀ` in its lower triangle.
+    pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let own = |at: &[usize]| &self.dofs[at[0]..at[1]];
+        self.starts.windows(2).map(own).flat_map(|dofs| {
+            dofs.iter().flat_map(move |&row| {
+                dofs.iter().filter(move |column| row >= **column).map(move |&column| (row, column))
+            })
+        })
+    }
+
+    /// `∇c_s` at the positions x, one damper after the other; zero where a damper has no direction.
+    pub(super) fn gradients(&self, x: &[f64], gradients: &mut Vec<f64>) {
+        let d = self.dimension;
+        gradients.clear();
+        for (measure, at) in self.measures.iter().zip(self.starts.windows(2)) {
+            let dofs = &self.dofs[at[0]..at[1]];
+            if let Measure::Length = measure {
+                let between = |k: usize| x[dofs[d + k]] - x[dofs[k]];
+                let length = (0..d).map(|k| between(k) * between(k)).sum::<f64>().sqrt();
+                let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
+                gradients.extend((0..d).map(|k| -scale * between(k)));
+                gradients.extend((0..d).map(|k| scale * between(k)));
+            } else {
+                let local: Vec<f64> = dofs.iter().map(|&dof| x[dof]).collect();
+                let known = |g: f64| if g.is_finite() { g } else { 0.0 };
+                gradients.extend(measure.gradient(&local, d).into_iter().map(known));
+            }
+        }
+    }
+
+    /// Adds `Σ c_s ∇c_s (∇c_s·v)`.
+    pub(super) fn add_forces(&self, gradients: &[f64], v: &[f64], forces: &mut [f64]) {
+        for (coefficient, at) in self.coefficients.iter().zip(self.starts.windows(2)) {
+            let (dofs, own) = (&self.dofs[at[0]..at[1]], &gradients[at[0]..at[1]]);
+            let rate: f64 = dofs.iter().zip(own).map(|(&dof, g)| g * v[dof]).sum();
+            dofs.iter().zip(own).for_each(|(&dof, g)| forces[dof] += coefficient * rate * g);
+        }
+    }
+
+    /// The entries at [`Dampers::places`].
+    pub(super) fn entries(&self, gradients: &[f64], entries: &mut Vec<f64>) {
+        entries.clear();
+        for (coefficient, at) in self.coefficients.iter().zip(self.starts.windows(2)) {
+            let (dofs, own) = (&self.dofs[at[0]..at[1]], &gradients[at[0]..at[1]]);
+            for (row, a) in dofs.iter().zip(own) {
+                let columns = dofs.iter().zip(own).filter(|(column, _)| row >= *column);
+                entries.extend(columns.map(|(_, b)| coefficient * a * b));
+            }
+        }
+    }
+}

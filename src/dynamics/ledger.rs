@@ -1,0 +1,111 @@
+//! Energy and momentum of a motion, and where they came from.
+
+/// What is conserved, or is not, at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Account {
+    /// s.
+    pub time: f64,
+    /// `½ vᵀ M v`, J.
+    pub kinetic: f64,
+    /// U(x), J; NaN where the model has none.
+    pub elastic: f64,
+    /// `Σ m v`, kg m/s.
+    pub momentum: Vec<f64>,
+    /// `Σ m (x × v)` about the origin, kg m²/s: about z in the plane, about x, y, z in space.
+    pub angular_momentum: Vec<f64>,
+    /// Where `Options::account` asks for it.
+    pub balance: Option<Balance>,
+}
+
+impl Account {
+    /// Kinetic and elastic energy, J.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic
+    }
+}
+
+/// Sums over the steps so far, by the trapezoidal rule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balance {
+    /// Of loads, gravity and moved supports, J.
+    pub work: f64,
+    /// By damping forces, J.
+    pub dissipated: f64,
+    /// Energy that the method has gained or lost, `E − E(0) − work + dissipated`, by the largest of these so far.
+    pub drift: f64,
+}
+
+/// The sums as they grow.
+#[derive(Debug)]
+pub(super) struct Ledger {
+    pub work: f64,
+    pub dissipated: f64,
+    /// Total energy at the start, J.
+    pub start: f64,
+    /// Largest energy met, J.
+    pub largest: f64,
+    /// Forces whose work counts, at the last time: loads on free degrees of freedom; on held ones what moves the model there.
+    acting: Vec<f64>,
+    /// `C v` at the last time.
+    viscous: Vec<f64>,
+    /// Of the held degrees of freedom at the last time.
+    kinetic: f64,
+}
+
+/// A state's forces, `[points · dimension]`, N.
+pub(super) struct Forces<'a> {
+    pub external: &'a [f64],
+    pub elastic: &'a [f64],
+    pub viscous: &'a [f64],
+}
+
+impl Ledger {
+    pub fn new(start: f64, forces: &Forces, held: &[bool], kinetic: f64) -> Ledger {
+        let acting = (0..held.len()).map(|dof| acting(forces, held, dof)).collect();
+        Ledger {
+            work: 0.0,
+            dissipated: 0.0,
+            start,
+            largest: start.abs(),
+            acting,
+            viscous: forces.viscous.to_vec(),
+            kinetic,
+        }
+    }
+
+    /// Adds a step `way`, at whose end the forces are these and the held degrees of freedom have this kinetic energy.
+    pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64) {
+        self.work += kinetic - self.kinetic;
+        self.kinetic = kinetic;
+        for (dof, way) in way.iter().enumerate() {
+            let now = acting(forces, held, dof);
+            self.work += way * (self.acting[dof] + now) / 2.0;
+            self.dissipated += way * (self.viscous[dof] + forces.viscous[dof]) / 2.0;
+            self.acting[dof] = now;
+        }
+        self.viscous.copy_from_slice(forces.viscous);
+    }
+}
+
+fn acting(forces: &Forces, held: &[bool], dof: usize) -> f64 {
+    if held[dof] { forces.elastic[dof] + forces.viscous[dof] } else { forces.external[dof] }
+}
+
+/// `Σ m v` of points of `d` coordinates; `mass` of the degrees of freedom.
+pub(super) fn momentum(mass: &[f64], v: &[f64], d: usize) -> Vec<f64> {
+    (0..d).map(|k| mass.chunks_exact(d).zip(v.chunks_exact(d)).map(|(m, v)| m[k] * v[k]).sum()).collect()
+}
+
+/// `Σ m (x × v)`.
+pub(super) fn angular_momentum(mass: &[f64], x: &[f64], v: &[f64], d: usize) -> Vec<f64> {
+    let planes: &[[usize; 2]] = match d {
+        1 => &[],
+        2 => &[[0, 1]],
+        _ => &[[1, 2], [2, 0], [0, 1]],
+    };
+    let about = |[k, l]: &[usize; 2]| {
+        let points = mass.chunks_exact(d).zip(x.chunks_exact(d)).zip(v.chunks_exact(d));
+        points.map(|((m, x), v)| m[0] * (x[*k] * v[*l] - x[*l] * v[*k])).sum()
+    };
+    planes.iter().map(about).collect()
+}

@@ -1,0 +1,104 @@
+//! How fast a model can vibrate, and how long an explicit step may be.
+
+use crate::solve::generator;
+use nalgebra::DMatrix;
+
+/// Steps of Lanczos' method.
+const STEPS: usize = 120;
+/// The largest eigenvalue is found once its residual is below this share of it.
+const FOUND: f64 = 1e-3;
+
+/// An upper bound of the largest ω² of `K φ = ω² M φ` on the free degrees of freedom, rad²/s²; zero where nothing resists.
+///
+/// `entries` are those of the lower triangle of K, `masses` and `held` of all degrees of freedom. Lanczos' method on
+/// `M^(−½) K M^(−½)` gives θ and a residual r of which an eigenvalue is no further than r; `θ + r` is the bound once r ≤ θ/1000, but
+/// never more than that of Gershgorin, `max_i Σ_j |K_ij|/√(m_i m_j)`, which holds always. The same input gives the same bits.
+pub fn largest_square(
+    entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
+    masses: &[f64],
+    held: &[bool],
+) -> f64 {
+    let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
+    let mut place = vec![usize::MAX; held.len()];
+    free.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
+    let scaled = entries
+        .filter(|(row, column, _)| !held[*row] && !held[*column])
+        .map(|(row, column, value)| (place[row], place[column], value / (masses[row] * masses[column]).sqrt()));
+    // Entries of one place add up before their size is taken.
+    let mut sums: Vec<(usize, usize, f64)> = scaled.collect();
+    sums.sort_unstable_by_key(|(row, column, _)| (*row, *column));
+    sums.dedup_by(|next, kept| {
+        let same = (next.0, next.1) == (kept.0, kept.1);
+        kept.2 += if same { next.2 } else { 0.0 };
+        same
+    });
+    let n = free.len();
+    let mut discs = vec![0.0; n];
+    for &(row, column, value) in &sums {
+        discs[row] += if row == column { value } else { value.abs() };
+        discs[column] += if row == column { 0.0 } else { value.abs() };
+    }
+    let gershgorin = discs.into_iter().fold(0.0, f64::max);
+    let apply = |x: &[f64]| {
+        let mut y = vec![0.0; n];
+        for &(row, column, value) in &sums {
+            y[row] += value * x[column];
+            if row != column {
+                y[column] += value * x[row];
+            }
+        }
+        y
+    };
+    lanczos(n, apply).map_or(gershgorin, |bound| bound.min(gershgorin))
+}
+
+/// `θ + r`, or `None` where r stays large.
+fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut random = generator();
+    let mut next: Vec<f64> = (0..n).map(|_| random()).collect();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut size = dot(&next, &next).sqrt();
+    for step in 1..=STEPS.min(n) {
+        next.iter_mut().for_each(|x| *x /= size);
+        let mut image = apply(&next);
+        diagonal.push(dot(&image, &next));
+        basis.push(next);
+        for _ in 0..2 {
+            for q in &basis {
+                let along = dot(q, &image);
+                image.iter_mut().zip(q).for_each(|(x, q)| *x -= along * q);
+            }
+        }
+        size = dot(&image, &image).sqrt();
+        next = image;
+        if step % 10 == 0 || step == STEPS.min(n) || !(size > 0.0) {
+            let entry = |i: usize, j: usize| match i.abs_diff(j) {
+                0 => diagonal[i],
+                1 => beside[i.min(j)],
+                _ => 0.0,
+            };
+            let projected = DMatrix::from_fn(step, step, entry);
+            if projected.iter().any(|x| !x.is_finite()) {
+                return None;
+            }
+            let eigen = projected.symmetric_eigen();
+            let top = eigen.eigenvalues.imax();
+            let (theta, residual) = (eigen.eigenvalues[top], size * eigen.eigenvectors[(step - 1, top)].abs());
+            if residual <= FOUND * theta {
+                return Some(theta + residual);
+            }
+        }
+        beside.push(size);
+    }
+    None
+}
+
+/// The longest step of symplectic Euler, s: `4/(γ + √(γ² + 4ω²))`, `ω²` the largest eigenvalue of `M⁻¹K` and γ of `M⁻¹C`, 1/s.
+///
+/// Where `4M − 2hC − h²K` is positive definite every root of `M(z − 1)² + hC(z − 1) + h²K z` is inside the unit circle (Jury). Without
+/// damping it is `2/ω`, with a damping ratio of all modes `2(√(1 + ζ²) − ζ)/ω`.
+pub(super) fn longest_step(square: f64, damping: f64) -> f64 {
+    4.0 / (damping + (damping * damping + 4.0 * square).sqrt())
+}

@@ -1,0 +1,115 @@
+//! What moves, and how it is followed.
+
+use super::damping::Damping;
+use super::drive::Drive;
+use super::integrator::Integrator;
+use crate::error::{Error, Result};
+use crate::model::{Elastic, Support};
+use std::fmt;
+
+/// A model with masses, supports and what drives it.
+#[derive(Clone)]
+pub struct Motion<'a> {
+    pub model: &'a dyn Elastic,
+    /// At rest, `[points × dimension]`, m.
+    pub points: &'a [f64],
+    /// `[points]`, kg.
+    pub masses: &'a [f64],
+    /// Its displacements hold at all times, but for those that are driven.
+    pub support: Support,
+    pub damping: Damping,
+    pub drive: Drive,
+}
+
+impl<'a> Motion<'a> {
+    /// A free model without damping that nothing drives.
+    pub fn free(model: &'a dyn Elastic, points: &'a [f64], masses: &'a [f64]) -> Motion<'a> {
+        let support = Support { prescribed: vec![None; points.len()] };
+        Motion { model, points, masses, support, damping: Damping::default(), drive: Drive::default() }
+    }
+
+    pub(super) fn dimension(&self) -> usize {
+        self.points.len() / self.masses.len().max(1)
+    }
+
+    /// The degrees of freedom whose motion is prescribed.
+    pub(super) fn held(&self) -> Vec<bool> {
+        let mut held: Vec<bool> = self.support.prescribed.iter().map(Option::is_some).collect();
+        self.drive.displacements.iter().for_each(|(dof, _)| held[*dof] = true);
+        held
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        let (dofs, points) = (self.points.len(), self.masses.len());
+        let d = self.dimension();
+        if !(1..=3).contains(&d) || d * points != dofs {
+            let expected = "one mass per point of one to three coordinates";
+            return Err(Error::expected("masses", expected, format!("{points} for {dofs} coordinates")));
+        }
+        if self.support.prescribed.len() != dofs {
+            let expected = format!("one entry for each of {dofs} degrees of freedom");
+            return Err(Error::expected("support", expected, self.support.prescribed.len()));
+        }
+        if let Some(u) = self.support.prescribed.iter().flatten().find(|u| !u.is_finite()) {
+            return Err(Error::expected("support", "finite displacements in m", u));
+        }
+        self.drive.check(dofs, d)?;
+        self.damping.check(points)?;
+        let held = self.held();
+        for (p, &mass) in self.masses.iter().enumerate() {
+            let moves = held[p * d..(p + 1) * d].contains(&false);
+            if !(mass.is_finite() && (mass > 0.0 || mass == 0.0 && !moves)) {
+                let expected = format!("a mass above zero at point {} (HRZ lumping gives one)", p + 1);
+                return Err(Error::expected("masses", expected, mass));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Motion<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Motion")
+            .field("points", &self.masses.len())
+            .field("damping", &self.damping)
+            .finish_non_exhaustive()
+    }
+}
+
+/// How a motion is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// s.
+    pub step: f64,
+    pub integrator: Integrator,
+    /// Newton iterations in an implicit step at most; 1 is the linearised method, whose residual nobody looks at.
+    pub iterations: usize,
+    /// Largest residual of an implicit step, relative to the forces that act.
+    pub tolerance: f64,
+    /// `F(x) ≈ F₀ + K₀ u`, springs and dampers as they stand at rest: one factor serves all steps.
+    pub linear: bool,
+    /// Whether work and dissipation are added up; costs the forces at the end of a step where they are not known anyway.
+    pub account: bool,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        let integrator = Integrator::default();
+        Options { step: 0.01, integrator, iterations: 20, tolerance: 1e-10, linear: false, account: true }
+    }
+}
+
+impl Options {
+    pub(super) fn check(&self) -> Result<()> {
+        if !(self.step > 0.0 && self.step.is_finite()) {
+            return Err(Error::expected("step", "a time above zero in s", self.step));
+        }
+        if self.iterations == 0 {
+            return Err(Error::expected("iterations", "at least one", 0));
+        }
+        if !(self.tolerance > 0.0) {
+            return Err(Error::expected("tolerance", "a number above zero", self.tolerance));
+        }
+        self.integrator.check()
+    }
+}

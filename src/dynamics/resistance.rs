@@ -1,0 +1,146 @@
+//! What a model in motion meets: elastic forces, damping and inertia.
+
+use super::damping::Damping;
+use super::equations::Equations;
+use super::motion::Motion;
+use super::rest::Rest;
+use crate::error::Result;
+use crate::model::Elastic;
+
+/// `F(x)`, `C` and `M` of a motion, on all degrees of freedom.
+pub(super) struct Resistance<'a> {
+    model: &'a dyn Elastic,
+    points: &'a [f64],
+    pub rest: Rest,
+    /// Whether `F₀ + K₀ u` stands for the model.
+    linear: bool,
+    damping: Damping,
+    /// Of the dampers, where they were last directed.
+    gradients: Vec<f64>,
+    damper_entries: Vec<f64>,
+    /// Of each degree of freedom, kg.
+    pub mass: Vec<f64>,
+    pub held: Vec<bool>,
+    /// Largest coordinate, m.
+    pub extent: f64,
+    x: Vec<f64>,
+}
+
+impl<'a> Resistance<'a> {
+    pub fn new(motion: &Motion<'a>, linear: bool) -> Result<Resistance<'a>> {
+        let d = motion.dimension();
+        let mut resistance = Resistance {
+            model: motion.model,
+            points: motion.points,
+            rest: Rest::new(motion.model, motion.points)?,
+            linear,
+            damping: motion.damping.clone(),
+            gradients: Vec::new(),
+            damper_entries: Vec::new(),
+            mass: motion.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect(),
+            held: motion.held(),
+            extent: motion.points.iter().fold(0.0, |extent, x| extent.max(x.abs())),
+            x: motion.points.to_vec(),
+        };
+        resistance.direct(&vec![0.0; motion.points.len()], true);
+        Ok(resistance)
+    }
+
+    /// Turns the dampers along the gradients at the displacements u. In a linear model they stay as at rest, unless `anyway`.
+    pub fn direct(&mut self, u: &[f64], anyway: bool) {
+        self.place(u);
+        if let Some(dampers) = self.damping.dampers.as_ref().filter(|_| anyway || !self.linear) {
+            dampers.gradients(&self.x, &mut self.gradients);
+            dampers.entries(&self.gradients, &mut self.damper_entries);
+        }
+    }
+
+    pub fn has_dampers(&self) -> bool {
+        self.damping.dampers.is_some()
+    }
+
+    fn place(&mut self, u: &[f64]) {
+        self.x.iter_mut().zip(self.points).zip(u).for_each(|((x, p), u)| *x = p + u);
+    }
+
+    /// The derivative of the energy at the displacements u, N; false where there is none.
+    pub fn forces(&mut self, u: &[f64], force: &mut [f64]) -> bool {
+        if self.linear {
+            return self.rest.refill(u, force).is_finite();
+        }
+        self.place(u);
+        self.model.forces(&self.x, force) && force.iter().sum::<f64>().is_finite()
+    }
+
+    /// The same with the energy, J, and the values of the tangent's entries, or of one that is positive semidefinite.
+    pub fn refill(&mut self, u: &[f64], force: &mut [f64], tangent: &mut [f64], definite: bool) -> Option<f64> {
+        self.place(u);
+        let energy = match definite {
+            true => self.model.refill_definite(&self.x, force, tangent)?,
+            false => self.model.refill(&self.x, force, tangent)?,
+        };
+        (energy + force.iter().sum::<f64>()).is_finite().then_some(energy)
+    }
+
+    pub fn energy(&mut self, u: &[f64]) -> Option<f64> {
+        if self.linear {
+            let mut force = vec![0.0; u.len()];
+            return Some(self.rest.refill(u, &mut force));
+        }
+        self.place(u);
+        self.model.energy(&self.x)
+    }
+
+    /// `C v`, N.
+    pub fn viscous(&self, v: &[f64], forces: &mut [f64]) {
+        let Damping { mass, stiffness, dampers } = &self.damping;
+        forces.iter_mut().zip(v).zip(&self.mass).for_each(|((f, v), m)| *f = mass * m * v);
+        if *stiffness > 0.0 {
+            self.rest.add_product(*stiffness, v, forces);
+        }
+        if let Some(dampers) = dampers {
+            dampers.add_forces(&self.gradients, v, forces);
+        }
+    }
+
+    /// Where the entries of K and then those of the dampers stand.
+    pub fn places(&self) -> Vec<(usize, usize)> {
+        let dampers = self.damping.dampers.iter().flat_map(|dampers| dampers.places());
+        self.rest.entries.iter().map(|e| (e.row.max(e.col), e.row.min(e.col))).chain(dampers).collect()
+    }
+
+    /// `A = c₂ M + c₁ C + K`.
+    pub fn assemble(&self, [c1, c2]: [f64; 2], tangent: &[f64], equations: &mut Equations) {
+        let share = c2 + c1 * self.damping.mass;
+        equations.set_diagonal(|dof| share * self.mass[dof]);
+        equations.add(0, 1.0, tangent);
+        if self.damping.stiffness > 0.0 {
+            equations.add(0, c1 * self.damping.stiffness, &self.rest.values);
+        }
+        if self.damping.dampers.is_some() {
+            equations.add(tangent.len(), c1, &self.damper_entries);
+        }
+    }
+
+    /// Upper bounds of the eigenvalues of `M⁻¹K`, rad²/s², and `M⁻¹C`, 1/s, at rest.
+    pub fn largest(&self) -> [f64; 2] {
+        let entries = self.rest.entries.iter().map(|e| (e.row, e.col, e.val));
+        let square = super::largest_square(entries, &self.mass, &self.held);
+        let mut damping = self.damping.mass + self.damping.stiffness * square;
+        if let Some(dampers) = &self.damping.dampers {
+            let places: Vec<(usize, usize)> = dampers.places().collect();
+            let entries = places.iter().zip(&self.damper_entries).map(|((row, column), c)| (*row, *column, *c));
+            damping += super::largest_square(entries, &self.mass, &self.held);
+        }
+        [square, damping]
+    }
+}
+
+impl std::fmt::Debug for Resistance<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Resistance")
+            .field("damping", &self.damping)
+            .field("linear", &self.linear)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,226 @@
+//! The end of an implicit step: Newton's method on `M a + C v + F(x) = f`.
+
+use super::equations::Equations;
+use super::resistance::Resistance;
+
+/// A Newton step is not halved more often.
+const HALVINGS: usize = 20;
+/// Share of the slope by which the potential must fall along a Newton step (Armijo 1966).
+const DESCENT: f64 = 1e-4;
+/// A Newton step below this share of the model's coordinates is their rounding: nothing is left to be found.
+const ROUNDING: f64 = 1e-14;
+
+/// How a step ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The equations hold to the tolerance; a step of an explicit method or a linear model always ends so.
+    Converged,
+    /// One iteration was allowed and made.
+    Linearized,
+    /// No more iterations, or no Newton step helped. The motion goes on from the best that was found.
+    Stalled,
+    /// The model has no response where the step leads, as with a cell turned inside out. The state, the time among it, is as before.
+    NoResponse,
+}
+
+/// What is to be said of one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    pub outcome: Outcome,
+    pub iterations: usize,
+    /// What is left of the equations, relative to the forces that act; NaN where nobody looked: of linearised steps and linear models.
+    pub residual: f64,
+    /// Iterations whose matrix was not positive definite and had to be modified; a linearised step is made with a definite one at once.
+    pub modified: usize,
+}
+
+/// The unknown of a step, Δ = x − x_n, and what is known at its end. All `[points · dimension]`.
+#[derive(Debug)]
+pub(super) struct Target {
+    /// `v = c₁ (Δ − ẑ)`, `a = c₂ (Δ − ŷ)` of the free degrees of freedom.
+    pub coefficients: [f64; 2],
+    pub z: Vec<f64>,
+    pub y: Vec<f64>,
+    /// m; that of the held degrees of freedom is known.
+    pub delta: Vec<f64>,
+    /// m/s; the same.
+    pub velocity: Vec<f64>,
+    /// f at the end, N.
+    pub external: Vec<f64>,
+}
+
+/// What is asked for beside the forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Tangent {
+    None,
+    Exact,
+    /// Positive semidefinite, if the model has it.
+    Definite,
+}
+
+/// What stands in the equations at one Δ.
+#[derive(Debug)]
+pub(super) struct Trial {
+    /// ∂U/∂x, N.
+    pub force: Vec<f64>,
+    pub tangent: Vec<f64>,
+    /// `C v`, N.
+    viscous: Vec<f64>,
+    /// `f − F − C v − M a` on the free degrees of freedom, in the equations' order.
+    residual: Vec<f64>,
+    /// `U − f·Δ + c₂/2 (Δ − ŷ)ᵀM(Δ − ŷ) + vᵀCv/2c₁`, of which the residual is the descent; J.
+    potential: f64,
+    /// ‖residual‖ by the forces that act.
+    size: f64,
+    u: Vec<f64>,
+    step: Vec<f64>,
+    tried: Vec<f64>,
+}
+
+impl Trial {
+    pub fn new(dofs: usize, free: usize, entries: usize) -> Trial {
+        let [force, viscous, u, tried] = std::array::from_fn(|_| vec![0.0; dofs]);
+        let [residual, step] = std::array::from_fn(|_| vec![0.0; free]);
+        Trial { force, tangent: vec![0.0; entries], viscous, residual, potential: 0.0, size: 0.0, u, step, tried }
+    }
+
+    /// The equations at the Δ of `target`, from displacements `start`; false where the model has no response.
+    fn evaluate(
+        &mut self,
+        resistance: &mut Resistance,
+        target: &mut Target,
+        start: &[f64],
+        order: &[usize],
+        tangent: Tangent,
+    ) -> bool {
+        let [c1, c2] = target.coefficients;
+        self.u.iter_mut().zip(start).zip(&target.delta).for_each(|((u, s), d)| *u = s + d);
+        let energy = match tangent {
+            Tangent::None => resistance.forces(&self.u, &mut self.force).then_some(0.0),
+            kind => resistance.refill(&self.u, &mut self.force, &mut self.tangent, kind == Tangent::Definite),
+        };
+        let Some(energy) = energy else { return false };
+        order.iter().for_each(|&dof| target.velocity[dof] = c1 * (target.delta[dof] - target.z[dof]));
+        resistance.viscous(&target.velocity, &mut self.viscous);
+        let (mut kinetic, mut work, mut left, mut acting) = (0.0, 0.0, 0.0, [0.0; 4]);
+        for (r, &dof) in self.residual.iter_mut().zip(order) {
+            let off = target.delta[dof] - target.y[dof];
+            let parts = [target.external[dof], self.force[dof], self.viscous[dof], c2 * resistance.mass[dof] * off];
+            *r = parts[0] - parts[1] - parts[2] - parts[3];
+            left += *r * *r;
+            acting.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part * part);
+            kinetic += parts[3] * off;
+            work += parts[0] * target.delta[dof];
+        }
+        let drag: f64 = target.velocity.iter().zip(&self.viscous).map(|(v, f)| v * f).sum();
+        let acting: f64 = acting.iter().map(|square| square.sqrt()).sum();
+        self.potential = energy - work + kinetic / 2.0 + drag / (2.0 * c1);
+        self.size = if left == 0.0 { 0.0 } else { left.sqrt() / acting };
+        self.potential.is_finite() && self.size.is_finite()
+    }
+
+    /// The Newton step into `step`, with a definite tangent where the exact one makes the matrix indefinite, and with a shift of the
+    /// diagonal where that is not known; false where no shift suffices.
+    fn direction(
+        &mut self,
+        resistance: &mut Resistance,
+        target: &Target,
+        equations: &mut Equations,
+        modified: &mut usize,
+    ) -> bool {
+        resistance.assemble(target.coefficients, &self.tangent, equations);
+        if !equations.factorize() {
+            *modified += 1;
+            resistance.refill(&self.u, &mut self.force, &mut self.tangent, true);
+            resistance.assemble(target.coefficients, &self.tangent, equations);
+            if !equations.factorize_shifted() {
+                return false;
+            }
+        }
+        self.step.copy_from_slice(&self.residual);
+        equations.solve(&mut self.step);
+        self.step.iter().sum::<f64>().is_finite()
+    }
+
+    /// A linear model: one solution with the factor that is there.
+    pub fn solve_linear(
+        &mut self,
+        resistance: &mut Resistance,
+        target: &mut Target,
+        start: &[f64],
+        equations: &mut Equations,
+    ) -> Step {
+        let mut step = Step { outcome: Outcome::NoResponse, iterations: 1, residual: f64::NAN, modified: 0 };
+        if !self.evaluate(resistance, target, start, equations.order(), Tangent::None) {
+            return step;
+        }
+        equations.solve(&mut self.residual);
+        equations.order().iter().zip(&self.residual).for_each(|(&dof, s)| target.delta[dof] += s);
+        if self.residual.iter().sum::<f64>().is_finite() {
+            step.outcome = Outcome::Converged;
+        }
+        step
+    }
+
+    /// Newton's method with a line search on the potential, from what Δ is: it falls with every iteration, so that implicit Euler
+    /// loses energy even where the iterations do not suffice.
+    pub fn settle(
+        &mut self,
+        resistance: &mut Resistance,
+        target: &mut Target,
+        start: &[f64],
+        equations: &mut Equations,
+        iterations: usize,
+        tolerance: f64,
+    ) -> Step {
+        let mut made = Step { outcome: Outcome::Stalled, iterations: 0, residual: f64::NAN, modified: 0 };
+        // A single step has no second chance: it is as exact to the first order with either tangent.
+        let tangent = if iterations == 1 { Tangent::Definite } else { Tangent::Exact };
+        if !self.evaluate(resistance, target, start, equations.order(), tangent) {
+            return Step { outcome: Outcome::NoResponse, ..made };
+        }
+        made.residual = self.size;
+        while made.iterations < iterations {
+            if self.size <= tolerance {
+                break;
+            }
+            if !self.direction(resistance, target, equations, &mut made.modified) {
+                return made;
+            }
+            made.iterations += 1;
+            if iterations == 1 {
+                equations.order().iter().zip(&self.step).for_each(|(&dof, s)| target.delta[dof] += s);
+                return Step { outcome: Outcome::Linearized, residual: f64::NAN, ..made };
+            }
+            let (potential, size) = (self.potential, self.size);
+            let slope: f64 = self.residual.iter().zip(&self.step).map(|(r, s)| r * s).sum();
+            let longest = self.step.iter().fold(0.0f64, |longest, s| longest.max(s.abs()));
+            let is_rounding = longest <= ROUNDING * resistance.extent;
+            self.tried.copy_from_slice(&target.delta);
+            let mut length = 1.0;
+            let accepted = (0..HALVINGS).any(|_| {
+                for (&dof, s) in equations.order().iter().zip(&self.step) {
+                    target.delta[dof] = self.tried[dof] + length * s;
+                }
+                let is_known = self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
+                let falls = self.potential <= potential - DESCENT * length * slope;
+                length /= 2.0;
+                // Next to the end the rounding of the potential hides its fall.
+                is_known && (falls || is_rounding || self.size < 0.5 * size)
+            });
+            if !accepted {
+                target.delta.copy_from_slice(&self.tried);
+                self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
+                return made;
+            }
+            made.residual = self.size;
+            if is_rounding {
+                return Step { outcome: Outcome::Converged, ..made };
+            }
+        }
+        if self.size <= tolerance {
+            made.outcome = Outcome::Converged;
+        }
+        made
+    }
+}

@@ -1,0 +1,331 @@
+//! A motion step by step.
+
+use super::equations::Equations;
+use super::integrator::{Integrator, Past};
+use super::ledger::{self, Account, Balance, Forces, Ledger};
+use super::limit::longest_step;
+use super::motion::{Motion, Options};
+use super::resistance::Resistance;
+use super::settle::{Outcome, Step, Target, Trial};
+use crate::error::{Error, Result};
+use crate::model::displaced;
+
+/// Where a model is and how fast.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// s.
+    pub time: f64,
+    /// From the places at rest, `[points · dimension]`, m.
+    pub displacement: Vec<f64>,
+    /// `[points · dimension]`, m/s.
+    pub velocity: Vec<f64>,
+}
+
+/// The motion of a model from time zero on.
+#[derive(Debug)]
+pub struct Simulation<'a> {
+    motion: Motion<'a>,
+    options: Options,
+    resistance: Resistance<'a>,
+    /// Of implicit methods.
+    equations: Option<Equations>,
+    /// The coefficients of the factor that the equations of a linear model have.
+    factored: [f64; 2],
+    state: State,
+    steps: usize,
+    /// m/s², of the free degrees of freedom where the method asks for it.
+    acceleration: Vec<f64>,
+    /// The last step, m, and the velocity before it, m/s.
+    way: Vec<f64>,
+    before: Vec<f64>,
+    target: Target,
+    trial: Trial,
+    /// Whether the forces in `trial` are those of the state.
+    is_current: bool,
+    viscous: Vec<f64>,
+    ledger: Option<Ledger>,
+}
+
+impl<'a> Simulation<'a> {
+    /// Starts at rest.
+    ///
+    /// # Errors
+    /// A number is not what it must be, a point that may move has no mass, the model has no response at rest, the equations do not
+    /// fit into memory, or the step is too long: longer than [`Simulation::longest_step`] with symplectic Euler, or so long that a
+    /// linear model that releases energy has no implicit step.
+    pub fn new(motion: Motion<'a>, options: Options) -> Result<Simulation<'a>> {
+        options.check()?;
+        motion.check()?;
+        let resistance = Resistance::new(&motion, options.linear)?;
+        let dofs = motion.points.len();
+        let is_implicit = options.integrator != Integrator::SymplecticEuler;
+        let equations = if is_implicit { Some(Equations::new(&resistance.places(), &resistance.held)?) } else { None };
+        let free = equations.as_ref().map_or(0, |equations| equations.order().len());
+        let mut trial = Trial::new(dofs, free, resistance.rest.values.len());
+        trial.tangent.copy_from_slice(&resistance.rest.values);
+        let zero = || vec![0.0; dofs];
+        let [z, y, delta, velocity, external] = std::array::from_fn(|_| zero());
+        let mut simulation = Simulation {
+            resistance,
+            equations,
+            factored: [f64::NAN; 2],
+            state: State { time: 0.0, displacement: zero(), velocity: zero() },
+            steps: 0,
+            acceleration: zero(),
+            way: zero(),
+            before: zero(),
+            target: Target { coefficients: [0.0; 2], z, y, delta, velocity, external },
+            trial,
+            is_current: false,
+            viscous: zero(),
+            ledger: None,
+            motion,
+            options,
+        };
+        if !is_implicit {
+            let longest = simulation.longest_step();
+            if options.step > longest {
+                let expected = format!("at most {longest:.6e} s, beyond which symplectic Euler is unstable");
+                return Err(Error::expected("step", expected, format!("{:e} s", options.step)));
+            }
+        } else if options.linear && !simulation.factor(options.integrator.coefficients(options.step, true)) {
+            let expected = "a step short enough for a model that releases energy as it moves";
+            return Err(Error::expected("step", expected, format!("{:e} s", options.step)));
+        }
+        simulation.start(&zero(), &zero())?;
+        Ok(simulation)
+    }
+
+    /// Begins again at time zero with these displacements, m, and velocities, m/s, `[points · dimension]`; those of held degrees of
+    /// freedom are as prescribed.
+    ///
+    /// # Errors
+    /// A list has another length, or the model has no response there.
+    pub fn start(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<()> {
+        let dofs = self.motion.points.len();
+        for (key, list) in [("displacement", displacement), ("velocity", velocity)] {
+            if list.len() != dofs || list.iter().any(|x| !x.is_finite()) {
+                return Err(Error::expected(key, format!("{dofs} finite numbers"), format!("{} numbers", list.len())));
+            }
+        }
+        self.steps = 0;
+        self.ledger = None;
+        self.state = State { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
+        for (dof, prescribed) in self.motion.support.prescribed.iter().enumerate() {
+            if let Some(u) = prescribed {
+                (self.state.displacement[dof], self.state.velocity[dof]) = (*u, 0.0);
+            }
+        }
+        let h = self.options.step;
+        for (dof, curve) in &self.motion.drive.displacements {
+            self.state.displacement[*dof] = curve.at(0.0);
+            // One-sided: what a curve is before time zero nobody has said.
+            self.state.velocity[*dof] = (4.0 * curve.at(h / 2.0) - 3.0 * curve.at(0.0) - curve.at(h)) / h;
+        }
+        if !self.refresh() {
+            return Err(Error::expected("displacement", "a shape where the model has a response", "none"));
+        }
+        if self.options.integrator.needs_acceleration() {
+            for (dof, a) in self.acceleration.iter_mut().enumerate().filter(|(dof, _)| !self.resistance.held[*dof]) {
+                let rest = self.target.external[dof] - self.trial.force[dof] - self.viscous[dof];
+                *a = rest / self.resistance.mass[dof];
+            }
+        }
+        if self.options.account {
+            let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);
+            let (kinetic, held) = self.kinetic();
+            let forces = self.forces_now();
+            self.ledger = Some(Ledger::new(kinetic + elastic, &forces, &self.resistance.held, held));
+        }
+        Ok(())
+    }
+
+    /// Loads, elastic and damping forces of the state; false where the model has none.
+    fn refresh(&mut self) -> bool {
+        self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
+        self.resistance.direct(&self.state.displacement, false);
+        self.resistance.viscous(&self.state.velocity, &mut self.viscous);
+        self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
+        self.is_current
+    }
+
+    fn forces_now(&self) -> Forces<'_> {
+        Forces { external: &self.target.external, elastic: &self.trial.force, viscous: &self.viscous }
+    }
+
+    /// Factors the matrix of a linear model, unless that is done.
+    fn factor(&mut self, coefficients: [f64; 2]) -> bool {
+        let Some(equations) = self.equations.as_mut().filter(|_| self.factored != coefficients) else { return true };
+        self.resistance.assemble(coefficients, &self.resistance.rest.values, equations);
+        self.factored = coefficients;
+        equations.factorize()
+    }
+
+    /// The longest stable step of symplectic Euler at rest, s: `4/(γ + √(γ² + 4ω²))` with the largest ω² of `M⁻¹K` and γ of `M⁻¹C`,
+    /// bounded from above. A model that stiffens as it moves needs shorter ones.
+    pub fn longest_step(&self) -> f64 {
+        let [square, damping] = self.resistance.largest();
+        longest_step(square, damping)
+    }
+
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// `[points × dimension]`, m.
+    pub fn positions(&self) -> Vec<f64> {
+        displaced(self.motion.points, &self.state.displacement)
+    }
+
+    /// Goes on by one step.
+    pub fn step(&mut self) -> Step {
+        let h = self.options.step;
+        let time = (self.steps + 1) as f64 * h;
+        self.target.delta.fill(0.0);
+        for (dof, held) in self.resistance.held.iter().enumerate() {
+            if *held {
+                self.target.velocity[dof] = 0.0;
+            }
+        }
+        for (dof, curve) in &self.motion.drive.displacements {
+            self.target.delta[*dof] = curve.at(time) - self.state.displacement[*dof];
+            self.target.velocity[*dof] = (curve.at(time + h / 2.0) - curve.at(time - h / 2.0)) / h;
+        }
+        let step = match self.equations {
+            None => self.leap(),
+            Some(_) => self.settle(time),
+        };
+        if step.outcome == Outcome::NoResponse {
+            self.refresh();
+            return step;
+        }
+        self.steps += 1;
+        std::mem::swap(&mut self.before, &mut self.state.velocity);
+        std::mem::swap(&mut self.way, &mut self.target.delta);
+        self.state.velocity.copy_from_slice(&self.target.velocity);
+        // A driven point is where its curve is, to the last bit.
+        self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u += way);
+        for (dof, curve) in &self.motion.drive.displacements {
+            self.state.displacement[*dof] = curve.at(time);
+        }
+        self.state.time = time;
+        if self.equations.is_none() && !self.refresh() {
+            return self.step_back(step);
+        }
+        self.book();
+        step
+    }
+
+    /// Symplectic Euler's velocities and way.
+    fn leap(&mut self) -> Step {
+        let h = self.options.step;
+        let Target { delta, velocity, external, .. } = &mut self.target;
+        for (dof, _) in self.resistance.held.iter().enumerate().filter(|(_, held)| !**held) {
+            let rest = external[dof] - self.trial.force[dof] - self.viscous[dof];
+            velocity[dof] = self.state.velocity[dof] + h * rest / self.resistance.mass[dof];
+            delta[dof] = h * velocity[dof];
+        }
+        Step { outcome: Outcome::Converged, iterations: 0, residual: 0.0, modified: 0 }
+    }
+
+    /// Undoes an explicit step.
+    fn step_back(&mut self, step: Step) -> Step {
+        self.steps -= 1;
+        self.state.time = self.steps as f64 * self.options.step;
+        self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
+        std::mem::swap(&mut self.before, &mut self.state.velocity);
+        self.refresh();
+        Step { outcome: Outcome::NoResponse, ..step }
+    }
+
+    /// Solves for the end of an implicit step.
+    fn settle(&mut self, time: f64) -> Step {
+        let Options { step: h, integrator, iterations, tolerance, linear, .. } = self.options;
+        let is_first = self.steps == 0;
+        self.target.coefficients = integrator.coefficients(h, is_first);
+        if linear {
+            // Later steps are stiffer than the first, which `new` has tried.
+            self.factor(self.target.coefficients);
+        }
+        for dof in 0..self.state.velocity.len() {
+            let (v, a) = (self.state.velocity[dof], self.acceleration[dof]);
+            let past = Past { v, a, way: self.way[dof], before: self.before[dof] };
+            [self.target.z[dof], self.target.y[dof]] = integrator.predict(h, is_first, past);
+        }
+        self.motion.drive.forces_at(time, &self.resistance.mass, &mut self.target.external);
+        let equations = self.equations.as_mut().expect("only implicit methods settle");
+        let (start, Target { y, .. }) = (&self.state.displacement, &self.target);
+        if self.resistance.has_dampers() && !linear {
+            // Of implicit Euler as they are, which is as exact as it is; of the others as they will be.
+            let ahead: Vec<f64> = match integrator {
+                Integrator::ImplicitEuler => start.clone(),
+                _ => start.iter().zip(y).map(|(u, y)| u + y).collect(),
+            };
+            self.resistance.direct(&ahead, false);
+        }
+        let (resistance, target, trial) = (&mut self.resistance, &mut self.target, &mut self.trial);
+        let step = match linear {
+            true => trial.solve_linear(resistance, target, start, equations),
+            false => trial.settle(resistance, target, start, equations, iterations, tolerance),
+        };
+        self.is_current = !linear && step.outcome != Outcome::Linearized;
+        let [c1, c2] = target.coefficients;
+        for &dof in equations.order() {
+            target.velocity[dof] = c1 * (target.delta[dof] - target.z[dof]);
+            self.acceleration[dof] = match step.outcome {
+                Outcome::NoResponse => self.acceleration[dof],
+                _ => c2 * (target.delta[dof] - target.y[dof]),
+            };
+        }
+        step
+    }
+
+    /// Adds the step to the ledger.
+    fn book(&mut self) {
+        let Some(mut ledger) = self.ledger.take() else { return };
+        if !self.is_current {
+            self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
+        }
+        self.resistance.viscous(&self.state.velocity, &mut self.viscous);
+        let (kinetic, held) = self.kinetic();
+        ledger.add(&self.way, &self.forces_now(), &self.resistance.held, held);
+        ledger.largest = ledger.largest.max(kinetic).max(ledger.work.abs()).max(ledger.dissipated);
+        self.ledger = Some(ledger);
+    }
+
+    /// Of all degrees of freedom and of the held ones, J.
+    fn kinetic(&self) -> (f64, f64) {
+        let (mut all, mut held) = (0.0, 0.0);
+        for (dof, v) in self.state.velocity.iter().enumerate() {
+            let energy = self.resistance.mass[dof] * v * v / 2.0;
+            all += energy;
+            held += if self.resistance.held[dof] { energy } else { 0.0 };
+        }
+        (all, held)
+    }
+
+    /// Energy and momentum now.
+    pub fn account(&mut self) -> Account {
+        let d = self.motion.dimension();
+        let (kinetic, _) = self.kinetic();
+        let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);
+        let x = self.positions();
+        let (mass, v) = (&self.resistance.mass, &self.state.velocity);
+        let sums = |ledger: &mut Ledger| {
+            let (energy, Ledger { work, dissipated, start, .. }) = (kinetic + elastic, &*ledger);
+            let gained = energy - start - work + dissipated;
+            let (work, dissipated) = (*work, *dissipated);
+            ledger.largest = ledger.largest.max(energy.abs());
+            let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
+            Balance { work, dissipated, drift }
+        };
+        Account {
+            time: self.state.time,
+            kinetic,
+            elastic,
+            momentum: ledger::momentum(mass, v, d),
+            angular_momentum: ledger::angular_momentum(mass, &x, v, d),
+            balance: self.ledger.as_mut().map(sums),
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Forces and tangent of a network into memory that is there: what a simulation asks for at every step.
+
+use super::network::{LengthSpring, Network};
+use super::system::dofs;
+use crate::stiffness::gather;
+use crate::symbolic::Jet;
+use std::array::from_fn;
+
+impl Network {
+    /// Rows and columns of the tangent's entries, in the lower triangle: of each spring, lengths first, its own lower triangle
+    /// row by row.
+    pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let d = self.dimension;
+        let lengths = self.lengths.iter().flat_map(move |spring| {
+            let dof = move |a: usize| spring.points[a / d] * d + a % d;
+            (0..2 * d).flat_map(move |a| (0..=a).map(move |b| (dof(a).max(dof(b)), dof(a).min(dof(b)))))
+        });
+        let others = self.others.iter().flat_map(move |spring| {
+            let columns = dofs(&spring.points, d);
+            dofs(&spring.points, d).flat_map(move |row| {
+                columns.clone().filter(move |column| row >= *column).map(move |column| (row, column))
+            })
+        });
+        lengths.chain(others)
+    }
+
+    /// The energy, J; `None` where it is not finite or a spring has no direction.
+    pub(super) fn stored(&self, x: &[f64]) -> Option<f64> {
+        let lengths = match self.dimension {
+            1 => stored::<1>(&self.lengths, x),
+            2 => stored::<2>(&self.lengths, x),
+            _ => stored::<3>(&self.lengths, x),
+        };
+        let mut total = lengths?;
+        let mut local = Vec::new();
+        for spring in &self.others {
+            local.resize(spring.points.len() * self.dimension, 0.0);
+            gather(x, self.dimension, &spring.points, &mut local);
+            total += spring.pull(spring.measure.value(&local, self.dimension))[0];
+        }
+        total.is_finite().then_some(total)
+    }
+
+    /// The energy's derivative, `[points × dimension]`, N; false where it has none.
+    pub(super) fn pull(&self, x: &[f64], force: &mut [f64]) -> bool {
+        force.fill(0.0);
+        let d = self.dimension;
+        let mut sound = match d {
+            1 => pull::<1>(&self.lengths, x, force),
+            2 => pull::<2>(&self.lengths, x, force),
+            _ => pull::<3>(&self.lengths, x, force),
+        };
+        let mut local = Vec::new();
+        for spring in &self.others {
+            local.resize(spring.points.len() * d, 0.0);
+            gather(x, d, &spring.points, &mut local);
+            let tension = spring.tension(spring.measure.value(&local, d));
+            let gradient = spring.measure.gradient(&local, d);
+            sound &= tension.is_finite();
+            dofs(&spring.points, d).zip(&gradient).for_each(|(dof, g)| force[dof] += tension * g);
+        }
+        sound
+    }
+
+    /// Force, the values of the tangent at [`Network::places`], and the energy. Where the tangent is to be `definite` no spring's own
+    /// is indefinite: of a length spring the nearest that is not, of others without the term of their second derivatives.
+    pub(super) fn pull_and_stiffen(
+        &self,
+        x: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+        definite: bool,
+    ) -> Option<f64> {
+        force.fill(0.0);
+        let d = self.dimension;
+        let (lengths, others) = tangent.split_at_mut(self.lengths.len() * d * (2 * d + 1));
+        let mut total = match d {
+            1 => pull_and_stiffen::<1>(&self.lengths, x, force, lengths, definite),
+            2 => pull_and_stiffen::<2>(&self.lengths, x, force, lengths, definite),
+            _ => pull_and_stiffen::<3>(&self.lengths, x, force, lengths, definite),
+        }?;
+        let mut values = others.iter_mut();
+        let mut local = Vec::new();
+        for spring in &self.others {
+            local.resize(spring.points.len() * d, 0.0);
+            gather(x, d, &spring.points, &mut local);
+            let Jet { value, gradient, hessian } = spring.measure.jet(&local, d);
+            let [energy, tension, slope] = spring.pull(value);
+            let (slope, bend) = if definite { (slope.max(0.0), 0.0) } else { (slope, tension) };
+            total += energy;
+            for (a, row) in dofs(&spring.points, d).enumerate() {
+                force[row] += tension * gradient[a];
+                for (b, column) in dofs(&spring.points, d).enumerate() {
+                    if row >= column
+                        && let Some(entry) = values.next()
+                    {
+                        *entry = slope * gradient[a] * gradient[b] + bend * hessian[a * local.len() + b];
+                    }
+                }
+            }
+        }
+        total.is_finite().then_some(total)
+    }
+}
+
+/// `r = x_j − x_i` and its length.
+#[inline(always)]
+fn between<const D: usize>(x: &[[f64; D]], [i, j]: [usize; 2]) -> ([f64; D], f64) {
+    let r: [f64; D] = from_fn(|k| x[j][k] - x[i][k]);
+    (r, r.iter().map(|r| r * r).sum::<f64>().sqrt())
+}
+
+/// `Σ ½ k (ℓ − L₀)²`.
+fn stored<const D: usize>(springs: &[LengthSpring], x: &[f64]) -> Option<f64> {
+    let (x, _) = x.as_chunks::<D>();
+    let mut sound = true;
+    let energy = |spring: &LengthSpring| {
+        let (_, length) = between(x, spring.points);
+        sound &= length > 0.0;
+        spring.constant * (length - spring.rest).powi(2) / 2.0
+    };
+    let total: f64 = springs.iter().map(energy).sum();
+    sound.then_some(total)
+}
+
+/// `T n` at j and `−T n` at i, `T = k (ℓ − L₀)`, `n = r/ℓ`.
+fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) -> bool {
+    let ((x, _), (force, _)) = (x.as_chunks::<D>(), force.as_chunks_mut::<D>());
+    let mut sound = true;
+    for spring in springs {
+        let [i, j] = spring.points;
+        let (r, length) = between(x, spring.points);
+        let t = spring.constant * (length - spring.rest) / length;
+        sound &= length > 0.0;
+        for k in 0..D {
+            force[i][k] -= t * r[k];
+            force[j][k] += t * r[k];
+        }
+    }
+    sound
+}
+
+/// The same with the energy and the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`; no factor below zero where it is to be definite.
+fn pull_and_stiffen<const D: usize>(
+    springs: &[LengthSpring],
+    x: &[f64],
+    force: &mut [f64],
+    tangent: &mut [f64],
+    definite: bool,
+) -> Option<f64> {
+    let ((x, _), (force, _)) = (x.as_chunks::<D>(), force.as_chunks_mut::<D>());
+    let (mut sound, mut energy) = (true, 0.0);
+    for (spring, tangent) in springs.iter().zip(tangent.chunks_exact_mut(D * (2 * D + 1))) {
+        let [i, j] = spring.points;
+        let (r, length) = between(x, spring.points);
+        let change = length - spring.rest;
+        let t = spring.constant * change / length;
+        let [across, along] = if definite { [t.max(0.0), spring.constant.max(0.0)] } else { [t, spring.constant] };
+        let along = (along - across) / (length * length);
+        sound &= length > 0.0;
+        energy += spring.constant * change * change / 2.0;
+        for k in 0..D {
+            force[i][k] -= t * r[k];
+            force[j][k] += t * r[k];
+        }
+        let b: [[f64; D]; D] = from_fn(|k| from_fn(|l| along * r[k] * r[l] + if k == l { across } else { 0.0 }));
+        let mut at = 0;
+        for k in 0..D {
+            tangent[at..=at + k].copy_from_slice(&b[k][..=k]);
+            at += k + 1;
+        }
+        for k in 0..D {
+            for l in 0..D {
+                tangent[at + l] = -b[k][l];
+            }
+            tangent[at + D..=at + D + k].copy_from_slice(&b[k][..=k]);
+            at += D + k + 1;
+        }
+    }
+    sound.then_some(energy)
+}
