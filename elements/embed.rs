@@ -1,29 +1,38 @@
-//! Build script: puts every element file of this folder into the library, with the cell types it serves, and every file of
-//! the folder `materials`.
+//! Build script: puts every element file of this folder into the library, with the cell types it serves, every file of the
+//! folder `materials`, and the experiments of `scenes/paper` with the meshes they name.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() {
-    let code: Vec<String> = files("elements").iter().map(|(name, path, text)| element(name, path, text)).collect();
+    let code: Vec<String> = files("elements", "toml").iter().map(|(name, path, text)| element(name, path, text)).collect();
     write("elements.rs", &code);
-    let code = files("materials").into_iter().map(|(name, path, _)| format!("({name:?}, include_str!({path:?})),"));
+    let code = files("materials", "toml").into_iter().map(|(name, path, _)| format!("({name:?}, include_str!({path:?})),"));
     write("materials.rs", &code.collect::<Vec<_>>());
+    let scenes = files("scenes/paper", "toml");
+    let named = |(name, _, _): &(String, PathBuf, String)| {
+        let path = format!("meshes/{name}.msh");
+        scenes.iter().any(|(_, _, text)| text.contains(&path))
+    };
+    let meshes = files("scenes/meshes", "msh").into_iter().filter(named);
+    let code = scenes.iter().map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("paper/{name}.toml")));
+    let code = code.chain(meshes.map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("meshes/{name}.msh"))));
+    write("paper.rs", &code.collect::<Vec<_>>());
 }
 
-/// Name, path and text of the files of a folder that end in .toml, by name.
-fn files(folder: &str) -> Vec<(String, PathBuf, String)> {
+/// Name, path and text of the files of a folder with that ending, by name.
+fn files(folder: &str, ending: &str) -> Vec<(String, PathBuf, String)> {
     println!("cargo::rerun-if-changed={folder}");
     let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join(folder);
     let mut paths: Vec<PathBuf> = fs::read_dir(&folder)
         .expect("the folder can be read")
         .map(|entry| entry.expect("an entry can be read").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .filter(|path| path.extension().is_some_and(|e| e == ending))
         .collect();
     paths.sort();
     let read = |path: PathBuf| {
         let text = fs::read_to_string(&path).expect("a file can be read");
-        let name = path.file_stem().expect("it ends in .toml").to_string_lossy().into_owned();
+        let name = path.file_stem().expect("it has an ending").to_string_lossy().into_owned();
         (name, path, text)
     };
     paths.into_iter().map(read).collect()

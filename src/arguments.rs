@@ -24,6 +24,21 @@ pub enum Command {
     Derive(DeriveArguments),
     /// Objectives and solvers side by side: error against run time, on random shapes of an element or on a scene
     Compare(CompareArguments),
+    /// Run the experiments of the paper whose method this is, its printed figures beside ours
+    Paper(PaperArguments),
+}
+
+#[derive(Args)]
+pub struct PaperArguments {
+    /// Only this table, such as 1 or "figure 9"; may be repeated
+    #[arg(long)]
+    pub table: Vec<String>,
+    /// Where the tables and figures go, and the scenes that were run [default: out/paper]
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// An index of experiments of your own, such as scenes/paper/index.toml
+    #[arg(long)]
+    pub index: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -109,7 +124,7 @@ pub struct FitArguments {
     /// Poisson's ratio
     #[arg(long, allow_hyphen_values = true)]
     pub poisson: f64,
-    /// frobenius, offdiag, modal, spectral, divergence, sampled or whole [default: offdiag with --nonnegative]
+    /// frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: offdiag with --nonnegative]
     #[arg(long)]
     pub objective: Option<String>,
     /// A group of the mesh that is held; may be repeated (whole only)

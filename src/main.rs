@@ -3,20 +3,21 @@
 mod arguments;
 
 use arguments::{
-    CheckArguments, Command, CommandLine, CompareArguments, DeriveArguments, FitArguments, PlaneArgument, RunArguments,
+    CheckArguments, Command, CommandLine, CompareArguments, DeriveArguments, FitArguments, PaperArguments, PlaneArgument,
+    RunArguments,
 };
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::{ClosedForm, Weight};
-use springfit::material::{Energy, Material, Plane, parse_pressure};
+use springfit::material::{Material, Plane, parse_pressure};
 use springfit::mesh::{Mesh, MeshSource, Selection, vtk};
 use springfit::model::Support;
 use springfit::report::Comparison;
 use springfit::springs::Springs;
 use springfit::study::{
-    Controls, FitEntry, LargeBody, Recipe, Reference, Scene, ShapesEntry, WholeBody, fit_mesh, load_elements, run_with,
+    Controls, FitEntry, Index, Recipe, Reference, Scene, ShapesEntry, WholeBody, fit_mesh, load_elements, run_with,
     stages,
 };
 use springfit::{model, report, study};
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check(&arguments),
         Command::Derive(arguments) => done(derive(&arguments)),
         Command::Compare(arguments) => done(compare(&arguments)),
+        Command::Paper(arguments) => done(paper(&arguments)),
     };
     match result {
         Ok(code) => code,
@@ -111,6 +113,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         nonnegative,
         force: arguments.force.clone().map(Into::into),
         shapes: Some(shapes).filter(|s| *s != ShapesEntry::default()),
+        law: arguments.law.clone(),
         ..FitEntry::default()
     };
     let named = entry.check(Path::new("")).map_err(|e| e.placed(Error::of_option))?.remove(0);
@@ -120,8 +123,8 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         let problem = "goes with the objective \"whole\", and that with it: a group of the mesh that is held";
         return Err(Error::at("--fix", problem));
     }
-    if sampled != arguments.law.is_some() {
-        let problem = "goes with the objective \"sampled\", and that with it: the energy whose forces are sampled";
+    if sampled && arguments.law.is_none() {
+        let problem = "goes with the objective \"sampled\": the energy whose forces are sampled";
         return Err(Error::at("--law", problem));
     }
     if !(arguments.scale > 0.0 && arguments.scale.is_finite()) {
@@ -138,10 +141,6 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let material = Material::for_body(mesh.cell_dimension(), young, arguments.poisson, plane, arguments.thickness)
         .and_then(|m| arguments.area.map_or(Ok(m), |area| m.with_area(area)))
         .map_err(Error::of_option)?;
-    let energy = arguments.law.as_ref().map(|law| Energy::load(law, material)).transpose();
-    let large = energy
-        .map_err(|e| e.placed(|e| Error::at("--law", e.problem())))?
-        .map(|energy| LargeBody::at_rest(energy, material.state()));
     let mut support = Support::free(&mesh);
     let directions: Vec<usize> = (0..mesh.dimension).collect();
     for group in &arguments.fix {
@@ -153,7 +152,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
         end_early(&controls);
     }
     let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
-    let reference = Reference { large: large.as_ref(), whole: body.as_ref() };
+    let reference = Reference { large: None, whole: body.as_ref() };
     let mut bar = Bar::new();
     let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
     let outcome = fit_mesh(&mesh, material, &reference, &named, &mut progress);
@@ -269,6 +268,25 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
     bar.clear();
     print(&comparison.table())?;
     written(&comparison.write(&folder)?)
+}
+
+fn paper(arguments: &PaperArguments) -> Result<()> {
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
+    springfit::check_folder(&folder)?;
+    let path = match &arguments.index {
+        Some(path) => path.clone(),
+        None => study::write_experiments(&folder.join("scenes"))?,
+    };
+    let index = Index::load(&path)?;
+    let mut bar = Bar::new();
+    let paper = study::run_paper(&index, &arguments.table, &path, &mut |stage, d, t| bar.show(stage, d, t));
+    bar.clear();
+    let paper = paper.map_err(|e| e.placed(Error::of_option))?;
+    for table in &paper.tables {
+        print(&(report::paper_text(table) + "\n"))?;
+    }
+    let written = report::write_paper(&paper, &folder)?;
+    print(&format!("written: {} files in {}\n", written.len(), folder.display()))
 }
 
 fn written(paths: &[PathBuf]) -> Result<()> {

@@ -358,7 +358,7 @@ fn fits() {
             (
                 "\"modal\"",
                 "\"modular\"",
-                "scene.toml: fit[0].objective: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, whole, found \"modular\"",
+                "scene.toml: fit[0].objective: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, whole, van-gelder, van-gelder-simple, lloyd, lloyd-preserving, baudet, baudet-corrected, delingette-quadratic, delingette-biquadratic, maciel-uniform, found \"modular\"",
             ),
             (
                 "\"modal\"",
@@ -1294,7 +1294,7 @@ fn options_by_their_names() {
             "1kPa",
             "0.3",
             &["--objective", "least"],
-            "--objective: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, whole, found \"least\"".into(),
+            "--objective: expected one of frobenius, offdiag, modal, spectral, divergence, sampled, whole, van-gelder, van-gelder-simple, lloyd, lloyd-preserving, baudet, baudet-corrected, delingette-quadratic, delingette-biquadratic, maciel-uniform, found \"least\"".into(),
         ),
         (
             "1kPa",

@@ -63,7 +63,7 @@ impl Comparison {
             ]
         };
         let name = |o: &MethodOutcome| {
-            if o.solver == "native" { o.name.clone() } else { format!("{} by {}", o.name, o.solver) }
+            if ["native", "formula"].contains(&o.solver) { o.name.clone() } else { format!("{} by {}", o.name, o.solver) }
         };
         Comparison {
             title,

@@ -4,7 +4,7 @@ use super::agreement::{Agreement, SAME, agreements};
 use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
 use crate::solve::{Ending, Standing};
 use crate::study::{
-    FitOutcome, FittedLoad, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Recipe, SampledRecipe, Start,
+    FitOutcome, FittedLoad, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Reading, Recipe, SampledRecipe, Start,
     WholeRecipe,
 };
 use crate::whole::{Method, Residual};
@@ -26,10 +26,15 @@ pub fn report(outcome: &Outcome) -> String {
         "loads_followed": outcome.followed.iter().map(followed).collect::<Vec<_>>(),
         "left_out": outcome.left_out,
         "measured": outcome.measured.iter().map(measured).collect::<Vec<_>>(),
+        "gauge": outcome.gauged.iter().map(|r| r.map(reading)).collect::<Vec<_>>(),
         "starts": agreements(outcome).iter().map(agreement).collect::<Vec<_>>(),
         "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count(), outcome.material.thickness())).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&value).expect("a value of finite numbers and text is JSON") + "\n"
+}
+
+fn reading(reading: Reading) -> Value {
+    json!({ "young": reading.young, "poisson": reading.poisson })
 }
 
 fn measured(load: &MeasuredLoad) -> Value {
@@ -55,6 +60,7 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
         Recipe::Stiffness(fit) => of_stiffness(fit),
         Recipe::Forces(recipe) => of_forces(recipe),
         Recipe::Whole(recipe) => of_whole(recipe),
+        Recipe::Published(method) => json!({ "objective": method.name(), "source": method.reference() }),
     };
     let rest = json!({
         "name": outcome.fit.name,
@@ -79,6 +85,11 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
         "effective_poisson": outcome.moduli.as_ref().map(|m| m.poisson),
         "zener": outcome.moduli.as_ref().map(|m| m.zener),
         "loads": outcome.loads.iter().map(load).collect::<Vec<_>>(),
+        "unmet": outcome.unmet.map(|unmet| json!({
+            "poisson_assumed": unmet.poisson,
+            "elements_of_other_shape": unmet.cells,
+            "largest_deviation": unmet.deviation,
+        })),
         "whole": outcome.whole.as_ref().map(|w| json!({
             "loads": w.loads,
             "validated": w.validated,
@@ -155,6 +166,7 @@ fn of_forces(recipe: &SampledRecipe) -> Value {
         "stretch": fit.sampling.stretch,
         "perturbation": fit.sampling.perturbation,
         "seed": fit.sampling.seed,
+        "law": recipe.law,
     })
 }
 
@@ -203,6 +215,7 @@ fn load(outcome: &LoadOutcome) -> Value {
         "seconds_fem": outcome.seconds_fem,
         "seconds_lem": outcome.seconds_lem,
         "followed": outcome.followed.as_ref().map(followed),
+        "gauge": outcome.gauged.map(reading),
     })
 }
 

@@ -3,11 +3,14 @@
 mod agreement;
 mod check;
 mod comparison;
+mod deformed;
 mod derivation;
 mod json;
 mod network;
+mod paper;
 mod pictures;
 mod stretches;
+mod surface;
 mod table;
 
 pub use check::{check_json, check_text};
@@ -15,6 +18,8 @@ pub use comparison::Comparison;
 pub use derivation::Derivation;
 pub use json::report;
 pub use network::{network_csv, network_json};
+pub use deformed::deformed;
+pub use paper::{paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use stretches::{stretches_text, write_stretches};
 pub use table::{notes, summary, table};

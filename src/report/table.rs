@@ -4,7 +4,7 @@ use super::agreement::{Agreement, SAME, agreements};
 use super::json::status;
 use crate::fit::Spread;
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, Outcome, WholeOutcome};
+use crate::study::{FitOutcome, Followed, LoadOutcome, Outcome, Reading, Recipe, WholeOutcome};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
 use std::fmt::Write;
@@ -45,12 +45,17 @@ pub fn table(outcome: &Outcome) -> String {
     if sampled {
         header.push("sampled forces %\nfitted / held out".into());
     }
-    header.extend(loads.iter().map(|load| format!("{load}\n%e_rms / %e_max")));
+    for (i, load) in loads.iter().enumerate() {
+        header.push(format!("{load}\n%e_rms / %e_max"));
+        if gauged(outcome, i) {
+            header.push(format!("{load}, gauge\nE Pa / nu"));
+        }
+    }
     if !loads.is_empty() {
         header.push("network".into());
     }
-    let rows: Vec<_> = outcome.fits.iter().map(|fit| row(fit, outcome.mesh.cell_count(), sampled)).collect();
-    aligned(&header, &rows) + &times(outcome)
+    let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
+    aligned(&header, &rows) + &times(outcome) + &gauge(outcome)
 }
 
 /// Rows under a header: columns of words to the left, of numbers to the right.
@@ -59,13 +64,14 @@ pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
     table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
     table.set_content_arrangement(ContentArrangement::Disabled).set_header(header).add_rows(rows);
     for (column, name) in table.column_iter_mut().zip(header) {
-        let words = ["objective", "solver", "fit", "network"].contains(&name.as_str());
+        let words = ["object", "objective", "solver", "fit", "network"].contains(&name.as_str());
         column.set_cell_alignment(if words { CellAlignment::Left } else { CellAlignment::Right });
     }
     table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }
 
-fn row(fit: &FitOutcome, elements: usize, sampled: bool) -> Vec<String> {
+fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
+    let elements = outcome.mesh.cell_count();
     let pair = |mean: f64, max: f64| if mean.is_nan() { "-".into() } else { format!("{mean:.4} / {max:.4}") };
     let mut row = vec![
         fit.fit.name.clone(),
@@ -81,13 +87,31 @@ fn row(fit: &FitOutcome, elements: usize, sampled: bool) -> Vec<String> {
             format!("{} / {:>5}", percent(&s.trained), s.held_out.as_ref().map_or("-".into(), percent))
         }));
     }
-    for load in &fit.loads {
+    for (i, load) in fit.loads.iter().enumerate() {
         row.push(load.error.map_or("-".into(), |e| format!("{:.2} / {:5.2}", e.rms, e.max)));
+        if gauged(outcome, i) {
+            row.push(load.gauged.map_or("-".into(), |r| format!("{:.4e} / {:.3}", r.young, r.poisson)));
+        }
     }
     if !fit.loads.is_empty() {
         row.push(status(fit).into());
     }
     row
+}
+
+/// Whether the scene's gauge says something under the load of that number.
+fn gauged(outcome: &Outcome, load: usize) -> bool {
+    outcome.gauged.get(load).is_some_and(Option::is_some)
+}
+
+/// What the gauge says of the finite elements.
+fn gauge(outcome: &Outcome) -> String {
+    let loads = outcome.fits.first().map_or(&[][..], |fit| &fit.loads);
+    let line = |(load, reading): (&LoadOutcome, &Option<Reading>)| {
+        let Reading { young, poisson } = (*reading)?;
+        Some(format!("Gauge of the finite elements under {}: E = {young:.4e} Pa, nu = {poisson:.3}.\n", load.name))
+    };
+    loads.iter().zip(&outcome.gauged).filter_map(line).collect()
 }
 
 fn times(outcome: &Outcome) -> String {
@@ -144,6 +168,20 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             "{name}: in {} elements this objective does not determine the springs; of all optima the least was taken",
             fit.deficient
         ));
+    }
+    if let (Some(unmet), Recipe::Published(method)) = (&fit.unmet, &fit.fit.recipe) {
+        let all = outcome.mesh.cell_count();
+        let ratio = unmet.poisson.map(|assumed| {
+            format!("is made for Poisson's ratio {assumed:.4}, the material's is {}", outcome.material.poisson())
+        });
+        let shape = (unmet.cells > 0).then(|| {
+            let percent = 100.0 * unmet.deviation;
+            format!("{} of {all} elements do not have the shape it is made for (lengths off by up to {percent:.0} %)", unmet.cells)
+        });
+        let lacking: Vec<String> = ratio.into_iter().chain(shape).collect();
+        if !lacking.is_empty() {
+            notes.push(format!("{name}: {} {}", method.name(), lacking.join("; ")));
+        }
     }
     if fit.reused > 0 {
         notes.push(format!("{name}: {} elements have the shape of another and took its constants over", fit.reused));

@@ -11,6 +11,7 @@ use super::stretches::sampled_fits;
 use super::whole::WholeBody;
 use crate::element::Element;
 use crate::error::{Error, Result};
+use crate::fit::published::{self, Method};
 use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
 use crate::material::Material;
 use crate::springs::Springs;
@@ -56,7 +57,8 @@ fn objectives(higher_modes: bool) -> Vec<Objective> {
     all
 }
 
-/// Fits `shapes` random shapes of the element with every objective, and the spectral one with every solver, on one thread.
+/// Fits `shapes` random shapes of the element with every objective, the spectral one with every solver, and by the published
+/// formulas that it has; on one thread.
 ///
 /// # Errors
 /// `shapes` is 0 or so large that the shapes do not fit, or no valid shape is found.
@@ -67,32 +69,72 @@ pub fn compare_element(
     iterations: u64,
     progress: &mut Progress,
 ) -> Result<Vec<MethodOutcome>> {
+    let mut recipes: Vec<Recipe> =
+        objectives(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))).collect();
+    for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
+        let solver = Solver::General { method, iterations };
+        recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) }));
+    }
+    let cell: Vec<usize> = (0..element.nodes()).collect();
+    recipes.extend(published_of(element, &element.positions, &cell, material).map(Recipe::Published));
+    measure_recipes(element, material, shapes, &recipes, progress)
+}
+
+/// The published methods that have a formula for the first of `cells` and the material.
+fn published_of(
+    element: &Element,
+    points: &[f64],
+    cells: &[usize],
+    material: Material,
+) -> impl Iterator<Item = Method> {
+    let springs = Springs::select(element, None);
+    Method::ALL.into_iter().filter(move |method| {
+        let first = &cells[..element.nodes()];
+        springs.as_ref().is_ok_and(|s| published::fit(*method, element, s, points, first, material).is_ok())
+    })
+}
+
+/// Fits `shapes` random shapes of the element by each recipe, on one thread.
+///
+/// # Errors
+/// Those of [`compare_element`]; a recipe is no fit of single elements, or a published method has no formula for this one.
+pub fn measure_recipes(
+    element: &Element,
+    material: Material,
+    shapes: usize,
+    recipes: &[Recipe],
+    progress: &mut Progress,
+) -> Result<Vec<MethodOutcome>> {
     if !(1..=1_000_000).contains(&shapes) {
         return Err(Error::expected("shapes", "a number from 1 to 1000000", shapes));
     }
     let springs = Springs::select(element, None)?;
     let points = random_shapes(element, shapes, SEED)?;
     let cells: Vec<usize> = (0..shapes * element.nodes()).collect();
-    let mut fits: Vec<Fit> = objectives(element.has_higher_modes()).into_iter().map(Fit::new).collect();
-    for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
-        let solver = Solver::General { method, iterations };
-        fits.push(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) });
-    }
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let one = one.map_err(|e| Error::new(format!("no thread can be started: {e}")))?;
     let shared = Arc::new(element.clone());
     let size = vec![1.0; element.dimension()];
-    let native = |fit: &&Fit| fit.solver == Solver::Native;
-    let lattice = |fit: &Fit| Lattice::fit(&shared, &springs, &size, material, fit).ok();
-    let measure = |fit: &Fit| Some(fit).filter(native).and_then(lattice).and_then(|lattice| lattice.of_springs());
     let moduli = material.moduli();
     let mut outcomes = Vec::new();
-    for (done, fit) in fits.iter().enumerate() {
-        progress(&format!("{} by {}", fit.objective.title(), fit.solver.name()), done, fits.len());
+    for (done, recipe) in recipes.iter().enumerate() {
+        let (name, solver) = match recipe {
+            Recipe::Stiffness(fit) => (fit.objective.title(), fit.solver.name()),
+            Recipe::Published(method) => (method.name().into(), "formula"),
+            _ => return Err(Error::expected("recipe", "a fit of single elements", recipe.name(None))),
+        };
+        progress(&format!("{name} by {solver}"), done, recipes.len());
+        let fit = |points: &[f64], cells: &[usize]| match recipe {
+            Recipe::Published(method) => published::fit(*method, element, &springs, points, cells, material),
+            _ => {
+                let fit = recipe.at_rest().expect("it is a fit of single elements");
+                fit_cells(element, &springs, points, cells, moduli, &fit, &mut |_| {})
+            }
+        };
         let mut seconds = Vec::new();
         let fitted = loop {
             let start = Instant::now();
-            let fitted = one.install(|| fit_cells(element, &springs, &points, &cells, moduli, fit, &mut |_| {}))?;
+            let fitted = one.install(|| fit(&points, &cells))?;
             seconds.push(start.elapsed().as_secs_f64() / shapes as f64);
             if seconds.len() == RUNS || seconds[0] * shapes as f64 > PATIENCE {
                 break fitted;
@@ -101,18 +143,20 @@ pub fn compare_element(
         seconds.sort_by(f64::total_cmp);
         let errors = element_errors(element, &points, &cells, moduli, &fitted)?;
         let negative = fitted.constants.iter().filter(|k| **k < 0.0).count();
+        let general = matches!(recipe, Recipe::Stiffness(fit) if fit.solver != Solver::Native);
+        let lattice = || Lattice::of(&shared, &size, fit).ok()?.of_springs();
         outcomes.push(MethodOutcome {
-            name: fit.objective.title(),
-            solver: fit.solver.name(),
+            name,
+            solver,
             seconds: [seconds[0], seconds[seconds.len() / 2], seconds[seconds.len() - 1]],
             frobenius: Spread::of(&errors.frobenius),
             spectral: Spread::of(&errors.spectral),
             gap: fitted.certificates.iter().map(|c| c.gap()).reduce(f64::max),
             negative: negative as f64 / fitted.constants.len().max(1) as f64,
-            moduli: measure(fit),
+            moduli: if general { None } else { lattice() },
         });
     }
-    progress("", fits.len(), fits.len());
+    progress("", recipes.len(), recipes.len());
     Ok(outcomes)
 }
 
@@ -130,9 +174,10 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
     // Loads made from the mesh are linear, and need supports that hold the body without those of the scene.
-    let support = load_cases(scene, &mesh, scene.material(mesh.cell_dimension())?)?.0;
+    let material = scene.material(mesh.cell_dimension())?;
+    let support = load_cases(scene, &mesh, material)?.0;
     let controls = Controls::default();
-    let body = WholeBody::new(&mesh, scene.material(mesh.cell_dimension())?, &support, &controls);
+    let body = WholeBody::new(&mesh, material, &support, &controls);
     let whole = scene.law().is_none() && body.held("loads").is_ok();
     let mut scene = scene.clone();
     scene.fits = Vec::new();
@@ -154,6 +199,11 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
                 named.springs = Some(groups.clone());
             }
             scene.fits.push(named);
+        }
+        if groups.is_none() {
+            let every = |method: &Method| mesh.blocks.iter().all(|b| published_of(&b.element, &mesh.points, &b.connectivity, material).any(|m| m == *method));
+            let published = Method::ALL.into_iter().filter(every);
+            scene.fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }
         if scene.law().is_some() {
             for mut named in sampled_fits(&mesh.blocks[0].element, groups.as_deref(), SAMPLED) {

@@ -101,6 +101,7 @@ impl LargeBody {
                 seconds_fem: self.seconds[i],
                 seconds_lem,
                 followed: Some(followed),
+                gauged: None,
             });
         }
         Ok(())

@@ -99,6 +99,7 @@ impl LinearBody {
                 seconds_fem: self.seconds[i],
                 seconds_lem,
                 followed: None,
+                gauged: None,
             });
         }
         if let Some((system, _, stability, _)) = systems.into_iter().next() {

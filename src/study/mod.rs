@@ -4,11 +4,13 @@ mod cases;
 mod check;
 mod checkpoint;
 mod comparison;
+mod gauge;
 mod large;
 mod linear;
 mod metrics;
 mod moduli;
 mod outcome;
+mod paper;
 mod random;
 mod run;
 mod scene;
@@ -18,11 +20,13 @@ mod whole;
 
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
-pub use comparison::{MethodOutcome, compare_element, compare_scene, random_shapes};
+pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes, random_shapes};
+pub use gauge::Reading;
 pub use large::LargeBody;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{FitOutcome, FittedLoad, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
+pub use paper::{Column, Index, Paper, PaperRow, PaperTable, Surface, run_paper, write_experiments};
 pub use run::{Progress, Reference, fit_mesh, run, run_with};
 pub use scene::{
     BoxEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,

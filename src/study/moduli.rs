@@ -46,11 +46,24 @@ impl Lattice {
         material: Material,
         fit: &Fit,
     ) -> Result<Lattice> {
+        Lattice::of(element, size, |points, cells| {
+            fit_cells(element, springs, points, cells, material.moduli(), fit, &mut |_| {})
+        })
+    }
+
+    /// The same with the springs that `fit` finds for the cells, `[cells × nodes]` into the points.
+    ///
+    /// # Errors
+    /// The element's cells fill no box, or those of `fit`.
+    pub fn of(
+        element: &Arc<Element>,
+        size: &[f64],
+        fit: impl FnOnce(&[f64], &[usize]) -> Result<CellFits>,
+    ) -> Result<Lattice> {
         let d = element.dimension();
         let spec = BoxMesh { element: element.clone(), size: size.to_vec(), cells: vec![1; d], origin: vec![0.0; d] };
         let mesh = spec.build()?;
-        let cells = &mesh.blocks[0].connectivity;
-        let fits = fit_cells(element, springs, &mesh.points, cells, material.moduli(), fit, &mut |_| {})?;
+        let fits = fit(&mesh.points, &mesh.blocks[0].connectivity)?;
         Ok(Lattice { mesh, fits })
     }
 

@@ -1,9 +1,11 @@
 //! What comes out of a scene.
 
+use super::gauge::Reading;
 use super::metrics::DisplacementError;
 use super::moduli::EffectiveModuli;
 use super::scene::NamedFit;
 use crate::fit::Spread;
+use crate::fit::published::Unmet;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::model::Network;
@@ -24,6 +26,8 @@ pub struct Outcome {
     pub followed: Vec<Followed>,
     /// What was measured: errors under these loads are those from it.
     pub measured: Vec<MeasuredLoad>,
+    /// What the scene's gauge says of the finite elements under each load; empty without a gauge.
+    pub gauged: Vec<Option<Reading>>,
     pub fits: Vec<FitOutcome>,
     /// What the scene did not ask for and was not done.
     pub left_out: Vec<String>,
@@ -52,6 +56,8 @@ pub struct FitOutcome {
     pub spectral: Spread,
     /// What the network is as a material, where the scene asks for it: under linear displacements of its boundary.
     pub moduli: Option<EffectiveModuli>,
+    /// Of a published method: what it takes for granted and does not find.
+    pub unmet: Option<Unmet>,
     /// Of a sampled fit.
     pub sampled: Option<SampledOutcome>,
     /// Of a whole-object fit; its springs belong to no element, so that there are no matrix errors.
@@ -75,6 +81,8 @@ pub struct LoadOutcome {
     pub seconds_lem: f64,
     /// At large deformation, how far the network followed the load.
     pub followed: Option<Followed>,
+    /// What the scene's gauge says of the network.
+    pub gauged: Option<Reading>,
 }
 
 /// A load under which displacements were measured.
@@ -152,7 +160,7 @@ pub struct SampledOutcome {
 impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
-        let (fem, law, followed, measured, left_out) = Default::default();
-        Outcome { scene: name, mesh, material, masses, fem, law, followed, measured, fits: vec![fit], left_out }
+        let (fem, law, followed, measured, gauged, left_out) = Default::default();
+        Outcome { scene: name, mesh, material, masses, fem, law, followed, measured, gauged, fits: vec![fit], left_out }
     }
 }

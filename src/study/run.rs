@@ -2,6 +2,7 @@
 
 use super::cases::{load_cases, measured_loads};
 use super::checkpoint::Controls;
+use super::gauge::Gauged;
 use super::large::LargeBody;
 use super::linear::LinearBody;
 use super::moduli::moduli_of_body;
@@ -10,8 +11,9 @@ use super::scene::{NamedFit, Recipe, SampledRecipe, Scene};
 use super::stages::stages;
 use super::whole::WholeBody;
 use crate::error::{Error, Result};
+use crate::fit::published::{self, Unmet};
 use crate::fit::{ElementErrors, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
-use crate::material::Material;
+use crate::material::{Energy, Material};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::{Network, masses};
 use crate::springs::Springs;
@@ -40,6 +42,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     let material = scene.material(mesh.cell_dimension())?;
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
+    let gauged = scene.gauge.as_ref().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(&scene.path));
     let large = match scene.energy(material)? {
         Some(energy) => {
@@ -56,6 +59,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         law: large.as_ref().map(|large| large.energy.title.clone()),
         followed: Vec::new(),
         measured: Vec::new(),
+        gauged: Vec::new(),
         fits: Vec::new(),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
@@ -96,6 +100,9 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         }
         (outcome.fem, outcome.followed) = (large.displacements, large.followed);
         outcome.measured = measured_loads(&cases, &outcome.fem, mesh.dimension);
+        if let Some(gauged) = gauged {
+            gauged.measure(&mut outcome);
+        }
         return Ok(outcome);
     }
     let body = match body {
@@ -108,6 +115,9 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     }
     outcome.fem = body.displacements;
     outcome.measured = measured_loads(&cases, &outcome.fem, mesh.dimension);
+    if let Some(gauged) = gauged {
+        gauged.measure(&mut outcome);
+    }
     Ok(outcome)
 }
 
@@ -147,10 +157,25 @@ pub fn fit_mesh(
     rayon::broadcast(|_| ());
     let start = Instant::now();
     let mut sampled: Option<SampledOutcome> = None;
-    let mut fits = match (named.recipe.at_rest(), named.recipe.sampled()) {
-        (_, Some(recipe)) => {
+    let mut unmet = None;
+    let mut fits = match (&named.recipe, named.recipe.at_rest(), named.recipe.sampled()) {
+        (&Recipe::Published(method), ..) => {
+            let of_method = |e: Error| e.placed(|e| Error::at("objective", e.to_string()));
+            for block in &mesh.blocks {
+                let own = published::unmet(method, &block.element, &mesh.points, &block.connectivity, material);
+                unmet = Some(unmet.unwrap_or(Unmet::default()).and(own.map_err(of_method)?));
+            }
+            each_block(mesh, named, progress, |block, springs, _| {
+                published::fit(method, &block.element, springs, &mesh.points, &block.connectivity, material)
+                    .map_err(of_method)
+            })?
+        }
+        (_, _, Some(recipe)) => {
+            let own = recipe.law.as_ref().map(|law| Energy::load(law, material)).transpose();
+            let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?;
+            let own = own.map(|energy| LargeBody::at_rest(energy, material.state()));
             let expected = "the energy whose forces are sampled";
-            let large = reference.large.ok_or_else(|| Error::expected("law", expected, "none"))?;
+            let large = own.as_ref().or(reference.large).ok_or_else(|| Error::expected("law", expected, "none"))?;
             let states = Arc::new(large.states(mesh, &recipe.loads)?);
             let mut known = Vec::new();
             for block in &mesh.blocks {
@@ -166,10 +191,10 @@ pub fn fit_mesh(
             sampled = Some(SampledOutcome::of(recipe, &found));
             found.into_iter().map(|found| found.fits).collect()
         }
-        (Some(fit), None) => each_block(mesh, named, progress, |block, springs, progress| {
+        (_, Some(fit), None) => each_block(mesh, named, progress, |block, springs, progress| {
             fit_cells(&block.element, springs, &mesh.points, &block.connectivity, moduli, &fit, progress)
         })?,
-        (None, None) => unreachable!("every recipe is or starts from one of both"),
+        (_, None, None) => unreachable!("a recipe is a formula, or is or starts from one of both"),
     };
     let seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
@@ -217,6 +242,7 @@ pub fn fit_mesh(
         spectral: if whole.is_some() { unknown } else { Spread::of(&errors.spectral) },
         whole,
         moduli: None,
+        unmet,
         sampled,
         stability: None,
         loose_points: Vec::new(),

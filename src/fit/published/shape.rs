@@ -63,6 +63,17 @@ pub fn unmet(
     Ok(unmet)
 }
 
+impl Unmet {
+    /// Of cells of both kinds.
+    pub fn and(self, other: Unmet) -> Unmet {
+        Unmet {
+            poisson: self.poisson.or(other.poisson),
+            cells: self.cells + other.cells,
+            deviation: self.deviation.max(other.deviation),
+        }
+    }
+}
+
 impl Shape {
     pub fn name(self) -> &'static str {
         match self {

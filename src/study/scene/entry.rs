@@ -1,11 +1,13 @@
 //! The scene file as it is written, key by key, and what each entry must satisfy on its own.
 
+use super::gauge::GaugeEntry;
 use super::recipe::{Recipe, SampledRecipe};
 use super::sampled::{SampledEntry, ShapesEntry};
 use super::value::{Given, Pressure, Varying};
 use super::whole::{Start, WholeEntry};
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
+use crate::fit::published::Method;
 use crate::fit::{Choices, Fit, Objective, Solver, Weights};
 use crate::material::{Material, Plane};
 use crate::model::{Action, Component};
@@ -40,6 +42,7 @@ pub struct SceneFile {
     pub fix: Vec<FixEntry>,
     #[serde(default)]
     pub load: Vec<LoadEntry>,
+    pub gauge: Option<GaugeEntry>,
     #[serde(default)]
     pub output: Output,
 }
@@ -94,7 +97,7 @@ pub struct NewtonEntry {
 }
 
 /// A `[[fit]]` as it is written.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitEntry {
     pub name: Option<String>,
@@ -126,6 +129,7 @@ pub struct FitEntry {
     pub range: Option<f64>,
     pub frequencies: Option<usize>,
     pub seed: Option<u64>,
+    pub law: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -224,10 +228,12 @@ impl FitEntry {
                 }
                 return Ok(fits);
             }
+            name if Method::of_name(name).is_ok() => Recipe::Published(Method::of_name(name)?),
             name => {
                 let objective = Objective::named(name, choices).map_err(|e| match e.key() {
                     Some("objective") => {
-                        let expected = format!("one of {}, sampled, whole", Objective::NAMES.join(", "));
+                        let published = Method::ALL.map(Method::name).join(", ");
+                        let expected = format!("one of {}, sampled, whole, {published}", Objective::NAMES.join(", "));
                         Error::expected("objective", expected, format!("\"{name}\""))
                     }
                     _ => e,
@@ -248,6 +254,7 @@ impl FitEntry {
             bounds: self.bounds.clone(),
             starts: self.starts,
             shapes: self.shapes.clone(),
+            law: self.law.clone(),
         };
         let mut recipe = sampled.check(folder)?;
         recipe.fit.weights = match self.weight.as_deref() {
@@ -284,13 +291,22 @@ impl FitEntry {
             ("bounds", "sampled", self.bounds.is_some()),
             ("starts", "sampled", self.starts.is_some()),
             ("shapes", "sampled", self.shapes.is_some()),
+            ("law", "sampled", self.law.is_some()),
         ];
         let foreign = |owner: &str| owner != objective && !(owner == "sampled" && from_sampled);
         if let Some((key, owner, _)) = owned.iter().find(|(_, owner, given)| *given && foreign(owner)) {
             let problem = format!("belongs to the objective \"{owner}\", found with \"{objective}\"");
             return Err(Error::at(*key, problem));
         }
+        let published = if Method::of_name(objective).is_ok() { objective } else { "" };
         let strange = [
+            ("weight", published, self.weight.is_some()),
+            ("higher", published, self.higher.is_some()),
+            ("balance", published, self.balance.is_some()),
+            ("tied", published, self.tied),
+            ("nonnegative", published, self.nonnegative),
+            ("solver", published, self.solver.is_some()),
+            ("iterations", published, self.iterations.is_some()),
             ("balance", "sampled", self.balance.is_some()),
             ("tied", "whole", self.tied),
             ("nonnegative", "whole", self.nonnegative && !from_sampled),

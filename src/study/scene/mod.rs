@@ -1,14 +1,17 @@
 //! The scene file.
 
 mod entry;
+mod gauge;
 mod recipe;
 mod sampled;
 mod value;
 mod whole;
 
 pub use entry::{BoxEntry, FitEntry, MeasuredEntry, MeshInput, Output};
+pub use gauge::Gauge;
 pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
 pub use sampled::ShapesEntry;
+use sampled::law_at;
 use whole::RESERVED;
 pub use whole::{Judge, Named, Sharing, Start, WholeRecipe};
 
@@ -40,6 +43,8 @@ pub struct Scene {
     pub loads: Vec<LoadCase>,
     /// How loads are followed where the material has a law.
     pub newton: Newton,
+    /// Where a specimen's modulus and ratio are measured.
+    pub gauge: Option<Gauge>,
     pub output: Output,
 }
 
@@ -133,9 +138,17 @@ impl Scene {
                     None => Ok(()),
                 };
             if let Some(recipe) = fit.recipe.sampled() {
-                if entry.material.law.is_none() {
+                if entry.material.law.is_none() && recipe.law.is_none() {
                     let expected = format!("the energy whose forces fit[{i}] samples, such as \"neo-hookean\"");
                     return Err(Error::expected("material.law", expected, "none"));
+                }
+                if let (Some(_), Some(law)) = (&entry.material.law, &recipe.law) {
+                    let expected = "none, as the material has a law";
+                    return Err(Error::expected(format!("fit[{i}].law"), expected, format!("\"{law}\"")));
+                }
+                if let (None, false) = (&entry.material.law, recipe.loads.is_empty()) {
+                    let problem = "belongs to a material with a \"law\": without one no load is followed";
+                    return Err(Error::at(format!("fit[{i}].shapes.loads"), problem));
                 }
                 unknown("shapes.loads", &recipe.loads)?;
             }
@@ -163,6 +176,7 @@ impl Scene {
             supports,
             loads,
             newton,
+            gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
             output: entry.output,
         })
     }
@@ -212,9 +226,7 @@ impl Scene {
     pub fn energy(&self, material: Material) -> Result<Option<Energy>> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let load = |law: &str| {
-            let place =
-                if law.ends_with(".toml") { folder.join(law).to_string_lossy().into_owned() } else { law.into() };
-            Energy::load(&place, material)
+            Energy::load(&law_at(law, folder), material)
                 .map_err(|e| e.placed(|e| Error::at("material.law", e.problem()).in_file(&self.path)))
         };
         self.law().map(load).transpose()
@@ -242,7 +254,8 @@ pub fn load_elements(names: &[String], folder: &Path) -> Result<Vec<Arc<Element>
     names.iter().enumerate().map(load).collect()
 }
 
-fn load_element(name: &str, folder: &Path) -> Result<Arc<Element>> {
+/// The element of that name, or in the file of that path relative to `folder`.
+pub(in crate::study) fn load_element(name: &str, folder: &Path) -> Result<Arc<Element>> {
     let place =
         if name.ends_with(".toml") { folder.join(name).to_string_lossy().into_owned() } else { name.to_string() };
     Element::load(&place).map(Arc::new)

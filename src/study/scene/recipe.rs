@@ -3,6 +3,7 @@
 use super::whole::{Start, WholeRecipe};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
+use crate::fit::published::Method;
 use crate::fit::{Fit, Objective, SampledFit, Solver, Source, Weight};
 use crate::springs::{Force, Law, Springs};
 use std::sync::Arc;
@@ -16,6 +17,8 @@ pub enum Recipe {
     Forces(Box<SampledRecipe>),
     /// From the displacements of the whole object.
     Whole(Box<WholeRecipe>),
+    /// By a published formula.
+    Published(Method),
 }
 
 /// A sampled fit before the mesh is known.
@@ -26,6 +29,8 @@ pub struct SampledRecipe {
     pub force: ForceRecipe,
     /// Loads of the scene: the shapes are those of the finite elements under them.
     pub loads: Vec<String>,
+    /// The energy, where the material has none: a shipped one's name, or the path of a file.
+    pub law: Option<String>,
 }
 
 /// The law of force of a sampled fit.
@@ -148,7 +153,7 @@ impl Recipe {
                 Start::Sampled(recipe) => Some(recipe),
                 Start::Fit(_) | Start::Equal => None,
             },
-            Recipe::Stiffness(_) => None,
+            Recipe::Stiffness(_) | Recipe::Published(_) => None,
         }
     }
 
@@ -162,7 +167,7 @@ impl Recipe {
                 Start::Equal => Some(Fit::new(Objective::Frobenius(Weight::None))),
                 Start::Sampled(_) => None,
             },
-            Recipe::Forces(_) => None,
+            Recipe::Forces(_) | Recipe::Published(_) => None,
         }
     }
 
@@ -178,6 +183,7 @@ impl Recipe {
                 (fit.objective.title() + &groups + &solver, fit.tied, fit.nonnegative)
             }
             Recipe::Whole(recipe) => (format!("whole from {}{groups}", recipe.start.title()), false, false),
+            Recipe::Published(method) => (method.name().to_string() + &groups, false, false),
             Recipe::Forces(recipe) => {
                 let name = format!("sampled{}{groups}", recipe.force.name());
                 (name, recipe.fit.tied, recipe.fit.nonnegative)

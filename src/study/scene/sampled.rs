@@ -18,6 +18,7 @@ pub struct SampledEntry {
     pub bounds: Option<toml::Table>,
     pub starts: Option<usize>,
     pub shapes: Option<ShapesEntry>,
+    pub law: Option<String>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -41,6 +42,7 @@ impl SampledEntry {
     /// A key has a wrong value; a file of gradients cannot be read.
     pub fn check(self, folder: &Path) -> Result<SampledRecipe> {
         let mut recipe = SampledRecipe::default();
+        recipe.law = self.law.map(|law| law_at(&law, folder));
         if let Some(force) = &self.force {
             recipe.force = force_of(force)?;
         }
@@ -79,7 +81,7 @@ impl Default for SampledRecipe {
         let families = vec![Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
         let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
         let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
-        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new() }
+        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None }
     }
 }
 
@@ -120,6 +122,11 @@ impl ShapesEntry {
         }
         Ok(())
     }
+}
+
+/// A law's name, or its file's path relative to `folder`.
+pub fn law_at(law: &str, folder: &Path) -> String {
+    if law.ends_with(".toml") { folder.join(law).to_string_lossy().into_owned() } else { law.into() }
 }
 
 /// A law for all springs, or a table of laws by group.

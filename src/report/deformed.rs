@@ -1,0 +1,143 @@
+//! Shapes of a body under a load: at rest, with finite elements, and with springs.
+
+use crate::element::Element;
+use crate::mesh::{CellBlock, Mesh, Selection, SideIndex};
+use crate::study::Outcome;
+use std::collections::BTreeSet;
+use svg::Document;
+use svg::node::element::path::Data;
+use svg::node::element::{Path, Text};
+
+/// Width of a panel, of its margin and of the line above it, in units of the picture.
+const PANEL: f64 = 320.0;
+const MARGIN: f64 = 20.0;
+const CAPTION: f64 = 44.0;
+/// The largest displacement is drawn as this part of the body's size.
+const SHOWN: f64 = 0.2;
+
+/// A panel for each of these fits that has displacements under the load: undeformed dotted grey, finite elements dashed blue,
+/// springs solid red; the SVG file's text. `None` where there is nothing to show.
+///
+/// Displacements are drawn alike in all panels, larger than they are, and the factor is said. A solid is seen from the front,
+/// a little from the right and above.
+pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> {
+    let mesh = &outcome.mesh;
+    let d = mesh.dimension;
+    let place = outcome.fits.first()?.loads.iter().position(|l| l.name == load)?;
+    let fem = outcome.fem.get(place)?;
+    let mut panels: Vec<(&str, &Vec<f64>)> = Vec::new();
+    for name in fits {
+        let fit = outcome.fits.iter().find(|fit| fit.fit.name == **name);
+        let found = fit.and_then(|fit| fit.loads.get(place)?.displacement.as_ref());
+        panels.extend(found.filter(|_| panels.iter().all(|(known, _)| known != name)).map(|u| (*name, u)));
+    }
+    let largest = fem.chunks_exact(d).map(|u| u.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.0, f64::max);
+    if panels.is_empty() || largest == 0.0 {
+        return None;
+    }
+    let edges = boundary_edges(mesh);
+    let size = extent(&mesh.points, d);
+    // At large deformation shapes are drawn as they are.
+    let factor = if outcome.law.is_some() { 1.0 } else { round(SHOWN * size / largest) };
+    let moved = |u: &[f64]| -> Vec<[f64; 2]> {
+        let x: Vec<f64> = mesh.points.iter().zip(u).map(|(x, u)| x + factor * u).collect();
+        x.chunks_exact(d).map(seen).collect()
+    };
+    let rest = moved(&vec![0.0; fem.len()]);
+    let body = moved(fem);
+    let nets: Vec<Vec<[f64; 2]>> = panels.iter().map(|(_, u)| moved(u)).collect();
+    let all = || nets.iter().flatten().chain(&rest).chain(&body);
+    let range = |k: usize| all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x[k]), b.max(x[k])));
+    let (across, up) = (range(0), range(1));
+    let scale = (PANEL - 2.0 * MARGIN) / (across.1 - across.0).max(0.6 * (up.1 - up.0));
+    let height = CAPTION + 2.0 * MARGIN + scale * (up.1 - up.0) + 24.0;
+    let width = PANEL * panels.len() as f64;
+    let mut document = Document::new()
+        .set("viewBox", (0.0, 0.0, width, height.ceil()))
+        .set("font-family", "sans-serif")
+        .add(Path::new().set("d", format!("M0,0H{width}V{}H0z", height.ceil())).set("fill", "white"));
+    for (i, ((name, _), net)) in panels.iter().zip(&nets).enumerate() {
+        let left = PANEL * i as f64 + (PANEL - scale * (across.1 - across.0)) / 2.0;
+        let on_page = |x: &[f64; 2]| (left + scale * (x[0] - across.0), CAPTION + MARGIN + scale * (up.1 - x[1]));
+        let path = |points: &[[f64; 2]], color: &str, dashes: &str, width: f64| {
+            let mut data = Data::new();
+            for &[a, b] in &edges {
+                let hundredth = |(x, y): (f64, f64)| ((x * 100.0).round() / 100.0, (y * 100.0).round() / 100.0);
+                data = data.move_to(hundredth(on_page(&points[a]))).line_to(hundredth(on_page(&points[b])));
+            }
+            let path = Path::new().set("d", data).set("fill", "none").set("stroke", color).set("stroke-width", width);
+            if dashes.is_empty() { path } else { path.set("stroke-dasharray", dashes) }
+        };
+        let words = |text: &str, y: f64, size: u32| {
+            Text::new(text).set("x", PANEL * (i as f64 + 0.5)).set("y", y).set("text-anchor", "middle").set("font-size", size)
+        };
+        let load = &outcome.fits.iter().find(|fit| fit.fit.name == **name)?.loads[place];
+        let error = load.error.map_or(String::new(), |e| format!("%e_rms {:.2}, %e_max {:.2}", e.rms, e.max));
+        document = document
+            .add(path(&rest, "#999", "0.6 2.4", 0.8))
+            .add(path(&body, "#0072b2", "5 3", 1.1))
+            .add(path(net, "#d0021b", "", 0.8))
+            .add(words(name, 20.0, 15))
+            .add(words(&error, 38.0, 12));
+    }
+    let size = if factor == 1.0 { String::new() } else { format!(", displacements {factor} times") };
+    let key = format!("{}, {load}{size}: at rest dotted, finite elements dashed blue, springs red", outcome.scene);
+    let key = Text::new(key).set("x", width / 2.0).set("y", height - 10.0).set("text-anchor", "middle");
+    Some(document.add(key.set("font-size", 11)).to_string())
+}
+
+/// Two digits, so that the factor can be said.
+fn round(factor: f64) -> f64 {
+    let unit = 10f64.powf(factor.log10().floor() - 1.0);
+    (factor / unit).round() * unit
+}
+
+fn extent(points: &[f64], d: usize) -> f64 {
+    let range = |k: usize| {
+        let of = || points.iter().skip(k).step_by(d);
+        of().fold(f64::NEG_INFINITY, |a, x| a.max(*x)) - of().fold(f64::INFINITY, |a, x| a.min(*x))
+    };
+    (0..d).map(range).fold(0.0, f64::max)
+}
+
+/// A solid in cabinet projection: x to the right, z up, y into the picture at half its length.
+fn seen(x: &[f64]) -> [f64; 2] {
+    match x {
+        [x, y, z] => [x + 0.35 * y, z + 0.25 * y],
+        [x, y] => [*x, *y],
+        _ => [x[0], 0.0],
+    }
+}
+
+/// The edges of all cells in the plane, of the surface of a solid; straight between corners.
+fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
+    let mut edges = BTreeSet::new();
+    let mut add = |element: &Element, nodes: &[usize], corners: &[usize]| {
+        let around = (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]);
+        for ends in around {
+            let at = ends.map(|corner| corner_node(element, corner).map(|a| nodes[a]));
+            if let [Some(a), Some(b)] = at {
+                edges.insert([a.min(b), a.max(b)]);
+            }
+        }
+    };
+    if mesh.cell_dimension() < 3 {
+        for block in &mesh.blocks {
+            let sides = block.element.cell.sides();
+            block.cells().for_each(|cell| sides.iter().for_each(|side| add(&block.element, cell, side.corners)));
+        }
+    } else {
+        for SideIndex { cell, side } in Selection::Everything.sides(mesh).unwrap_or_default() {
+            let CellBlock { element, connectivity } = &mesh.blocks[cell.block];
+            let nodes = &connectivity[cell.cell * element.nodes()..][..element.nodes()];
+            add(element, nodes, element.cell.sides()[side].corners);
+        }
+    }
+    edges.into_iter().collect()
+}
+
+/// The node that sits at a corner of the cell.
+fn corner_node(element: &Element, corner: usize) -> Option<usize> {
+    let at = element.cell.corners()[corner];
+    element.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < 1e-9))
+}

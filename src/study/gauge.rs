@@ -1,0 +1,98 @@
+//! Young's modulus and Poisson's ratio as a tension test gives them: from the strain of the straight part of a specimen.
+
+use super::cases::Case;
+use super::outcome::Outcome;
+use super::scene::{Gauge, LoadCase, Scene};
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use crate::model::Action;
+use crate::solve::Ending;
+use nalgebra::{DMatrix, DVector};
+
+/// What a gauge says of a model under a load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// `F/(A ε)`: the load's resultant along the axis, the cross-section, the strain along the axis; Pa.
+    pub young: f64,
+    /// `−ε_across/ε`, the mean of the directions across.
+    pub poisson: f64,
+}
+
+/// The points of a scene's gauge, and the force in it under each load.
+pub struct Gauged {
+    points: Vec<usize>,
+    axis: usize,
+    area: f64,
+    /// N; `None` under a load that is not the same force in the whole gauge.
+    forces: Vec<Option<f64>>,
+}
+
+impl Gauged {
+    /// # Errors
+    /// The part is unknown, has no extent, or the axis is none of the mesh.
+    pub fn new(scene: &Scene, gauge: &Gauge, mesh: &Mesh, cases: &[Case]) -> Result<Gauged> {
+        let at = |e: Error| scene.at("gauge", e);
+        let d = mesh.dimension;
+        if gauge.axis >= d {
+            return Err(at(Error::expected("axis", "\"x\" or \"y\" in a plane mesh", "\"z\"")));
+        }
+        let points = gauge.part.selection(d).and_then(|s| s.points(mesh)).map_err(at)?;
+        let gauged = Gauged { points, axis: gauge.axis, area: gauge.area, forces: Vec::new() };
+        if gauged.strain(mesh, &vec![0.0; mesh.points.len()]).is_none() {
+            let found = format!("{} points without extent in some direction", gauged.points.len());
+            return Err(at(Error::expected("where", "a part that is a body of its own", found)));
+        }
+        let force = |(case, load): (&Case, &LoadCase)| {
+            let along = |k: usize| case.forces.iter().skip(k).step_by(d).sum::<f64>();
+            let largest = (0..d).map(|k| along(k).abs()).fold(0.0, f64::max);
+            let pulls = matches!(load.action, Action::Traction(_) | Action::Force(_));
+            Some(along(gauge.axis)).filter(|f| pulls && largest > 0.0 && f.abs() > 1e-6 * largest)
+        };
+        Ok(Gauged { forces: cases.iter().zip(&scene.loads).map(force).collect(), ..gauged })
+    }
+
+    /// Writes what it says of the finite elements and of each network, under each load that was reached.
+    pub fn measure(&self, outcome: &mut Outcome) {
+        let mesh = &outcome.mesh;
+        let reached = |load: usize| outcome.followed.get(load).is_none_or(|f| f.ending == Ending::Converged);
+        let of_body = |(load, u): (usize, &Vec<f64>)| self.read(mesh, load, u).filter(|_| reached(load));
+        outcome.gauged = outcome.fem.iter().enumerate().map(of_body).collect();
+        for fit in &mut outcome.fits {
+            for (i, load) in fit.loads.iter_mut().enumerate() {
+                load.gauged = load.displacement.as_ref().and_then(|u| self.read(mesh, i, u));
+            }
+        }
+    }
+
+    /// What it says of displacements under the load of that number; `None` where the load does not pull along the axis.
+    fn read(&self, mesh: &Mesh, load: usize, u: &[f64]) -> Option<Reading> {
+        let force = self.forces[load]?;
+        let strain = self.strain(mesh, u)?;
+        let along = strain[self.axis];
+        let across: f64 = (0..mesh.dimension).filter(|&k| k != self.axis).map(|k| strain[k]).sum();
+        let reading = Reading {
+            young: force / (self.area * along),
+            poisson: -across / (mesh.dimension - 1) as f64 / along,
+        };
+        Some(reading).filter(|r| r.young.is_finite() && r.poisson.is_finite())
+    }
+
+    /// The diagonal of the gradient of the affine displacement `u ≈ a + G x` nearest to that of the points.
+    fn strain(&self, mesh: &Mesh, u: &[f64]) -> Option<Vec<f64>> {
+        let d = mesh.dimension;
+        let n = self.points.len() as f64;
+        let mean = |values: &[f64], k: usize| self.points.iter().map(|p| values[p * d + k]).sum::<f64>() / n;
+        let centre: Vec<f64> = (0..d).map(|k| mean(&mesh.points, k)).collect();
+        let mut moments = DMatrix::zeros(d, d);
+        let mut mixed = DMatrix::zeros(d, d);
+        for &p in &self.points {
+            let x = DVector::from_fn(d, |k, _| mesh.point(p)[k] - centre[k]);
+            moments += &x * x.transpose();
+            mixed += &x * DVector::from_fn(d, |k, _| u[p * d + k]).transpose();
+        }
+        let size = moments.trace();
+        let thin = moments.clone().symmetric_eigenvalues().min() <= 1e-9 * size;
+        let gradient = moments.cholesky().filter(|_| !thin)?.solve(&mixed);
+        Some((0..d).map(|k| gradient[(k, k)]).collect())
+    }
+}

@@ -1,0 +1,236 @@
+//! The experiments of a paper, run again: its tables and figures beside ours.
+
+mod index;
+mod outcome;
+
+pub use index::{Column, Index, Kind, RowEntry, TableEntry};
+pub use outcome::{Paper, PaperRow, PaperScene, PaperTable, Surface};
+
+use super::comparison::measure_recipes;
+use super::moduli::Lattice;
+use super::outcome::{FitOutcome, Outcome};
+use super::run::{Progress, run};
+use super::scene::{NamedFit, Recipe, Scene, load_element};
+use crate::error::{Error, Result};
+use crate::file::{create_folder, write_whole};
+use crate::fit::{fit_cells, published};
+use crate::material::Material;
+use crate::solve::{Ending, Standing};
+use crate::springs::Springs;
+use std::path::{Path, PathBuf};
+
+/// The files of the paper whose method this is: the index, its scenes and their meshes, by path.
+const SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/paper.rs"));
+/// Random shapes of each element that is timed.
+const SHAPES: usize = 100;
+/// Steps of a surface along each constant.
+const STEPS: usize = 10;
+/// Poisson's ratio of what is timed, and the modulus, Pa.
+const POISSON: f64 = 0.3;
+const YOUNG: f64 = 10e3;
+
+/// Writes the shipped experiments into `folder`, and returns the path of their index.
+///
+/// # Errors
+/// The folder or a file cannot be written.
+pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
+    for (name, text) in SHIPPED {
+        let path = folder.join(name);
+        create_folder(path.parent().unwrap_or(folder))?;
+        write_whole(&path, text.as_bytes())?;
+    }
+    Ok(folder.join("paper/index.toml"))
+}
+
+/// Runs the tables of that name, or all; scenes are relative to `folder`, and each is run once.
+///
+/// # Errors
+/// A table is unknown, a scene or an element is wrong, or a figure is printed for a fit that is not there.
+pub fn run_paper(index: &Index, names: &[String], path: &Path, progress: &mut Progress) -> Result<Paper> {
+    if let Some(name) = names.iter().find(|name| index.table.iter().all(|table| table.name != **name)) {
+        let known: Vec<&str> = index.table.iter().map(|table| table.name.as_str()).collect();
+        return Err(Error::expected("table", format!("one of {}", known.join(", ")), format!("\"{name}\"")));
+    }
+    let mut paper = Paper { title: index.title.clone(), tables: Vec::new(), scenes: Vec::new() };
+    for (i, table) in index.table.iter().enumerate() {
+        if !names.is_empty() && !names.contains(&table.name) {
+            continue;
+        }
+        let found = paper.run(table, path.parent().unwrap_or(Path::new("")), progress);
+        paper.tables.push(found.map_err(|e| e.placed(|e| e.under(format!("table[{i}]")).in_file(path)))?);
+    }
+    Ok(paper)
+}
+
+impl Paper {
+    fn run(&mut self, table: &TableEntry, folder: &Path, progress: &mut Progress) -> Result<PaperTable> {
+        let mut rows = Vec::new();
+        let mut surfaces = Vec::new();
+        let entries = table.fit.iter().enumerate().map(|(i, fit)| {
+            let fits = fit.clone().check(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))));
+            fits.map(|mut fits| fits.remove(0))
+        });
+        let fits: Vec<NamedFit> = entries.collect::<Result<_>>()?;
+        for (j, row) in table.row.iter().enumerate() {
+            let at = |e: Error| e.placed(|e| e.under(format!("row[{j}]")));
+            let stage = |progress: &mut Progress, what: &str, done, total| {
+                progress(&format!("table {}, {}: {what}", table.name, row.object), done, total);
+            };
+            let own = match table.kind {
+                Kind::Scenes => {
+                    let scene = self.scene(row, folder, &mut |what, done, total| stage(progress, what, done, total));
+                    of_scene(table, row, &scene?.outcome)
+                }
+                Kind::Timing => timed(row, &fits, folder, &mut |what, d, t| stage(progress, what, d, t)),
+                Kind::Surface => {
+                    let (young, poisson) = (table.young.unwrap_or_default(), table.poisson.unwrap_or_default());
+                    let found = surface(row, &fits, young, poisson, folder).map_err(at)?;
+                    let own = found.iter().map(|surface| of_surface(row, surface)).collect();
+                    surfaces.extend(found);
+                    Ok(own)
+                }
+            };
+            let mut own = own.map_err(at)?;
+            if let Some(fit) = row.printed.keys().find(|fit| own.iter().all(|row| row.fit != **fit)) {
+                let names: Vec<&str> = own.iter().map(|row| row.fit.as_str()).collect();
+                let expected = format!("a fit of the object ({})", names.join(", "));
+                return Err(at(Error::expected("printed", expected, format!("\"{fit}\""))));
+            }
+            for own in &mut own {
+                own.printed = row.printed.get(&own.fit).cloned();
+                own.why = table.why(row, &own.fit).filter(|_| own.differs());
+            }
+            rows.extend(own);
+        }
+        let PaperTable { name, title, note, load, columns, .. } = PaperTable::of(table);
+        Ok(PaperTable { name, title, note, load, columns, rows, surfaces })
+    }
+
+    /// The outcome of the row's scene, which is run when it is first asked for.
+    fn scene(&mut self, row: &RowEntry, folder: &Path, progress: &mut Progress) -> Result<&PaperScene> {
+        let file = row.scene.as_deref().unwrap_or(Path::new(""));
+        let stem = row.stem().unwrap_or_default();
+        let known = self.scenes.iter().position(|scene| scene.stem == stem);
+        let place = match known {
+            Some(place) => place,
+            None => {
+                let scene = Scene::load(&folder.join(file))?;
+                self.scenes.push(PaperScene { stem, outcome: run(&scene, progress)? });
+                self.scenes.len() - 1
+            }
+        };
+        Ok(&self.scenes[place])
+    }
+}
+
+impl PaperTable {
+    fn of(table: &TableEntry) -> PaperTable {
+        PaperTable {
+            name: table.name.clone(),
+            title: table.title.clone(),
+            note: table.note.clone(),
+            load: table.load.clone(),
+            columns: table.columns.clone(),
+            rows: Vec::new(),
+            surfaces: Vec::new(),
+        }
+    }
+}
+
+impl PaperRow {
+    fn new(row: &RowEntry, fit: &str, found: Vec<Option<f64>>, published: bool, stands: bool) -> PaperRow {
+        let (object, fit, scene) = (row.object.clone(), fit.to_string(), row.stem());
+        PaperRow { object, scene, fit, printed: None, found, published, stands, why: None }
+    }
+}
+
+/// A row for each fit of the scene.
+fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec<PaperRow>> {
+    let load = table.load.as_deref().unwrap_or_default();
+    let of_fit = |fit: &FitOutcome| {
+        let found = fit.loads.iter().find(|l| l.name == load).ok_or_else(|| {
+            let names: Vec<&str> = fit.loads.iter().map(|load| load.name.as_str()).collect();
+            Error::expected("scene", format!("a scene with the load \"{load}\""), format!("those of {}", names.join(", ")))
+        })?;
+        let figure = |column: &Column| match column {
+            Column::ERms => found.error.map(|e| e.rms),
+            Column::EMax => found.error.map(|e| e.max),
+            Column::Young => found.gauged.map(|g| g.young),
+            Column::Poisson => found.gauged.map(|g| g.poisson),
+            Column::Seconds | Column::YoungRatio | Column::PoissonShift => None,
+        };
+        let figures = table.columns.iter().map(figure).collect();
+        let published = matches!(fit.fit.recipe, Recipe::Published(_));
+        let stands = match found.followed {
+            Some(followed) => followed.ending == Ending::Converged,
+            None => fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Sound),
+        };
+        Ok(PaperRow::new(row, &fit.fit.name, figures, published, stands))
+    };
+    outcome.fits.iter().map(of_fit).collect()
+}
+
+fn material(dimension: usize, young: f64, poisson: f64) -> Result<Material> {
+    Material::for_body(dimension, young, poisson, None, None)
+}
+
+fn timed(row: &RowEntry, fits: &[NamedFit], folder: &Path, progress: &mut Progress) -> Result<Vec<PaperRow>> {
+    let element = load_element(row.element.as_deref().unwrap_or_default(), folder)?;
+    let recipes: Vec<Recipe> = fits.iter().map(|fit| fit.recipe.clone()).collect();
+    let material = material(element.dimension(), YOUNG, POISSON)?;
+    let outcomes = measure_recipes(&element, material, SHAPES, &recipes, progress)?;
+    let of = |(fit, found): (&NamedFit, &super::comparison::MethodOutcome)| {
+        let published = matches!(fit.recipe, Recipe::Published(_));
+        PaperRow::new(row, &fit.name, vec![Some(found.seconds[1])], published, true)
+    };
+    Ok(fits.iter().zip(&outcomes).map(of).collect())
+}
+
+/// The moduli of a box of one element, over logarithmic steps of Young's modulus and even ones of Poisson's ratio.
+fn surface(
+    row: &RowEntry,
+    fits: &[NamedFit],
+    young: [f64; 2],
+    poisson: [f64; 2],
+    folder: &Path,
+) -> Result<Vec<Surface>> {
+    let element = load_element(row.element.as_deref().unwrap_or_default(), folder)?;
+    let size = row.size.clone().unwrap_or_default();
+    let part = |i: usize| i as f64 / STEPS as f64;
+    let youngs: Vec<f64> = (0..=STEPS).map(|i| young[0] * (young[1] / young[0]).powf(part(i))).collect();
+    let poissons: Vec<f64> = (0..=STEPS).map(|i| poisson[0] + (poisson[1] - poisson[0]) * part(i)).collect();
+    let mut surfaces = Vec::new();
+    for fit in fits {
+        let springs = Springs::select(&element, fit.springs.as_deref())?;
+        let mut found = Vec::new();
+        for &e in &youngs {
+            for &nu in &poissons {
+                let material = material(element.dimension(), e, nu)?;
+                let of_cells = |points: &[f64], cells: &[usize]| match &fit.recipe {
+                    Recipe::Published(method) => published::fit(*method, &element, &springs, points, cells, material),
+                    recipe => {
+                        let missing = || Error::expected("fit", "a fit of single elements", &fit.name);
+                        let fit = recipe.at_rest().ok_or_else(missing)?;
+                        fit_cells(&element, &springs, points, cells, material.moduli(), &fit, &mut |_| {})
+                    }
+                };
+                let lattice = Lattice::of(&element, &size, of_cells)?;
+                found.push(lattice.of_springs().map(|m| [m.young / material.thickness(), m.poisson]));
+            }
+        }
+        surfaces.push(Surface { fit: fit.name.clone(), young: youngs.clone(), poisson: poissons.clone(), found });
+    }
+    Ok(surfaces)
+}
+
+/// The largest departure of a surface from what was asked: `E/E_in` furthest from one, and ν furthest from ν_in.
+fn of_surface(row: &RowEntry, surface: &Surface) -> PaperRow {
+    let asked = surface.young.iter().flat_map(|e| surface.poisson.iter().map(move |nu| [*e, *nu]));
+    let known = || asked.clone().zip(&surface.found).filter_map(|(asked, found)| Some((asked, (*found)?)));
+    let furthest = |from: f64, of: &dyn Fn([f64; 2], [f64; 2]) -> f64| {
+        known().map(|(asked, found)| of(asked, found)).max_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()))
+    };
+    let young = furthest(1.0, &|asked, found| found[0] / asked[0]);
+    let poisson = furthest(0.0, &|asked, found| found[1] - asked[1]);
+    PaperRow::new(row, &surface.fit, vec![young, poisson], false, surface.found.iter().all(Option::is_some))
+}

@@ -1,0 +1,42 @@
+//! The `[gauge]` of a scene: where the strain of a specimen is measured.
+
+use super::Part;
+use crate::error::{Error, Result};
+use serde::Deserialize;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GaugeEntry {
+    pub group: Option<String>,
+    #[serde(rename = "where")]
+    pub condition: Option<String>,
+    pub axis: String,
+    pub area: f64,
+}
+
+/// A straight part of the body, the direction in which it is pulled, and its cross-section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gauge {
+    pub part: Part,
+    pub axis: usize,
+    /// m².
+    pub area: f64,
+}
+
+impl GaugeEntry {
+    /// # Errors
+    /// The part is not said or said twice, the axis is none, or the cross-section is not positive.
+    pub fn check(self) -> Result<Gauge> {
+        let part = Part::named(self.group, self.condition)?;
+        if part == Part::Everything {
+            return Err(Error::new("expected \"group\" or \"where\", found neither"));
+        }
+        let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);
+        let axis =
+            axis.ok_or_else(|| Error::expected("axis", "\"x\", \"y\" or \"z\"", format!("\"{}\"", self.axis)))?;
+        if !(self.area > 0.0 && self.area.is_finite()) {
+            return Err(Error::expected("area", "a positive cross-section in m²", self.area));
+        }
+        Ok(Gauge { part, axis, area: self.area })
+    }
+}
