@@ -50,13 +50,8 @@ fn main() {
         let factor = system.cholesky().expect("the body is held");
         let targets = |loads: Vec<NodalLoad>| -> Vec<Target> {
             let forces: Vec<Vec<f64>> = loads.iter().map(|load| load.forces.clone()).collect();
-            let of = |(load, displacement): (NodalLoad, Vec<f64>)| Target {
-                name: load.name,
-                support: support.clone(),
-                forces: load.forces,
-                weights: vec![1.0; displacement.len()],
-                displacement,
-                weight: 1.0,
+            let of = |(load, displacement): (NodalLoad, Vec<f64>)| {
+                Target::new(load.name, support.clone(), load.forces, displacement)
             };
             loads.into_iter().zip(system.solve_all(&factor, &forces)).map(of).collect()
         };

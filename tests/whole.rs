@@ -62,8 +62,7 @@ impl Body {
     fn target(&self, load: NodalLoad) -> Target {
         let system = System::new(&finite_elements(&self.mesh, self.material.moduli()), &self.support).unwrap();
         let displacement = system.solve(&system.factorize().unwrap(), &load.forces).0;
-        let (name, support, forces) = (load.name, self.support.clone(), load.forces);
-        Target { name, support, forces, weights: vec![1.0; displacement.len()], displacement, weight: 1.0 }
+        Target::new(load.name, self.support.clone(), load.forces, displacement)
     }
 
     fn made(&self) -> Vec<Target> {

@@ -1,6 +1,7 @@
 //! How fast a model can vibrate, and how long an explicit step may be.
 
 use crate::solve::generator;
+use crate::springs::{dot, norm};
 use nalgebra::DMatrix;
 
 /// Steps of Lanczos' method.
@@ -54,12 +55,11 @@ pub fn largest_square(
 
 /// `θ + r`, or `None` where r stays large.
 fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut random = generator();
     let mut next: Vec<f64> = (0..n).map(|_| random()).collect();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut size = dot(&next, &next).sqrt();
+    let mut size = norm(&next);
     for step in 1..=STEPS.min(n) {
         next.iter_mut().for_each(|x| *x /= size);
         let mut image = apply(&next);
@@ -71,7 +71,7 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
                 image.iter_mut().zip(q).for_each(|(x, q)| *x -= along * q);
             }
         }
-        size = dot(&image, &image).sqrt();
+        size = norm(&image);
         next = image;
         if step % 10 == 0 || step == STEPS.min(n) || !(size > 0.0) {
             let entry = |i: usize, j: usize| match i.abs_diff(j) {

@@ -4,6 +4,7 @@ use super::system::each_cell;
 use crate::element::{SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Selection, SideIndex};
+use crate::springs::{dot, norm, unit};
 use crate::stiffness::gather;
 use crate::symbolic::Expr;
 
@@ -198,15 +199,10 @@ fn side_of<'a>(mesh: &'a Mesh, index: &SideIndex) -> &'a SideTable {
 /// What of a vector is orthogonal to unit vectors.
 fn across(mut v: Vec<f64>, basis: &[Vec<f64>]) -> Vec<f64> {
     for e in basis {
-        let along: f64 = v.iter().zip(e).map(|(v, e)| v * e).sum();
+        let along = dot(&v, e);
         v.iter_mut().zip(e).for_each(|(v, e)| *v -= along * e);
     }
     v
-}
-
-fn unit(v: &[f64]) -> Vec<f64> {
-    let size = v.iter().map(|v| v * v).sum::<f64>().sqrt();
-    v.iter().map(|v| v / size).collect()
 }
 
 /// `w_q ‖∂x/∂s₁ × ∂x/∂s₂‖` (`w_q ‖∂x/∂s‖` of a curve) at each quadrature point of a side.
@@ -216,14 +212,13 @@ fn areas(table: &Tabulation, x: &[f64], d: usize) -> Vec<f64> {
         let tangent = |l: usize| -> Vec<f64> {
             (0..d).map(|k| (0..table.nodes).map(|a| x[a * d + k] * gradients[a * tangents + l]).sum()).collect()
         };
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let s = tangent(0);
         if tangents == 1 {
-            return w * dot(&s, &s).sqrt();
+            return w * norm(&s);
         }
         let t = tangent(1);
         let cross = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];
-        w * dot(&cross, &cross).sqrt()
+        w * norm(&cross)
     };
     table.gradients.chunks_exact(table.nodes * tangents).zip(&table.weights).map(at_point).collect()
 }

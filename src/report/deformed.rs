@@ -80,7 +80,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
             .add(words(name, 20.0, 15))
             .add(words(&error, 38.0, 12));
     }
-    let size = if factor == 1.0 { String::new() } else { format!(", displacements {factor} times") };
+    let size = if factor == 1.0 { String::new() } else { format!(", displacements times {factor}") };
     let key = format!("{}, {load}{size}: at rest dotted, finite elements dashed blue, springs red", outcome.scene);
     let key = Text::new(key).set("x", width / 2.0).set("y", height - 10.0).set("text-anchor", "middle");
     Some(document.add(key.set("font-size", 11)).to_string())
@@ -88,8 +88,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
 
 /// Two digits, so that the factor can be said.
 fn round(factor: f64) -> f64 {
-    let unit = 10f64.powf(factor.log10().floor() - 1.0);
-    (factor / unit).round() * unit
+    format!("{factor:.1e}").parse().unwrap_or(factor)
 }
 
 fn extent(points: &[f64], d: usize) -> f64 {
@@ -109,7 +108,17 @@ fn seen(x: &[f64]) -> [f64; 2] {
     }
 }
 
-/// The edges of all cells in the plane, of the surface of a solid; straight between corners.
+/// Whether a side of a solid is on the side of its cell from which [`seen`] looks.
+fn faces_viewer(corners: &[&[f64]], centre: [f64; 3]) -> bool {
+    let from = |a: &[f64], b: &[f64]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let inner = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let [a, b] = [from(corners[1], corners[0]), from(corners[2], corners[0])];
+    let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let outward = inner(normal, from(corners[0], &centre)).signum();
+    outward * inner(normal, [0.35, -1.0, 0.25]) > 0.0
+}
+
+/// The edges of all cells in the plane, of the visible surface of a solid; straight between corners.
 fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
     let mut edges = BTreeSet::new();
     let mut add = |element: &Element, nodes: &[usize], corners: &[usize]| {
@@ -130,7 +139,13 @@ fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
         for SideIndex { cell, side } in Selection::Everything.sides(mesh).unwrap_or_default() {
             let CellBlock { element, connectivity } = &mesh.blocks[cell.block];
             let nodes = &connectivity[cell.cell * element.nodes()..][..element.nodes()];
-            add(element, nodes, element.cell.sides()[side].corners);
+            let corners = element.cell.sides()[side].corners;
+            let points: Option<Vec<&[f64]>> =
+                corners.iter().map(|&c| corner_node(element, c).map(|a| mesh.point(nodes[a]))).collect();
+            let centre = |k: usize| nodes.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / nodes.len() as f64;
+            if points.is_some_and(|points| faces_viewer(&points, [centre(0), centre(1), centre(2)])) {
+                add(element, nodes, corners);
+            }
         }
     }
     edges.into_iter().collect()

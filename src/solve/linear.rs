@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::{Entries, Support};
+use crate::springs::norm;
 use faer::Side;
 use faer::linalg::solvers::ShapeCore;
 use faer::prelude::{MatMut, Solve};
@@ -201,8 +202,4 @@ fn each_value(entries: &Entries, place: &[usize], mut visit: impl FnMut(usize, u
             visit(entry.col, entry.row, entry.val);
         }
     }
-}
-
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

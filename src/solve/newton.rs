@@ -3,6 +3,7 @@
 use super::linear::System;
 use crate::error::Result;
 use crate::model::{Elastic, Entries, Response, Support, displaced};
+use crate::springs::{dot, norm};
 use faer::sparse::Triplet;
 
 /// How the load is followed.
@@ -137,10 +138,10 @@ impl Statics<'_> {
             // What is still to be moved of the prescribed displacements.
             let moves: Vec<Option<f64>> =
                 support.prescribed.iter().zip(&*u).map(|(p, u)| p.map(|p| load * p - u)).collect();
-            let moved = moves.iter().flatten().all(|m| m.abs() <= 1e-14 * (1.0 + size(u)));
+            let moved = moves.iter().flatten().all(|m| m.abs() <= 1e-14 * (1.0 + norm(u)));
             let rest: Vec<f64> = forces.iter().zip(&now.force).map(|(f, g)| load * f - g).collect();
-            let free = |v: &[f64]| size(&masked(v, support));
-            let acting = size(&now.force).max(load * size(forces));
+            let free = |v: &[f64]| norm(&masked(v, support));
+            let acting = norm(&now.force).max(load * norm(forces));
             let residual = if acting > 0.0 { free(&rest) / acting } else { 0.0 };
             history.push(residual);
             if moved && residual <= newton.tolerance {
@@ -206,12 +207,4 @@ fn direction(
 /// The entries of the free degrees of freedom, zero elsewhere.
 fn masked(v: &[f64], support: &Support) -> Vec<f64> {
     v.iter().enumerate().map(|(i, v)| if support.is_fixed(i) { 0.0 } else { *v }).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn size(v: &[f64]) -> f64 {
-    dot(v, v).sqrt()
 }

@@ -1,6 +1,7 @@
 //! Whether a network stands: its stiffness mode by mode, measured by that of the finite elements.
 
 use super::linear::{Factor, System};
+use crate::springs::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// Steps of Lanczos' method; the ends of the spectrum, which are wanted, come first.
@@ -80,7 +81,6 @@ struct Ritz {
 fn lanczos(body: &System, operator: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Option<[Ritz; 2]> {
     let n = body.size();
     let steps = STEPS.min(n);
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     // Any start that no symmetry of the body makes orthogonal to a mode will do; this one repeats on every machine.
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut random = || {

@@ -4,9 +4,11 @@
 
 mod law;
 mod measure;
+mod vector;
 
 pub use law::{Force, Law};
 pub use measure::{Measure, Response, linear};
+pub use vector::{distance, dot, norm, unit};
 
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, Result};
@@ -199,11 +201,6 @@ impl Springs {
         let springs = rows[..self.functions.len() * size].chunks_exact(size);
         springs.map(|row| row.iter().map(|g| g * g).sum::<f64>()).all(|square| square > 0.0 && square.is_finite())
     }
-}
-
-/// `‖b − a‖`.
-pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt()
 }
 
 /// The springs `(s, t)`, s < t, that have at least `nodes` nodes in common.

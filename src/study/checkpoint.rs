@@ -4,7 +4,7 @@ use super::scene::NamedFit;
 use crate::error::{Error, Result};
 use crate::file;
 use crate::model::Network;
-use crate::whole::{Snapshot, Target, Validation, Wanted};
+use crate::whole::{Snapshot, Target, Wanted};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -136,10 +136,7 @@ impl Fingerprint {
             all.numbers(&[spring.constant, spring.rest]);
             all.numbers(&spring.parameters);
         }
-        wanted.trained.iter().for_each(|target| all.target(target));
-        if let Validation::Loads(targets) = &wanted.validation {
-            targets.iter().for_each(|target| all.target(target));
-        }
+        wanted.trained.iter().chain(wanted.validation.loads()).for_each(|target| all.target(target));
         if let Some(frequencies) = &wanted.frequencies {
             all.numbers(&frequencies.masses);
             all.numbers(&frequencies.squares);

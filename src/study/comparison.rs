@@ -6,7 +6,7 @@ use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
 use super::random::Random;
 use super::run::{Progress, run};
-use super::scene::{NamedFit, Recipe, Scene, WholeRecipe};
+use super::scene::{NamedFit, Recipe, Scene};
 use super::stretches::sampled_fits;
 use super::whole::WholeBody;
 use crate::element::Element;
@@ -14,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
 use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
 use crate::material::Material;
+use crate::mesh::CellBlock;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use std::sync::Arc;
@@ -182,34 +183,27 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let mut scene = scene.clone();
     scene.fits = Vec::new();
     let all = optional.then_some(Some(every));
+    let serves = |method: &Method| {
+        let of = |b: &CellBlock| published_of(&b.element, &mesh.points, &b.connectivity, material).any(|m| m == *method);
+        mesh.blocks.iter().all(of)
+    };
     for groups in std::iter::once(None).chain(all) {
-        for objective in objectives(higher_modes) {
-            let mut named = NamedFit::new(Fit::new(objective), None);
-            if let Some(groups) = &groups {
-                named.name += " + all";
-                named.springs = Some(groups.clone());
-            }
-            scene.fits.push(named);
-        }
-        if whole {
-            let recipe = WholeRecipe::default();
-            let mut named = NamedFit::of(Recipe::Whole(Box::new(recipe)), None);
-            if let Some(groups) = &groups {
-                named.name += " + all";
-                named.springs = Some(groups.clone());
-            }
-            scene.fits.push(named);
-        }
+        let at_rest = objectives(higher_modes).into_iter().map(|objective| NamedFit::new(Fit::new(objective), None));
+        let of_whole = whole.then(|| NamedFit::of(Recipe::Whole(Box::default()), None));
+        let mut fits: Vec<NamedFit> = at_rest.chain(of_whole).collect();
         if groups.is_none() {
-            let every = |method: &Method| mesh.blocks.iter().all(|b| published_of(&b.element, &mesh.points, &b.connectivity, material).any(|m| m == *method));
-            let published = Method::ALL.into_iter().filter(every);
-            scene.fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
+            let published = Method::ALL.into_iter().filter(serves);
+            fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }
         if scene.law().is_some() {
-            for mut named in sampled_fits(&mesh.blocks[0].element, groups.as_deref(), SAMPLED) {
-                named.name += if groups.is_some() { " + all" } else { "" };
-                scene.fits.push(named);
+            fits.extend(sampled_fits(&mesh.blocks[0].element, groups.as_deref(), SAMPLED));
+        }
+        for mut named in fits {
+            if let Some(groups) = &groups {
+                named.name += " + all";
+                named.springs = Some(groups.clone());
             }
+            scene.fits.push(named);
         }
     }
     scene.entry_of = (0..scene.fits.len()).collect();

@@ -6,7 +6,7 @@ use super::run::Progress;
 use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::mesh::Mesh;
-use crate::model::finite_elements;
+use crate::model::{Support, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
 use std::time::Instant;
 
@@ -42,7 +42,7 @@ impl LinearBody {
             if first == i {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?;
-                let factor = system.factorize().filter(Factor::is_positive_definite).ok_or_else(|| {
+                let factor = system.cholesky().ok_or_else(|| {
                     let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
                     let bending = "; surfaces and curves resist no bending, so hold their points across them";
                     let embedded = mesh.cell_dimension() < mesh.dimension;
@@ -62,6 +62,12 @@ impl LinearBody {
         }
         progress("finite elements", cases.len(), cases.len());
         Ok(body)
+    }
+
+    /// The equations and factor of the loads with that support, if there are any.
+    pub fn held_by(&self, support: &Support, cases: &[Case]) -> Option<&(System, Factor)> {
+        let load = cases.iter().position(|case| case.support == *support)?;
+        Some(&self.systems[self.system_of[load]])
     }
 
     /// Solves every load with the network of `fit` and writes the errors into it.

@@ -51,70 +51,66 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         }
         None => None,
     };
-    let mut outcome = Outcome {
-        scene: scene.title.clone(),
-        material,
-        masses: scene.density().map(|density| masses(&mesh, density, material.thickness())),
-        fem: Vec::new(),
-        law: large.as_ref().map(|large| large.energy.title.clone()),
-        followed: Vec::new(),
-        measured: Vec::new(),
-        gauged: Vec::new(),
-        fits: Vec::new(),
-        left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
-        mesh,
-    };
-    let linear = |outcome: &Outcome, progress: &mut Progress| {
-        LinearBody::solve(&outcome.mesh, material.moduli(), &cases, progress).map_err(in_scene)
-    };
+    let masses = scene.density().map(|density| masses(&mesh, density, material.thickness()));
+    let linear =
+        |progress: &mut Progress| LinearBody::solve(&mesh, material.moduli(), &cases, progress).map_err(in_scene);
     // Of the fits only those to the whole object need the body's displacements.
     let needed = large.is_none() && scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_)));
-    let body = if needed { Some(linear(&outcome, progress)?) } else { None };
-    let displacements: Vec<Option<&Vec<f64>>> = match (&large, &body) {
+    let body = if needed { Some(linear(progress)?) } else { None };
+    let mut whole = WholeBody::new(&mesh, material, &support, controls);
+    whole.cases = &cases;
+    whole.displacements = match (&large, &body) {
         (Some(large), _) => large.complete().collect(),
         (None, Some(body)) => body.displacements.iter().map(Some).collect(),
         (None, None) => Vec::new(),
     };
-    let mesh = outcome.mesh.clone();
-    let masses = outcome.masses.clone();
-    let mut whole = WholeBody::new(&mesh, material, &support, controls);
-    whole.cases = &cases;
-    whole.displacements = displacements;
     whole.newton = large.as_ref().map(|_| scene.newton);
     whole.masses = masses.as_deref();
+    whole.solved = body.as_ref().and_then(|body| body.held_by(&support, &cases));
     let reference = Reference { large: large.as_ref(), whole: Some(&whole) };
+    let mut fits = Vec::new();
     for (fit, entry) in scene.fits.iter().zip(&scene.entry_of) {
-        let fitted = fit_mesh(&outcome.mesh, material, &reference, fit, progress);
-        outcome.fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&format!("fit[{entry}]"), e)))?);
+        let fitted = fit_mesh(&mesh, material, &reference, fit, progress);
+        fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&format!("fit[{entry}]"), e)))?);
     }
+    let count = fits.len();
     if scene.output.moduli {
-        for (done, fit) in outcome.fits.iter_mut().enumerate() {
-            progress("moduli", done, scene.fits.len());
-            fit.moduli = moduli_of_body(&outcome.mesh, &fit.network.stiffness(&outcome.mesh.points))?;
+        for (done, fit) in fits.iter_mut().enumerate() {
+            progress("moduli", done, count);
+            fit.moduli = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
         }
     }
-    if let Some(large) = large {
-        for (done, fit) in outcome.fits.iter_mut().enumerate() {
-            progress("networks", done, scene.fits.len());
-            large.compare(&outcome.mesh, &cases, fit)?;
+    let law = large.as_ref().map(|large| large.energy.title.clone());
+    let (fem, followed) = match large {
+        Some(large) => {
+            for (done, fit) in fits.iter_mut().enumerate() {
+                progress("networks", done, count);
+                large.compare(&mesh, &cases, fit)?;
+            }
+            (large.displacements, large.followed)
         }
-        (outcome.fem, outcome.followed) = (large.displacements, large.followed);
-        outcome.measured = measured_loads(&cases, &outcome.fem, mesh.dimension);
-        if let Some(gauged) = gauged {
-            gauged.measure(&mut outcome);
+        None => {
+            let body = body.map_or_else(|| linear(progress), Ok)?;
+            for (done, fit) in fits.iter_mut().enumerate() {
+                progress("networks", done, count);
+                body.compare(&mesh, &cases, fit)?;
+            }
+            (body.displacements, Vec::new())
         }
-        return Ok(outcome);
-    }
-    let body = match body {
-        Some(body) => body,
-        None => linear(&outcome, progress)?,
     };
-    for fit in &mut outcome.fits {
-        progress("networks", outcome.fem.len(), cases.len());
-        body.compare(&outcome.mesh, &cases, fit)?;
-    }
-    outcome.fem = body.displacements;
-    outcome.measured = measured_loads(&cases, &outcome.fem, mesh.dimension);
+    let mut outcome = Outcome {
+        scene: scene.title.clone(),
+        measured: measured_loads(&cases, &fem, mesh.dimension),
+        left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
+        mesh,
+        material,
+        masses,
+        fem,
+        law,
+        followed,
+        gauged: Vec::new(),
+        fits,
+    };
     if let Some(gauged) = gauged {
         gauged.measure(&mut outcome);
     }

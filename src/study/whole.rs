@@ -33,6 +33,8 @@ pub struct WholeBody<'a> {
     pub(super) newton: Option<Newton>,
     /// `[points]`, kg.
     pub masses: Option<&'a [f64]>,
+    /// The finite elements with what `[[fix]]` holds, where loads were solved with it.
+    pub(super) solved: Option<&'a (System, Factor)>,
     controls: &'a Controls,
     entries: OnceLock<Entries>,
     held: OnceLock<(System, Factor)>,
@@ -41,8 +43,8 @@ pub struct WholeBody<'a> {
 impl<'a> WholeBody<'a> {
     /// At small deformation, without loads of its own.
     pub fn new(mesh: &'a Mesh, material: Material, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
-        let (cases, displacements, newton, masses, entries, held) = Default::default();
-        WholeBody { mesh, material, support, cases, displacements, newton, masses, controls, entries, held }
+        let (cases, displacements, newton, masses, solved, entries, held) = Default::default();
+        WholeBody { mesh, material, support, cases, displacements, newton, masses, solved, controls, entries, held }
     }
 
     /// The stiffness of the finite elements at rest.
@@ -55,30 +57,27 @@ impl<'a> WholeBody<'a> {
         for name in &named.names {
             let mut cases = self.cases.iter().zip(&self.displacements);
             let Some((case, displacement)) = cases.find(|(case, _)| case.name == *name) else { continue };
-            let (displacement, weights) = match (&case.measured, displacement) {
-                (Some(field), _) => field.displacements.iter().map(|u| u.map_or((0.0, 0.0), |u| (u, 1.0))).unzip(),
-                (None, Some(u)) => (u.to_vec(), vec![1.0; u.len()]),
+            let target = |u| Target::new(case.name.clone(), case.support.clone(), case.forces.clone(), u);
+            targets.push(match (&case.measured, displacement) {
+                (Some(field), _) => {
+                    let known = field.displacements.iter().map(|u| u.map_or((0.0, 0.0), |u| (u, 1.0)));
+                    let (displacement, weights) = known.unzip();
+                    Target { weights, ..target(displacement) }
+                }
+                (None, Some(u)) => target(u.to_vec()),
                 (None, None) => {
                     let expected = "loads that the finite elements reach";
                     return Err(Error::expected(key, expected, format!("\"{}\"", case.name)));
                 }
-            };
-            let (name, support, forces) = (case.name.clone(), case.support.clone(), case.forces.clone());
-            targets.push(Target { name, support, forces, displacement, weights, weight: 1.0 });
+            });
         }
         if !named.made {
             return Ok(targets);
         }
-        if self.newton.is_some() {
-            let expected = "loads of the scene, where the material has a law";
-            return Err(Error::expected(key, expected, "\"made\""));
-        }
         let (system, factor) = self.held(key)?;
         for load in make() {
             let displacement = system.solve(factor, &load.forces).0;
-            let weights = vec![1.0; displacement.len()];
-            let support = self.support.clone();
-            targets.push(Target { name: load.name, support, forces: load.forces, displacement, weights, weight: 1.0 });
+            targets.push(Target::new(load.name, self.support.clone(), load.forces, displacement));
         }
         Ok(targets)
     }
@@ -88,7 +87,7 @@ impl<'a> WholeBody<'a> {
     /// # Errors
     /// A body can move as a whole, or some motion meets no stiffness.
     pub(super) fn held(&self, key: &str) -> Result<&(System, Factor)> {
-        if let Some(known) = self.held.get() {
+        if let Some(known) = self.solved.or(self.held.get()) {
             return Ok(known);
         }
         let expected = "supports in [[fix]] that hold every body, whatever the loads hold";
@@ -102,20 +101,18 @@ impl<'a> WholeBody<'a> {
     }
 
     fn frequencies(&self, count: usize) -> Result<Option<Frequencies>> {
-        if count == 0 {
-            return Ok(None);
-        }
-        let missing = || Error::expected("frequencies", "a density in [material]", "none");
-        let masses = self.masses.ok_or_else(missing)?.to_vec();
+        let Some(masses) = self.masses.filter(|_| count > 0) else { return Ok(None) };
         let (system, factor) = self.held("frequencies")?;
-        let modes = lowest_modes(system, factor, &masses, self.mesh.dimension, count)
+        let modes = lowest_modes(system, factor, masses, self.mesh.dimension, count)
             .map_err(|e| Error::at("frequencies", e.problem()))?;
         // As much as one load in all.
         let weight = 1.0 / count as f64;
-        Ok(Some(Frequencies { support: self.support.clone(), masses, squares: modes.squares, weight }))
+        let (support, masses) = (self.support.clone(), masses.to_vec());
+        Ok(Some(Frequencies { support, masses, squares: modes.squares, weight }))
     }
 
     fn wanted(&self, recipe: &WholeRecipe) -> Result<Wanted> {
+        recipe.check(self.newton.is_some(), self.masses.is_some())?;
         let thickness = self.material.thickness();
         let trained = self.targets("loads", &recipe.loads, || made_loads(self.mesh, self.support, thickness))?;
         let validation = match &recipe.validation {
@@ -159,10 +156,6 @@ impl<'a> WholeBody<'a> {
                 object = object.scaled(factor);
             }
         }
-        if let Some(snapshot) = &snapshot {
-            let stages = recipe.settings.regularizations.len();
-            snapshot.check(object.unknowns().count(), stages).map_err(|e| saved.blame(e))?;
-        }
         let mut kept = Ok(());
         let stages = recipe.settings.regularizations.len();
         let mut watch = |snapshot: Option<&Snapshot>| {
@@ -173,7 +166,8 @@ impl<'a> WholeBody<'a> {
             }
             !ends && kept.is_ok()
         };
-        let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch)?;
+        let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch);
+        let found = found.map_err(|e| saved.blame(e))?;
         kept.map(|()| WholeOutcome::of(recipe, &wanted, &found)).map(|outcome| (found.network, outcome))
     }
 }
@@ -186,16 +180,12 @@ impl WholeOutcome {
             let after = after.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
             name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
         };
-        let judges = match &wanted.validation {
-            Validation::Loads(loads) => &loads[..],
-            _ => &[],
-        };
         WholeOutcome {
             loads: recipe.loads.words(),
             validated: recipe.validation.words(),
             regularization: found.regularization,
             fitted: errors(&wanted.trained, &found.trained),
-            judged: errors(judges, &found.validated),
+            judged: errors(wanted.validation.loads(), &found.validated),
             frequencies: found.trained.clone().map(|errors| errors.frequencies),
             change: found.change,
             range: found.range,

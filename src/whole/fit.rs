@@ -71,6 +71,16 @@ pub enum Validation {
     LeaveOneOut,
 }
 
+impl Validation {
+    /// Of loads that are not fitted.
+    pub fn loads(&self) -> &[Target] {
+        match self {
+            Validation::Loads(loads) => loads,
+            Validation::None | Validation::LeaveOneOut => &[],
+        }
+    }
+}
+
 /// What a whole-object fit found.
 #[derive(Debug, Clone)]
 pub struct WholeFit {
@@ -117,27 +127,26 @@ pub fn fit_whole(
     from: Option<Snapshot>,
     watch: &mut Watch,
 ) -> Result<WholeFit> {
-    let m = object.unknowns().count();
-    if wanted.trained.is_empty() || settings.regularizations.is_empty() {
+    let (m, stages) = (object.unknowns().count(), settings.regularizations.len());
+    if let Some(snapshot) = &from {
+        snapshot.check(m, stages)?;
+    }
+    if wanted.trained.is_empty() || stages == 0 {
         return Err(Error::expected("loads", "loads that act on a free point, and regularizations", "none"));
     }
-    let judges = match &wanted.validation {
-        Validation::Loads(loads) => &loads[..],
-        _ => &[],
-    };
     let problem = Displacements::new(object, wanted.trained.iter().collect(), wanted.frequencies.as_ref())?;
-    let judge =
-        Displacements::new(object, judges.iter().collect(), None).map_err(|e| Error::at("validate", e.problem()))?;
+    let judge = Displacements::new(object, wanted.validation.loads().iter().collect(), None)
+        .map_err(|e| Error::at("validate", e.problem()))?;
     let start = vec![0.0; m];
-    let stages = settings.regularizations.len();
+    let network = object.network(&start);
     let mut found = WholeFit {
-        network: object.network(&start),
+        range: network.range(),
+        network,
         regularization: None,
         trained: Default::default(),
         validated: Default::default(),
         steps: 0,
         change: 1.0,
-        range: object.network(&start).range(),
         limited: false,
         stands: false,
         cancelled: false,
@@ -146,21 +155,21 @@ pub fn fit_whole(
     found.stands = true;
     let first = Best { error: mean(&validated), theta: start.clone(), stage: None };
     let mut snapshot = from.unwrap_or(Snapshot { stage: 0, theta: start, best: first, limited: false, stages: None });
-    snapshot.check(m, stages)?;
     let (mut steps, mut cancelled) = (0, false);
     let mut count = |snapshot: Option<&Snapshot>| {
         steps += 1;
         cancelled |= !watch(snapshot);
         !cancelled
     };
+    let mut begins = true;
     if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
         snapshot.stages = leave_one_out(object, wanted, settings, &mut count)?;
+        // Ended while it tried what to leave out, it has not begun.
+        begins = snapshot.stages.is_some();
     }
-    // Ended while it tried what to leave out, it has not begun.
-    let best = if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
-        snapshot.best.clone()
-    } else {
-        Path { object, wanted, settings }.follow(&problem, &judge, &mut snapshot, &mut count)?
+    let best = match begins {
+        true => Path { object, wanted, settings }.follow(&problem, &judge, &mut snapshot, &mut count)?,
+        false => snapshot.best.clone(),
     };
     if !cancelled {
         snapshot.stage = stages;

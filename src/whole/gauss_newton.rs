@@ -2,6 +2,7 @@
 
 use super::linearized::{LeastSquares, Linearized};
 use crate::error::Result;
+use crate::springs::{dot, norm};
 
 /// How the Gauss–Newton steps are made (Nocedal and Wright 2006, algorithms 4.1 and 7.2).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +51,7 @@ impl GaussNewton {
                 if !(promised > 0.0) {
                     break (0.0, None);
                 }
-                let length = dot(&step, &step).sqrt();
+                let length = norm(&step);
                 let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + s).collect();
                 let next = problem.at(&tried)?;
                 let share = rho / root.powi(2);
@@ -116,8 +117,4 @@ impl GaussNewton {
         }
         (step, promised)
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -2,6 +2,7 @@
 
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
+use crate::springs::{dot, norm, unit};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -72,8 +73,8 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLo
     loads.into_iter().filter(acts).collect()
 }
 
-/// "random 1", …: smooth body forces, each component a sum of sines with up to 1.5 waves across the object; a seed gives the same
-/// ones always.
+/// "random 1", …: smooth body forces, each component a sum of sines with up to half a wave across the object; a seed gives the
+/// same ones always.
 pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize, seed: u64) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
@@ -124,7 +125,7 @@ impl Frame {
         let middle = mean(&all);
         let mut axis: Vec<f64> = middle.iter().zip(mean(&held)).map(|(a, b)| a - b).collect();
         // Held all around, it has no direction: its longest side serves.
-        if held.is_empty() || !(dot(&axis, &axis).sqrt() > 0.05 * size) {
+        if held.is_empty() || !(norm(&axis) > 0.05 * size) {
             axis = (0..d).map(|k| sides[k]).collect();
             let longest = (0..d).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
             axis.iter_mut().enumerate().for_each(|(k, a)| *a = f64::from(u8::from(k == longest)));
@@ -143,15 +144,6 @@ impl Frame {
     fn away(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.middle).map(|(x, c)| (x - c) / self.size).collect()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn unit(v: &[f64]) -> Vec<f64> {
-    let size = dot(v, v).sqrt();
-    v.iter().map(|v| v / size).collect()
 }
 
 fn cross(a: &[f64], b: &[f64]) -> Vec<f64> {

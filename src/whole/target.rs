@@ -30,6 +30,12 @@ pub struct Frequencies {
 }
 
 impl Target {
+    /// Known everywhere alike.
+    pub fn new(name: String, support: Support, forces: Vec<f64>, displacement: Vec<f64>) -> Target {
+        let weights = vec![1.0; displacement.len()];
+        Target { name, support, forces, displacement, weights, weight: 1.0 }
+    }
+
     /// `√(w_l W)/‖ū_l‖_W`; `None` where nothing that is free to move is known to.
     pub(super) fn scale(&self) -> Option<Vec<f64>> {
         let known = || self.displacement.iter().zip(&self.weights).map(|(u, w)| w.sqrt() * u);

@@ -4,7 +4,7 @@ use super::gauge::GaugeEntry;
 use super::recipe::{Recipe, SampledRecipe};
 use super::sampled::{SampledEntry, ShapesEntry};
 use super::value::{Given, Pressure, Varying};
-use super::whole::{Start, WholeEntry};
+use super::whole::{Start, WholeRecipe};
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
 use crate::fit::published::Method;
@@ -201,19 +201,7 @@ impl FitEntry {
         let recipe = match self.objective.as_str() {
             "sampled" => Recipe::Forces(Box::new(self.sampled(folder)?)),
             "whole" => {
-                let whole = WholeEntry {
-                    loads: self.loads.clone(),
-                    validate: self.validate.clone(),
-                    unknowns: self.unknowns.clone(),
-                    residual: self.residual.clone(),
-                    regularization: self.regularization,
-                    range: self.range,
-                    frequencies: self.frequencies,
-                    seed: self.seed,
-                    solver: self.solver.clone(),
-                    iterations: self.iterations,
-                };
-                let starts = starts(self.start.as_ref())?;
+                let starts = Start::names(self.start.as_ref())?;
                 let several = starts.len() > 1;
                 let mut fits = Vec::new();
                 for start in starts {
@@ -221,7 +209,7 @@ impl FitEntry {
                         "sampled" => Start::Sampled(Box::new(self.sampled(folder)?)),
                         name => Start::named(name, choices)?,
                     };
-                    let recipe = Recipe::Whole(Box::new(whole.clone().check(begin)?));
+                    let recipe = Recipe::Whole(Box::new(WholeRecipe::new(&self, begin)?));
                     let own = |name: &String| if several { format!("{name} from {start}") } else { name.clone() };
                     let name = self.name.as_ref().map_or_else(|| recipe.name(self.springs.as_deref()), own);
                     fits.push(NamedFit { name, recipe, springs: self.springs.clone() });
@@ -274,7 +262,7 @@ impl FitEntry {
     fn check_owners(&self) -> Result<()> {
         let objective = self.objective.as_str();
         let from_sampled =
-            objective == "whole" && starts(self.start.as_ref()).is_ok_and(|s| s.contains(&"sampled".into()));
+            objective == "whole" && Start::names(self.start.as_ref()).is_ok_and(|s| s.contains(&"sampled".into()));
         let owned = [
             ("start", "whole", self.start.is_some()),
             ("loads", "whole", self.loads.is_some()),
@@ -318,19 +306,6 @@ impl FitEntry {
             None => Ok(()),
         }
     }
-}
-
-/// The starts of a whole-object fit.
-fn starts(value: Option<&toml::Value>) -> Result<Vec<String>> {
-    let Some(value) = value else { return Ok(vec!["offdiag".into()]) };
-    let names: Option<Vec<String>> = match value {
-        toml::Value::String(name) => Some(vec![name.clone()]),
-        toml::Value::Array(list) => list.iter().map(|name| name.as_str().map(String::from)).collect(),
-        _ => None,
-    };
-    let once = |names: &Vec<String>| !names.is_empty() && (1..names.len()).all(|i| !names[..i].contains(&names[i]));
-    let wrong = || Error::at("start", "expected an objective or \"equal\", or a list of them, each once");
-    names.filter(once).ok_or_else(wrong)
 }
 
 impl NewtonEntry {

@@ -20,68 +20,61 @@ pub struct Given(pub Option<f64>);
 #[derive(Debug, Clone, Copy)]
 pub struct Pressure(pub f64);
 
+/// What is written as a number or as a text.
+struct NumberOrText<T> {
+    expected: &'static str,
+    number: fn(f64) -> Option<T>,
+    /// The error says what is wrong, where more is known than that it is not what is expected.
+    text: fn(&str) -> Result<T, Option<String>>,
+}
+
+impl<T> Visitor<'_> for NumberOrText<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<T, E> {
+        self.visit_f64(v as f64)
+    }
+
+    fn visit_f64<E: de::Error>(self, v: f64) -> Result<T, E> {
+        (self.number)(v).ok_or_else(|| E::invalid_value(de::Unexpected::Float(v), &self))
+    }
+
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<T, E> {
+        let plain = || E::invalid_value(de::Unexpected::Str(v), &self);
+        (self.text)(v).map_err(|problem| problem.map_or_else(plain, E::custom))
+    }
+}
+
 impl<'de> Deserialize<'de> for Given {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Given, D::Error> {
-        struct GivenVisitor;
-        impl Visitor<'_> for GivenVisitor {
-            type Value = Given;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a finite number of metres or \"free\"")
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Given, E> {
-                Ok(Given(Some(v as f64)))
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Given, E> {
-                if v.is_finite() { Ok(Given(Some(v))) } else { Err(E::invalid_value(de::Unexpected::Float(v), &self)) }
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Given, E> {
-                if v == "free" { Ok(Given(None)) } else { Err(E::invalid_value(de::Unexpected::Str(v), &self)) }
-            }
-        }
-        deserializer.deserialize_any(GivenVisitor)
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Given, D::Error> {
+        deserializer.deserialize_any(NumberOrText {
+            expected: "a finite number of metres or \"free\"",
+            number: |v| v.is_finite().then_some(Given(Some(v))),
+            text: |v| if v == "free" { Ok(Given(None)) } else { Err(None) },
+        })
     }
 }
 
 impl<'de> Deserialize<'de> for Varying {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Varying, D::Error> {
-        struct VaryingVisitor;
-        impl Visitor<'_> for VaryingVisitor {
-            type Value = Varying;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number or an expression of x, y, z such as \"1e5*x\"")
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Varying, E> {
-                Ok(Varying::Number(v as f64))
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Varying, E> {
-                Ok(Varying::Number(v))
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Varying, E> {
-                Ok(Varying::Text(v.into()))
-            }
-        }
-        deserializer.deserialize_any(VaryingVisitor)
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Varying, D::Error> {
+        deserializer.deserialize_any(NumberOrText {
+            expected: "a number or an expression of x, y, z such as \"1e5*x\"",
+            number: |v| Some(Varying::Number(v)),
+            text: |v| Ok(Varying::Text(v.into())),
+        })
     }
 }
 
 impl<'de> Deserialize<'de> for Pressure {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Pressure, D::Error> {
-        struct PressureVisitor;
-        impl Visitor<'_> for PressureVisitor {
-            type Value = Pressure;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number of Pa or a text such as \"10kPa\"")
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Pressure, E> {
-                Ok(Pressure(v as f64))
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Pressure, E> {
-                Ok(Pressure(v))
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Pressure, E> {
-                parse_pressure(v).map(Pressure).map_err(|e| E::custom(e.problem()))
-            }
-        }
-        deserializer.deserialize_any(PressureVisitor)
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Pressure, D::Error> {
+        deserializer.deserialize_any(NumberOrText {
+            expected: "a number of Pa or a text such as \"10kPa\"",
+            number: |v| Some(Pressure(v)),
+            text: |v| parse_pressure(v).map(Pressure).map_err(|e| Some(e.problem().to_string())),
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! The keys of a `[[fit]]` whose objective is "whole".
 
+use super::entry::FitEntry;
 use super::recipe::SampledRecipe;
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective};
@@ -56,21 +57,6 @@ pub enum Judge {
     Given,
 }
 
-/// What only a whole-object fit has.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct WholeEntry {
-    pub loads: Option<Vec<String>>,
-    pub validate: Option<Vec<String>>,
-    pub unknowns: Option<String>,
-    pub residual: Option<String>,
-    pub regularization: Option<f64>,
-    pub range: Option<f64>,
-    pub frequencies: Option<usize>,
-    pub seed: Option<u64>,
-    pub solver: Option<String>,
-    pub iterations: Option<u64>,
-}
-
 /// What stands for the loads that are made from the mesh.
 const MADE: &str = "made";
 const LEAVE_ONE_OUT: &str = "leave-one-out";
@@ -81,6 +67,22 @@ const MEMORY: usize = 10;
 const SEED: u64 = 2010;
 
 impl Start {
+    /// The names in a fit's entry.
+    ///
+    /// # Errors
+    /// It is neither a name nor a list of names, each once.
+    pub(super) fn names(value: Option<&toml::Value>) -> Result<Vec<String>> {
+        let Some(value) = value else { return Ok(vec!["offdiag".into()]) };
+        let names: Option<Vec<String>> = match value {
+            toml::Value::String(name) => Some(vec![name.clone()]),
+            toml::Value::Array(list) => list.iter().map(|name| name.as_str().map(String::from)).collect(),
+            _ => None,
+        };
+        let once = |names: &Vec<String>| !names.is_empty() && (1..names.len()).all(|i| !names[..i].contains(&names[i]));
+        let wrong = || Error::at("start", "expected an objective or \"equal\", or a list of them, each once");
+        names.filter(once).ok_or_else(wrong)
+    }
+
     /// # Errors
     /// The name is no objective; `choices` are those of it.
     pub fn named(name: &str, choices: Choices) -> Result<Start> {
@@ -125,11 +127,110 @@ impl Sharing {
 impl Default for WholeRecipe {
     fn default() -> WholeRecipe {
         let start = Start::named("offdiag", Choices::default()).expect("this is an objective");
-        WholeEntry::default().check(start).expect("all keys have defaults")
+        WholeRecipe::new(&FitEntry::default(), start).expect("all keys have defaults")
     }
 }
 
 impl WholeRecipe {
+    /// What the entry says of a whole-object fit.
+    ///
+    /// # Errors
+    /// A value is unknown or out of range, or a load is fitted and validates as well.
+    pub fn new(entry: &FitEntry, start: Start) -> Result<WholeRecipe> {
+        let loads = entry.loads.clone().unwrap_or_else(|| vec![MADE.into()]);
+        if loads.is_empty() {
+            return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
+        }
+        for (key, names) in [("loads", Some(&loads)), ("validate", entry.validate.as_ref())] {
+            let names = names.map_or(&[][..], |names| names);
+            if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+                return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
+            }
+        }
+        let settings = WholeSettings::default();
+        let mut settings = WholeSettings {
+            iterations: entry.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
+            method: match entry.solver.as_deref().unwrap_or("gauss-newton") {
+                "gauss-newton" => Method::GaussNewton(GaussNewton::default()),
+                "l-bfgs" => Method::Lbfgs { memory: MEMORY },
+                other => {
+                    let expected = "\"gauss-newton\" or \"l-bfgs\" with the objective \"whole\"";
+                    return Err(Error::expected("solver", expected, format!("\"{other}\"")));
+                }
+            },
+            residual: match entry.residual.as_deref().unwrap_or("displacements") {
+                "displacements" => Residual::Displacements,
+                "forces" => Residual::Forces,
+                "forces-first" => Residual::ForcesFirst,
+                other => {
+                    let expected = "\"displacements\", \"forces\" or \"forces-first\"";
+                    return Err(Error::expected("residual", expected, format!("\"{other}\"")));
+                }
+            },
+            ..settings
+        };
+        settings.range = entry.range.unwrap_or(settings.range);
+        if !(settings.range >= 1.0) {
+            return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
+        }
+        if settings.iterations == 0 {
+            return Err(Error::expected("iterations", "a number above 0", 0));
+        }
+        if settings.residual == Residual::Forces && entry.frequencies.is_some() {
+            return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
+        }
+        if entry.range.is_some() && entry.regularization.is_some() {
+            return Err(Error::at(
+                "range",
+                "limits what \"validate\" may choose, found with a regularization that is given",
+            ));
+        }
+        let validation = match (entry.validate.clone(), entry.regularization) {
+            (Some(_), Some(_)) => {
+                return Err(Error::at("regularization", "is chosen by \"validate\" or given, found both"));
+            }
+            (None, Some(rho)) if !(rho >= 0.0 && rho.is_finite()) => {
+                return Err(Error::expected("regularization", "a number of at least 0", rho));
+            }
+            (None, Some(rho)) => {
+                settings.regularizations.retain(|larger| *larger > rho);
+                settings.regularizations.push(rho);
+                Judge::Given
+            }
+            (None, None) => Judge::Loads(Named::new(vec![MADE.into()])),
+            (Some(names), None) if names == [LEAVE_ONE_OUT] => Judge::LeaveOneOut,
+            (Some(names), None) => {
+                if names.is_empty() {
+                    let expected = "names of loads of the scene, \"made\", or \"leave-one-out\" alone";
+                    return Err(Error::expected("validate", expected, "none"));
+                }
+                if let Some(name) = names.iter().find(|name| *name != MADE && loads.contains(name)) {
+                    return Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\"")));
+                }
+                Judge::Loads(Named::new(names))
+            }
+        };
+        let unknowns = match entry.unknowns.as_deref().unwrap_or("spring") {
+            "spring" => Sharing::Spring,
+            "group" => Sharing::Group,
+            "region" => Sharing::Region,
+            "element" => Sharing::Element,
+            other => {
+                let expected = format!("one of {}", Sharing::NAMES.join(", "));
+                return Err(Error::expected("unknowns", expected, format!("\"{other}\"")));
+            }
+        };
+        Ok(WholeRecipe {
+            start,
+            unknowns,
+            loads: Named::new(loads),
+            validation,
+            settings,
+            frequencies: entry.frequencies.unwrap_or(0),
+            seed: entry.seed.unwrap_or(SEED),
+        })
+    }
+
     /// What of it goes with the material.
     ///
     /// # Errors
@@ -173,104 +274,5 @@ impl Judge {
             Judge::LeaveOneOut => vec!["each of them left out in turn".into()],
             Judge::Given => Vec::new(),
         }
-    }
-}
-
-impl WholeEntry {
-    /// # Errors
-    /// A value is unknown or out of range, or a load is fitted and validates as well.
-    pub fn check(self, start: Start) -> Result<WholeRecipe> {
-        let loads = self.loads.unwrap_or_else(|| vec![MADE.into()]);
-        if loads.is_empty() {
-            return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
-        }
-        for (key, names) in [("loads", Some(&loads)), ("validate", self.validate.as_ref())] {
-            let names = names.map_or(&[][..], |names| names);
-            if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-                return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
-            }
-        }
-        let settings = WholeSettings::default();
-        let mut settings = WholeSettings {
-            iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
-            method: match self.solver.as_deref().unwrap_or("gauss-newton") {
-                "gauss-newton" => Method::GaussNewton(GaussNewton::default()),
-                "l-bfgs" => Method::Lbfgs { memory: MEMORY },
-                other => {
-                    let expected = "\"gauss-newton\" or \"l-bfgs\" with the objective \"whole\"";
-                    return Err(Error::expected("solver", expected, format!("\"{other}\"")));
-                }
-            },
-            residual: match self.residual.as_deref().unwrap_or("displacements") {
-                "displacements" => Residual::Displacements,
-                "forces" => Residual::Forces,
-                "forces-first" => Residual::ForcesFirst,
-                other => {
-                    let expected = "\"displacements\", \"forces\" or \"forces-first\"";
-                    return Err(Error::expected("residual", expected, format!("\"{other}\"")));
-                }
-            },
-            ..settings
-        };
-        settings.range = self.range.unwrap_or(settings.range);
-        if !(settings.range >= 1.0) {
-            return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
-        }
-        if settings.iterations == 0 {
-            return Err(Error::expected("iterations", "a number above 0", 0));
-        }
-        if settings.residual == Residual::Forces && self.frequencies.is_some() {
-            return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
-        }
-        if self.range.is_some() && self.regularization.is_some() {
-            return Err(Error::at(
-                "range",
-                "limits what \"validate\" may choose, found with a regularization that is given",
-            ));
-        }
-        let validation = match (self.validate, self.regularization) {
-            (Some(_), Some(_)) => {
-                return Err(Error::at("regularization", "is chosen by \"validate\" or given, found both"));
-            }
-            (None, Some(rho)) if !(rho >= 0.0 && rho.is_finite()) => {
-                return Err(Error::expected("regularization", "a number of at least 0", rho));
-            }
-            (None, Some(rho)) => {
-                settings.regularizations.retain(|larger| *larger > rho);
-                settings.regularizations.push(rho);
-                Judge::Given
-            }
-            (None, None) => Judge::Loads(Named::new(vec![MADE.into()])),
-            (Some(names), None) if names == [LEAVE_ONE_OUT] => Judge::LeaveOneOut,
-            (Some(names), None) => {
-                if names.is_empty() {
-                    let expected = "names of loads of the scene, \"made\", or \"leave-one-out\" alone";
-                    return Err(Error::expected("validate", expected, "none"));
-                }
-                if let Some(name) = names.iter().find(|name| *name != MADE && loads.contains(name)) {
-                    return Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\"")));
-                }
-                Judge::Loads(Named::new(names))
-            }
-        };
-        let unknowns = match self.unknowns.as_deref().unwrap_or("spring") {
-            "spring" => Sharing::Spring,
-            "group" => Sharing::Group,
-            "region" => Sharing::Region,
-            "element" => Sharing::Element,
-            other => {
-                let expected = format!("one of {}", Sharing::NAMES.join(", "));
-                return Err(Error::expected("unknowns", expected, format!("\"{other}\"")));
-            }
-        };
-        Ok(WholeRecipe {
-            start,
-            unknowns,
-            loads: Named::new(loads),
-            validation,
-            settings,
-            frequencies: self.frequencies.unwrap_or(0),
-            seed: self.seed.unwrap_or(SEED),
-        })
     }
 }
