@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() {
-    let code: Vec<String> = files("elements", "toml").iter().map(|(name, path, text)| element(name, path, text)).collect();
+    let code: Vec<String> =
+        files("elements", "toml").iter().map(|(name, path, text)| element(name, path, text)).collect();
     write("elements.rs", &code);
-    let code = files("materials", "toml").into_iter().map(|(name, path, _)| format!("({name:?}, include_str!({path:?})),"));
+    let code =
+        files("materials", "toml").into_iter().map(|(name, path, _)| format!("({name:?}, include_str!({path:?})),"));
     write("materials.rs", &code.collect::<Vec<_>>());
     let scenes = files("scenes/paper", "toml");
     let named = |(name, _, _): &(String, PathBuf, String)| {
@@ -15,8 +17,10 @@ fn main() {
         scenes.iter().any(|(_, _, text)| text.contains(&path))
     };
     let meshes = files("scenes/meshes", "msh").into_iter().filter(named);
-    let code = scenes.iter().map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("paper/{name}.toml")));
-    let code = code.chain(meshes.map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("meshes/{name}.msh"))));
+    let code =
+        scenes.iter().map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("paper/{name}.toml")));
+    let code = code
+        .chain(meshes.map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("meshes/{name}.msh"))));
     write("paper.rs", &code.collect::<Vec<_>>());
 }
 

@@ -3,8 +3,8 @@
 mod arguments;
 
 use arguments::{
-    CheckArguments, Command, CommandLine, CompareArguments, DeriveArguments, FitArguments, PaperArguments, PlaneArgument,
-    RunArguments,
+    CheckArguments, Command, CommandLine, CompareArguments, DeriveArguments, FitArguments, PaperArguments,
+    PlaneArgument, RunArguments,
 };
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -96,7 +96,12 @@ fn a_gauge_measures_the_material() {
                  [[fix]]\nwhere = \"x < 1e-9 && z < 1e-9\"\naxes = [\"z\"]";
     let fit = "[[fit]]\nobjective = \"frobenius\"\n[[fit]]\nobjective = \"baudet-corrected\"";
     for text in [
-        bar("{ element = \"quad4\", size = [3, 1], cells = [6, 2] }", "plane = \"stress\"\nthickness = 0.5", plane, fit),
+        bar(
+            "{ element = \"quad4\", size = [3, 1], cells = [6, 2] }",
+            "plane = \"stress\"\nthickness = 0.5",
+            plane,
+            fit,
+        ),
         bar("{ element = \"hex8\", size = [3, 1, 0.5], cells = [6, 2, 1] }", "", solid, fit),
     ] {
         let (_folder, path) = written(&text);
@@ -110,7 +115,9 @@ fn a_gauge_measures_the_material() {
         assert!((baudet.young / 2e4 - 1.0).abs() < 1e-9 && (baudet.poisson - 0.3).abs() < 1e-9, "{baudet:?}");
         let frobenius = outcome.fits[0].loads[0].gauged.unwrap();
         assert!((frobenius.young / 2e4 - 1.0).abs() > 0.05, "{frobenius:?}");
-        assert!(report::table(&outcome).contains("Gauge of the finite elements under pull: E = 2.0000e4 Pa, nu = 0.300."));
+        assert!(
+            report::table(&outcome).contains("Gauge of the finite elements under pull: E = 2.0000e4 Pa, nu = 0.300.")
+        );
         assert!(report::report(&outcome).contains("\"gauge\""));
     }
 }
@@ -162,9 +169,15 @@ fn errors_of_scenes_say_what_was_expected_and_found() {
     let fit = |text: &str| (String::from("objective = \"lloyd\""), text.to_string());
     let cases = [
         (fit("objective = \"lloyd\"\nhigher = 0.1"), "fit[0].higher: does not go with the objective \"lloyd\""),
-        (fit("objective = \"lloyd\"\nnonnegative = true"), "fit[0].nonnegative: does not go with the objective \"lloyd\""),
+        (
+            fit("objective = \"lloyd\"\nnonnegative = true"),
+            "fit[0].nonnegative: does not go with the objective \"lloyd\"",
+        ),
         (fit("objective = \"lloyd\"\nweight = \"none\""), "fit[0].weight: does not go with the objective \"lloyd\""),
-        (fit("objective = \"lloyd\"\nsolver = \"nelder-mead\""), "fit[0].solver: does not go with the objective \"lloyd\""),
+        (
+            fit("objective = \"lloyd\"\nsolver = \"nelder-mead\""),
+            "fit[0].solver: does not go with the objective \"lloyd\"",
+        ),
         (
             fit("objective = \"baudet\""),
             "fit[0].objective: baudet: expected an element of the cell quadrilateral, hexahedron, found tri3, a triangle",
@@ -191,13 +204,22 @@ fn errors_of_scenes_say_what_was_expected_and_found() {
         ),
         (gauge("axis = \"x\"\narea = 1"), "gauge: expected \"group\" or \"where\", found neither"),
         (gauge("where = \"x > 0\"\naxis = \"r\"\narea = 1"), "gauge.axis: expected \"x\", \"y\" or \"z\", found \"r\""),
-        (gauge("where = \"x > 0\"\naxis = \"x\"\narea = 0"), "gauge.area: expected a positive cross-section in m², found 0"),
-        (gauge("where = \"x > 0\"\naxis = \"z\"\narea = 1"), "gauge.axis: expected \"x\" or \"y\" in a plane mesh, found \"z\""),
+        (
+            gauge("where = \"x > 0\"\naxis = \"x\"\narea = 0"),
+            "gauge.area: expected a positive cross-section in m², found 0",
+        ),
+        (
+            gauge("where = \"x > 0\"\naxis = \"z\"\narea = 1"),
+            "gauge.axis: expected \"x\" or \"y\" in a plane mesh, found \"z\"",
+        ),
         (
             gauge("where = \"x > 0.9\"\naxis = \"x\"\narea = 1"),
             "gauge.where: expected a part that is a body of its own, found 4 points without extent in some direction",
         ),
-        (gauge("group = \"middle\"\naxis = \"x\"\narea = 1"), "gauge.group: expected one of \"xmin\", \"xmax\", \"ymin\", \"ymax\", found \"middle\""),
+        (
+            gauge("group = \"middle\"\naxis = \"x\"\narea = 1"),
+            "gauge.group: expected one of \"xmin\", \"xmax\", \"ymin\", \"ymax\", found \"middle\"",
+        ),
     ];
     for ((from, to), message) in cases {
         let (_folder, path) = written(&TRIANGLES.replace(&from, &to));
@@ -242,11 +264,23 @@ fn errors_of_an_index_say_what_was_expected_and_found() {
         ("load = \"pull\"\n", "", "table[0].load: is missing"),
         ("[\"seconds\"]", "[\"e_rms\"]", "table[1].columns: expected some of s/element, found %e_rms"),
         ("scene = \"scene.toml\"\n", "", "table[0].row[0].scene: is missing"),
-        ("element = \"tri3\"\n", "element = \"tri3\"\nscene = \"a\"\n", "table[1].row[0].scene: does not belong to a table of this kind"),
+        (
+            "element = \"tri3\"\n",
+            "element = \"tri3\"\nscene = \"a\"\n",
+            "table[1].row[0].scene: does not belong to a table of this kind",
+        ),
         ("[1, 2]", "[1]", "table[0].row[0].printed.lloyd: expected 2 figures, one for each column, found 1"),
-        ("lloyd = [1, 2]", "loyd = [1, 2]", "table[0].row[0].printed: expected a fit of the object (lloyd), found \"loyd\""),
+        (
+            "lloyd = [1, 2]",
+            "loyd = [1, 2]",
+            "table[0].row[0].printed: expected a fit of the object (lloyd), found \"loyd\"",
+        ),
         ("\"pull\"", "\"push\"", "table[0].row[0].scene: expected a scene with the load \"push\", found those of pull"),
-        ("\"offdiag\"", "\"whole\"", "table[1].row[0].recipe: expected a fit of single elements, found whole from offdiag"),
+        (
+            "\"offdiag\"",
+            "\"whole\"",
+            "table[1].row[0].recipe: expected a fit of single elements, found whole from offdiag",
+        ),
         ("\"tri3\"", "\"tri33\"", "table[1].row[0]"),
         ("kind = \"timing\"", "kind = \"timed\"", "unknown variant"),
     ] {

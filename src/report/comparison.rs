@@ -63,7 +63,11 @@ impl Comparison {
             ]
         };
         let name = |o: &MethodOutcome| {
-            if ["native", "formula"].contains(&o.solver) { o.name.clone() } else { format!("{} by {}", o.name, o.solver) }
+            if ["native", "formula"].contains(&o.solver) {
+                o.name.clone()
+            } else {
+                format!("{} by {}", o.name, o.solver)
+            }
         };
         Comparison {
             title,

@@ -69,7 +69,11 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
             if dashes.is_empty() { path } else { path.set("stroke-dasharray", dashes) }
         };
         let words = |text: &str, y: f64, size: u32| {
-            Text::new(text).set("x", PANEL * (i as f64 + 0.5)).set("y", y).set("text-anchor", "middle").set("font-size", size)
+            Text::new(text)
+                .set("x", PANEL * (i as f64 + 0.5))
+                .set("y", y)
+                .set("text-anchor", "middle")
+                .set("font-size", size)
         };
         let load = &outcome.fits.iter().find(|fit| fit.fit.name == **name)?.loads[place];
         let error = load.error.map_or(String::new(), |e| format!("%e_rms {:.2}, %e_max {:.2}", e.rms, e.max));

@@ -4,8 +4,8 @@ use super::agreement::{Agreement, SAME, agreements};
 use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
 use crate::solve::{Ending, Standing};
 use crate::study::{
-    FitOutcome, FittedLoad, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Reading, Recipe, SampledRecipe, Start,
-    WholeRecipe,
+    FitOutcome, FittedLoad, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Reading, Recipe, SampledRecipe,
+    Start, WholeRecipe,
 };
 use crate::whole::{Method, Residual};
 use serde_json::{Value, json};

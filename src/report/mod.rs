@@ -15,10 +15,10 @@ mod table;
 
 pub use check::{check_json, check_text};
 pub use comparison::Comparison;
+pub use deformed::deformed;
 pub use derivation::Derivation;
 pub use json::report;
 pub use network::{network_csv, network_json};
-pub use deformed::deformed;
 pub use paper::{paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use stretches::{stretches_text, write_stretches};

@@ -176,7 +176,10 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         });
         let shape = (unmet.cells > 0).then(|| {
             let percent = 100.0 * unmet.deviation;
-            format!("{} of {all} elements do not have the shape it is made for (lengths off by up to {percent:.0} %)", unmet.cells)
+            format!(
+                "{} of {all} elements do not have the shape it is made for (lengths off by up to {percent:.0} %)",
+                unmet.cells
+            )
         });
         let lacking: Vec<String> = ratio.into_iter().chain(shape).collect();
         if !lacking.is_empty() {

@@ -184,7 +184,8 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     scene.fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves = |method: &Method| {
-        let of = |b: &CellBlock| published_of(&b.element, &mesh.points, &b.connectivity, material).any(|m| m == *method);
+        let of =
+            |b: &CellBlock| published_of(&b.element, &mesh.points, &b.connectivity, material).any(|m| m == *method);
         mesh.blocks.iter().all(of)
     };
     for groups in std::iter::once(None).chain(all) {

@@ -70,10 +70,8 @@ impl Gauged {
         let strain = self.strain(mesh, u)?;
         let along = strain[self.axis];
         let across: f64 = (0..mesh.dimension).filter(|&k| k != self.axis).map(|k| strain[k]).sum();
-        let reading = Reading {
-            young: force / (self.area * along),
-            poisson: -across / (mesh.dimension - 1) as f64 / along,
-        };
+        let reading =
+            Reading { young: force / (self.area * along), poisson: -across / (mesh.dimension - 1) as f64 / along };
         Some(reading).filter(|r| r.young.is_finite() && r.poisson.is_finite())
     }
 

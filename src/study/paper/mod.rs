@@ -150,7 +150,11 @@ fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec
     let of_fit = |fit: &FitOutcome| {
         let found = fit.loads.iter().find(|l| l.name == load).ok_or_else(|| {
             let names: Vec<&str> = fit.loads.iter().map(|load| load.name.as_str()).collect();
-            Error::expected("scene", format!("a scene with the load \"{load}\""), format!("those of {}", names.join(", ")))
+            Error::expected(
+                "scene",
+                format!("a scene with the load \"{load}\""),
+                format!("those of {}", names.join(", ")),
+            )
         })?;
         let figure = |column: &Column| match column {
             Column::ERms => found.error.map(|e| e.rms),
