@@ -1,8 +1,12 @@
 //! Motion of a model whose mass is lumped at its points: `M ẍ + C ẋ + F(x) = f(t)`, some degrees of freedom prescribed.
 
+mod blocks;
 mod damping;
 mod drive;
 mod equations;
+mod factored;
+mod gradients;
+mod incomplete;
 mod integrator;
 mod ledger;
 mod limit;
@@ -14,6 +18,7 @@ mod simulation;
 
 pub use damping::{Dampers, Damping};
 pub use drive::{Curve, Drive};
+pub use equations::Solver;
 pub use integrator::Integrator;
 pub use ledger::{Account, Balance};
 pub use limit::largest_square;

@@ -2,6 +2,7 @@
 
 use super::damping::Damping;
 use super::drive::Drive;
+use super::equations::Solver;
 use super::integrator::Integrator;
 use crate::error::{Error, Result};
 use crate::model::{Elastic, Support};
@@ -86,16 +87,18 @@ pub struct Options {
     pub iterations: usize,
     /// Largest residual of an implicit step, relative to the forces that act.
     pub tolerance: f64,
-    /// `F(x) ≈ F₀ + K₀ u`, springs and dampers as they stand at rest: one factor serves all steps.
+    /// `F(x) ≈ F₀ + K₀ u`, springs and dampers as they stand at rest: the same matrix at all steps.
     pub linear: bool,
+    /// Of implicit steps.
+    pub solver: Solver,
     /// Whether work and dissipation are added up; costs the forces at the end of a step where they are not known anyway.
     pub account: bool,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        let integrator = Integrator::default();
-        Options { step: 0.01, integrator, iterations: 20, tolerance: 1e-10, linear: false, account: true }
+        let (integrator, solver) = (Integrator::default(), Solver::default());
+        Options { step: 0.01, integrator, iterations: 20, tolerance: 1e-10, linear: false, solver, account: true }
     }
 }
 
@@ -110,6 +113,7 @@ impl Options {
         if !(self.tolerance > 0.0) {
             return Err(Error::expected("tolerance", "a number above zero", self.tolerance));
         }
+        self.solver.check()?;
         self.integrator.check()
     }
 }

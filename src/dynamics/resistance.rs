@@ -110,9 +110,9 @@ impl<'a> Resistance<'a> {
     }
 
     /// `A = c₂ M + c₁ C + K`.
-    pub fn assemble(&self, [c1, c2]: [f64; 2], tangent: &[f64], equations: &mut Equations) {
+    pub fn assemble(&self, [c1, c2]: [f64; 2], tangent: &[f64], equations: &mut dyn Equations) {
         let share = c2 + c1 * self.damping.mass;
-        equations.set_diagonal(|dof| share * self.mass[dof]);
+        equations.set_diagonal(&|dof| share * self.mass[dof]);
         equations.add(0, 1.0, tangent);
         if self.damping.stiffness > 0.0 {
             equations.add(0, c1 * self.damping.stiffness, &self.rest.values);

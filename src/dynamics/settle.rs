@@ -1,6 +1,6 @@
 //! The end of an implicit step: Newton's method on `M a + C v + F(x) = f`.
 
-use super::equations::Equations;
+use super::equations::{End, Equations};
 use super::resistance::Resistance;
 
 /// A Newton step is not halved more often.
@@ -17,7 +17,7 @@ pub enum Outcome {
     Converged,
     /// One iteration was allowed and made.
     Linearized,
-    /// No more iterations, or no Newton step helped. The motion goes on from the best that was found.
+    /// No more iterations, of Newton's method or of conjugate gradients where one solution is all, or no Newton step helped. The motion goes on from the best that was found.
     Stalled,
     /// The model has no response where the step leads, as with a cell turned inside out. The state, the time among it, is as before.
     NoResponse,
@@ -32,6 +32,8 @@ pub struct Step {
     pub residual: f64,
     /// Iterations whose matrix was not positive definite and had to be modified; a linearised step is made with a definite one at once.
     pub modified: usize,
+    /// Of conjugate gradients, in all.
+    pub solver_iterations: usize,
 }
 
 /// The unknown of a step, Δ = x − x_n, and what is known at its end. All `[points · dimension]`.
@@ -119,45 +121,64 @@ impl Trial {
         self.potential.is_finite() && self.size.is_finite()
     }
 
-    /// The Newton step into `step`, with a definite tangent where the exact one makes the matrix indefinite, and with a shift of the
-    /// diagonal where that is not known; false where no shift suffices.
+    /// The Newton step into `step`, with a definite tangent where the exact one makes the matrix indefinite, and with as little as is
+    /// needed added to the diagonal where that is not known. `None` where ten times its size is not enough.
     fn direction(
         &mut self,
         resistance: &mut Resistance,
         target: &Target,
-        equations: &mut Equations,
-        modified: &mut usize,
-    ) -> bool {
+        equations: &mut dyn Equations,
+        made: &mut Step,
+        is_only: bool,
+    ) -> Option<End> {
         resistance.assemble(target.coefficients, &self.tangent, equations);
-        if !equations.factorize() {
-            *modified += 1;
+        // Where nothing comes after it a solution may begin anywhere; the iterates from zero on all descend.
+        let guess = is_only.then_some(&target.y[..]);
+        let mut end = self.solve(equations, guess, made);
+        if end == End::Indefinite {
+            made.modified += 1;
             resistance.refill(&self.u, &mut self.force, &mut self.tangent, true);
             resistance.assemble(target.coefficients, &self.tangent, equations);
-            if !equations.factorize_shifted() {
-                return false;
+            end = self.solve(equations, None, made);
+            let mut shift = 0.0;
+            while end == End::Indefinite && shift <= 10.0 {
+                let next = if shift == 0.0 { 1e-4 } else { 10.0 * shift };
+                equations.shift(next - shift);
+                shift = next;
+                end = self.solve(equations, None, made);
             }
         }
-        self.step.copy_from_slice(&self.residual);
-        equations.solve(&mut self.step);
-        self.step.iter().sum::<f64>().is_finite()
+        (end != End::Indefinite && self.step.iter().sum::<f64>().is_finite()).then_some(end)
     }
 
-    /// A linear model: one solution with the factor that is there.
+    fn solve(&mut self, equations: &mut dyn Equations, guess: Option<&[f64]>, made: &mut Step) -> End {
+        if !equations.prepare() {
+            return End::Indefinite;
+        }
+        self.step.copy_from_slice(&self.residual);
+        let solved = equations.solve(&mut self.step, guess);
+        made.solver_iterations += solved.iterations;
+        solved.end
+    }
+
+    /// A linear model: one solution with the matrix that is there.
     pub fn solve_linear(
         &mut self,
         resistance: &mut Resistance,
         target: &mut Target,
         start: &[f64],
-        equations: &mut Equations,
+        equations: &mut dyn Equations,
     ) -> Step {
-        let mut step = Step { outcome: Outcome::NoResponse, iterations: 1, residual: f64::NAN, modified: 0 };
+        let mut step =
+            Step { outcome: Outcome::NoResponse, iterations: 1, residual: f64::NAN, modified: 0, solver_iterations: 0 };
         if !self.evaluate(resistance, target, start, equations.order(), Tangent::None) {
             return step;
         }
-        equations.solve(&mut self.residual);
+        let solved = equations.solve(&mut self.residual, Some(&target.y));
+        step.solver_iterations = solved.iterations;
         equations.order().iter().zip(&self.residual).for_each(|(&dof, s)| target.delta[dof] += s);
         if self.residual.iter().sum::<f64>().is_finite() {
-            step.outcome = Outcome::Converged;
+            step.outcome = if solved.end == End::Exact { Outcome::Converged } else { Outcome::Stalled };
         }
         step
     }
@@ -169,11 +190,12 @@ impl Trial {
         resistance: &mut Resistance,
         target: &mut Target,
         start: &[f64],
-        equations: &mut Equations,
+        equations: &mut dyn Equations,
         iterations: usize,
         tolerance: f64,
     ) -> Step {
-        let mut made = Step { outcome: Outcome::Stalled, iterations: 0, residual: f64::NAN, modified: 0 };
+        let mut made =
+            Step { outcome: Outcome::Stalled, iterations: 0, residual: f64::NAN, modified: 0, solver_iterations: 0 };
         // A single step has no second chance: it is as exact to the first order with either tangent.
         let tangent = if iterations == 1 { Tangent::Definite } else { Tangent::Exact };
         if !self.evaluate(resistance, target, start, equations.order(), tangent) {
@@ -184,13 +206,14 @@ impl Trial {
             if self.size <= tolerance {
                 break;
             }
-            if !self.direction(resistance, target, equations, &mut made.modified) {
+            let Some(end) = self.direction(resistance, target, equations, &mut made, iterations == 1) else {
                 return made;
-            }
+            };
             made.iterations += 1;
             if iterations == 1 {
                 equations.order().iter().zip(&self.step).for_each(|(&dof, s)| target.delta[dof] += s);
-                return Step { outcome: Outcome::Linearized, residual: f64::NAN, ..made };
+                let outcome = if end == End::Exact { Outcome::Linearized } else { Outcome::Stalled };
+                return Step { outcome, residual: f64::NAN, ..made };
             }
             let (potential, size) = (self.potential, self.size);
             let slope: f64 = self.residual.iter().zip(&self.step).map(|(r, s)| r * s).sum();

@@ -1,6 +1,6 @@
 //! A motion step by step.
 
-use super::equations::Equations;
+use super::equations::{End, Equations};
 use super::integrator::{Integrator, Past};
 use super::ledger::{self, Account, Balance, Forces, Ledger};
 use super::limit::longest_step;
@@ -9,6 +9,7 @@ use super::resistance::Resistance;
 use super::settle::{Outcome, Step, Target, Trial};
 use crate::error::{Error, Result};
 use crate::model::displaced;
+use crate::solve::generator;
 
 /// Where a model is and how fast.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,8 +29,8 @@ pub struct Simulation<'a> {
     options: Options,
     resistance: Resistance<'a>,
     /// Of implicit methods.
-    equations: Option<Equations>,
-    /// The coefficients of the factor that the equations of a linear model have.
+    equations: Option<Box<dyn Equations>>,
+    /// The coefficients of the matrix that the equations of a linear model have.
     factored: [f64; 2],
     state: State,
     steps: usize,
@@ -59,7 +60,8 @@ impl<'a> Simulation<'a> {
         let resistance = Resistance::new(&motion, options.linear)?;
         let dofs = motion.points.len();
         let is_implicit = options.integrator != Integrator::SymplecticEuler;
-        let equations = if is_implicit { Some(Equations::new(&resistance.places(), &resistance.held)?) } else { None };
+        let build = || options.solver.equations(&resistance.places(), &resistance.held, motion.dimension());
+        let equations = if is_implicit { Some(build()?) } else { None };
         let free = equations.as_ref().map_or(0, |equations| equations.order().len());
         let mut trial = Trial::new(dofs, free, resistance.rest.values.len());
         trial.tangent.copy_from_slice(&resistance.rest.values);
@@ -88,7 +90,7 @@ impl<'a> Simulation<'a> {
                 let expected = format!("at most {longest:.6e} s, beyond which symplectic Euler is unstable");
                 return Err(Error::expected("step", expected, format!("{:e} s", options.step)));
             }
-        } else if options.linear && !simulation.factor(options.integrator.coefficients(options.step, true)) {
+        } else if options.linear && !simulation.is_definite(options.integrator.coefficients(options.step, true)) {
             let expected = "a step short enough for a model that releases energy as it moves";
             return Err(Error::expected("step", expected, format!("{:e} s", options.step)));
         }
@@ -153,12 +155,21 @@ impl<'a> Simulation<'a> {
         Forces { external: &self.target.external, elastic: &self.trial.force, viscous: &self.viscous }
     }
 
-    /// Factors the matrix of a linear model, unless that is done.
+    /// Whether a linear model has steps: conjugate gradients from a force that nothing is orthogonal to would meet what releases energy.
+    fn is_definite(&mut self, coefficients: [f64; 2]) -> bool {
+        let is_prepared = self.factor(coefficients);
+        let Some(equations) = self.equations.as_mut().filter(|_| is_prepared) else { return false };
+        let mut random = generator();
+        let mut x: Vec<f64> = equations.order().iter().map(|_| random()).collect();
+        equations.solve(&mut x, None).end != End::Indefinite
+    }
+
+    /// Prepares the matrix of a linear model, unless that is done.
     fn factor(&mut self, coefficients: [f64; 2]) -> bool {
         let Some(equations) = self.equations.as_mut().filter(|_| self.factored != coefficients) else { return true };
-        self.resistance.assemble(coefficients, &self.resistance.rest.values, equations);
+        self.resistance.assemble(coefficients, &self.resistance.rest.values, equations.as_mut());
         self.factored = coefficients;
-        equations.factorize()
+        equations.prepare()
     }
 
     /// The longest stable step of symplectic Euler at rest, s: `4/(γ + √(γ² + 4ω²))` with the largest ω² of `M⁻¹K` and γ of `M⁻¹C`,
@@ -225,7 +236,7 @@ impl<'a> Simulation<'a> {
             velocity[dof] = self.state.velocity[dof] + h * rest / self.resistance.mass[dof];
             delta[dof] = h * velocity[dof];
         }
-        Step { outcome: Outcome::Converged, iterations: 0, residual: 0.0, modified: 0 }
+        Step { outcome: Outcome::Converged, iterations: 0, residual: 0.0, modified: 0, solver_iterations: 0 }
     }
 
     /// Undoes an explicit step.
@@ -253,7 +264,7 @@ impl<'a> Simulation<'a> {
             [self.target.z[dof], self.target.y[dof]] = integrator.predict(h, is_first, past);
         }
         self.motion.drive.forces_at(time, &self.resistance.mass, &mut self.target.external);
-        let equations = self.equations.as_mut().expect("only implicit methods settle");
+        let equations = self.equations.as_mut().expect("only implicit methods settle").as_mut();
         let (start, Target { y, .. }) = (&self.state.displacement, &self.target);
         if self.resistance.has_dampers() && !linear {
             // Of implicit Euler as they are, which is as exact as it is; of the others as they will be.

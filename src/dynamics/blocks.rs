@@ -1,0 +1,109 @@
+//! A symmetric matrix of blocks, one row of them for each point, in an order that keeps neighbours together.
+
+use std::array::from_fn;
+
+/// `[row][column]`.
+pub(super) type Block<const D: usize> = [[f64; D]; D];
+
+/// Which blocks there are: those of the diagonal, and `columns` beyond it of one row after the other.
+#[derive(Debug)]
+pub(super) struct Pattern {
+    /// `[rows + 1]`.
+    pub starts: Vec<usize>,
+    /// Ascending in each row.
+    pub columns: Vec<u32>,
+}
+
+impl Pattern {
+    /// Of the rows `place[i]` of the points i, where that is below `rows`.
+    pub fn new(pairs: &[(usize, usize)], place: &[usize], rows: usize) -> Pattern {
+        let row = |(i, j): &(usize, usize)| (place[*i].min(place[*j]), place[*i].max(place[*j]));
+        let mut blocks: Vec<(usize, usize)> = pairs.iter().map(row).filter(|(a, b)| a < b && *b < rows).collect();
+        blocks.sort_unstable();
+        blocks.dedup();
+        let mut starts = vec![0; rows + 1];
+        blocks.iter().for_each(|(a, _)| starts[a + 1] += 1);
+        (0..rows).for_each(|i| starts[i + 1] += starts[i]);
+        Pattern { starts, columns: blocks.into_iter().map(|(_, b)| b as u32).collect() }
+    }
+
+    pub fn rows(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Where the block beyond the diagonal in this row and column is in `columns`.
+    pub fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let columns = &self.columns[self.starts[row]..self.starts[row + 1]];
+        columns.binary_search(&(column as u32)).ok().map(|at| self.starts[row] + at)
+    }
+
+    /// `y ← A x`; the blocks are those of the diagonal and then those beyond it.
+    pub fn multiply<const D: usize>(&self, blocks: &[Block<D>], x: &[[f64; D]], y: &mut [[f64; D]]) {
+        let (diagonal, beyond) = blocks.split_at(self.rows());
+        y.iter_mut().zip(diagonal).zip(x).for_each(|((y, block), x)| *y = times(block, x));
+        for i in 0..self.rows() {
+            let at = self.starts[i]..self.starts[i + 1];
+            let mut sum = y[i];
+            for (block, &j) in beyond[at.clone()].iter().zip(&self.columns[at]) {
+                let (j, part) = (j as usize, times(block, &x[j as usize]));
+                (0..D).for_each(|k| sum[k] += part[k]);
+                let part = turned_times(block, &x[i]);
+                (0..D).for_each(|k| y[j][k] += part[k]);
+            }
+            y[i] = sum;
+        }
+    }
+}
+
+/// `B x`.
+#[inline(always)]
+pub(super) fn times<const D: usize>(block: &Block<D>, x: &[f64; D]) -> [f64; D] {
+    from_fn(|k| (0..D).map(|l| block[k][l] * x[l]).sum())
+}
+
+/// `Bᵀ x`.
+#[inline(always)]
+pub(super) fn turned_times<const D: usize>(block: &Block<D>, x: &[f64; D]) -> [f64; D] {
+    from_fn(|l| (0..D).map(|k| block[k][l] * x[k]).sum())
+}
+
+/// The rows of the points that `is_row`, others far beyond: from the outside in, neighbours next to each other (Cuthill and McKee
+/// 1969, reversed). Incomplete factors are better in it than in one of little fill, and the cache holds what is near.
+pub(super) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
+    let n = is_row.len();
+    let mut beside = vec![Vec::new(); n];
+    for &(i, j) in pairs.iter().filter(|(i, j)| i != j && is_row[*i] && is_row[*j]) {
+        beside[i].push(j);
+        beside[j].push(i);
+    }
+    for beside in &mut beside {
+        beside.sort_unstable();
+        beside.dedup();
+    }
+    let mut is_met = vec![false; n];
+    // From one point on to all that hang together with it.
+    let visit = |first: usize, is_met: &mut [bool]| {
+        let mut order = vec![first];
+        is_met[first] = true;
+        let mut next = 0;
+        while next < order.len() {
+            let from = order.len();
+            order.extend(beside[order[next]].iter().filter(|j| !std::mem::replace(&mut is_met[**j], true)));
+            order[from..].sort_by_key(|j| beside[*j].len());
+            next += 1;
+        }
+        order
+    };
+    let mut order = Vec::new();
+    for point in 0..n {
+        if is_row[point] && !is_met[point] {
+            let all = visit(point, &mut is_met);
+            // The last that was met lies at an end.
+            all.iter().for_each(|i| is_met[*i] = false);
+            order.extend(visit(all[all.len() - 1], &mut is_met));
+        }
+    }
+    let mut place = vec![usize::MAX; n];
+    order.iter().rev().enumerate().for_each(|(row, &point)| place[point] = row);
+    place
+}

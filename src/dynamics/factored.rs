@@ -1,0 +1,138 @@
+//! The equations of an implicit step with Cholesky's factor.
+
+use super::equations::{End, Equations, Solved};
+use crate::error::{Error, Result};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::prelude::MatMut;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{Pair, SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, Par, Side};
+
+/// Columns are eliminated in dense groups from this share on of the work per entry where faer would begin: with three coordinates a
+/// point that is twice as fast on membranes of a thousand triangles.
+const SUPERNODAL: f64 = 0.2;
+
+/// The matrix, in the order of elimination, and its Cholesky factor. Entries go straight to their places: a step sorts nothing and
+/// asks for no memory.
+#[derive(Debug)]
+pub(super) struct Factored {
+    /// The degree of freedom of each row.
+    order: Vec<usize>,
+    /// The lower triangle.
+    pattern: SymbolicSparseColMat<usize>,
+    /// Of the pattern, and one more for entries of held degrees of freedom.
+    values: Vec<f64>,
+    /// Where the diagonal of each row is.
+    diagonal: Vec<usize>,
+    /// Where each entry goes.
+    slots: Vec<u32>,
+    symbolic: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
+    room: Room,
+}
+
+/// Working memory of a factorisation or solution.
+struct Room(MemBuffer);
+
+impl std::fmt::Debug for Room {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("Room")
+    }
+}
+
+impl Factored {
+    /// For entries at these places of the lower triangle; the diagonal is in it anyway.
+    ///
+    /// # Errors
+    /// The factor does not fit into memory.
+    pub fn new(places: &[(usize, usize)], held: &[bool]) -> Result<Factored> {
+        let large = |e: &dyn std::fmt::Debug| Error::new(format!("the equations cannot be built: {e:?}"));
+        let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
+        let analyse = |order: &[usize], ordering| -> Result<_> {
+            let n = order.len();
+            let mut place = vec![usize::MAX; held.len()];
+            order.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
+            let lower = |&(row, column): &(usize, usize)| {
+                let (a, b) = (place[row], place[column]);
+                (a != usize::MAX && b != usize::MAX).then(|| Pair::new(a.max(b), a.min(b)))
+            };
+            let diagonal = (0..n).map(|i| Pair::new(i, i));
+            let pairs: Vec<Pair<usize, usize>> = places.iter().filter_map(lower).chain(diagonal).collect();
+            let (pattern, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &pairs).map_err(|e| large(&e))?;
+            // The analysis without a permutation reads the upper triangle, whichever side it is told.
+            let turned: Vec<Pair<usize, usize>> = pairs.iter().map(|pair| Pair::new(pair.col, pair.row)).collect();
+            let (upper, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &turned).map_err(|e| large(&e))?;
+            let supernodal_flop_ratio_threshold = SupernodalThreshold(SUPERNODAL);
+            let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold, ..Default::default() };
+            let symbolic =
+                factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|e| large(&e))?;
+            Ok((place, pattern, symbolic))
+        };
+        // Once for the order that keeps the factor sparse, once with the rows in that order: then no step permutes.
+        let (_, _, first) = analyse(&free, SymmetricOrdering::Amd)?;
+        let order: Vec<usize> = match first.perm() {
+            Some(perm) => perm.arrays().0.iter().map(|&i| free[i]).collect(),
+            None => free,
+        };
+        let (place, pattern, symbolic) = analyse(&order, SymmetricOrdering::Identity)?;
+        let (starts, rows) = (pattern.col_ptr(), pattern.row_idx());
+        let slot = |row: usize, column: usize| match (place[row], place[column]) {
+            (usize::MAX, _) | (_, usize::MAX) => rows.len(),
+            (a, b) => {
+                let (row, column) = (a.max(b), a.min(b));
+                starts[column] + rows[starts[column]..starts[column + 1]].partition_point(|r| *r < row)
+            }
+        };
+        if u32::try_from(rows.len()).is_err() {
+            return Err(large(&"more than 2³² entries"));
+        }
+        let slots = places.iter().map(|&(row, column)| slot(row, column) as u32).collect();
+        let diagonal = order.iter().map(|&dof| slot(dof, dof)).collect();
+        let request = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let request = request.or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let room = Room(MemBuffer::try_new(request).map_err(|e| large(&e))?);
+        let (values, factor) = (vec![0.0; rows.len() + 1], vec![0.0; symbolic.len_val()]);
+        Ok(Factored { order, values, diagonal, slots, symbolic, factor, room, pattern })
+    }
+}
+
+impl Equations for Factored {
+    fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    fn set_diagonal(&mut self, diagonal: &dyn Fn(usize) -> f64) {
+        self.values.fill(0.0);
+        self.order.iter().zip(&self.diagonal).for_each(|(&dof, &slot)| self.values[slot] = diagonal(dof));
+    }
+
+    fn add(&mut self, first: usize, factor: f64, values: &[f64]) {
+        for (value, &slot) in values.iter().zip(&self.slots[first..]) {
+            self.values[slot as usize] += factor * value;
+        }
+    }
+
+    fn shift(&mut self, share: f64) {
+        let size = self.diagonal.iter().map(|&slot| self.values[slot].abs()).fold(0.0, f64::max);
+        self.diagonal.iter().for_each(|&slot| self.values[slot] += share * size);
+    }
+
+    fn prepare(&mut self) -> bool {
+        let matrix = SparseColMatRef::new(self.pattern.as_ref(), &self.values[..self.values.len() - 1]);
+        let (stack, none) = (MemStack::new(&mut self.room.0), Default::default());
+        self.symbolic
+            .factorize_numeric_llt(&mut self.factor, matrix, Side::Lower, none, Par::Seq, stack, Default::default())
+            .is_ok()
+    }
+
+    fn solve(&mut self, x: &mut [f64], _: Option<&[f64]>) -> Solved {
+        let rows = x.len();
+        let x = MatMut::from_column_major_slice_mut(x, rows, 1);
+        let stack = MemStack::new(&mut self.room.0);
+        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+        Solved { end: End::Exact, iterations: 0 }
+    }
+}

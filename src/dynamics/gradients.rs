@@ -1,0 +1,198 @@
+//! The equations of an implicit step by conjugate gradients (Hestenes and Stiefel 1952).
+
+use super::blocks::{Block, Pattern, places};
+use super::equations::{End, Equations, Solved};
+use super::incomplete::Incomplete;
+use crate::error::{Error, Result};
+
+/// A solution has no more iterations.
+const ITERATIONS: usize = 5000;
+
+/// The matrix in blocks of one point of D coordinates, and its incomplete factor. In points of which some coordinates are held those
+/// have an equation `x = 0` of their own.
+#[derive(Debug)]
+pub(super) struct Gradients<const D: usize> {
+    /// The degree of freedom of each row.
+    order: Vec<usize>,
+    /// Where it is in vectors of all coordinates.
+    coordinates: Vec<u32>,
+    pattern: Pattern,
+    /// Of the diagonal, beyond it, and one for entries of held degrees of freedom.
+    blocks: Vec<Block<D>>,
+    /// Where each entry goes.
+    slots: Vec<u32>,
+    incomplete: Incomplete<D>,
+    tolerance: f64,
+    x: Vec<[f64; D]>,
+    residual: Vec<[f64; D]>,
+    toward: Vec<[f64; D]>,
+    along: Vec<[f64; D]>,
+    image: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Gradients<D> {
+    /// For entries at these places of the lower triangle; the diagonal is in it anyway.
+    ///
+    /// # Errors
+    /// There are more than 2³² entries.
+    pub fn new(entries: &[(usize, usize)], held: &[bool], tolerance: f64) -> Result<Gradients<D>> {
+        let mut pairs: Vec<(usize, usize)> = entries.iter().map(|(row, column)| (row / D, column / D)).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let is_row: Vec<bool> = held.chunks(D).map(|held| held.contains(&false)).collect();
+        let place = places(&pairs, &is_row);
+        let rows = is_row.iter().filter(|is_row| **is_row).count();
+        let pattern = Pattern::new(&pairs, &place, rows);
+        let count = rows + pattern.columns.len();
+        if u32::try_from((count + 1) * D * D).is_err() {
+            return Err(Error::new("the equations cannot be built: more than 2³² entries".to_string()));
+        }
+        let slot = |&(row, column): &(usize, usize)| {
+            let (a, b) = (place[row / D], place[column / D]);
+            let within = |block: usize, k: usize, l: usize| (block * D + k) * D + l;
+            let at = if held[row] || held[column] {
+                within(count, 0, 0)
+            } else if a == b {
+                within(a, row % D, column % D)
+            } else {
+                let (k, l) = if a < b { (row % D, column % D) } else { (column % D, row % D) };
+                within(rows + pattern.find(a.min(b), a.max(b)).unwrap_or(count - rows), k, l)
+            };
+            at as u32
+        };
+        let slots = entries.iter().map(slot).collect();
+        let mut points: Vec<usize> = (0..is_row.len()).filter(|point| is_row[*point]).collect();
+        points.sort_unstable_by_key(|point| place[*point]);
+        let order: Vec<usize> = points.iter().flat_map(|p| p * D..(p + 1) * D).filter(|dof| !held[*dof]).collect();
+        let coordinates = order.iter().map(|dof| (place[dof / D] * D + dof % D) as u32).collect();
+        let incomplete = Incomplete::new(&pattern);
+        let [x, residual, toward, along, image] = std::array::from_fn(|_| vec![[0.0; D]; rows]);
+        let blocks = vec![[[0.0; D]; D]; count + 1];
+        Ok(Gradients {
+            order,
+            coordinates,
+            pattern,
+            blocks,
+            slots,
+            incomplete,
+            tolerance,
+            x,
+            residual,
+            toward,
+            along,
+            image,
+        })
+    }
+
+    /// Iterations from x on until the residual is no more than `size`.
+    fn iterate(&mut self, size: f64) -> Solved {
+        let matrix = &self.blocks[..self.blocks.len() - 1];
+        let (mut last, mut iterations) = (0.0, 0);
+        let done = |end, iterations| Solved { end, iterations };
+        while !(dot(&self.residual, &self.residual).sqrt() <= size) {
+            if iterations == ITERATIONS {
+                return done(End::Rough, iterations);
+            }
+            self.toward.copy_from_slice(&self.residual);
+            self.incomplete.solve(&self.pattern, &mut self.toward);
+            let now = dot(&self.residual, &self.toward);
+            let share = if iterations == 0 { 0.0 } else { now / last };
+            for (along, toward) in self.along.as_flattened_mut().iter_mut().zip(self.toward.as_flattened()) {
+                *along = toward + share * *along;
+            }
+            self.pattern.multiply(matrix, &self.along, &mut self.image);
+            let curvature = dot(&self.along, &self.image);
+            iterations += 1;
+            if !(curvature > 0.0 && now > 0.0 && now / curvature < f64::INFINITY) {
+                return done(End::Indefinite, iterations);
+            }
+            let length = now / curvature;
+            let (x, residual) = (self.x.as_flattened_mut(), self.residual.as_flattened_mut());
+            for ((x, r), (along, image)) in
+                x.iter_mut().zip(residual).zip(self.along.as_flattened().iter().zip(self.image.as_flattened()))
+            {
+                *x += length * along;
+                *r -= length * image;
+            }
+            last = now;
+        }
+        done(End::Exact, iterations)
+    }
+}
+
+impl<const D: usize> Equations for Gradients<D> {
+    fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    fn set_diagonal(&mut self, diagonal: &dyn Fn(usize) -> f64) {
+        self.blocks.fill([[0.0; D]; D]);
+        let rows = self.pattern.rows();
+        self.blocks[..rows].iter_mut().for_each(|block| (0..D).for_each(|k| block[k][k] = 1.0));
+        for (&dof, &at) in self.order.iter().zip(&self.coordinates) {
+            let (row, k) = (at as usize / D, at as usize % D);
+            self.blocks[row][k][k] = diagonal(dof);
+        }
+    }
+
+    fn add(&mut self, first: usize, factor: f64, values: &[f64]) {
+        let entries = self.blocks.as_flattened_mut().as_flattened_mut();
+        for (value, &slot) in values.iter().zip(&self.slots[first..]) {
+            entries[slot as usize] += factor * value;
+        }
+    }
+
+    fn shift(&mut self, share: f64) {
+        let places = || self.coordinates.iter().map(|&at| (at as usize / D, at as usize % D));
+        let size = places().map(|(row, k)| self.blocks[row][k][k].abs()).fold(0.0, f64::max);
+        places().for_each(|(row, k)| self.blocks[row][k][k] += share * size);
+    }
+
+    fn prepare(&mut self) -> bool {
+        let rows = self.pattern.rows();
+        for block in &mut self.blocks[..rows] {
+            (0..D).for_each(|k| (0..k).for_each(|l| block[l][k] = block[k][l]));
+        }
+        let count = self.blocks.len() - 1;
+        self.incomplete.refill(&self.pattern, &self.blocks[..count])
+    }
+
+    fn solve(&mut self, x: &mut [f64], guess: Option<&[f64]>) -> Solved {
+        self.x.fill([0.0; D]);
+        self.residual.fill([0.0; D]);
+        let residual = self.residual.as_flattened_mut();
+        self.coordinates.iter().zip(&*x).for_each(|(&at, b)| residual[at as usize] = *b);
+        let before = dot(&self.residual, &self.residual).sqrt();
+        if let Some(guess) = guess {
+            let start = self.x.as_flattened_mut();
+            self.coordinates.iter().zip(&self.order).for_each(|(&at, &dof)| start[at as usize] = guess[dof]);
+            self.pattern.multiply(&self.blocks[..self.blocks.len() - 1], &self.x, &mut self.image);
+            let left = |(b, image): (&f64, &f64)| (b - image) * (b - image);
+            let after =
+                self.residual.as_flattened().iter().zip(self.image.as_flattened()).map(left).sum::<f64>().sqrt();
+            if after < before {
+                let residual = self.residual.as_flattened_mut();
+                residual.iter_mut().zip(self.image.as_flattened()).for_each(|(r, image)| *r -= image);
+            } else {
+                self.x.fill([0.0; D]);
+            }
+        }
+        let solved = self.iterate(self.tolerance * before);
+        let found = self.x.as_flattened();
+        x.iter_mut().zip(&self.coordinates).for_each(|(x, &at)| *x = found[at as usize]);
+        solved
+    }
+}
+
+fn dot<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
+    // Four sums at a time: one after the other they would wait for each other.
+    let ((a, b), (a_rest, b_rest)) = {
+        let ((a, a_rest), (b, b_rest)) = (a.as_flattened().as_chunks::<4>(), b.as_flattened().as_chunks::<4>());
+        ((a, b), (a_rest, b_rest))
+    };
+    let mut sums = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
+        (0..4).for_each(|k| sums[k] += a[k] * b[k]);
+    }
+    sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+}
