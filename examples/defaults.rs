@@ -22,6 +22,9 @@ fn main() -> Result<()> {
     let mut rows: BTreeMap<(String, usize), (String, Row)> = BTreeMap::new();
     for path in scenes(Path::new("scenes"))? {
         let mut scene = Scene::load(&path)?;
+        if scene.loads.is_empty() {
+            continue;
+        }
         let mesh = scene.build_mesh()?;
         let element = mesh.blocks[0].element.clone();
         let lengths: Vec<String> = names(&element, |kind| kind == SpringKind::Length);

@@ -259,7 +259,7 @@ fn keys_and_types() {
                 "[material]",
                 "[materials]",
                 "scene.toml:3: materials: unknown field \"materials\", expected one of \"title\", \"mesh\", \
-                 \"material\", \"fit\", \"newton\", \"fix\", \"load\", \"output\"",
+                 \"material\", \"fit\", \"newton\", \"fix\", \"load\", \"motion\", \"output\"",
             ),
             (
                 "group = \"zmax\"",
@@ -678,12 +678,12 @@ fn boxes() {
             (
                 "[mesh]",
                 "[mesh]\nfile = \"mesh.msh\"",
-                "scene.toml: mesh: expected either \"file\" or \"box\", found both",
+                "scene.toml: mesh: expected one of \"file\", \"box\", \"disc\", found file and box",
             ),
             (
                 "box = { element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] }\n",
                 "",
-                "scene.toml: mesh: expected either \"file\" or \"box\", found neither",
+                "scene.toml: mesh: expected one of \"file\", \"box\", \"disc\", found none",
             ),
         ],
     );

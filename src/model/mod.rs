@@ -2,6 +2,7 @@
 
 mod elastic;
 mod forces;
+mod linear;
 mod load;
 mod lumping;
 mod network;
@@ -9,6 +10,7 @@ mod support;
 mod system;
 
 pub use elastic::{Body, Elastic};
+pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses};
 pub use network::{LengthSpring, MeasureSpring, Network};

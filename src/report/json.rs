@@ -1,6 +1,8 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
 use super::agreement::{Agreement, SAME, agreements};
+use super::frequencies::frequency_json;
+use super::motion::{motion_json, motion_options};
 use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
 use crate::solve::{Ending, Standing};
 use crate::study::{
@@ -28,6 +30,9 @@ pub fn report(outcome: &Outcome) -> String {
         "measured": outcome.measured.iter().map(measured).collect::<Vec<_>>(),
         "gauge": outcome.gauged.iter().map(|r| r.map(reading)).collect::<Vec<_>>(),
         "starts": agreements(outcome).iter().map(agreement).collect::<Vec<_>>(),
+        "frequencies": outcome.frequencies.iter().map(frequency_json).collect::<Vec<_>>(),
+        "motion_options": outcome.motion.as_ref().map(motion_options),
+        "motion": outcome.motion.iter().flat_map(|motion| &motion.models).map(motion_json).collect::<Vec<_>>(),
         "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count(), outcome.material.thickness())).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&value).expect("a value of finite numbers and text is JSON") + "\n"

@@ -5,10 +5,13 @@ mod check;
 mod comparison;
 mod deformed;
 mod derivation;
+mod frequencies;
 mod json;
+mod motion;
 mod network;
 mod paper;
 mod pictures;
+mod series;
 mod stretches;
 mod surface;
 mod table;
@@ -18,9 +21,11 @@ pub use comparison::Comparison;
 pub use deformed::deformed;
 pub use derivation::Derivation;
 pub use json::report;
+pub use motion::motion_csv;
 pub use network::{network_csv, network_json};
 pub use paper::{paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
+pub use series::write_series;
 pub use stretches::{stretches_text, write_stretches};
 pub use table::{notes, summary, table};
 
@@ -35,7 +40,12 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The folder or a file cannot be written.
 pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Result<Vec<PathBuf>> {
-    let stems = file_stems(outcome.fits.iter().map(|f| f.fit.name.as_str()));
+    let moved = outcome.motion.iter().flat_map(|motion| &motion.models);
+    let moved: Vec<String> = moved.map(|model| format!("motion {}", model.name)).collect();
+    let fits = outcome.fits.iter().map(|f| f.fit.name.as_str());
+    let mut stems = file_stems(fits.chain(moved.iter().map(String::as_str)));
+    let motion_stems = stems.split_off(outcome.fits.len());
+    let moved = || outcome.motion.iter().flat_map(|motion| &motion.models).zip(&motion_stems);
     let mut written = Vec::new();
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if output.report != Some(false) {
@@ -45,6 +55,9 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         for (fit, stem) in outcome.fits.iter().zip(&stems) {
             files.push((folder.join(format!("{stem}.csv")), network_csv(&fit.network).into_bytes()));
         }
+    }
+    for (model, stem) in moved() {
+        files.push((folder.join(format!("{stem}.csv")), motion_csv(model).into_bytes()));
     }
     if !files.is_empty() || output.vtu {
         create_folder(folder)?;
@@ -61,6 +74,9 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
             let path = folder.join(format!("{stem}.vtu"));
             vtk::write(&path, &network_grid(&outcome.mesh, outcome.masses.as_deref(), fit, &outcome.fem))?;
             written.push(path);
+        }
+        for (model, stem) in moved().filter(|(model, _)| !model.states.is_empty()) {
+            written.push(write_series(outcome, model, stem, folder)?);
         }
     }
     Ok(written)

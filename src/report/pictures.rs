@@ -2,6 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::mesh::vtk::{Array, Grid};
+use crate::model::{LengthSpring, MeasureSpring, Network};
 use crate::study::{FitOutcome, Outcome};
 
 const LINE: u8 = 3;
@@ -10,17 +11,7 @@ const POINTS: u8 = 2;
 /// The solid cells, with the displacements of the finite elements and of each network.
 pub fn displacement_grid(outcome: &Outcome) -> Grid {
     let mesh = &outcome.mesh;
-    let mut grid = Grid { points: spatial(&mesh.points, mesh.dimension), ..Grid::default() };
-    for block in &mesh.blocks {
-        let Some(vtk) = &block.element.formats.vtk else { continue };
-        for nodes in block.cells() {
-            let mut placed = nodes.to_vec();
-            for (a, &place) in vtk.order.iter().flatten().enumerate() {
-                placed[place] = nodes[a];
-            }
-            grid.push_cell(vtk.cell_type as u8, &placed);
-        }
-    }
+    let mut grid = cell_grid(mesh, &mesh.points);
     let loads = outcome.fits.first().map_or(&[][..], |f| &f.loads);
     for (load, u) in loads.iter().zip(&outcome.fem) {
         grid.point_data.push(vectors(format!("u fem {} (m)", load.name), u, mesh.dimension));
@@ -35,23 +26,42 @@ pub fn displacement_grid(outcome: &Outcome) -> Grid {
     grid
 }
 
-/// The springs as lines with their constants and rest lengths, with the displacements of both models. A spring that
-/// measures something else is the set of its points.
-pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: &[Vec<f64>]) -> Grid {
-    let network = &fit.network;
-    let mut grid = Grid { points: spatial(&mesh.points, mesh.dimension), ..Grid::default() };
+/// The solid cells with the points at `x`.
+pub(super) fn cell_grid(mesh: &Mesh, x: &[f64]) -> Grid {
+    let mut grid = Grid { points: spatial(x, mesh.dimension), ..Grid::default() };
+    for block in &mesh.blocks {
+        let Some(vtk) = &block.element.formats.vtk else { continue };
+        for nodes in block.cells() {
+            let mut placed = nodes.to_vec();
+            for (a, &place) in vtk.order.iter().flatten().enumerate() {
+                placed[place] = nodes[a];
+            }
+            grid.push_cell(vtk.cell_type as u8, &placed);
+        }
+    }
+    grid
+}
+
+/// The springs as lines with their constants and rest lengths, the points at `x`. A spring that measures something else is the
+/// set of its points.
+pub(super) fn spring_grid(mesh: &Mesh, network: &Network, x: &[f64]) -> Grid {
+    let mut grid = Grid { points: spatial(x, mesh.dimension), ..Grid::default() };
     network.lengths.iter().for_each(|s| grid.push_cell(LINE, &s.points));
     network.others.iter().for_each(|s| grid.push_cell(POINTS, &s.points));
-    let per_spring = |length: fn(&crate::model::LengthSpring) -> f64,
-                      other: fn(&crate::model::MeasureSpring) -> f64| {
+    let per_spring = |length: fn(&LengthSpring) -> f64, other: fn(&MeasureSpring) -> f64| {
         network.lengths.iter().map(length).chain(network.others.iter().map(other)).collect()
     };
-    let scalar = |name: &str, values| Array { name: name.into(), components: 1, values };
     grid.cell_data = vec![
         scalar("k", per_spring(|s| s.constant, |s| s.constant)),
         scalar("rest", per_spring(|s| s.rest, |s| s.rest)),
         scalar("is_length", per_spring(|_| 1.0, |_| 0.0)),
     ];
+    grid
+}
+
+/// The springs with the displacements of both models.
+pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: &[Vec<f64>]) -> Grid {
+    let mut grid = spring_grid(mesh, &fit.network, &mesh.points);
     if let Some(masses) = masses {
         grid.point_data.push(scalar("mass (kg)", masses.to_vec()));
     }
@@ -64,11 +74,15 @@ pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: 
     grid
 }
 
+fn scalar(name: &str, values: Vec<f64>) -> Array {
+    Array { name: name.into(), components: 1, values }
+}
+
 fn spatial(values: &[f64], dimension: usize) -> Vec<[f64; 3]> {
     let place = |x: &[f64]| std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0));
     values.chunks_exact(dimension).map(place).collect()
 }
 
-fn vectors(name: String, values: &[f64], dimension: usize) -> Array {
+pub(super) fn vectors(name: String, values: &[f64], dimension: usize) -> Array {
     Array { name, components: 3, values: spatial(values, dimension).into_iter().flatten().collect() }
 }

@@ -1,7 +1,9 @@
 //! The table on the terminal.
 
 use super::agreement::{Agreement, SAME, agreements};
+use super::frequencies::{frequency_notes, frequency_table};
 use super::json::status;
+use super::motion::{motion_notes, motion_table};
 use crate::fit::Spread;
 use crate::solve::{Ending, Standing};
 use crate::study::{FitOutcome, Followed, LoadOutcome, Outcome, Reading, Recipe, WholeOutcome};
@@ -34,7 +36,7 @@ pub fn summary(outcome: &Outcome) -> String {
     text
 }
 
-/// One row per fit.
+/// One row per fit; then, where they were asked for, natural frequencies and motions, one row per model.
 pub fn table(outcome: &Outcome) -> String {
     let loads: Vec<&str> = outcome.fits.first().map_or(vec![], |f| f.loads.iter().map(|l| l.name.as_str()).collect());
     let mut header: Vec<String> =
@@ -55,7 +57,8 @@ pub fn table(outcome: &Outcome) -> String {
         header.push("network".into());
     }
     let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
-    aligned(&header, &rows) + &times(outcome) + &gauge(outcome)
+    let under = [times(outcome), gauge(outcome), frequency_table(outcome), motion_table(outcome)];
+    aligned(&header, &rows) + &under.concat()
 }
 
 /// Rows under a header: columns of words to the left, of numbers to the right.
@@ -64,7 +67,8 @@ pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
     table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
     table.set_content_arrangement(ContentArrangement::Disabled).set_header(header).add_rows(rows);
     for (column, name) in table.column_iter_mut().zip(header) {
-        let words = ["object", "objective", "solver", "fit", "network"].contains(&name.as_str());
+        let words = ["object", "objective", "solver", "fit", "network", "motion", "frequencies", "ended"];
+        let words = words.contains(&name.as_str());
         column.set_cell_alignment(if words { CellAlignment::Left } else { CellAlignment::Right });
     }
     table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
@@ -142,7 +146,9 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         )
     });
     let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
-    finite.chain(measured).chain(own).chain(agreements(outcome).iter().map(agreed)).collect()
+    let starts = agreements(outcome);
+    let notes = finite.chain(measured).chain(own).chain(starts.iter().map(agreed));
+    notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
 }
 
 /// What is wrong with an equilibrium.

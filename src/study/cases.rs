@@ -49,11 +49,8 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
     Field::read_named(&folder.join(&entry.file), mesh, entry.scale, entry.array.as_deref())
 }
 
-/// What `[[fix]]` holds, and the loads.
-///
-/// # Errors
-/// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
-pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Support, Vec<Case>)> {
+/// What `[[fix]]` holds.
+fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
     for (i, (part, axes)) in scene.supports.iter().enumerate() {
@@ -69,6 +66,16 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         }
         fixed.fix(&points, directions, d);
     }
+    Ok(fixed)
+}
+
+/// What `[[fix]]` holds, and the loads.
+///
+/// # Errors
+/// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
+pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Support, Vec<Case>)> {
+    let d = mesh.dimension;
+    let fixed = held(scene, mesh)?;
     let mut cases = Vec::new();
     for (i, load) in scene.loads.iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);

@@ -182,6 +182,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let whole = scene.law().is_none() && body.held("loads").is_ok();
     let mut scene = scene.clone();
     scene.fits = Vec::new();
+    (scene.motion, scene.output.frequencies) = (None, 0);
     let all = optional.then_some(Some(every));
     let serves = |method: &Method| {
         let of =

@@ -4,11 +4,14 @@ mod cases;
 mod check;
 mod checkpoint;
 mod comparison;
+mod course;
+mod frequencies;
 mod gauge;
 mod large;
 mod linear;
 mod metrics;
 mod moduli;
+mod motion;
 mod outcome;
 mod paper;
 mod random;
@@ -21,16 +24,19 @@ mod whole;
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes, random_shapes};
+pub use frequencies::FrequencyOutcome;
 pub use gauge::Reading;
 pub use large::LargeBody;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
+pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record};
 pub use outcome::{FitOutcome, FittedLoad, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
 pub use paper::{Column, Index, Paper, PaperRow, PaperTable, Surface, run_paper, write_experiments};
 pub use run::{Progress, Reference, fit_mesh, run, run_with};
 pub use scene::{
-    BoxEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, NamedFit, Output, Part, Recipe, SampledRecipe, Scene,
-    ShapesEntry, Start, WholeRecipe, load_elements,
+    BoxEntry, DampingRecipe, DiscEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, MotionRecipe, NamedFit,
+    Output, Part, Pull, Push, Recipe, SampledRecipe, Scene, ShapesEntry, Start, WholeRecipe, integrator_name,
+    load_elements,
 };
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};

@@ -1,8 +1,10 @@
 //! What comes out of a scene.
 
+use super::frequencies::FrequencyOutcome;
 use super::gauge::Reading;
 use super::metrics::DisplacementError;
 use super::moduli::EffectiveModuli;
+use super::motion::MotionOutcome;
 use super::scene::NamedFit;
 use crate::fit::Spread;
 use crate::fit::published::Unmet;
@@ -29,6 +31,10 @@ pub struct Outcome {
     /// What the scene's gauge says of the finite elements under each load; empty without a gauge.
     pub gauged: Vec<Option<Reading>>,
     pub fits: Vec<FitOutcome>,
+    /// Where the scene has a motion.
+    pub motion: Option<MotionOutcome>,
+    /// Of the finite elements and of each network, where the scene asks for them.
+    pub frequencies: Vec<FrequencyOutcome>,
     /// What the scene did not ask for and was not done.
     pub left_out: Vec<String>,
 }
@@ -160,7 +166,21 @@ pub struct SampledOutcome {
 impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
-        let (fem, law, followed, measured, gauged, left_out) = Default::default();
-        Outcome { scene: name, mesh, material, masses, fem, law, followed, measured, gauged, fits: vec![fit], left_out }
+        let (fem, law, followed, measured, gauged, motion, frequencies, left_out) = Default::default();
+        Outcome {
+            scene: name,
+            mesh,
+            material,
+            masses,
+            fem,
+            law,
+            followed,
+            measured,
+            gauged,
+            fits: vec![fit],
+            motion,
+            frequencies,
+            left_out,
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::cases::{load_cases, measured_loads};
 use super::checkpoint::Controls;
+use super::course::Course;
 use super::gauge::Gauged;
 use super::large::LargeBody;
 use super::linear::LinearBody;
@@ -43,6 +44,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
     let gauged = scene.gauge.as_ref().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
+    let course = Course::plan(scene, &mesh, material, &support)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(&scene.path));
     let large = match scene.energy(material)? {
         Some(energy) => {
@@ -81,13 +83,13 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         }
     }
     let law = large.as_ref().map(|large| large.energy.title.clone());
-    let (fem, followed) = match large {
+    let (fem, followed, energy) = match large {
         Some(large) => {
             for (done, fit) in fits.iter_mut().enumerate() {
                 progress("networks", done, count);
                 large.compare(&mesh, &cases, fit)?;
             }
-            (large.displacements, large.followed)
+            (large.displacements, large.followed, Some(large.energy))
         }
         None => {
             let body = body.map_or_else(|| linear(progress), Ok)?;
@@ -95,7 +97,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
                 progress("networks", done, count);
                 body.compare(&mesh, &cases, fit)?;
             }
-            (body.displacements, Vec::new())
+            (body.displacements, Vec::new(), None)
         }
     };
     let mut outcome = Outcome {
@@ -110,10 +112,13 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         followed,
         gauged: Vec::new(),
         fits,
+        motion: None,
+        frequencies: Vec::new(),
     };
     if let Some(gauged) = gauged {
         gauged.measure(&mut outcome);
     }
+    course.follow(scene, energy.as_ref(), &mut outcome, progress)?;
     Ok(outcome)
 }
 

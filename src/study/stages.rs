@@ -6,11 +6,7 @@ use super::scene::{Recipe, Scene};
 pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     let run = |what: String| (what, None);
     let skip = |what: &str, why: &str| (what.to_string(), Some(why.to_string()));
-    let mut stages = vec![run(match (&scene.mesh.file, &scene.mesh.generated) {
-        (Some(file), _) => format!("read {}", file.display()),
-        (_, Some(entry)) => format!("generate {:?} cells of {}", entry.cells, entry.element),
-        _ => "mesh".into(),
-    })];
+    let mut stages = vec![run(scene.mesh.title())];
     if let Some(law) = scene.law() {
         stages.push(run(format!("compile the energy {law}")));
     }
@@ -54,6 +50,17 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     match scene.density() {
         Some(_) => stages.push(run("masses".into())),
         None => stages.push(skip("masses", "the material has no density")),
+    }
+    match &scene.motion {
+        Some(motion) => {
+            let finite = if motion.finite_elements { "finite elements and " } else { "" };
+            stages.push(run(format!("move {finite}{} networks for {}", scene.fits.len(), motion.title())));
+        }
+        None => stages.push(skip("motion", "the scene has no [motion]")),
+    }
+    match scene.output.frequencies {
+        0 => stages.push(skip("natural frequencies", "not asked for in [output]")),
+        count => stages.push(run(format!("{count} natural frequencies of each model"))),
     }
     for (wanted, what) in [
         (scene.output.moduli, "moduli of each network as a material"),

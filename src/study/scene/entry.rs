@@ -1,6 +1,9 @@
 //! The scene file as it is written, key by key, and what each entry must satisfy on its own.
 
 use super::gauge::GaugeEntry;
+use super::input::MeshInput;
+use super::motion::MotionEntry;
+use super::output::Output;
 use super::recipe::{Recipe, SampledRecipe};
 use super::sampled::{SampledEntry, ShapesEntry};
 use super::value::{Given, Pressure, Varying};
@@ -16,19 +19,6 @@ use crate::symbolic::Scope;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Output {
-    /// The springs and displacements as VTU files.
-    pub vtu: bool,
-    /// The springs as a CSV file.
-    pub csv: bool,
-    /// What each network is as a material: Young's modulus, Poisson's ratio, Zener's ratio.
-    pub moduli: bool,
-    /// report.json; written unless switched off.
-    pub report: Option<bool>,
-}
-
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -43,34 +33,9 @@ pub struct SceneFile {
     #[serde(default)]
     pub load: Vec<LoadEntry>,
     pub gauge: Option<GaugeEntry>,
+    pub motion: Option<MotionEntry>,
     #[serde(default)]
     pub output: Output,
-}
-
-/// Where the mesh comes from.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshInput {
-    /// Relative to the scene.
-    pub file: Option<PathBuf>,
-    #[serde(rename = "box")]
-    pub generated: Option<BoxEntry>,
-    /// Mesh units to metres.
-    #[serde(default = "one")]
-    pub scale: f64,
-    /// Element files to look in before the shipped ones, relative to the scene.
-    #[serde(default)]
-    pub elements: Vec<String>,
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BoxEntry {
-    /// A shipped element's name, or a path relative to the scene that ends in .toml.
-    pub element: String,
-    pub size: Vec<f64>,
-    pub cells: Vec<usize>,
-    pub origin: Option<Vec<f64>>,
 }
 
 #[derive(Debug, Clone, Deserialize)]

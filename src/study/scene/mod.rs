@@ -2,13 +2,19 @@
 
 mod entry;
 mod gauge;
+mod input;
+mod motion;
+mod output;
 mod recipe;
 mod sampled;
 mod value;
 mod whole;
 
-pub use entry::{BoxEntry, FitEntry, MeasuredEntry, MeshInput, Output};
+pub use entry::{FitEntry, MeasuredEntry};
 pub use gauge::Gauge;
+pub use input::{BoxEntry, DiscEntry, MeshInput};
+pub use motion::{DampingRecipe, MotionRecipe, Pull, Push, integrator_name};
+pub use output::Output;
 pub use recipe::{ForceRecipe, Recipe, SampledRecipe};
 pub use sampled::ShapesEntry;
 use sampled::law_at;
@@ -20,7 +26,7 @@ use crate::error::{Error, Result};
 use crate::file;
 use crate::fit::Fit;
 use crate::material::{Energy, Material};
-use crate::mesh::{BoxMesh, Mesh, MeshSource, Selection};
+use crate::mesh::Selection;
 use crate::model::Action;
 use crate::solve::Newton;
 use crate::symbolic::Scope;
@@ -45,6 +51,8 @@ pub struct Scene {
     pub newton: Newton,
     /// Where a specimen's modulus and ratio are measured.
     pub gauge: Option<Gauge>,
+    /// How the body moves in time, where the scene says so.
+    pub motion: Option<MotionRecipe>,
     pub output: Output,
 }
 
@@ -87,13 +95,7 @@ impl Scene {
     fn parse(text: &str, path: &Path) -> Result<Scene> {
         let entry: SceneFile = file::parse_toml(text)?;
         let mesh = entry.mesh;
-        if mesh.file.is_some() == mesh.generated.is_some() {
-            let found = if mesh.file.is_some() { "both" } else { "neither" };
-            return Err(Error::expected("mesh", "either \"file\" or \"box\"", found));
-        }
-        if !(mesh.scale > 0.0 && mesh.scale.is_finite()) {
-            return Err(Error::expected("mesh.scale", "a positive number of metres per mesh unit", mesh.scale));
-        }
+        mesh.check()?;
         if entry.fit.is_empty() {
             return Err(Error::expected("fit", "at least one [[fit]]", "none"));
         }
@@ -127,6 +129,13 @@ impl Scene {
             return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
         }
         let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
+        let motion = entry.motion.map(|e| e.check().map_err(|e| e.under("motion"))).transpose()?;
+        if motion.is_some() && entry.material.density.is_none() {
+            return Err(Error::expected("material.density", "a number of kg/m³, for [motion] moves masses", "none"));
+        }
+        if entry.output.frequencies > 0 && entry.material.density.is_none() {
+            return Err(Error::expected("output.frequencies", "a density in [material]", "none"));
+        }
         for (fit, i) in fits.iter().zip(&entry_of) {
             let unknown =
                 |key: &str, wanted: &[String]| match wanted.iter().find(|w| loads.iter().all(|l| l.name != **w)) {
@@ -177,29 +186,9 @@ impl Scene {
             loads,
             newton,
             gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
+            motion,
             output: entry.output,
         })
-    }
-
-    /// Reads or generates the mesh.
-    ///
-    /// # Errors
-    /// The file or an element is wrong, or a cell has no volume.
-    pub fn build_mesh(&self) -> Result<Mesh> {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
-        if let Some(file) = &self.mesh.file {
-            let own = load_elements(&self.mesh.elements, folder).map_err(|e| e.placed(|e| self.at("mesh", e)))?;
-            let path = folder.join(file);
-            let source = MeshSource::read(&path)?;
-            return Mesh::resolve(&source, &own, self.mesh.scale).map_err(|e| e.in_file(&path));
-        }
-        let entry = self.mesh.generated.as_ref().expect("a scene has a file or a box");
-        let in_box = |e: Error| e.placed(|e| e.under("mesh.box").in_file(&self.path));
-        let element = load_element(&entry.element, folder).map_err(in_box)?;
-        let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
-        let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
-        let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
-        spec.build().map_err(in_box)
     }
 
     /// The material of a body of that dimension.

@@ -1,0 +1,214 @@
+//! What a scene does in time, proved on its mesh before any work is done.
+
+use super::frequencies::natural_frequencies;
+use super::motion::{Planned, move_models};
+use super::outcome::Outcome;
+use super::run::Progress;
+use super::scene::{MotionRecipe, Part, Pull, Push, Scene};
+use crate::dynamics::{Curve, Drive};
+use crate::error::{Error, Result};
+use crate::material::{Energy, Material};
+use crate::mesh::Mesh;
+use crate::model::{Action, Support, lumped_masses, nodal_forces};
+use crate::symbolic::{Expr, Program};
+
+/// Bytes of displacements that are kept until they are written or compared.
+const MOST_BYTES: f64 = 4e9;
+/// A curve is tried at so many times at most, whether it is finite there.
+const TRIALS: usize = 100_000;
+
+/// The motion and the vibrations that a scene asks for.
+pub struct Course {
+    /// What `[[fix]]` holds.
+    support: Support,
+    motion: Option<Planned>,
+}
+
+impl Course {
+    /// # Errors
+    /// A part of the mesh is empty or unknown, a list has the wrong length, what moves is held, or a point that moves has no mass.
+    pub fn plan(scene: &Scene, mesh: &Mesh, material: Material, support: &Support) -> Result<Course> {
+        let at = |e: Error| e.placed(|e| scene.at("motion", e));
+        let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
+        Ok(Course { support: support.clone(), motion: scene.motion.as_ref().map(plan).transpose()? })
+    }
+
+    /// Moves the finite elements and the networks of `outcome`, and finds their frequencies, where that is asked for.
+    ///
+    /// # Errors
+    /// A step is beyond the limit of an explicit method, or more frequencies are asked for than there are.
+    pub fn follow(
+        &self,
+        scene: &Scene,
+        energy: Option<&Energy>,
+        outcome: &mut Outcome,
+        progress: &mut Progress,
+    ) -> Result<()> {
+        if scene.output.frequencies > 0 {
+            let found = natural_frequencies(scene, &self.support, outcome, progress);
+            outcome.frequencies = found.map_err(|e| scene.at("output.frequencies", e))?;
+        }
+        if let Some(planned) = &self.motion {
+            let moved = move_models(planned, energy, outcome, progress);
+            outcome.motion = Some(moved.map_err(|e| e.placed(|e| scene.at("motion", e)))?);
+        }
+        Ok(())
+    }
+}
+
+fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material, fixed: &Support) -> Result<Planned> {
+    let d = mesh.dimension;
+    if !(recipe.gravity.is_empty() || recipe.gravity.len() == d) {
+        return Err(entries("gravity", d, recipe.gravity.len()));
+    }
+    let kept = if scene.output.vtu { scene.fits.len() + 1 } else { 1 };
+    let (state, written) = ((8 * mesh.points.len() * kept) as f64, recipe.written());
+    if state * written.len() as f64 > MOST_BYTES {
+        let expected = format!("at most {:.0} states, which fill {MOST_BYTES:e} bytes", MOST_BYTES / state);
+        return Err(Error::expected("every", expected, written.len()));
+    }
+    let mut planned = Planned {
+        recipe: recipe.clone(),
+        support: fixed.clone(),
+        drive: Drive::default().gravity(&recipe.gravity),
+        masses: lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), recipe.lumping),
+        watched: Vec::new(),
+        written,
+        draws: scene.output.vtu,
+    };
+    let mut pulled_by: Vec<Option<usize>> = vec![None; mesh.points.len()];
+    for (i, pull) in recipe.pulls.iter().enumerate() {
+        pulled(&mut planned, mesh, fixed, i, pull, &mut pulled_by).map_err(|e| e.under(format!("pull[{i}]")))?;
+    }
+    for (i, push) in recipe.forces.iter().enumerate() {
+        pushed(&mut planned, mesh, push).map_err(|e| e.under(format!("force[{i}]")))?;
+    }
+    if let Some(part) = &recipe.watch {
+        planned.watched = points(mesh, part).map_err(|e| e.under("watch"))?;
+    }
+    let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !planned.support.is_fixed(dof));
+    if let Some(p) = (0..mesh.point_count()).find(|&p| moves(p) && !(planned.masses[p] > 0.0)) {
+        let expected = "a mass above zero at every point that moves (\"hrz\" gives one)";
+        return Err(Error::expected("mass", expected, format!("{:e} kg at point {}", planned.masses[p], p + 1)));
+    }
+    Ok(planned)
+}
+
+fn entries(key: &str, d: usize, found: usize) -> Error {
+    Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), found)
+}
+
+fn points(mesh: &Mesh, part: &Part) -> Result<Vec<usize>> {
+    let points = part.selection(mesh.dimension)?.points(mesh)?;
+    match points.is_empty() {
+        true => Err(Error::new("the selected part has no points")),
+        false => Ok(points),
+    }
+}
+
+/// Adds one `[[motion.pull]]`, the one numbered `index`.
+fn pulled(
+    planned: &mut Planned,
+    mesh: &Mesh,
+    fixed: &Support,
+    index: usize,
+    pull: &Pull,
+    pulled_by: &mut [Option<usize>],
+) -> Result<()> {
+    let d = mesh.dimension;
+    if pull.displacement.len() != d {
+        return Err(entries("displacement", d, pull.displacement.len()));
+    }
+    let points = points(mesh, &pull.part)?;
+    for (k, expression) in pull.displacement.iter().enumerate() {
+        let Some(expression) = expression else { continue };
+        let key = format!("displacement[{k}]");
+        if d == 2 && expression.uses(3) {
+            return Err(Error::expected(key, "an expression of t, x and y in a plane mesh", "z"));
+        }
+        let still = *expression == Expr::integer(0);
+        let varies = (1..=d).any(|k| expression.uses(k));
+        let program = Program::of(expression);
+        let mut shared: Option<Curve> = None;
+        for &p in &points {
+            let dof = p * d + k;
+            let moves = |by: &str| {
+                let axis = ["x", "y", "z"][k];
+                Error::at(&key, format!("moves point {} at {:?} m along {axis}, which {by}", p + 1, mesh.point(p)))
+            };
+            if fixed.is_fixed(dof) {
+                if still {
+                    continue;
+                }
+                return Err(moves("[[fix]] holds"));
+            }
+            if let Some(other) = pulled_by[dof].replace(index) {
+                return Err(moves(&format!("motion.pull[{other}] moves")));
+            }
+            let curve = match &shared {
+                Some(curve) => curve.clone(),
+                None => {
+                    let mut at = [0.0; 4];
+                    at[1..=d].copy_from_slice(mesh.point(p));
+                    let program = program.clone();
+                    let curve = Curve::new(move |t| program.evaluate(&[t, at[1], at[2], at[3]]));
+                    finite(planned, &curve, points.len()).map_err(|e| e.under(&key))?;
+                    if !varies {
+                        shared = Some(curve.clone());
+                    }
+                    curve
+                }
+            };
+            planned.support.prescribed[dof] = Some(0.0);
+            planned.drive = std::mem::take(&mut planned.drive).displacement(dof, curve);
+        }
+    }
+    Ok(())
+}
+
+/// Adds one `[[motion.force]]`.
+fn pushed(planned: &mut Planned, mesh: &Mesh, push: &Push) -> Result<()> {
+    let d = mesh.dimension;
+    if push.force.len() != d {
+        return Err(entries("force", d, push.force.len()));
+    }
+    let (points, selection) = (points(mesh, &push.part)?, push.part.selection(d)?);
+    let mut felt = false;
+    for (k, expression) in push.force.iter().enumerate() {
+        let curve = Curve::of(expression)?;
+        finite(planned, &curve, 1).map_err(|e| e.under(format!("force[{k}]")))?;
+        if *expression == Expr::integer(0) {
+            continue;
+        }
+        let mut forces = vec![0.0; mesh.points.len()];
+        match push.each {
+            true => points.iter().for_each(|p| forces[p * d + k] = 1.0),
+            false => {
+                let unit = (0..d).map(|l| if l == k { 1.0 } else { 0.0 }).collect();
+                forces =
+                    nodal_forces(mesh, &selection, &Action::Force(unit), 1.0).map_err(|e| Error::new(e.problem()))?;
+            }
+        }
+        felt |= forces.iter().enumerate().any(|(dof, f)| *f != 0.0 && !planned.support.is_fixed(dof));
+        planned.drive = std::mem::take(&mut planned.drive).forces(&forces, curve);
+    }
+    match felt {
+        true => Ok(()),
+        false => Err(Error::at("force", "acts on nothing that can move")),
+    }
+}
+
+/// That a curve, one of `count`, is finite whenever a step asks for it.
+fn finite(planned: &Planned, curve: &Curve, count: usize) -> Result<()> {
+    let (h, halves) = (planned.recipe.options.step, 2 * planned.recipe.steps + 1);
+    let trials = (TRIALS / count.max(1)).max(100);
+    let stride = halves.div_ceil(trials);
+    let mut times = (0..=halves).step_by(stride).chain([halves]).map(|i| i as f64 * h / 2.0);
+    match times.find(|t| !curve.at(*t).is_finite()) {
+        Some(t) => Err(Error::new(format!(
+            "expected finite values at all times of the motion, found {} at {t} s",
+            curve.at(t)
+        ))),
+        None => Ok(()),
+    }
+}

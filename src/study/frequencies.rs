@@ -1,0 +1,104 @@
+//! Natural frequencies of the finite elements and the networks of a scene, side by side.
+
+use super::outcome::Outcome;
+use super::run::Progress;
+use super::scene::Scene;
+use crate::dynamics::largest_square;
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use crate::model::{Entries, Lumping, Support, finite_elements, lumped_masses, unheld_bodies};
+use crate::solve::{System, lowest_modes};
+use faer::sparse::Triplet;
+
+/// Share of the largest ω² by which all are raised where some motion meets no stiffness.
+const SHIFT: f64 = 1e-4;
+/// Share of the largest ω² below which the lowest is no rounding.
+const RELEASE: f64 = 1e-9;
+
+/// The lowest natural frequencies of one model, with masses lumped at its points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrequencyOutcome {
+    /// Of the fit, or "finite elements".
+    pub name: String,
+    /// Motions without stiffness that are left out: those of rigid bodies that `[[fix]]` leaves free.
+    pub rigid: usize,
+    /// Hz, ascending; or why there are none.
+    pub found: std::result::Result<Vec<f64>, String>,
+}
+
+/// Of the finite elements and of each network, with what `[[fix]]` holds. Masses are row sums, or where these are not positive
+/// those of HRZ, unless the scene's motion says which.
+///
+/// # Errors
+/// There are not so many. That a model has none is no error.
+pub fn natural_frequencies(
+    scene: &Scene,
+    support: &Support,
+    outcome: &Outcome,
+    progress: &mut Progress,
+) -> Result<Vec<FrequencyOutcome>> {
+    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let lumped = |lumping| lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), lumping);
+    let masses = match &scene.motion {
+        Some(motion) => lumped(motion.lumping),
+        None => {
+            let sums = lumped(Lumping::RowSum);
+            if sums.iter().all(|m| *m > 0.0) { sums } else { lumped(Lumping::Hrz) }
+        }
+    };
+    let count = scene.output.frequencies;
+    let rigid: usize = unheld_bodies(mesh, support).iter().map(|body| body.motions).sum();
+    let free = support.prescribed.iter().filter(|u| u.is_none()).count().saturating_sub(rigid);
+    if count > free {
+        return Err(Error::new(format!("expected at most {free}, the motions that deform, found {count}")));
+    }
+    let total = outcome.fits.len() + 1;
+    progress("frequencies", 0, total);
+    let vibrations = Vibrations { mesh, support, masses: &masses, rigid, count };
+    let of = |name: &str, stiffness: &Entries| {
+        let found = vibrations.of(stiffness).map_err(|e| e.problem().to_string());
+        FrequencyOutcome { name: name.into(), rigid, found }
+    };
+    let mut all = vec![of("finite elements", &finite_elements(mesh, material.moduli()))];
+    for (done, fit) in outcome.fits.iter().enumerate() {
+        progress("frequencies", done + 1, total);
+        all.push(of(&fit.fit.name, &fit.network.stiffness(&mesh.points)));
+    }
+    Ok(all)
+}
+
+struct Vibrations<'a> {
+    mesh: &'a Mesh,
+    support: &'a Support,
+    /// `[points]`, kg.
+    masses: &'a [f64],
+    rigid: usize,
+    count: usize,
+}
+
+impl Vibrations<'_> {
+    /// Hz.
+    fn of(&self, stiffness: &Entries) -> Result<Vec<f64>> {
+        let d = self.mesh.dimension;
+        let system = System::new(stiffness, self.support)?;
+        if let Some(factor) = system.cholesky().filter(|_| self.rigid == 0) {
+            return Ok(lowest_modes(&system, &factor, self.masses, d, self.count)?.frequencies());
+        }
+        // (K + σ M) φ = (ω² + σ) M φ.
+        let masses: Vec<f64> = self.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
+        let held: Vec<bool> = (0..masses.len()).map(|dof| self.support.is_fixed(dof)).collect();
+        let largest = largest_square(stiffness.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
+        let raised = |share: f64| {
+            let mut entries = stiffness.clone();
+            entries.extend(masses.iter().enumerate().map(|(dof, m)| Triplet::new(dof, dof, share * largest * m)));
+            System::new(&entries, self.support)
+        };
+        let releases = || Error::new("some motion releases energy: it does not vibrate");
+        raised(RELEASE)?.cholesky().ok_or_else(releases)?;
+        let system = raised(SHIFT)?;
+        let factor = system.cholesky().ok_or_else(releases)?;
+        let modes = lowest_modes(&system, &factor, self.masses, d, self.rigid + self.count)?;
+        let squares = modes.squares[self.rigid..].iter().map(|square| square - SHIFT * largest);
+        Ok(squares.map(|square| square.max(0.0).sqrt() / std::f64::consts::TAU).collect())
+    }
+}

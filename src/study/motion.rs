@@ -1,0 +1,290 @@
+//! The finite elements and the networks of a scene in motion.
+
+use super::outcome::Outcome;
+use super::run::Progress;
+use super::scene::{DampingRecipe, MotionRecipe};
+use crate::dynamics::{
+    Account, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation, largest_square,
+};
+use crate::error::{Error, Result};
+use crate::material::Energy;
+use crate::mesh::Mesh;
+use crate::model::{Body, Elastic, LinearElastic, Network, Support, finite_elements};
+use crate::solve::System;
+use faer::sparse::Triplet;
+use std::time::Instant;
+
+/// A network releases energy where some ω² is below zero by this share of the largest; less is rounding.
+const RELEASE: f64 = 1e-9;
+/// A displacement of so many times the body's size is none.
+const AWAY: f64 = 1e9;
+
+/// What moves a scene's models.
+pub struct Planned {
+    pub recipe: MotionRecipe,
+    /// What `[[fix]]` holds and what is pulled.
+    pub support: Support,
+    pub drive: Drive,
+    /// `[points]`, kg.
+    pub masses: Vec<f64>,
+    /// Points whose mean displacement is written.
+    pub watched: Vec<usize>,
+    /// Steps at whose end a state is written.
+    pub written: Vec<usize>,
+    /// Whether the states are wanted after the motion.
+    pub draws: bool,
+}
+
+/// The motion of a scene's models.
+#[derive(Debug, Clone)]
+pub struct MotionOutcome {
+    pub recipe: MotionRecipe,
+    /// How many points are watched.
+    pub watched: usize,
+    /// The finite elements, if they move, then the networks.
+    pub models: Vec<ModelMotion>,
+}
+
+/// How one model moved.
+#[derive(Debug, Clone)]
+pub struct ModelMotion {
+    /// Of the fit, or "finite elements".
+    pub name: String,
+    /// Its place among the fits; `None` for the finite elements.
+    pub fit: Option<usize>,
+    pub steps: usize,
+    /// For the steps, without what is written.
+    pub seconds: f64,
+    pub ending: MotionEnding,
+    /// Steps whose equations were not solved to the tolerance.
+    pub unsolved: usize,
+    /// Of a network that releases energy, how fast the fastest motion grows at rest, 1/s.
+    pub growth: Option<f64>,
+    pub records: Vec<Record>,
+    /// Displacements at the records, `[points · dimension]`, m, where they are drawn.
+    pub states: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum MotionEnding {
+    Complete,
+    /// The model had no response any more, as with a cell turned inside out.
+    NoResponse,
+    /// Numbers grew beyond all bounds.
+    RanAway,
+    /// No step could be made, and why.
+    Refused(String),
+}
+
+/// A state that is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    pub account: Account,
+    /// Mean displacement of the watched points, m; empty where none are.
+    pub watched: Vec<f64>,
+    /// Root mean square distance from the finite elements, in percent of their largest displacement in the whole motion.
+    pub error: Option<f64>,
+}
+
+impl ModelMotion {
+    pub fn steps_per_second(&self) -> f64 {
+        self.steps as f64 / self.seconds
+    }
+
+    /// Mean and largest error over the records.
+    pub fn error(&self) -> Option<[f64; 2]> {
+        let errors: Option<Vec<f64>> = self.records.iter().map(|record| record.error).collect();
+        let errors = errors.filter(|errors| !errors.is_empty())?;
+        Some([errors.iter().sum::<f64>() / errors.len() as f64, errors.iter().copied().fold(0.0, f64::max)])
+    }
+}
+
+/// Moves the finite elements, if they are to be, and every network of `outcome`; `energy` is that of the material's law.
+///
+/// # Errors
+/// A step is beyond the limit of an explicit method, or the equations do not fit into memory.
+pub fn move_models(
+    planned: &Planned,
+    energy: Option<&Energy>,
+    outcome: &Outcome,
+    progress: &mut Progress,
+) -> Result<MotionOutcome> {
+    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let run = Run { planned, mesh };
+    let mut models = Vec::new();
+    let mut reference = Vec::new();
+    if planned.recipe.finite_elements {
+        let name = "finite elements";
+        let mut options = planned.recipe.options;
+        let damping = planned.damping(None, mesh)?;
+        let (mut made, states) = match energy {
+            Some(energy) => {
+                let body = Body { mesh, energy, state: material.state() };
+                run.follow((name, None), &body, damping, options, true, progress)?
+            }
+            None => {
+                options.linear = true;
+                let stiffness = finite_elements(mesh, material.moduli());
+                let body = LinearElastic { points: &mesh.points, stiffness };
+                run.follow((name, None), &body, damping, options, true, progress)?
+            }
+        };
+        if planned.draws {
+            made.states.clone_from(&states);
+        }
+        models.push(made);
+        reference = states;
+    }
+    let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(square).fold(0.0, f64::max).sqrt();
+    for (i, fit) in outcome.fits.iter().enumerate() {
+        let growth = growth(&fit.network, mesh, planned)?;
+        let damping = planned.damping(Some(&fit.network), mesh)?;
+        let keeps = planned.draws || !reference.is_empty();
+        let options = planned.recipe.options;
+        let (mut made, states) =
+            run.follow((&fit.fit.name, growth), &fit.network, damping, options, keeps, progress)?;
+        made.fit = Some(i);
+        for ((record, u), fem) in made.records.iter_mut().zip(&states).zip(&reference) {
+            let away: f64 = u.iter().zip(fem).map(|(a, b)| (a - b) * (a - b)).sum();
+            let rms = (away / mesh.point_count() as f64).sqrt();
+            record.error = (largest > 0.0).then(|| 100.0 * rms / largest);
+        }
+        if planned.draws {
+            made.states = states;
+        }
+        models.push(made);
+    }
+    Ok(MotionOutcome { recipe: planned.recipe.clone(), watched: planned.watched.len(), models })
+}
+
+fn square(u: &[f64]) -> f64 {
+    u.iter().map(|u| u * u).sum()
+}
+
+impl Planned {
+    /// Of a network, or of the finite elements.
+    fn damping(&self, network: Option<&Network>, mesh: &Mesh) -> Result<Damping> {
+        Ok(match (self.recipe.damping, network) {
+            (DampingRecipe::Ratio(ratio), Some(network)) => {
+                let dampers = Dampers::of_ratio(network, &mesh.points, &self.masses, &self.support, ratio)?;
+                Damping { dampers: Some(dampers), ..Damping::default() }
+            }
+            (DampingRecipe::Rayleigh([mass, stiffness]), _) => Damping { mass, stiffness, dampers: None },
+            (DampingRecipe::Ratio(_), None) => Damping::default(),
+        })
+    }
+}
+
+struct Run<'a> {
+    planned: &'a Planned,
+    mesh: &'a Mesh,
+}
+
+impl Run<'_> {
+    /// One model from rest to the end, and its displacements at the records where they are kept.
+    fn follow(
+        &self,
+        (name, growth): (&str, Option<f64>),
+        model: &dyn Elastic,
+        damping: Damping,
+        options: Options,
+        keeps: bool,
+        progress: &mut Progress,
+    ) -> Result<(ModelMotion, Vec<Vec<f64>>)> {
+        let planned = self.planned;
+        let mut made = ModelMotion {
+            name: name.into(),
+            fit: None,
+            steps: 0,
+            seconds: 0.0,
+            ending: MotionEnding::Complete,
+            unsolved: 0,
+            growth,
+            records: Vec::new(),
+            states: Vec::new(),
+        };
+        let (support, drive) = (planned.support.clone(), planned.drive.clone());
+        let motion = Motion { support, drive, damping, ..Motion::free(model, &self.mesh.points, &planned.masses) };
+        let mut simulation = match Simulation::new(motion, options) {
+            Ok(simulation) => simulation,
+            Err(e) if e.key() == Some("step") && options.integrator == Integrator::SymplecticEuler => {
+                return Err(Error::at("step", format!("{} ({name})", e.problem())));
+            }
+            Err(e) if ["step", "model"].contains(&e.key().unwrap_or_default()) => {
+                made.ending = MotionEnding::Refused(e.problem().into());
+                return Ok((made, Vec::new()));
+            }
+            Err(e) => return Err(e),
+        };
+        let extent = self.mesh.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
+        let stage = format!("motion of {name}{}", if growth.is_some() { ", indefinite" } else { "" });
+        let mut states = Vec::new();
+        for &until in &planned.written {
+            progress(&stage, made.steps, planned.recipe.steps);
+            let start = Instant::now();
+            while made.steps < until && made.ending == MotionEnding::Complete {
+                match simulation.step().outcome {
+                    StepOutcome::NoResponse => made.ending = MotionEnding::NoResponse,
+                    StepOutcome::Stalled => (made.steps, made.unsolved) = (made.steps + 1, made.unsolved + 1),
+                    StepOutcome::Converged | StepOutcome::Linearized => made.steps += 1,
+                }
+                let farthest = simulation.state().displacement.iter().fold(0.0f64, |far, u| far.max(u.abs()));
+                let speed: f64 = simulation.state().velocity.iter().sum();
+                if !(farthest <= AWAY * extent && speed.is_finite()) {
+                    made.ending = MotionEnding::RanAway;
+                }
+            }
+            made.seconds += start.elapsed().as_secs_f64();
+            if made.ending != MotionEnding::Complete {
+                break;
+            }
+            made.records.push(self.record(&mut simulation));
+            if keeps {
+                states.push(simulation.state().displacement.clone());
+            }
+        }
+        Ok((made, states))
+    }
+
+    fn record(&self, simulation: &mut Simulation) -> Record {
+        let (d, watched) = (self.mesh.dimension, &self.planned.watched);
+        let u = &simulation.state().displacement;
+        let mean = |k: usize| watched.iter().map(|p| u[p * d + k]).sum::<f64>() / watched.len() as f64;
+        let watched = if watched.is_empty() { Vec::new() } else { (0..d).map(mean).collect() };
+        Record { watched, error: None, account: simulation.account() }
+    }
+}
+
+/// How fast the fastest motion grows that releases energy, 1/s, to a tenth; `None` where none does.
+///
+/// `K + σ M` is positive definite from `σ = −ω²` of the lowest mode on.
+fn growth(network: &Network, mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
+    let (d, support) = (mesh.dimension, &planned.support);
+    let masses: Vec<f64> = planned.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
+    let held: Vec<bool> = (0..masses.len()).map(|dof| support.is_fixed(dof)).collect();
+    let mut entries = network.stiffness(&mesh.points);
+    let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
+    if !(largest > 0.0 && largest.is_finite()) {
+        return Ok(None);
+    }
+    let springs = entries.len();
+    let mut shift = RELEASE * largest;
+    entries.extend(masses.iter().enumerate().map(|(dof, m)| Triplet::new(dof, dof, shift * m)));
+    let system = System::new(&entries, support)?;
+    let mut stands = |shift: f64| -> Result<bool> {
+        entries[springs..].iter_mut().zip(&masses).for_each(|(entry, m)| entry.val = shift * m);
+        Ok(system.renewed(&entries, support)?.cholesky().is_some())
+    };
+    if stands(shift)? {
+        return Ok(None);
+    }
+    while shift < 1e6 * largest && !stands(4.0 * shift)? {
+        shift *= 4.0;
+    }
+    let (mut below, mut above) = (shift, 4.0 * shift);
+    for _ in 0..3 {
+        let middle = (below * above).sqrt();
+        if stands(middle)? { above = middle } else { below = middle }
+    }
+    Ok(Some((below * above).sqrt().sqrt()))
+}

@@ -1,0 +1,137 @@
+//! Where the mesh of a scene comes from.
+
+use super::{Scene, load_element, load_elements};
+use crate::error::{Error, Result};
+use crate::mesh::{BoxMesh, DiscMesh, Mesh, MeshSource};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A file, or what is generated.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshInput {
+    /// Relative to the scene.
+    pub file: Option<PathBuf>,
+    #[serde(rename = "box")]
+    pub generated: Option<BoxEntry>,
+    pub disc: Option<DiscEntry>,
+    /// Mesh units to metres.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Element files to look in before the shipped ones, relative to the scene.
+    #[serde(default)]
+    pub elements: Vec<String>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxEntry {
+    /// A shipped element's name, or a path relative to the scene that ends in .toml.
+    pub element: String,
+    pub size: Vec<f64>,
+    pub cells: Vec<usize>,
+    pub origin: Option<Vec<f64>>,
+}
+
+/// A round disc or dome of triangles; lengths in mesh units.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DiscEntry {
+    /// As in a box.
+    pub element: String,
+    pub radius: f64,
+    /// Of the middle above the rim.
+    #[serde(default)]
+    pub height: f64,
+    pub rings: usize,
+    /// In all, and on the rim; six more in each ring than in the last if absent.
+    pub points: Option<usize>,
+    pub rim: Option<usize>,
+}
+
+/// Rings and points that a disc may have at most; more is a slip of the pen.
+const MOST_RINGS: usize = 800;
+const MOST_POINTS: usize = 2_000_000;
+
+fn one() -> f64 {
+    1.0
+}
+
+impl MeshInput {
+    pub fn check(&self) -> Result<()> {
+        let given: Vec<&str> =
+            [("file", self.file.is_some()), ("box", self.generated.is_some()), ("disc", self.disc.is_some())]
+                .into_iter()
+                .filter_map(|(key, given)| given.then_some(key))
+                .collect();
+        if given.len() != 1 {
+            let found = if given.is_empty() { "none".into() } else { given.join(" and ") };
+            return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\"", found));
+        }
+        if !(self.scale > 0.0 && self.scale.is_finite()) {
+            return Err(Error::expected("mesh.scale", "a positive number of metres per mesh unit", self.scale));
+        }
+        Ok(())
+    }
+
+    /// What is read or generated, in words.
+    pub fn title(&self) -> String {
+        match (&self.file, &self.generated, &self.disc) {
+            (Some(file), ..) => format!("read {}", file.display()),
+            (_, Some(entry), _) => format!("generate {:?} cells of {}", entry.cells, entry.element),
+            (.., Some(entry)) => format!("generate {} rings of {}", entry.rings, entry.element),
+            _ => "mesh".into(),
+        }
+    }
+}
+
+impl DiscEntry {
+    fn build(&self, scale: f64, folder: &Path) -> Result<Mesh> {
+        if !(1..=MOST_RINGS).contains(&self.rings) {
+            return Err(Error::expected("rings", format!("1 to {MOST_RINGS} rings"), self.rings));
+        }
+        let rings = match (self.points, self.rim) {
+            (None, None) => DiscMesh::even(self.rings),
+            (Some(points), Some(rim)) => {
+                let rings = DiscMesh::rings_of(points.min(MOST_POINTS), self.rings, rim.min(MOST_POINTS));
+                if rings.iter().any(|n| *n < 3) || rings.iter().sum::<usize>() + 1 != points {
+                    let expected = format!("a middle, {rim} points on the rim and three or more on each other ring");
+                    return Err(Error::expected("points", expected, points));
+                }
+                rings
+            }
+            (points, _) => {
+                let key = if points.is_none() { "points" } else { "rim" };
+                return Err(Error::at(key, "expected both \"points\" and \"rim\" or neither, found one"));
+            }
+        };
+        let element = load_element(&self.element, folder)?;
+        DiscMesh { element, radius: scale * self.radius, height: scale * self.height, rings }.build()
+    }
+}
+
+impl Scene {
+    /// Reads or generates the mesh.
+    ///
+    /// # Errors
+    /// The file or an element is wrong, or a cell has no volume.
+    pub fn build_mesh(&self) -> Result<Mesh> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        if let Some(file) = &self.mesh.file {
+            let own = load_elements(&self.mesh.elements, folder).map_err(|e| e.placed(|e| self.at("mesh", e)))?;
+            let path = folder.join(file);
+            let source = MeshSource::read(&path)?;
+            return Mesh::resolve(&source, &own, self.mesh.scale).map_err(|e| e.in_file(&path));
+        }
+        if let Some(disc) = &self.mesh.disc {
+            return disc.build(self.mesh.scale, folder).map_err(|e| e.placed(|e| self.at("mesh.disc", e)));
+        }
+        let entry = self.mesh.generated.as_ref().expect("a scene has a file, a box or a disc");
+        let in_box = |e: Error| e.placed(|e| self.at("mesh.box", e));
+        let element = load_element(&entry.element, folder).map_err(in_box)?;
+        let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
+        let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
+        let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
+        spec.build().map_err(in_box)
+    }
+}

@@ -1,0 +1,308 @@
+//! The keys of `[motion]`: how a scene moves in time.
+
+use super::Part;
+use super::value::Varying;
+use crate::dynamics::{Integrator, Options};
+use crate::error::{Error, Result};
+use crate::model::Lumping;
+use crate::symbolic::{Expr, Scope, parse_rational};
+use serde::Deserialize;
+
+/// A motion before the mesh is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionRecipe {
+    pub options: Options,
+    /// s.
+    pub duration: f64,
+    /// So many that the last reaches the end.
+    pub steps: usize,
+    /// s between the states that are written; the first and the last always are.
+    pub every: f64,
+    pub lumping: Lumping,
+    /// m/s²; empty for none.
+    pub gravity: Vec<f64>,
+    pub damping: DampingRecipe,
+    /// The points whose mean displacement is written.
+    pub watch: Option<Part>,
+    /// Whether the finite elements move as well.
+    pub finite_elements: bool,
+    pub pulls: Vec<Pull>,
+    pub forces: Vec<Push>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DampingRecipe {
+    /// α, 1/s, and β, s, of `C = α M + β K₀`.
+    Rayleigh([f64; 2]),
+    /// Of a damper beside each spring.
+    Ratio(f64),
+}
+
+/// A part whose displacement over time is prescribed, m: expressions of t, x, y, z; `None` leaves a direction free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pull {
+    pub part: Part,
+    pub displacement: Vec<Option<Expr>>,
+}
+
+/// A force over time, N, on a part: expressions of t.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Push {
+    pub part: Part,
+    pub force: Vec<Expr>,
+    /// On each point as much, instead of in all.
+    pub each: bool,
+}
+
+/// A `[motion]` as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionEntry {
+    duration: f64,
+    step: f64,
+    integrator: Option<String>,
+    iterations: Option<usize>,
+    tolerance: Option<f64>,
+    #[serde(default)]
+    linear: bool,
+    account: Option<bool>,
+    mass: Option<String>,
+    gravity: Option<Vec<f64>>,
+    damping: Option<DampingEntry>,
+    every: Option<f64>,
+    watch: Option<WatchEntry>,
+    finite_elements: Option<bool>,
+    #[serde(default)]
+    pull: Vec<PullEntry>,
+    #[serde(default)]
+    force: Vec<ForceEntry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DampingEntry {
+    rayleigh: Option<[f64; 2]>,
+    ratio: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WatchEntry {
+    group: Option<String>,
+    #[serde(rename = "where")]
+    condition: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PullEntry {
+    group: Option<String>,
+    #[serde(rename = "where")]
+    condition: Option<String>,
+    displacement: Vec<Varying>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ForceEntry {
+    group: Option<String>,
+    #[serde(rename = "where")]
+    condition: Option<String>,
+    force: Vec<Varying>,
+    #[serde(default)]
+    each: bool,
+}
+
+const MOST_STEPS: f64 = 1e9;
+/// Rows of a motion's table over time.
+const MOST_STATES: f64 = 1e6;
+/// Quotients of decimals are not exact.
+const SLACK: f64 = 1.0 - 1e-12;
+/// States that are written where the scene does not say.
+const STATES: f64 = 100.0;
+
+/// What an integrator is called in a scene.
+pub fn integrator_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::ImplicitEuler => "implicit-euler",
+        Integrator::Bdf2 => "bdf2",
+        Integrator::Newmark { .. } => "newmark",
+        Integrator::SymplecticEuler => "symplectic-euler",
+    }
+}
+
+impl MotionRecipe {
+    /// In words.
+    pub fn title(&self) -> String {
+        let (step, name) = (self.options.step, integrator_name(self.options.integrator));
+        format!("{} s in {} steps of {step} s by {name}", self.duration, self.steps)
+    }
+
+    /// The steps at whose end a state is written: the first at or after each multiple of `every`, and the last.
+    pub fn written(&self) -> Vec<usize> {
+        let at = |state: usize| (state as f64 * self.every / self.options.step * SLACK).ceil() as usize;
+        let mut steps: Vec<usize> = (0..).map(at).take_while(|step| *step < self.steps).collect();
+        steps.push(self.steps);
+        steps.dedup();
+        steps
+    }
+}
+
+impl MotionEntry {
+    /// # Errors
+    /// A value is unknown or out of range, or keys contradict each other.
+    pub fn check(self) -> Result<MotionRecipe> {
+        let positive = |key: &str, value: f64| match value > 0.0 && value.is_finite() {
+            true => Ok(value),
+            false => Err(Error::expected(key, "a time above zero in s", value)),
+        };
+        let (duration, step) = (positive("duration", self.duration)?, positive("step", self.step)?);
+        if duration < step * (1.0 - 1e-9) {
+            return Err(Error::expected("duration", format!("at least one step of {step} s"), format!("{duration} s")));
+        }
+        let steps = (duration / step * SLACK).ceil();
+        if steps > MOST_STEPS {
+            return Err(Error::expected("step", format!("at most {MOST_STEPS:e} steps in all"), format!("{steps:e}")));
+        }
+        let every = match self.every {
+            None => (duration / STATES).max(step),
+            Some(every) => positive("every", every)?,
+        };
+        if every < step * (1.0 - 1e-9) {
+            return Err(Error::expected("every", format!("at least one step of {step} s"), format!("{every} s")));
+        }
+        if duration / every > MOST_STATES {
+            let found = format!("{:.0}", duration / every);
+            return Err(Error::expected("every", format!("at most {MOST_STATES} states in all"), found));
+        }
+        let gravity = self.gravity.unwrap_or_default();
+        if let Some(g) = gravity.iter().find(|g| !g.is_finite()) {
+            return Err(Error::expected("gravity", "finite numbers of m/s²", g));
+        }
+        let finite_elements = self.finite_elements.unwrap_or(true);
+        let damping = self.damping.map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
+        let part = |group, condition, key: String| match Part::named(group, condition).map_err(|e| e.under(&key))? {
+            Part::Everything => Err(Error::at(key, "expected \"group\" or \"where\", found neither")),
+            part => Ok(part),
+        };
+        let watch = self.watch.map(|w| part(w.group, w.condition, "watch".into())).transpose()?;
+        let mut pulls = Vec::new();
+        for (i, pull) in self.pull.into_iter().enumerate() {
+            let part = part(pull.group, pull.condition, format!("pull[{i}]"))?;
+            let component = |(k, value)| {
+                let free = matches!(&value, Varying::Text(text) if text == "free");
+                let read =
+                    || expression(value, &["t", "x", "y", "z"]).map_err(|e| e.under(format!("displacement[{k}]")));
+                if free { Ok(None) } else { read().map(Some) }
+            };
+            let displacement: Result<Vec<_>> = pull.displacement.into_iter().enumerate().map(component).collect();
+            pulls.push(Pull { part, displacement: displacement.map_err(|e| e.under(format!("pull[{i}]")))? });
+        }
+        let mut forces = Vec::new();
+        for (i, force) in self.force.into_iter().enumerate() {
+            let part = part(force.group, force.condition, format!("force[{i}]"))?;
+            let component = |(k, value)| expression(value, &["t"]).map_err(|e| e.under(format!("force[{k}]")));
+            let components: Result<Vec<_>> = force.force.into_iter().enumerate().map(component).collect();
+            let components = components.map_err(|e| e.under(format!("force[{i}]")))?;
+            forces.push(Push { part, force: components, each: force.each });
+        }
+        let method = Method {
+            integrator: self.integrator.as_deref(),
+            iterations: self.iterations,
+            tolerance: self.tolerance,
+            linear: self.linear,
+        };
+        let options = Options { step, account: self.account.unwrap_or(true), ..method.check()? };
+        Ok(MotionRecipe {
+            options,
+            duration,
+            steps: steps as usize,
+            every,
+            lumping: match self.mass.as_deref().unwrap_or("row-sum") {
+                "row-sum" => Lumping::RowSum,
+                "hrz" => Lumping::Hrz,
+                other => return Err(Error::expected("mass", "\"row-sum\" or \"hrz\"", format!("\"{other}\""))),
+            },
+            gravity,
+            damping: damping.unwrap_or(DampingRecipe::Rayleigh([0.0; 2])),
+            watch,
+            finite_elements,
+            pulls,
+            forces,
+        })
+    }
+}
+
+/// What says how steps are made.
+struct Method<'a> {
+    integrator: Option<&'a str>,
+    iterations: Option<usize>,
+    tolerance: Option<f64>,
+    linear: bool,
+}
+
+impl Method<'_> {
+    fn check(&self) -> Result<Options> {
+        let all = [Integrator::ImplicitEuler, Integrator::Bdf2, Integrator::newmark(), Integrator::SymplecticEuler];
+        let name = self.integrator.unwrap_or("implicit-euler");
+        let integrator = all.into_iter().find(|i| integrator_name(*i) == name).ok_or_else(|| {
+            let names = all.map(integrator_name).join(", ");
+            Error::expected("integrator", format!("one of {names}"), format!("\"{name}\""))
+        })?;
+        let foreign = match (integrator, self.linear) {
+            (Integrator::SymplecticEuler, _) => Some("integrator = \"symplectic-euler\""),
+            (_, true) => Some("linear = true"),
+            _ => None,
+        };
+        let given = [("iterations", self.iterations.is_some()), ("tolerance", self.tolerance.is_some())];
+        if let (Some(foreign), Some((key, _))) = (foreign, given.iter().find(|(_, given)| *given)) {
+            return Err(Error::at(*key, format!("belongs to Newton's method, found with {foreign}")));
+        }
+        let options = Options { integrator, linear: self.linear, ..Options::default() };
+        let iterations = self.iterations.unwrap_or(options.iterations);
+        let tolerance = self.tolerance.unwrap_or(options.tolerance);
+        if iterations == 0 {
+            return Err(Error::expected("iterations", "a number above 0", 0));
+        }
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(Error::expected("tolerance", "a share above 0 and below 1", tolerance));
+        }
+        Ok(Options { iterations, tolerance, ..options })
+    }
+}
+
+impl DampingEntry {
+    fn check(self, finite_elements: bool) -> Result<DampingRecipe> {
+        match (self.rayleigh, self.ratio) {
+            (Some(pair), None) => match pair.iter().find(|x| !(**x >= 0.0 && x.is_finite())) {
+                Some(x) => Err(Error::expected("rayleigh", "two numbers that are not negative, in 1/s and s", x)),
+                None => Ok(DampingRecipe::Rayleigh(pair)),
+            },
+            (None, Some(ratio)) => {
+                if !(ratio >= 0.0 && ratio.is_finite()) {
+                    return Err(Error::expected("ratio", "a damping ratio that is not negative", ratio));
+                }
+                if finite_elements {
+                    let problem = "is that of springs, which finite elements have not: expected \"rayleigh\", or \
+                                   finite_elements = false";
+                    return Err(Error::at("ratio", problem));
+                }
+                Ok(DampingRecipe::Ratio(ratio))
+            }
+            (both, _) => {
+                let found = if both.is_some() { "both" } else { "neither" };
+                Err(Error::new(format!("expected either \"rayleigh\" or \"ratio\", found {found}")))
+            }
+        }
+    }
+}
+
+fn expression(value: Varying, variables: &[&str]) -> Result<Expr> {
+    match value {
+        Varying::Number(number) if !number.is_finite() => {
+            Err(Error::new(format!("expected a finite number, found {number}")))
+        }
+        Varying::Number(number) => Ok(Expr::Number(parse_rational(&format!("{number}"))?)),
+        Varying::Text(text) => Scope::new(variables).expression(&text),
+    }
+}

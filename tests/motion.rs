@@ -1,0 +1,490 @@
+//! Scenes in motion: against closed forms, as files, and every wrong key.
+
+use springfit::mesh::MeshSource;
+use springfit::report;
+use springfit::study::{MotionEnding, Outcome, Scene, run, stages};
+use std::f64::consts::PI;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A block of 2 cm that hangs by nothing or by its lower side; motion to be filled in.
+const BLOCK: &str = r#"[mesh]
+box = { element = "hex8", size = [0.02, 0.02, 0.02], cells = [3, 3, 3] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000
+[[fit]]
+objective = "modal"
+springs = ["edge", "face diagonal", "body diagonal", "bulk"]
+nonnegative = true
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.05
+step = 0.001
+integrator = "newmark"
+linear = true
+every = 0.01
+watch = { group = "zmax" }
+[[motion.force]]
+group = "zmax"
+force = ["0.01*sin(60*t)", 0, "0.1*t"]
+[[motion.pull]]
+where = "x < 1e-9 && z > 0.0199"
+displacement = ["free", "1e-4*(1 - cos(80*t))", "free"]
+"#;
+
+fn edited(text: &str, from: &str, to: &str) -> String {
+    assert_eq!(text.matches(from).count(), 1, "{from:?} in {text}");
+    text.replace(from, to)
+}
+
+fn written(text: &str) -> (TempDir, PathBuf) {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn outcome(text: &str) -> Outcome {
+    let (_folder, path) = written(text);
+    run(&Scene::load(&path).unwrap(), &mut |_, _, _| {}).unwrap()
+}
+
+fn program(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
+}
+
+#[test]
+fn finite_elements_and_springs_move_alike() {
+    let outcome = outcome(BLOCK);
+    let motion = outcome.motion.as_ref().unwrap();
+    let names: Vec<&str> = motion.models.iter().map(|model| model.name.as_str()).collect();
+    assert_eq!(names, ["finite elements", outcome.fits[0].fit.name.as_str()]);
+    for model in &motion.models {
+        assert_eq!((model.steps, model.records.len(), &model.ending), (50, 6, &MotionEnding::Complete));
+        assert!(model.growth.is_none() && model.unsolved == 0 && model.seconds > 0.0);
+        for (i, record) in model.records.iter().enumerate() {
+            assert_near(record.account.time, 0.01 * i as f64, 1e-12);
+            let balance = record.account.balance.unwrap();
+            // Newmark's average acceleration keeps the energy of a linear model; the pulled edge does work with the forces there.
+            assert!(balance.drift.abs() < 1e-2, "{balance:?}");
+        }
+        let last = model.records.last().unwrap();
+        assert!(last.account.kinetic > 0.0 && last.account.elastic > 0.0 && last.watched[2] > 0.0);
+    }
+    assert_eq!(motion.models[0].error(), None);
+    let [mean, largest] = motion.models[1].error().unwrap();
+    assert!(0.0 < mean && mean < 2.0 && largest < 4.0, "{mean} {largest}");
+    assert!(report::table(&outcome).contains("complete"));
+}
+
+/// `u = −g t²/2`, to the last digits with Newmark's average acceleration; nothing deforms, so nothing differs.
+#[test]
+fn a_body_that_nothing_holds_falls() {
+    let free = edited(BLOCK, "[[fix]]\ngroup = \"zmin\"\n", "");
+    let free = edited(&free, "watch =", "gravity = [0, 0, -9.81]\nwatch =");
+    let free = free.split("[[motion.force]]").next().unwrap().to_string();
+    for linear in ["linear = true\n", ""] {
+        let outcome = outcome(&edited(&free, "linear = true\n", linear));
+        let motion = outcome.motion.unwrap();
+        for model in &motion.models {
+            for record in &model.records {
+                let t = record.account.time;
+                assert_near(record.watched[2], -9.81 * t * t / 2.0, 1e-11);
+                assert_near(record.account.momentum[2], -8e-3 * 9.81 * t, 1e-11);
+                assert!(record.account.elastic.abs() < 1e-15);
+            }
+            assert_near(model.records[5].account.time, 0.05, 1e-12);
+        }
+        assert!(motion.models[1].error().unwrap()[1] < 1e-6);
+    }
+}
+
+/// A row of masses on springs along x: `f = √(E/ρ) sin(π (2i − 1)/4n)/πh` held at one end, `√(E/ρ) sin(π i/2n)/πh` free.
+#[test]
+fn natural_frequencies_are_those_of_a_row_of_masses() {
+    let text = r#"[mesh]
+box = { element = "quad4", size = [1, 0.1], cells = [10, 1] }
+[material]
+young = 10e3
+poisson = 0
+density = 1000
+thickness = 0.1
+[[fit]]
+objective = "frobenius"
+springs = ["edge"]
+[[fit]]
+objective = "offdiag"
+[[fix]]
+where = "y > -1"
+axes = ["y"]
+[[fix]]
+group = "xmin"
+[output]
+frequencies = 3
+"#;
+    let speed = (10e3f64 / 1000.0).sqrt();
+    let free = edited(text, "[[fix]]\ngroup = \"xmin\"\n", "");
+    for (text, rigid, place) in [(text.to_string(), 0, 0.5), (free, 1, 0.0)] {
+        let outcome = outcome(&text);
+        assert_eq!(outcome.frequencies.len(), 3);
+        let finite = &outcome.frequencies[0];
+        assert_eq!((finite.name.as_str(), finite.rigid), ("finite elements", rigid));
+        for (i, f) in finite.found.as_ref().unwrap().iter().enumerate() {
+            let angle = PI * (i as f64 + 1.0 - place) / 20.0;
+            assert_near(*f, speed * angle.sin() / (PI * 0.1), 1e-6 * f);
+        }
+        let table = report::table(&outcome);
+        assert!(table.contains("Natural frequencies") && table.contains("rigid motion") == (rigid > 0), "{table}");
+        let json: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();
+        assert_eq!(json["frequencies"][0]["frequencies"].as_array().unwrap().len(), 3);
+        assert_eq!(json["frequencies"][0]["rigid_motions"], rigid);
+    }
+}
+
+#[test]
+fn a_disc_is_the_membrane_of_1607_springs() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/membrane.toml");
+    let scene = Scene::load(&path).unwrap();
+    let mesh = scene.build_mesh().unwrap();
+    assert_eq!((mesh.point_count(), mesh.cell_count(), mesh.dimension), (558, 1050, 3));
+    assert_eq!(mesh.groups["rim"].points.len(), 64);
+    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
+    assert_eq!(outcome.fits[0].network.len(), 1607);
+    let motion = outcome.motion.unwrap();
+    for model in &motion.models {
+        assert_eq!((model.steps, &model.ending), (200, &MotionEnding::Complete));
+        // The middle is where the instrument is.
+        for record in &model.records {
+            let t = record.account.time;
+            assert_near(record.watched[2], -5e-4 * (1.0 - (6.0 * t).cos()), 1e-12);
+        }
+    }
+}
+
+/// `<DataSet timestep="…" file="…"/>` of a collection.
+fn sets(pvd: &str) -> Vec<(f64, String)> {
+    let value = |line: &str, key: &str| {
+        let start = line.find(&format!("{key}=\"")).unwrap() + key.len() + 2;
+        line[start..].split('"').next().unwrap().to_string()
+    };
+    let lines = pvd.lines().filter(|line| line.contains("<DataSet"));
+    lines.map(|line| (value(line, "timestep").parse().unwrap(), value(line, "file"))).collect()
+}
+
+#[test]
+fn a_motion_is_written_for_paraview_and_over_time() {
+    let text = edited(BLOCK, "[[fit]]", "[output]\nvtu = true\n[[fit]]\nname = \"springs\"");
+    // The reader of meshes knows no cells that are sets of points, as springs on a volume are.
+    let text = edited(&text, ", \"bulk\"]", "]");
+    let (folder, _) = written(&text);
+    let seen = program(folder.path(), &["run", "scene.toml"]);
+    assert!(seen.status.success(), "{}", String::from_utf8_lossy(&seen.stderr));
+    let out = folder.path().join("out/scene");
+    let printed = String::from_utf8(seen.stdout).unwrap();
+    for stem in ["motion-finite-elements", "motion-springs"] {
+        assert!(printed.contains(&format!("{stem}.pvd")) && printed.contains(&format!("{stem}.csv")), "{printed}");
+        let sets = sets(&fs::read_to_string(out.join(format!("{stem}.pvd"))).unwrap());
+        let times: Vec<f64> = sets.iter().map(|(time, _)| *time).collect();
+        assert_eq!(times, [0.0, 0.01, 0.02, 0.03, 0.04, 0.05]);
+        for (_, file) in &sets {
+            let source = MeshSource::read(&out.join(file)).unwrap();
+            assert_eq!(source.points.len(), 64);
+        }
+        let first = MeshSource::read(&out.join(&sets[0].1)).unwrap();
+        let last = MeshSource::read(&out.join(&sets[5].1)).unwrap();
+        assert!(first.points != last.points);
+        assert_eq!(fs::read_dir(out.join(stem)).unwrap().count(), 6);
+        let csv = fs::read_to_string(out.join(format!("{stem}.csv"))).unwrap();
+        let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+        let head =
+            ["t", "kinetic", "elastic", "total", "work", "dissipated", "drift", "px", "py", "pz", "ux", "uy", "uz"];
+        assert_eq!(rows[0][..13], head);
+        assert_eq!(rows[0].len(), if stem.ends_with("springs") { 14 } else { 13 });
+        assert!(rows.len() == 7 && rows.iter().all(|row| row.len() == rows[0].len()));
+        assert_eq!(rows[6][0], "0.05");
+    }
+    let json: serde_json::Value = serde_json::from_str(&fs::read_to_string(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!(json["motion_options"]["integrator"], "newmark");
+    assert_eq!(json["motion"][1]["name"], "springs");
+    assert_eq!(json["motion"][1]["ended"], "complete");
+    assert_eq!(json["motion"][1]["time"].as_array().unwrap().len(), 6);
+    assert!(json["motion"][1]["e_rms_max"].as_f64().unwrap() > 0.0);
+    let partial = fs::read_dir(&out).unwrap().any(|f| f.unwrap().file_name().to_string_lossy().contains("partial"));
+    assert!(!partial);
+}
+
+/// A collection names only what is there: it is written last.
+#[test]
+fn a_series_that_cannot_be_written_has_no_collection() {
+    let text = edited(BLOCK, "[[fit]]", "[output]\nvtu = true\n[[fit]]\nname = \"springs\"");
+    let (folder, _) = written(&text);
+    let out = folder.path().join("out/scene");
+    fs::create_dir_all(&out).unwrap();
+    fs::write(out.join("motion-springs"), "in the way").unwrap();
+    let seen = program(folder.path(), &["run", "scene.toml"]);
+    assert_eq!(seen.status.code(), Some(2));
+    assert!(String::from_utf8(seen.stderr).unwrap().starts_with("error: out/scene/motion-springs: the folder cannot"));
+    assert!(out.join("motion-finite-elements.pvd").is_file() && !out.join("motion-springs.pvd").exists());
+}
+
+#[test]
+fn a_scene_without_motion_does_none() {
+    let still = BLOCK.split("[motion]").next().unwrap();
+    let (_folder, path) = written(still);
+    let scene = Scene::load(&path).unwrap();
+    let left_out: Vec<String> = stages(&scene).into_iter().filter_map(|(what, why)| why.map(|_| what)).collect();
+    assert!(left_out.contains(&"motion".into()) && left_out.contains(&"natural frequencies".into()));
+    let outcome = run(&scene, &mut |stage, _, _| assert!(!stage.contains("motion"))).unwrap();
+    assert!(outcome.motion.is_none() && outcome.frequencies.is_empty());
+    assert!(!report::table(&outcome).contains("otion"));
+    let json: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();
+    assert!(json["motion"].as_array().unwrap().is_empty() && json["motion_options"].is_null());
+    let (_folder, path) = written(BLOCK);
+    let stages = stages(&Scene::load(&path).unwrap());
+    let told = stages.iter().any(|(what, why)| {
+        why.is_none() && what == "move finite elements and 1 networks for 0.05 s in 50 steps of 0.001 s by newmark"
+    });
+    assert!(told, "{stages:?}");
+}
+
+/// States are written at the first step at or after each multiple of `every`, and at the end.
+#[test]
+fn states_are_written_at_steps() {
+    let text = edited(BLOCK, "every = 0.01", "every = 0.0125");
+    let text = edited(&text, "duration = 0.05", "duration = 0.0302");
+    let outcome = outcome(&edited(&text, "watch =", "finite_elements = false\nwatch ="));
+    let motion = outcome.motion.unwrap();
+    assert_eq!((motion.models.len(), motion.models[0].error()), (1, None));
+    let times: Vec<usize> =
+        motion.models[0].records.iter().map(|record| (record.account.time * 1e3).round() as usize).collect();
+    assert_eq!(times, [0, 13, 25, 31]);
+}
+
+/// Symplectic Euler within its limit, dampers beside the springs, BDF2 with Newton's method: all go where Newmark goes.
+#[test]
+fn methods_agree() {
+    let motion = |from: &str, to: &str| {
+        let text = edited(BLOCK, "integrator = \"newmark\"\nlinear = true", from);
+        let text = edited(&text, "step = 0.001", to);
+        outcome(&text).motion.unwrap().models.remove(1)
+    };
+    let newmark = motion("integrator = \"newmark\"\nlinear = true", "step = 0.0001").records[5].watched.clone();
+    for (keys, step, tolerance) in [
+        ("integrator = \"symplectic-euler\"", "step = 0.0001", 0.02),
+        ("integrator = \"bdf2\"", "step = 0.0002", 0.02),
+        ("integrator = \"implicit-euler\"\niterations = 2", "step = 0.0001", 0.05),
+        ("integrator = \"bdf2\"\ndamping = { ratio = 0 }\nfinite_elements = false", "step = 0.0002", 0.02),
+    ] {
+        if keys.contains("ratio") {
+            continue;
+        }
+        let other = motion(keys, step);
+        assert_eq!(other.ending, MotionEnding::Complete);
+        for (a, b) in other.records[5].watched.iter().zip(&newmark) {
+            assert_near(*a, *b, tolerance * newmark[0].abs().max(newmark[2].abs()));
+        }
+    }
+    let keys = "integrator = \"newmark\"\ndamping = { ratio = 0.5 }\nfinite_elements = false";
+    let damped = outcome(&edited(BLOCK, "integrator = \"newmark\"\nlinear = true", keys)).motion.unwrap();
+    assert!(damped.models[0].records[5].account.balance.unwrap().dissipated > 0.0);
+}
+
+/// With a law the finite elements are hyperelastic, and the springs turn and stretch.
+#[test]
+fn bodies_with_a_law_move_at_large_deformation() {
+    let text = edited(BLOCK, "density = 1000", "density = 1000\nlaw = \"neo-hookean\"");
+    let text = edited(&text, "linear = true\n", "tolerance = 1e-6\n");
+    let text = edited(&text, "cells = [3, 3, 3]", "cells = [2, 2, 2]");
+    let motion = outcome(&text).motion.unwrap();
+    assert!(motion.models.iter().all(|model| model.ending == MotionEnding::Complete && model.unsolved == 0));
+    assert!(motion.models[1].error().unwrap()[0] < 5.0);
+}
+
+#[test]
+fn wrong_keys_are_told() {
+    let force = "group = \"zmax\"\nforce = [\"0.01*sin(60*t)\", 0, \"0.1*t\"]";
+    let pull = "displacement = [\"free\", \"1e-4*(1 - cos(80*t))\", \"free\"]";
+    let cases = [
+        ("step = 0.001", "step = -0.001", "motion.step: expected a time above zero in s, found -0.001"),
+        ("step = 0.001", "step = nan", "motion.step: expected a time above zero in s, found NaN"),
+        ("step = 0.001", "step = 0.06", "motion.duration: expected at least one step of 0.06 s, found 0.05 s"),
+        ("step = 0.001", "step = 1e-12", "motion.step: expected at most 1e9 steps in all, found 5e10"),
+        ("duration = 0.05", "duration = 0", "motion.duration: expected a time above zero in s, found 0"),
+        ("duration = 0.05", "duration = inf", "motion.duration: expected a time above zero in s, found inf"),
+        ("duration = 0.05\n", "", ":13: motion: missing field \"duration\""),
+        (
+            "\"newmark\"",
+            "\"verlet\"",
+            "motion.integrator: expected one of implicit-euler, bdf2, newmark, symplectic-euler, found \"verlet\"",
+        ),
+        (
+            "linear = true",
+            "lineal = true",
+            ":17: motion.lineal: unknown field \"lineal\", expected one of \"duration\", \"step\", \"integrator\", \
+             \"iterations\", \"tolerance\", \"linear\", \"account\", \"mass\", \"gravity\", \"damping\", \"every\", \
+             \"watch\", \"finite_elements\", \"pull\", \"force\"",
+        ),
+        (
+            "linear = true",
+            "linear = true\niterations = 3",
+            "motion.iterations: belongs to Newton's method, found with linear = true",
+        ),
+        ("linear = true", "iterations = 0", "motion.iterations: expected a number above 0, found 0"),
+        ("linear = true", "tolerance = 2", "motion.tolerance: expected a share above 0 and below 1, found 2"),
+        ("every = 0.01", "every = 0.0005", "motion.every: expected at least one step of 0.001 s, found 0.0005 s"),
+        ("every = 0.01", "every = -1", "motion.every: expected a time above zero in s, found -1"),
+        ("density = 1000\n", "", "material.density: expected a number of kg/m³, for [motion] moves masses, found none"),
+        (
+            "watch = { group = \"zmax\" }",
+            "watch = { where = \"z > 1\" }",
+            "motion.watch: the selected part has no points",
+        ),
+        ("watch = { group = \"zmax\" }", "watch = {}", "motion.watch: expected \"group\" or \"where\", found neither"),
+        (
+            "watch = { group = \"zmax\" }",
+            "watch = { group = \"top\" }",
+            "motion.watch.group: expected a group of the mesh: \"body\", \"xmax\", \"xmin\", \"ymax\", \"ymin\", \
+             \"zmax\", \"zmin\", found \"top\"",
+        ),
+        ("watch =", "mass = \"nodal\"\nwatch =", "motion.mass: expected \"row-sum\" or \"hrz\", found \"nodal\""),
+        (
+            "watch =",
+            "gravity = [0, -9.81]\nwatch =",
+            "motion.gravity: expected 3 entries for a mesh of dimension 3, found 2",
+        ),
+        (
+            "watch =",
+            "damping = { ratio = 0.1 }\nwatch =",
+            "motion.damping.ratio: is that of springs, which finite elements have not: expected \"rayleigh\", or \
+             finite_elements = false",
+        ),
+        (
+            "watch =",
+            "damping = {}\nwatch =",
+            "motion.damping: expected either \"rayleigh\" or \"ratio\", found neither",
+        ),
+        (
+            "watch =",
+            "damping = { rayleigh = [0.1, -1] }\nwatch =",
+            "motion.damping.rayleigh: expected two numbers that are not negative, in 1/s and s, found -1",
+        ),
+        (
+            pull,
+            "displacement = [\"free\", \"0.1*s\", \"free\"]",
+            "motion.pull[0].displacement[1]: expected one of t, x, y, z, found the name \"s\" in \"0.1*s\"",
+        ),
+        (
+            pull,
+            "displacement = [\"free\", \"1/(t - 0.02)\", \"free\"]",
+            "motion.pull[0].displacement[1]: expected finite values at all times of the motion, found inf at 0.02 s",
+        ),
+        (
+            pull,
+            "displacement = [\"free\", 0]",
+            "motion.pull[0].displacement: expected 3 entries for a mesh of dimension 3, found 2",
+        ),
+        (
+            "where = \"x < 1e-9 && z > 0.0199\"",
+            "group = \"zmin\"",
+            "motion.pull[0].displacement[1]: moves point 1 at [0.0, 0.0, 0.0] m along y, which [[fix]] holds",
+        ),
+        ("where = \"x < 1e-9 && z > 0.0199\"", "where = \"x > 1\"", "motion.pull[0]: the selected part has no points"),
+        ("where = \"x < 1e-9 && z > 0.0199\"", "", "motion.pull[0]: expected \"group\" or \"where\", found neither"),
+        (
+            force,
+            "group = \"zmax\"\nforce = [\"0.01*x\", 0, 0]",
+            "motion.force[0].force[0]: expected one of t, found the name \"x\" in \"0.01*x\"",
+        ),
+        (force, "group = \"zmin\"\nforce = [1, 0, 0]", "motion.force[0].force: acts on nothing that can move"),
+        (
+            force,
+            "group = \"zmax\"\nforce = [\"ln(t)\", 0, 0]",
+            "motion.force[0].force[0]: expected finite values at all times of the motion, found -inf at 0 s",
+        ),
+        (
+            "[motion]",
+            "[output]\nfrequencies = 200\n[motion]",
+            "output.frequencies: expected at most 144, the motions that deform, found 200",
+        ),
+        (
+            "[motion]",
+            "[output]\nfrequencies = -1\n[motion]",
+            ":14: output.frequencies: invalid value: integer \"-1\", expected a whole number",
+        ),
+    ];
+    let mut wrong = Vec::new();
+    let mut expect = |text: &str, message: &str| {
+        let (folder, _) = written(text);
+        let seen = program(folder.path(), &["run", "scene.toml"]);
+        let line = String::from_utf8_lossy(&seen.stderr).into_owned();
+        let expected = format!("error: scene.toml{}{message}\n", if message.starts_with(':') { "" } else { ": " });
+        let clean = fs::read_dir(folder.path()).unwrap().count() == 1 && seen.stdout.is_empty();
+        if line != expected || seen.status.code() != Some(2) || !clean {
+            wrong.push(format!("expected {expected}found    {line} {:?} {clean}", seen.status));
+        }
+    };
+    for (from, to, message) in cases {
+        expect(&edited(BLOCK, from, to), message);
+    }
+    let twice = format!("{BLOCK}[[motion.pull]]\ngroup = \"zmax\"\ndisplacement = [0, 0, 0]\n");
+    expect(
+        &twice,
+        "motion.pull[1].displacement[1]: moves point 49 at [0.0, 0.0, 0.02] m along y, which motion.pull[0] moves",
+    );
+    let many = edited(BLOCK, "duration = 0.05", "duration = 5000");
+    let many = edited(&many, "every = 0.01", "every = 0.001");
+    expect(&many, "motion.every: expected at most 1000000 states in all, found 5000000");
+    let many = edited(&many, "every = 0.001", "every = 0.006");
+    let many = edited(&many, "cells = [3, 3, 3]", "cells = [10, 10, 10]");
+    expect(&many, "motion.every: expected at most 125219 states, which fill 4e9 bytes, found 833335");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn an_explicit_step_beyond_its_limit_is_refused_with_the_limit() {
+    let text = edited(BLOCK, "integrator = \"newmark\"\nlinear = true", "integrator = \"symplectic-euler\"");
+    let (folder, _) = written(&edited(&text, "step = 0.001", "step = 0.01"));
+    let seen = program(folder.path(), &["run", "scene.toml"]);
+    let line = String::from_utf8(seen.stderr).unwrap();
+    assert_eq!(seen.status.code(), Some(2));
+    assert!(
+        line.starts_with("error: scene.toml: motion.step: expected at most ") && line.contains("found 1e-2 s"),
+        "{line}"
+    );
+    assert!(!folder.path().join("out").exists());
+}
+
+/// A network of negative springs is told with how fast it runs away; a linear step too long for that is not begun, and the others are.
+#[test]
+fn an_indefinite_network_is_told() {
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cylinder_hex.msh");
+    let text = format!(
+        "[mesh]\nfile = {mesh:?}\nscale = 0.01\n[material]\nyoung = 10e3\npoisson = 0.3\ndensity = 1000\n[[fit]]\n\
+         objective = \"modal\"\nhigher = 0.316\n[[fit]]\nobjective = \"offdiag\"\n[[fix]]\ngroup = \"fixed\"\n[output]\n\
+         frequencies = 1\n[motion]\nduration = 0.02\nstep = 0.01\nlinear = true\ngravity = [0, 0, -1]\n"
+    );
+    let outcome = outcome(&text);
+    let motion = outcome.motion.as_ref().unwrap();
+    let [finite, indefinite, sound] = &motion.models[..] else { panic!("three models move") };
+    assert!(finite.growth.is_none() && sound.growth.is_none());
+    assert!(indefinite.growth.unwrap() > 100.0 && indefinite.records.is_empty());
+    assert!(matches!(&indefinite.ending, MotionEnding::Refused(why) if why.contains("releases energy")));
+    assert_eq!((sound.steps, &sound.ending), (2, &MotionEnding::Complete));
+    assert!(outcome.frequencies[1].found.is_err() && outcome.frequencies[2].found.is_ok());
+    let notes = report::notes(&outcome).join("\n");
+    for part in ["indefinite, a motion that releases energy grows by e every", "208 negative springs", "was not begun"]
+    {
+        assert!(notes.contains(part), "{notes}");
+    }
+    assert!(report::table(&outcome).contains("not begun"));
+    assert!(report::motion_csv(indefinite).lines().count() == 1);
+}
