@@ -330,13 +330,23 @@ fn wrong_keys_are_told() {
             "linear = true",
             "lineal = true",
             ":17: motion.lineal: unknown field \"lineal\", expected one of \"duration\", \"step\", \"integrator\", \
-             \"iterations\", \"tolerance\", \"linear\", \"account\", \"mass\", \"gravity\", \"damping\", \"every\", \
-             \"watch\", \"finite_elements\", \"pull\", \"force\"",
+             \"iterations\", \"tolerance\", \"linear\", \"account\", \"solver\", \"mass\", \"gravity\", \"damping\", \
+             \"every\", \"watch\", \"finite_elements\", \"pull\", \"force\"",
         ),
         (
             "linear = true",
             "linear = true\niterations = 3",
             "motion.iterations: belongs to Newton's method, found with linear = true",
+        ),
+        (
+            "linear = true",
+            "solver = \"lu\"",
+            "motion.solver: expected \"factor\" or \"conjugate-gradients\", found \"lu\"",
+        ),
+        (
+            "integrator = \"newmark\"\nlinear = true",
+            "integrator = \"symplectic-euler\"\nsolver = \"factor\"",
+            "motion.solver: belongs to implicit steps, found with integrator = \"symplectic-euler\"",
         ),
         ("linear = true", "iterations = 0", "motion.iterations: expected a number above 0, found 0"),
         ("linear = true", "tolerance = 2", "motion.tolerance: expected a share above 0 and below 1, found 2"),

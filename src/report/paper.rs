@@ -59,7 +59,8 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
         files.push((file.clone(), surface_figure(&table.title, &table.surfaces)?));
         figures.push((table.title.clone(), file));
     }
-    for scene in &paper.scenes {
+    // A scene without loads has no shapes to show.
+    for scene in paper.scenes.iter().filter(|scene| !scene.outcome.fem.is_empty()) {
         let outcome = &scene.outcome;
         let precision = format!("{}-precision.svg", scene.stem);
         files.push((precision.clone(), Comparison::of_scene(outcome).plot()?));
@@ -104,6 +105,7 @@ fn figure(column: Column, value: f64) -> String {
         Column::Poisson => format!("{value:.3}"),
         Column::Seconds if value < 1e-2 => format!("{value:.2e}"),
         Column::Seconds => format!("{value:.2}"),
+        Column::Frames => format!("{value:.0}"),
         Column::YoungRatio => format!("{value:.3}"),
         Column::PoissonShift => format!("{value:+.3}"),
     }

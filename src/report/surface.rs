@@ -28,7 +28,8 @@ fn draw(text: &mut String, title: &str, surfaces: &[&Surface]) -> std::result::R
     let size = (2 * PANEL.0, TITLE + PANEL.1 * surfaces.len() as u32);
     let area = SVGBackend::with_string(text, size).into_drawing_area();
     area.fill(&WHITE)?;
-    let area = area.titled(title, ("sans-serif", 18))?;
+    let axes = "across log10 E_in and nu_in; grey: what was asked for";
+    let area = area.titled(title, ("sans-serif", 18))?.titled(axes, ("sans-serif", 13))?;
     for (surface, row) in surfaces.iter().zip(area.split_evenly((surfaces.len(), 1))) {
         let panels = row.split_evenly((1, 2));
         let young = |e: f64, _: f64| e.log10();
@@ -69,6 +70,8 @@ fn panel(
         .light_grid_style(WHITE)
         .bold_grid_style(BLACK.mix(0.15))
         .max_light_lines(1)
+        .x_labels(4)
+        .z_labels(5)
         .x_formatter(&short)
         .y_formatter(&short)
         .z_formatter(&short)

@@ -65,6 +65,8 @@ pub enum Kind {
     Scenes,
     /// By fitting random shapes of elements.
     Timing,
+    /// From the speed of a scene's motion.
+    Motion,
     /// From the moduli of a box of one element, over Young's modulus and Poisson's ratio.
     Surface,
 }
@@ -81,6 +83,8 @@ pub enum Column {
     Poisson,
     /// Per element.
     Seconds,
+    /// Steps of a motion per second.
+    Frames,
     /// Of a surface, where it is furthest from one.
     YoungRatio,
     /// `ν − ν_in` of a surface, where it is furthest from zero.
@@ -95,6 +99,7 @@ impl Column {
             Column::Young => "E Pa",
             Column::Poisson => "nu",
             Column::Seconds => "s/element",
+            Column::Frames => "steps/s",
             Column::YoungRatio => "E/E_in furthest",
             Column::PoissonShift => "nu - nu_in furthest",
         }
@@ -131,14 +136,15 @@ impl RowEntry {
 
 impl TableEntry {
     fn check(&self) -> Result<()> {
-        let scenes = self.kind == Kind::Scenes;
+        let loads = self.kind == Kind::Scenes;
+        let scenes = loads || self.kind == Kind::Motion;
         let misplaced = |key: &str, wanted: bool, given: bool| match (wanted, given) {
             (true, false) => Err(Error::at(key, "is missing")),
             (false, true) => Err(Error::at(key, "does not belong to a table of this kind")),
             _ => Ok(()),
         };
         let surface = self.kind == Kind::Surface;
-        misplaced("load", scenes, self.load.is_some())?;
+        misplaced("load", loads, self.load.is_some())?;
         misplaced("young", surface, self.young.is_some())?;
         misplaced("poisson", surface, self.poisson.is_some())?;
         misplaced("fit", !scenes, !self.fit.is_empty())?;
@@ -150,6 +156,7 @@ impl TableEntry {
         let known: &[Column] = match self.kind {
             Kind::Scenes => &[Column::ERms, Column::EMax, Column::Young, Column::Poisson],
             Kind::Timing => &[Column::Seconds],
+            Kind::Motion => &[Column::Frames],
             Kind::Surface => &[Column::YoungRatio, Column::PoissonShift],
         };
         if self.columns.is_empty() || self.columns.iter().any(|column| !known.contains(column)) {

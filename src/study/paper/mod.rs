@@ -8,6 +8,7 @@ pub use outcome::{Paper, PaperRow, PaperScene, PaperTable, Surface};
 
 use super::comparison::measure_recipes;
 use super::moduli::Lattice;
+use super::motion::{ModelMotion, MotionEnding};
 use super::outcome::{FitOutcome, Outcome};
 use super::run::{Progress, run};
 use super::scene::{NamedFit, Recipe, Scene, load_element};
@@ -77,9 +78,10 @@ impl Paper {
                 progress(&format!("table {}, {}: {what}", table.name, row.object), done, total);
             };
             let own = match table.kind {
-                Kind::Scenes => {
+                Kind::Scenes | Kind::Motion => {
                     let scene = self.scene(row, folder, &mut |what, done, total| stage(progress, what, done, total));
-                    of_scene(table, row, &scene?.outcome)
+                    let outcome = &scene?.outcome;
+                    if table.kind == Kind::Motion { of_motion(row, outcome) } else { of_scene(table, row, outcome) }
                 }
                 Kind::Timing => timed(row, &fits, folder, &mut |what, d, t| stage(progress, what, d, t)),
                 Kind::Surface => {
@@ -161,7 +163,7 @@ fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec
             Column::EMax => found.error.map(|e| e.max),
             Column::Young => found.gauged.map(|g| g.young),
             Column::Poisson => found.gauged.map(|g| g.poisson),
-            Column::Seconds | Column::YoungRatio | Column::PoissonShift => None,
+            Column::Seconds | Column::Frames | Column::YoungRatio | Column::PoissonShift => None,
         };
         let figures = table.columns.iter().map(figure).collect();
         let published = matches!(fit.fit.recipe, Recipe::Published(_));
@@ -172,6 +174,20 @@ fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec
         Ok(PaperRow::new(row, &fit.fit.name, figures, published, stands))
     };
     outcome.fits.iter().map(of_fit).collect()
+}
+
+/// A row for each fit of the scene, with how fast it moved.
+fn of_motion(row: &RowEntry, outcome: &Outcome) -> Result<Vec<PaperRow>> {
+    let missing = || Error::expected("scene", "a scene with a [motion]", "one without");
+    let motion = outcome.motion.as_ref().ok_or_else(missing)?;
+    let networks = motion.models.iter().filter_map(|model| Some((&outcome.fits[model.fit?], model)));
+    let of_model = |(fit, model): (&FitOutcome, &ModelMotion)| {
+        let complete = model.ending == MotionEnding::Complete;
+        let published = matches!(fit.fit.recipe, Recipe::Published(_));
+        let speed = Some(model.steps_per_second()).filter(|_| complete);
+        PaperRow::new(row, &fit.fit.name, vec![speed], published, complete)
+    };
+    Ok(networks.map(of_model).collect())
 }
 
 fn material(dimension: usize, young: f64, poisson: f64) -> Result<Material> {

@@ -2,7 +2,7 @@
 
 use super::Part;
 use super::value::Varying;
-use crate::dynamics::{Integrator, Options};
+use crate::dynamics::{Integrator, Options, Solver};
 use crate::error::{Error, Result};
 use crate::model::Lumping;
 use crate::symbolic::{Expr, Scope, parse_rational};
@@ -66,6 +66,7 @@ pub struct MotionEntry {
     #[serde(default)]
     linear: bool,
     account: Option<bool>,
+    solver: Option<String>,
     mass: Option<String>,
     gravity: Option<Vec<f64>>,
     damping: Option<DampingEntry>,
@@ -113,6 +114,8 @@ struct ForceEntry {
     each: bool,
 }
 
+/// What conjugate gradients leave of the right-hand side.
+const REMAINDER: f64 = 1e-8;
 const MOST_STEPS: f64 = 1e9;
 /// Rows of a motion's table over time.
 const MOST_STATES: f64 = 1e6;
@@ -211,6 +214,7 @@ impl MotionEntry {
             iterations: self.iterations,
             tolerance: self.tolerance,
             linear: self.linear,
+            solver: self.solver.as_deref(),
         };
         let options = Options { step, account: self.account.unwrap_or(true), ..method.check()? };
         Ok(MotionRecipe {
@@ -239,6 +243,7 @@ struct Method<'a> {
     iterations: Option<usize>,
     tolerance: Option<f64>,
     linear: bool,
+    solver: Option<&'a str>,
 }
 
 impl Method<'_> {
@@ -258,7 +263,19 @@ impl Method<'_> {
         if let (Some(foreign), Some((key, _))) = (foreign, given.iter().find(|(_, given)| *given)) {
             return Err(Error::at(*key, format!("belongs to Newton's method, found with {foreign}")));
         }
-        let options = Options { integrator, linear: self.linear, ..Options::default() };
+        if let (Integrator::SymplecticEuler, Some(_)) = (integrator, self.solver) {
+            let problem = "belongs to implicit steps, found with integrator = \"symplectic-euler\"";
+            return Err(Error::at("solver", problem));
+        }
+        let solver = match self.solver.unwrap_or("factor") {
+            "factor" => Solver::Factor,
+            "conjugate-gradients" => Solver::ConjugateGradients { tolerance: REMAINDER },
+            other => {
+                let expected = "\"factor\" or \"conjugate-gradients\"";
+                return Err(Error::expected("solver", expected, format!("\"{other}\"")));
+            }
+        };
+        let options = Options { integrator, solver, linear: self.linear, ..Options::default() };
         let iterations = self.iterations.unwrap_or(options.iterations);
         let tolerance = self.tolerance.unwrap_or(options.tolerance);
         if iterations == 0 {
