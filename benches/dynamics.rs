@@ -28,6 +28,13 @@ fn membrane(rings: Vec<usize>, radius: f64) -> (Mesh, Network) {
     (mesh, network)
 }
 
+/// What the processor has spent on this thread, s, where the system says so, however busy others keep the machine; else the time.
+fn clock(begun: Instant) -> f64 {
+    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let spent = spent.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    spent.map_or_else(|| begun.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
+}
+
 /// Seconds per step, the median of five runs, and iterations of conjugate gradients per step.
 fn seconds(mesh: &Mesh, network: &Network, options: Options, steps: usize) -> (f64, f64) {
     let masses = masses(mesh, 1000.0, THICKNESS);
@@ -39,16 +46,16 @@ fn seconds(mesh: &Mesh, network: &Network, options: Options, steps: usize) -> (f
     let motion = Motion { support, drive, ..Motion::free(network, &mesh.points, &masses) };
     let mut simulation = Simulation::new(motion, options).expect("the model is sound");
     simulation.step();
-    let mut iterations = 0;
+    let (begun, mut iterations) = (Instant::now(), 0);
     let mut runs: Vec<f64> = (0..5)
         .map(|_| {
-            let start = Instant::now();
+            let start = clock(begun);
             (0..steps).for_each(|_| {
                 let step = simulation.step();
                 assert_ne!(step.outcome, Outcome::Stalled, "a step was not solved");
                 iterations += step.solver_iterations;
             });
-            start.elapsed().as_secs_f64() / steps as f64
+            (clock(begun) - start) / steps as f64
         })
         .collect();
     runs.sort_by(f64::total_cmp);

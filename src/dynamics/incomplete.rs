@@ -1,19 +1,20 @@
 //! An incomplete Cholesky factor of blocks.
 
 use super::blocks::{Block, Pattern, times, turned_times};
+use std::array::from_fn;
 
 /// Shares of the diagonal that are added to it until no pivot is lost (Manteuffel 1980).
 const SHIFTS: [f64; 8] = [0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0];
 
-/// `A ≈ Uᵀ U`, U with the pattern of A's upper triangle (Meijerink and van der Vorst 1977).
+/// `A ≈ (I + U)ᵀ E (I + U)`, U with the pattern of A beyond the diagonal (Meijerink and van der Vorst 1977). With the pivots E by
+/// themselves a row waits for one product with the row before it, not for two.
 #[derive(Debug)]
 pub(super) struct Incomplete<const D: usize> {
-    /// `U_ii⁻ᵀ`, lower triangular.
-    inverses: Vec<Block<D>>,
-    /// Beyond the diagonal.
-    beyond: Vec<Block<D>>,
+    /// Of E, and then its inverse.
     pivots: Vec<Block<D>>,
-    /// `[p, q, t]`: block t loses `U_pᵀ U_q`, of one row after the other.
+    /// `E (I + U)` beyond the diagonal, and then U.
+    beyond: Vec<Block<D>>,
+    /// `[p, q, t]`: block t loses `U_pᵀ E U_q`, of one row after the other.
     updates: Vec<[u32; 3]>,
     /// `[rows + 1]`.
     starts: Vec<usize>,
@@ -35,7 +36,7 @@ impl<const D: usize> Incomplete<D> {
             starts.push(updates.len());
         }
         let zeros = |count: usize| vec![[[0.0; D]; D]; count];
-        Incomplete { inverses: zeros(rows), beyond: zeros(pattern.columns.len()), pivots: zeros(rows), updates, starts }
+        Incomplete { pivots: zeros(rows), beyond: zeros(pattern.columns.len()), updates, starts }
     }
 
     /// Of A, blocks of the diagonal first; false where it has none even with a hundred times its diagonal: A is not positive definite.
@@ -50,47 +51,51 @@ impl<const D: usize> Incomplete<D> {
         }
         self.beyond.copy_from_slice(beyond);
         for i in 0..pattern.rows() {
-            let Some(inverse) = inverse_factor(&self.pivots[i]) else { return false };
-            self.inverses[i] = inverse;
+            let Some(inverse) = inverse(&self.pivots[i]) else { return false };
+            self.pivots[i] = inverse;
+            // Of the updates of a row those with p come before those with the next: their U_p is there.
+            let mut updates = self.updates[self.starts[i]..self.starts[i + 1]].iter().peekable();
             for p in pattern.starts[i]..pattern.starts[i + 1] {
-                self.beyond[p] = product(&inverse, &self.beyond[p]);
-                let block = self.beyond[p];
-                subtract(&mut self.pivots[pattern.columns[p] as usize], &block, &block);
-            }
-            for &[p, q, t] in &self.updates[self.starts[i]..self.starts[i + 1]] {
-                let (a, b) = (self.beyond[p as usize], self.beyond[q as usize]);
-                subtract(&mut self.beyond[t as usize], &a, &b);
+                let whole = self.beyond[p];
+                let own = product(&inverse, &whole);
+                subtract(&mut self.pivots[pattern.columns[p] as usize], &own, &whole);
+                while let Some(&[_, q, t]) = updates.next_if(|update| update[0] as usize == p) {
+                    let other = self.beyond[q as usize];
+                    subtract(&mut self.beyond[t as usize], &own, &other);
+                }
+                self.beyond[p] = own;
             }
         }
         true
     }
 
-    /// `z ← U⁻¹ U⁻ᵀ z`.
+    /// `z ← (I + U)⁻¹ E⁻¹ (I + U)⁻ᵀ z`.
     pub fn solve(&self, pattern: &Pattern, z: &mut [[f64; D]]) {
         for i in 0..pattern.rows() {
-            let y = times(&self.inverses[i], &z[i]);
-            z[i] = y;
+            let y = z[i];
             let at = pattern.starts[i]..pattern.starts[i + 1];
             for (block, &j) in self.beyond[at.clone()].iter().zip(&pattern.columns[at]) {
                 let part = turned_times(block, &y);
                 (0..D).for_each(|k| z[j as usize][k] -= part[k]);
             }
         }
+        z.iter_mut().zip(&self.pivots).for_each(|(z, inverse)| *z = times(inverse, z));
         for i in (0..pattern.rows()).rev() {
             let mut y = z[i];
             let at = pattern.starts[i]..pattern.starts[i + 1];
-            for (block, &j) in self.beyond[at.clone()].iter().zip(&pattern.columns[at]) {
+            // The nearest row last: it has only just been found.
+            for (block, &j) in self.beyond[at.clone()].iter().zip(&pattern.columns[at]).rev() {
                 let part = times(block, &z[j as usize]);
                 (0..D).for_each(|k| y[k] -= part[k]);
             }
-            z[i] = turned_times(&self.inverses[i], &y);
+            z[i] = y;
         }
     }
 }
 
-/// `L⁻¹` of `L Lᵀ`; `None` where that is not positive definite.
+/// By Cholesky's factor; `None` where the block is not positive definite.
 #[inline(always)]
-fn inverse_factor<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
+fn inverse<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     let (mut l, mut inverse) = ([[0.0; D]; D], [[0.0; D]; D]);
     for j in 0..D {
         let pivot = a[j][j] - (0..j).map(|k| l[j][k] * l[j][k]).sum::<f64>();
@@ -109,12 +114,12 @@ fn inverse_factor<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
             inverse[i][j] = -(j..i).map(|k| l[i][k] * inverse[k][j]).sum::<f64>() / l[i][i];
         }
     }
-    Some(inverse)
+    Some(from_fn(|i| from_fn(|j| (i.max(j)..D).map(|k| inverse[k][i] * inverse[k][j]).sum())))
 }
 
 #[inline(always)]
 fn product<const D: usize>(a: &Block<D>, b: &Block<D>) -> Block<D> {
-    std::array::from_fn(|i| turned_times(b, &a[i]))
+    from_fn(|i| turned_times(b, &a[i]))
 }
 
 /// `c ← c − aᵀ b`.
