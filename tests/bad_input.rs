@@ -418,6 +418,31 @@ fn fits() {
             ),
             (
                 "\"modal\"",
+                "\"modal\"\ntopology = true",
+                "scene.toml: fit[0].topology: belongs to a general solver, found with \"native\"",
+            ),
+            (
+                "\"modal\"",
+                "\"modal\"\niterations = 10\ntopology = true",
+                "scene.toml: fit[0].iterations: belongs to a general solver, found with \"native\"",
+            ),
+            (
+                "\"modal\"",
+                "\"modal\"\nsolver = \"nelder-mead\"\ntopology = true",
+                "scene.toml: fit[0].topology: does not go with \"nelder-mead\", which cannot switch springs off",
+            ),
+            (
+                "\"modal\"",
+                "\"modal\"\nsolver = \"particle-swarm\"\nsparsity = 0.1",
+                "scene.toml: fit[0].sparsity: belongs to topology = true",
+            ),
+            (
+                "\"modal\"",
+                "\"modal\"\nsolver = \"particle-swarm\"\ntopology = true\nsparsity = 2",
+                "scene.toml: fit[0].sparsity: expected a share from 0 to 1, found 2",
+            ),
+            (
+                "\"modal\"",
                 "\"modal\"\nsprings = [\"edge\", \"diagonal\"]",
                 "scene.toml: fit[0].springs: expected groups of tet4: \"edge\", \"bulk\", found \"diagonal\"",
             ),
@@ -1365,6 +1390,7 @@ fn sampled_fits_and_laws() {
             ("starts = 2", "starts = 0", "starts: expected at least one start, found 0"),
             ("starts = 2", "balance = 0.5", "balance: does not go with the objective \"sampled\""),
             ("starts = 2", "solver = \"nelder-mead\"", "solver: does not go with the objective \"sampled\""),
+            ("starts = 2", "topology = true", "topology: does not go with the objective \"sampled\""),
             (
                 "starts = 2",
                 "weight = \"modal\"",
@@ -1560,6 +1586,8 @@ fn whole_object_fits() {
         ),
         ("objective = \"whole\"\nfrequencies = 3", "fit[0].frequencies: expected a density in [material], found none"),
         ("objective = \"whole\"\ntied = true", "fit[0].tied: does not go with the objective \"whole\""),
+        ("objective = \"whole\"\ntopology = true", "fit[0].topology: does not go with the objective \"whole\""),
+        ("objective = \"whole\"\nsparsity = 0.1", "fit[0].sparsity: does not go with the objective \"whole\""),
         ("objective = \"whole\"\nnonnegative = true", "fit[0].nonnegative: does not go with the objective \"whole\""),
         (
             "objective = \"whole\"\nloads = [\"load 1\", \"load 1\"]",

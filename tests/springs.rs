@@ -264,7 +264,7 @@ fn measures_without_a_gradient_are_told() {
         {
             let x = element.positions.clone();
             let cells = [0, 1, 2, 0, 1, 2];
-            let searched = Solver::General { method: Search::NelderMead, iterations: 5 };
+            let searched = Solver::General { method: Search::NelderMead, iterations: 5, topology: None };
             for solver in [Solver::Native, searched].into_iter().filter(|s| objective != NORMS[1] || *s != searched) {
                 let fit = Fit { solver, ..Fit::new(objective) };
                 let fits = fit_cells(&element, &springs, &x, &cells, material.moduli(), &fit, &mut |_| {});

@@ -138,7 +138,8 @@ fn compare(element: &Element, springs: &Springs, moduli: Moduli, nonnegative: bo
     let conic = seconds / count as f64;
     // What a general optimiser reaches, over the certified bound.
     let few = 5.min(count);
-    let search = Fit { solver: Solver::General { method: Search::NelderMead, iterations: 2000 }, ..fit };
+    let solver = Solver::General { method: Search::NelderMead, iterations: 2000, topology: None };
+    let search = Fit { solver, ..fit };
     let part = &cells[..few * element.nodes()];
     let found = fit_cells(element, springs, &x, part, moduli, &search, &mut |_| {}).expect("every shape is valid");
     let (mut least, mut mean) = (f64::INFINITY, 0.0);

@@ -1,4 +1,10 @@
 //! General optimisers on the raw objective, as the older literature searched it: what they reach beside the native solver.
+//!
+//! Annealing found spring constants in O. Deussen, L. Kobbelt, P. Tücke, "Using simulated annealing to obtain good approximations
+//! of deformable bodies", EG Workshop on Computer Animation and Simulation 1995; genetic searches found them in A. Joukhadar,
+//! F. Garat, C. Laugier, "Parameter identification for dynamic simulation", ICRA 1997, and which springs there are as well in
+//! G. Bianchi et al., "Simultaneous topology and stiffness identification for mass-spring models based on FEM reference
+//! deformations", MICCAI 2004.
 
 use super::reduction::Reduced;
 use super::{Fit, Objective, Weight};
@@ -16,13 +22,22 @@ use rand::{Rng, SeedableRng};
 use std::sync::Mutex;
 
 /// What minimises the objective.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Solver {
     /// Normal equations, pivoting, the barrier or Newton's method, as the objective needs.
     #[default]
     Native,
-    /// A general optimiser with at most so many iterations, from constants all alike.
-    General { method: Search, iterations: u64 },
+    /// A general optimiser with at most so many iterations, from constants all alike; with a topology it may switch springs off.
+    General { method: Search, iterations: u64, topology: Option<Topology> },
+}
+
+/// Which springs are on is searched together with how stiff they are, as by Bianchi et al. (2004): every unknown carries a switch,
+/// one more coordinate from −1 to 1, and its springs are off, `k = 0`, where that is negative.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Topology {
+    /// What each spring that is on adds to the objective, as a share of that at the start, where all are on. With none a spring goes
+    /// only if the objective falls without it.
+    pub sparsity: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,16 +52,19 @@ impl Solver {
     pub const NAMES: [&'static str; 4] = ["native", "nelder-mead", "particle-swarm", "simulated-annealing"];
     pub const DEFAULT_ITERATIONS: u64 = 2000;
 
-    /// The solver called `name`; `iterations` belongs to the general ones.
+    /// The solver called `name`; `iterations` and `topology` belong to the general ones.
     ///
     /// # Errors
-    /// The name is unknown, no iterations are allowed, or they are given to the native solver.
-    pub fn named(name: &str, iterations: Option<u64>) -> Result<Solver> {
+    /// The name is unknown, no iterations are allowed, the native solver is given any, or the solver cannot do the topology.
+    pub fn named(name: &str, iterations: Option<u64>, topology: Option<Topology>) -> Result<Solver> {
         let method = match name {
-            "native" if iterations.is_some() => {
-                return Err(Error::at("iterations", "belongs to a general solver, found with \"native\""));
+            "native" => {
+                let given = [("iterations", iterations.is_some()), ("topology", topology.is_some())];
+                return match given.iter().find(|(_, given)| *given) {
+                    Some((key, _)) => Err(Error::at(*key, "belongs to a general solver, found with \"native\"")),
+                    None => Ok(Solver::Native),
+                };
             }
-            "native" => return Ok(Solver::Native),
             "nelder-mead" => Search::NelderMead,
             "particle-swarm" => Search::ParticleSwarm,
             "simulated-annealing" => Search::SimulatedAnnealing,
@@ -55,10 +73,33 @@ impl Solver {
                 return Err(Error::expected("solver", expected, format!("\"{name}\"")));
             }
         };
-        match iterations {
-            Some(0) => Err(Error::expected("iterations", "a number above 0", 0)),
-            _ => Ok(Solver::General { method, iterations: iterations.unwrap_or(Solver::DEFAULT_ITERATIONS) }),
+        if iterations == Some(0) {
+            return Err(Error::expected("iterations", "a number above 0", 0));
         }
+        let iterations = iterations.unwrap_or(Solver::DEFAULT_ITERATIONS);
+        let solver = Solver::General { method, iterations, topology };
+        solver.check_topology().map(|()| solver)
+    }
+
+    fn check_topology(&self) -> Result<()> {
+        match self {
+            Solver::General { method: Search::NelderMead, topology: Some(_), .. } => {
+                Err(Error::at("topology", "does not go with \"nelder-mead\", which cannot switch springs off"))
+            }
+            Solver::General { topology: Some(Topology { sparsity }), .. } if !(0.0..=1.0).contains(sparsity) => {
+                Err(Error::expected("sparsity", "a share from 0 to 1", sparsity))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// That it can search for this objective.
+    pub(super) fn check(&self, objective: Objective) -> Result<()> {
+        if *self != Solver::Native && objective == Objective::Frobenius(Weight::OffDiagonal) {
+            let expected = "\"native\": the blocks of different nodes leave no choice to search";
+            return Err(Error::expected("solver", expected, format!("\"{}\"", self.name())));
+        }
+        self.check_topology()
     }
 
     pub fn name(&self) -> &'static str {
@@ -69,24 +110,48 @@ impl Solver {
             Solver::General { method: Search::SimulatedAnnealing, .. } => Solver::NAMES[3],
         }
     }
+
+    pub fn topology(&self) -> Option<Topology> {
+        match self {
+            Solver::Native => None,
+            Solver::General { topology, .. } => *topology,
+        }
+    }
+
+    /// The name with what goes with it, such as `particle-swarm topology 0.01`.
+    pub fn title(&self) -> String {
+        match self.topology() {
+            None => self.name().into(),
+            Some(Topology { sparsity: 0.0 }) => format!("{} topology", self.name()),
+            Some(Topology { sparsity }) => format!("{} topology {sparsity}", self.name()),
+        }
+    }
 }
 
-/// The objective of one element as a function of its unknowns.
+/// The objective of one element as a function of its unknowns κ, followed by their switches if they have any.
 struct Raw<'a> {
     reduced: &'a Reduced<f64>,
     objective: Objective,
     nonnegative: bool,
+    /// What a spring costs that is on.
+    price: f64,
     /// The length of a random step.
     stride: f64,
     random: Mutex<StdRng>,
 }
 
 impl Raw<'_> {
+    /// With the price of the springs that are on.
+    fn cost_of(&self, at: &[f64]) -> f64 {
+        let kappa = self.kappa(at);
+        let on = self.reduced.unknowns.iter().filter(|&&unknown| kappa[unknown] != 0.0).count();
+        self.value(&kappa) + self.price * on as f64
+    }
+
     fn value(&self, kappa: &[f64]) -> f64 {
         let p = self.reduced.order;
-        let kappa = self.bounded(kappa);
         let mut e = vec![0.0; p * p];
-        self.reduced.residual(&kappa, &mut e);
+        self.reduced.residual(kappa, &mut e);
         let e = DMatrix::from_fn(p, p, |i, j| e[i.max(j) * p + i.min(j)]);
         match self.objective {
             Objective::Frobenius(_) => e.norm(),
@@ -101,8 +166,16 @@ impl Raw<'_> {
         }
     }
 
-    fn bounded(&self, kappa: &[f64]) -> Vec<f64> {
-        kappa.iter().map(|k| if self.nonnegative { k.max(0.0) } else { *k }).collect()
+    /// The κ within their bounds, zero where they are off.
+    fn kappa(&self, at: &[f64]) -> Vec<f64> {
+        let (kappa, switches) = at.split_at(self.reduced.scales.len());
+        let is_off = |i: usize| switches.get(i).is_some_and(|switch| *switch < 0.0);
+        let bounded = |(i, k): (usize, &f64)| match *k {
+            _ if is_off(i) => 0.0,
+            k if self.nonnegative => k.max(0.0),
+            k => k,
+        };
+        kappa.iter().enumerate().map(bounded).collect()
     }
 }
 
@@ -110,8 +183,8 @@ impl CostFunction for &Raw<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 
-    fn cost(&self, kappa: &Vec<f64>) -> std::result::Result<f64, argmin::core::Error> {
-        Ok(self.value(kappa))
+    fn cost(&self, at: &Vec<f64>) -> std::result::Result<f64, argmin::core::Error> {
+        Ok(self.cost_of(at))
     }
 }
 
@@ -120,45 +193,75 @@ impl Anneal for &Raw<'_> {
     type Output = Vec<f64>;
     type Float = f64;
 
-    fn anneal(&self, kappa: &Vec<f64>, extent: f64) -> std::result::Result<Vec<f64>, argmin::core::Error> {
+    fn anneal(&self, at: &Vec<f64>, extent: f64) -> std::result::Result<Vec<f64>, argmin::core::Error> {
         let mut random = self.random.lock().expect("nothing panics while it holds the generator");
-        let size = self.stride * extent.min(1.0);
-        Ok(kappa.iter().map(|k| k + size * random.random_range(-1.0..=1.0)).collect())
+        let (kappa, switches) = at.split_at(self.reduced.scales.len());
+        let extent = extent.min(1.0);
+        // Where a spring goes the others have to follow: steps that fall as the temperature would be too short for it.
+        let size = self.stride * if switches.is_empty() { extent } else { extent.sqrt() };
+        let mut next: Vec<f64> = kappa.iter().map(|k| k + size * random.random_range(-1.0..=1.0)).collect();
+        next.extend(switches);
+        // A switch is on or off: small steps would leave it as it is.
+        if !switches.is_empty() && random.random_bool(FLIPPING) {
+            let flipped = random.random_range(kappa.len()..at.len());
+            next[flipped] = -next[flipped];
+        }
+        Ok(next)
     }
 }
 
-/// The constants of the element with nodes at `x`, `[springs]`, N/m.
+/// How often annealing flips one of the switches.
+const FLIPPING: f64 = 0.25;
+/// Iterations after which a swarm has agreed on which springs are on: the next ones go to another swarm.
+const AGREED: u64 = 200;
+
+/// The constants of the element with nodes at `x`, `[springs]`, N/m; never of a larger objective, sparsity included, than the start.
 pub fn search(
     springs: &Springs,
     x: &[f64],
     geometry: &Geometry,
     moduli: &Moduli,
     fit: &Fit,
-    method: Search,
-    iterations: u64,
+    (method, iterations, topology): (Search, u64, Option<Topology>),
 ) -> Vec<f64> {
     let mut reduced = Reduced::of_kind(&0.0, springs, fit.tied);
     let mut measured = vec![0.0; springs.functions.len() * x.len()];
     springs.function_gradients(x, &mut measured);
     reduced.set(fit.objective.weight().unwrap_or(Weight::Relative), springs, x, geometry, moduli, &measured);
     let count = reduced.scales.len();
-    let start = vec![reduced.uniform(); count];
+    let mut start = vec![reduced.uniform(); count];
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;
     let random = Mutex::new(StdRng::seed_from_u64(1));
-    let raw = Raw { reduced: &reduced, objective: fit.objective, nonnegative: fit.nonnegative, stride, random };
+    let (objective, nonnegative) = (fit.objective, fit.nonnegative);
+    let mut raw = Raw { reduced: &reduced, objective, nonnegative, price: 0.0, stride, random };
+    raw.price = topology.map_or(0.0, |topology| topology.sparsity * raw.value(&start));
+    start.extend(topology.iter().flat_map(|_| vec![1.0; count]));
     let best: Option<Vec<f64>> = match method {
         Search::NelderMead => {
-            let mut simplex = vec![start.clone(); count + 1];
+            let mut simplex = vec![start.clone(); start.len() + 1];
             simplex.iter_mut().skip(1).enumerate().for_each(|(i, vertex)| vertex[i] += stride);
             let solver = NelderMead::new(simplex).with_sd_tolerance(1e-12).expect("the tolerance is positive");
             let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
             run.ok().and_then(|mut run| run.state.take_best_param())
         }
         Search::ParticleSwarm => {
-            let bound = |sign: f64| start.iter().map(|k| k + sign * 3.0 * stride).collect::<Vec<f64>>();
-            let solver = ParticleSwarm::new((bound(-1.0), bound(1.0)), 40).with_rng_generator(StdRng::seed_from_u64(1));
-            let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
-            run.ok().and_then(|run| run.state.best_individual.map(|particle| particle.position))
+            // Springs that stay carry what the others did.
+            let most = if topology.is_some() { 10.0 } else { 3.0 };
+            let bound = |sign: f64| {
+                let reach = stride * if sign > 0.0 { most } else { -3.0 };
+                let kappa = start[..count].iter().map(|k| k + reach);
+                kappa.chain(start[count..].iter().map(|_| sign)).collect::<Vec<f64>>()
+            };
+            let swarm = |seed: u64, iterations: u64| {
+                let random = StdRng::seed_from_u64(seed);
+                let solver = ParticleSwarm::new((bound(-1.0), bound(1.0)), 40).with_rng_generator(random);
+                let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
+                run.ok().and_then(|run| run.state.best_individual.map(|particle| particle.position))
+            };
+            let each = topology.map_or(iterations, |_| iterations.min(AGREED)).max(1);
+            let swarms = iterations.div_ceil(each).max(1);
+            let found = (0..swarms).filter_map(|i| swarm(1 + i, each.min(iterations - i * each)));
+            found.min_by(|a, b| raw.cost_of(a).total_cmp(&raw.cost_of(b)))
         }
         Search::SimulatedAnnealing => {
             let rng = StdRng::seed_from_u64(1);
@@ -171,6 +274,7 @@ pub fn search(
         }
     };
     // An optimiser that fails leaves what it was given.
-    let kappa = raw.bounded(&best.filter(|best| raw.value(best) <= raw.value(&start)).unwrap_or(start.clone()));
+    let best = best.filter(|best| raw.cost_of(best) <= raw.cost_of(&start));
+    let kappa = raw.kappa(&best.unwrap_or(start));
     reduced.unknowns.iter().map(|&unknown| kappa[unknown] * reduced.scales[unknown]).collect()
 }

@@ -21,7 +21,7 @@ mod sampled;
 mod spectral;
 
 pub use closed_form::{ClosedFit, ClosedForm, SymmetryClass};
-pub use descent::{Search, Solver};
+pub use descent::{Search, Solver, Topology};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use normal::Rank;
@@ -141,10 +141,7 @@ impl CellFits {
         if m == 0 {
             return Ok(());
         }
-        if fit.solver != Solver::Native && fit.objective == Objective::Frobenius(Weight::OffDiagonal) {
-            let expected = "\"native\": the blocks of different nodes leave no choice to search";
-            return Err(Error::expected("solver", expected, format!("\"{}\"", fit.solver.name())));
-        }
+        fit.solver.check(fit.objective)?;
         if fit.is_costly() && cells > 1 {
             let congruence = Congruence::of(element, points, connectivity)?;
             let shapes = congruence.representatives.len();
@@ -177,14 +174,14 @@ impl CellFits {
         let (n, m) = (element.nodes(), springs.len());
         let cells = connectivity.len() / n;
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
-            if let Solver::General { method, iterations } = fit.solver {
+            if let Solver::General { method, iterations, topology } = fit.solver {
                 let mut unmeasured = None;
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
                     if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {
                         unmeasured.get_or_insert(cell);
                         return;
                     }
-                    let found = descent::search(springs, x, geometry, &moduli, fit, method, iterations);
+                    let found = descent::search(springs, x, geometry, &moduli, fit, (method, iterations, topology));
                     constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
                 })?;
                 let fault = unmeasured.map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));

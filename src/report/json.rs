@@ -138,6 +138,7 @@ fn of_stiffness(fit: &Fit) -> Value {
             (Objective::Spectral(_), _) => "barrier",
             (Objective::Divergence { .. }, _) => "newton",
         },
+        "sparsity": fit.solver.topology().map(|topology| topology.sparsity),
     })
 }
 

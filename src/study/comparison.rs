@@ -73,7 +73,7 @@ pub fn compare_element(
     let mut recipes: Vec<Recipe> =
         objectives(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))).collect();
     for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
-        let solver = Solver::General { method, iterations };
+        let solver = Solver::General { method, iterations, topology: None };
         recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) }));
     }
     let cell: Vec<usize> = (0..element.nodes()).collect();

@@ -11,7 +11,7 @@ use super::whole::{Start, WholeRecipe};
 use super::{LoadCase, NamedFit, Part};
 use crate::error::{Error, Result};
 use crate::fit::published::Method;
-use crate::fit::{Choices, Fit, Objective, Solver, Weights};
+use crate::fit::{Choices, Fit, Objective, Solver, Topology, Weights};
 use crate::material::{Material, Plane};
 use crate::model::{Action, Component};
 use crate::solve::Newton;
@@ -76,8 +76,11 @@ pub struct FitEntry {
     #[serde(default)]
     pub nonnegative: bool,
     pub solver: Option<String>,
-    /// Of a general solver.
+    /// Of a general solver, as the two that follow.
     pub iterations: Option<u64>,
+    #[serde(default)]
+    pub topology: bool,
+    pub sparsity: Option<f64>,
     pub force: Option<toml::Value>,
     pub norm: Option<String>,
     pub huber: Option<f64>,
@@ -191,7 +194,11 @@ impl FitEntry {
                     }
                     _ => e,
                 })?;
-                let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations)?;
+                let topology = self.topology.then(|| Topology { sparsity: self.sparsity.unwrap_or(0.0) });
+                if let (None, Some(_)) = (topology, self.sparsity) {
+                    return Err(Error::at("sparsity", "belongs to topology = true"));
+                }
+                let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations, topology)?;
                 Recipe::Stiffness(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
             }
         };
@@ -260,11 +267,17 @@ impl FitEntry {
             ("nonnegative", published, self.nonnegative),
             ("solver", published, self.solver.is_some()),
             ("iterations", published, self.iterations.is_some()),
+            ("topology", published, self.topology),
+            ("sparsity", published, self.sparsity.is_some()),
             ("balance", "sampled", self.balance.is_some()),
             ("tied", "whole", self.tied),
             ("nonnegative", "whole", self.nonnegative && !from_sampled),
             ("solver", "sampled", self.solver.is_some()),
             ("iterations", "sampled", self.iterations.is_some()),
+            ("topology", "sampled", self.topology),
+            ("sparsity", "sampled", self.sparsity.is_some()),
+            ("topology", "whole", self.topology),
+            ("sparsity", "whole", self.sparsity.is_some()),
         ];
         match strange.iter().find(|(_, other, given)| *given && *other == objective) {
             Some((key, ..)) => Err(Error::at(*key, format!("does not go with the objective \"{objective}\""))),

@@ -178,7 +178,7 @@ impl Recipe {
             Recipe::Stiffness(fit) => {
                 let solver = match fit.solver {
                     Solver::Native => String::new(),
-                    _ => format!(" by {}", fit.solver.name()),
+                    _ => format!(" by {}", fit.solver.title()),
                 };
                 (fit.objective.title() + &groups + &solver, fit.tied, fit.nonnegative)
             }
