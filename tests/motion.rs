@@ -330,7 +330,7 @@ fn wrong_keys_are_told() {
             "linear = true",
             "lineal = true",
             ":17: motion.lineal: unknown field \"lineal\", expected one of \"duration\", \"step\", \"integrator\", \
-             \"iterations\", \"tolerance\", \"linear\", \"account\", \"solver\", \"mass\", \"gravity\", \"damping\", \
+             \"iterations\", \"tolerance\", \"linear\", \"account\", \"solver\", \"remainder\", \"mass\", \"gravity\", \"damping\", \
              \"every\", \"watch\", \"finite_elements\", \"pull\", \"force\"",
         ),
         (
@@ -347,6 +347,16 @@ fn wrong_keys_are_told() {
             "integrator = \"newmark\"\nlinear = true",
             "integrator = \"symplectic-euler\"\nsolver = \"factor\"",
             "motion.solver: belongs to implicit steps, found with integrator = \"symplectic-euler\"",
+        ),
+        (
+            "linear = true",
+            "linear = true\nremainder = 0.1",
+            "motion.remainder: belongs to solver = \"conjugate-gradients\"",
+        ),
+        (
+            "linear = true",
+            "solver = \"conjugate-gradients\"\nremainder = 1",
+            "motion.remainder: expected a share above 0 and below 1, found 1",
         ),
         ("linear = true", "iterations = 0", "motion.iterations: expected a number above 0, found 0"),
         ("linear = true", "tolerance = 2", "motion.tolerance: expected a share above 0 and below 1, found 2"),

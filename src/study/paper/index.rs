@@ -15,7 +15,7 @@ pub struct Index {
 }
 
 /// A table or figure of the paper.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TableEntry {
     /// What it is asked for by, such as "1".
@@ -40,7 +40,7 @@ pub struct TableEntry {
 }
 
 /// An object of a table, with all fits of its scene.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RowEntry {
     pub object: String,

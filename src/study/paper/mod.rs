@@ -2,30 +2,27 @@
 
 mod index;
 mod outcome;
+mod surface;
 
 pub use index::{Column, Index, Kind, RowEntry, TableEntry};
 pub use outcome::{Paper, PaperRow, PaperScene, PaperTable, Surface};
 
-use super::comparison::measure_recipes;
-use super::moduli::Lattice;
+use super::comparison::{MethodOutcome, measure_recipes};
 use super::motion::{ModelMotion, MotionEnding};
 use super::outcome::{FitOutcome, Outcome};
 use super::run::{Progress, run};
 use super::scene::{NamedFit, Recipe, Scene, load_element};
 use crate::error::{Error, Result};
 use crate::file::{create_folder, write_whole};
-use crate::fit::{fit_cells, published};
 use crate::material::Material;
 use crate::solve::{Ending, Standing};
-use crate::springs::Springs;
 use std::path::{Path, PathBuf};
+use surface::{of_surface, surface};
 
 /// The files of the paper whose method this is: the index, its scenes and their meshes, by path.
 const SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/paper.rs"));
 /// Random shapes of each element that is timed.
 const SHAPES: usize = 100;
-/// Steps of a surface along each constant.
-const STEPS: usize = 10;
 /// Poisson's ratio of what is timed, and the modulus, Pa.
 const POISSON: f64 = 0.3;
 const YOUNG: f64 = 10e3;
@@ -43,7 +40,7 @@ pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
     Ok(folder.join("paper/index.toml"))
 }
 
-/// Runs the tables of that name, or all; scenes are relative to `folder`, and each is run once.
+/// Runs the tables of these names, or all, of the index at `path`; its scenes are relative to it, and each is run once.
 ///
 /// # Errors
 /// A table is unknown, a scene or an element is wrong, or a figure is printed for a fit that is not there.
@@ -104,7 +101,7 @@ impl Paper {
             }
             rows.extend(own);
         }
-        let PaperTable { name, title, note, load, columns, .. } = PaperTable::of(table);
+        let TableEntry { name, title, note, load, columns, .. } = table.clone();
         Ok(PaperTable { name, title, note, load, columns, rows, surfaces })
     }
 
@@ -122,20 +119,6 @@ impl Paper {
             }
         };
         Ok(&self.scenes[place])
-    }
-}
-
-impl PaperTable {
-    fn of(table: &TableEntry) -> PaperTable {
-        PaperTable {
-            name: table.name.clone(),
-            title: table.title.clone(),
-            note: table.note.clone(),
-            load: table.load.clone(),
-            columns: table.columns.clone(),
-            rows: Vec::new(),
-            surfaces: Vec::new(),
-        }
     }
 }
 
@@ -199,58 +182,9 @@ fn timed(row: &RowEntry, fits: &[NamedFit], folder: &Path, progress: &mut Progre
     let recipes: Vec<Recipe> = fits.iter().map(|fit| fit.recipe.clone()).collect();
     let material = material(element.dimension(), YOUNG, POISSON)?;
     let outcomes = measure_recipes(&element, material, SHAPES, &recipes, progress)?;
-    let of = |(fit, found): (&NamedFit, &super::comparison::MethodOutcome)| {
+    let of = |(fit, found): (&NamedFit, &MethodOutcome)| {
         let published = matches!(fit.recipe, Recipe::Published(_));
         PaperRow::new(row, &fit.name, vec![Some(found.seconds[1])], published, true)
     };
     Ok(fits.iter().zip(&outcomes).map(of).collect())
-}
-
-/// The moduli of a box of one element, over logarithmic steps of Young's modulus and even ones of Poisson's ratio.
-fn surface(
-    row: &RowEntry,
-    fits: &[NamedFit],
-    young: [f64; 2],
-    poisson: [f64; 2],
-    folder: &Path,
-) -> Result<Vec<Surface>> {
-    let element = load_element(row.element.as_deref().unwrap_or_default(), folder)?;
-    let size = row.size.clone().unwrap_or_default();
-    let part = |i: usize| i as f64 / STEPS as f64;
-    let youngs: Vec<f64> = (0..=STEPS).map(|i| young[0] * (young[1] / young[0]).powf(part(i))).collect();
-    let poissons: Vec<f64> = (0..=STEPS).map(|i| poisson[0] + (poisson[1] - poisson[0]) * part(i)).collect();
-    let mut surfaces = Vec::new();
-    for fit in fits {
-        let springs = Springs::select(&element, fit.springs.as_deref())?;
-        let mut found = Vec::new();
-        for &e in &youngs {
-            for &nu in &poissons {
-                let material = material(element.dimension(), e, nu)?;
-                let of_cells = |points: &[f64], cells: &[usize]| match &fit.recipe {
-                    Recipe::Published(method) => published::fit(*method, &element, &springs, points, cells, material),
-                    recipe => {
-                        let missing = || Error::expected("fit", "a fit of single elements", &fit.name);
-                        let fit = recipe.at_rest().ok_or_else(missing)?;
-                        fit_cells(&element, &springs, points, cells, material.moduli(), &fit, &mut |_| {})
-                    }
-                };
-                let lattice = Lattice::of(&element, &size, of_cells)?;
-                found.push(lattice.of_springs().map(|m| [m.young / material.thickness(), m.poisson]));
-            }
-        }
-        surfaces.push(Surface { fit: fit.name.clone(), young: youngs.clone(), poisson: poissons.clone(), found });
-    }
-    Ok(surfaces)
-}
-
-/// The largest departure of a surface from what was asked: `E/E_in` furthest from one, and ν furthest from ν_in.
-fn of_surface(row: &RowEntry, surface: &Surface) -> PaperRow {
-    let asked = surface.young.iter().flat_map(|e| surface.poisson.iter().map(move |nu| [*e, *nu]));
-    let known = || asked.clone().zip(&surface.found).filter_map(|(asked, found)| Some((asked, (*found)?)));
-    let furthest = |from: f64, of: &dyn Fn([f64; 2], [f64; 2]) -> f64| {
-        known().map(|(asked, found)| of(asked, found)).max_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()))
-    };
-    let young = furthest(1.0, &|asked, found| found[0] / asked[0]);
-    let poisson = furthest(0.0, &|asked, found| found[1] - asked[1]);
-    PaperRow::new(row, &surface.fit, vec![young, poisson], false, surface.found.iter().all(Option::is_some))
 }

@@ -67,6 +67,7 @@ pub struct MotionEntry {
     linear: bool,
     account: Option<bool>,
     solver: Option<String>,
+    remainder: Option<f64>,
     mass: Option<String>,
     gravity: Option<Vec<f64>>,
     damping: Option<DampingEntry>,
@@ -215,6 +216,7 @@ impl MotionEntry {
             tolerance: self.tolerance,
             linear: self.linear,
             solver: self.solver.as_deref(),
+            remainder: self.remainder,
         };
         let options = Options { step, account: self.account.unwrap_or(true), ..method.check()? };
         Ok(MotionRecipe {
@@ -244,6 +246,7 @@ struct Method<'a> {
     tolerance: Option<f64>,
     linear: bool,
     solver: Option<&'a str>,
+    remainder: Option<f64>,
 }
 
 impl Method<'_> {
@@ -268,8 +271,17 @@ impl Method<'_> {
             return Err(Error::at("solver", problem));
         }
         let solver = match self.solver.unwrap_or("factor") {
+            "factor" if self.remainder.is_some() => {
+                return Err(Error::at("remainder", "belongs to solver = \"conjugate-gradients\""));
+            }
             "factor" => Solver::Factor,
-            "conjugate-gradients" => Solver::ConjugateGradients { tolerance: REMAINDER },
+            "conjugate-gradients" => {
+                let tolerance = self.remainder.unwrap_or(REMAINDER);
+                if !(tolerance > 0.0 && tolerance < 1.0) {
+                    return Err(Error::expected("remainder", "a share above 0 and below 1", tolerance));
+                }
+                Solver::ConjugateGradients { tolerance }
+            }
             other => {
                 let expected = "\"factor\" or \"conjugate-gradients\"";
                 return Err(Error::expected("solver", expected, format!("\"{other}\"")));

@@ -1,0 +1,63 @@
+//! The moduli of a box of one element over those that were asked for.
+
+use super::index::RowEntry;
+use super::material;
+use super::outcome::{PaperRow, Surface};
+use crate::error::{Error, Result};
+use crate::fit::{fit_cells, published};
+use crate::springs::Springs;
+use crate::study::moduli::Lattice;
+use crate::study::scene::{NamedFit, Recipe, load_element};
+use std::path::Path;
+
+/// Steps along each constant.
+const STEPS: usize = 10;
+
+/// The moduli of a box of one element, over logarithmic steps of Young's modulus and even ones of Poisson's ratio.
+pub fn surface(
+    row: &RowEntry,
+    fits: &[NamedFit],
+    young: [f64; 2],
+    poisson: [f64; 2],
+    folder: &Path,
+) -> Result<Vec<Surface>> {
+    let element = load_element(row.element.as_deref().unwrap_or_default(), folder)?;
+    let size = row.size.clone().unwrap_or_default();
+    let part = |i: usize| i as f64 / STEPS as f64;
+    let youngs: Vec<f64> = (0..=STEPS).map(|i| young[0] * (young[1] / young[0]).powf(part(i))).collect();
+    let poissons: Vec<f64> = (0..=STEPS).map(|i| poisson[0] + (poisson[1] - poisson[0]) * part(i)).collect();
+    let mut surfaces = Vec::new();
+    for fit in fits {
+        let springs = Springs::select(&element, fit.springs.as_deref())?;
+        let mut found = Vec::new();
+        for &e in &youngs {
+            for &nu in &poissons {
+                let material = material(element.dimension(), e, nu)?;
+                let of_cells = |points: &[f64], cells: &[usize]| match &fit.recipe {
+                    Recipe::Published(method) => published::fit(*method, &element, &springs, points, cells, material),
+                    recipe => {
+                        let missing = || Error::expected("fit", "a fit of single elements", &fit.name);
+                        let fit = recipe.at_rest().ok_or_else(missing)?;
+                        fit_cells(&element, &springs, points, cells, material.moduli(), &fit, &mut |_| {})
+                    }
+                };
+                let lattice = Lattice::of(&element, &size, of_cells)?;
+                found.push(lattice.of_springs().map(|m| [m.young / material.thickness(), m.poisson]));
+            }
+        }
+        surfaces.push(Surface { fit: fit.name.clone(), young: youngs.clone(), poisson: poissons.clone(), found });
+    }
+    Ok(surfaces)
+}
+
+/// The largest departure of a surface from what was asked: `E/E_in` furthest from one, and ν furthest from ν_in.
+pub fn of_surface(row: &RowEntry, surface: &Surface) -> PaperRow {
+    let asked = surface.young.iter().flat_map(|e| surface.poisson.iter().map(move |nu| [*e, *nu]));
+    let known = || asked.clone().zip(&surface.found).filter_map(|(asked, found)| Some((asked, (*found)?)));
+    let furthest = |from: f64, of: &dyn Fn([f64; 2], [f64; 2]) -> f64| {
+        known().map(|(asked, found)| of(asked, found)).max_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()))
+    };
+    let young = furthest(1.0, &|asked, found| found[0] / asked[0]);
+    let poisson = furthest(0.0, &|asked, found| found[1] - asked[1]);
+    PaperRow::new(row, &surface.fit, vec![young, poisson], false, surface.found.iter().all(Option::is_some))
+}
