@@ -41,8 +41,8 @@ impl SampledEntry {
     /// # Errors
     /// A key has a wrong value; a file of gradients cannot be read.
     pub fn check(self, folder: &Path) -> Result<SampledRecipe> {
-        let mut recipe = SampledRecipe::default();
-        recipe.law = self.law.map(|law| law_at(&law, folder));
+        let law = self.law.map(|law| law_at(&law, folder));
+        let mut recipe = SampledRecipe { law, ..SampledRecipe::default() };
         if let Some(force) = &self.force {
             recipe.force = force_of(force)?;
         }
