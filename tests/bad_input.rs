@@ -259,7 +259,7 @@ fn keys_and_types() {
                 "[material]",
                 "[materials]",
                 "scene.toml:3: materials: unknown field \"materials\", expected one of \"title\", \"mesh\", \
-                 \"material\", \"fit\", \"newton\", \"fix\", \"load\", \"motion\", \"output\"",
+                 \"material\", \"fit\", \"newton\", \"fix\", \"load\", \"gauge\", \"motion\", \"output\"",
             ),
             (
                 "group = \"zmax\"",

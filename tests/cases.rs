@@ -128,8 +128,8 @@ fn a_scene_without_loads_solves_nothing() {
     assert!(outcome.left_out.iter().any(|l| l.starts_with("finite element solution")));
 }
 
-/// The certified optimum is at least as good in the 2-norm as what any other objective or solver finds, on the mean of the
-/// shapes; and the table, the CSV file and the plot name every method.
+/// The certified optimum is at least as good in the 2-norm as what any other objective or solver finds with length springs, on the
+/// mean of the shapes; and the table, the CSV file and the plot name every method.
 #[test]
 fn comparisons_show_every_method() {
     let element = Element::load("tri3").unwrap();
@@ -137,8 +137,9 @@ fn comparisons_show_every_method() {
     let outcomes = compare_element(&element, material, 5, 50, &mut |_, _, _| {}).unwrap();
     let certified = outcomes.iter().find(|o| o.name == "spectral" && o.solver == "native").unwrap();
     assert!(certified.gap.unwrap() <= 1e-8);
-    assert_eq!(outcomes.iter().filter(|o| o.solver != "native").count(), 3);
-    for outcome in &outcomes {
+    assert_eq!(outcomes.iter().filter(|o| !["native", "formula"].contains(&o.solver)).count(), 3);
+    // Delingette couples the edges, which no length spring does.
+    for outcome in outcomes.iter().filter(|o| !o.name.starts_with("delingette")) {
         assert!(outcome.spectral.mean >= certified.spectral.mean * (1.0 - 1e-8), "{outcome:?}");
     }
     let comparison = Comparison::of_element("three".into(), &outcomes, 1e4);
