@@ -273,11 +273,12 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
 fn paper(arguments: &PaperArguments) -> Result<()> {
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
     springfit::check_folder(&folder)?;
+    let index = arguments.index.as_ref().map_or_else(Index::shipped, |path| Index::load(path))?;
+    index.expect(&arguments.table).map_err(Error::of_option)?;
     let path = match &arguments.index {
         Some(path) => path.clone(),
         None => study::write_experiments(&folder.join("scenes"))?,
     };
-    let index = Index::load(&path)?;
     let mut bar = Bar::new();
     let paper = study::run_paper(&index, &arguments.table, &path, &mut |stage, d, t| bar.show(stage, d, t));
     bar.clear();

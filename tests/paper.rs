@@ -258,7 +258,7 @@ fn an_index_of_ones_own_is_run_and_written() {
     assert!(text.contains("1.00 / 2.00") && text.contains("Differs from print, lloyd: made up"), "{text}");
     let out = folder.path().join("out");
     let written = report::write_paper(&paper, &out).unwrap();
-    for name in ["a.csv", "b.csv", "paper.md", "scene-precision.svg"] {
+    for name in ["a.csv", "b.csv", "paper.md", "scene.precision.svg"] {
         assert!(written.contains(&out.join(name)), "{written:?}");
     }
     let csv = fs::read_to_string(out.join("a.csv")).unwrap();
@@ -266,12 +266,28 @@ fn an_index_of_ones_own_is_run_and_written() {
     assert!(first.starts_with("square,lloyd,true,1,") && first.ends_with("made up"), "{csv}");
 }
 
+/// A table of errors in any order and number of columns.
+#[test]
+fn columns_come_as_they_are_asked_for() {
+    for (columns, printed, best) in
+        [("[\"e_rms\"]", "[1]", "with 1.00\n"), ("[\"e_max\", \"e_rms\"]", "[2, 1]", "with 2.00 / 1.00\n")]
+    {
+        let (folder, scene) = written(TRIANGLES);
+        fs::write(&scene, TRIANGLES.replace("[[fix]]", "[[fit]]\nobjective = \"offdiag\"\n[[fix]]")).unwrap();
+        let path = folder.path().join("index.toml");
+        fs::write(&path, INDEX.replace("[\"e_rms\", \"e_max\"]", columns).replace("[1, 2]", printed)).unwrap();
+        let paper = run_paper(&Index::load(&path).unwrap(), &["A".into()], &path, &mut quiet).unwrap();
+        let text = report::paper_text(&paper.tables[0]);
+        assert!(text.contains("the best printed is lloyd") && text.contains(best), "{text}");
+    }
+}
+
 #[test]
 fn errors_of_an_index_say_what_was_expected_and_found() {
     for (from, to, message) in [
         ("name = \"B\"", "name = \"A\"", "table[1].name: expected a name of its own, found \"A\" again"),
         ("load = \"pull\"\n", "", "table[0].load: is missing"),
-        ("[\"seconds\"]", "[\"e_rms\"]", "table[1].columns: expected some of s/element, found %e_rms"),
+        ("[\"seconds\"]", "[\"e_rms\"]", "table[1].columns: expected some of s/element, each once, found %e_rms"),
         ("scene = \"scene.toml\"\n", "", "table[0].row[0].scene: is missing"),
         (
             "element = \"tri3\"\n",
@@ -291,6 +307,28 @@ fn errors_of_an_index_say_what_was_expected_and_found() {
             "table[1].row[0].recipe: expected a fit of single elements, found whole from offdiag",
         ),
         ("\"tri3\"", "\"tri33\"", "table[1].row[0]"),
+        (
+            "name = \"B\"",
+            "name = \"a\"",
+            "table[1].name: expected a name of its own, found \"a\" whose files are those of another",
+        ),
+        ("name = \"B\"", "name = \"-\"", "table[1].name: expected a name with letters or digits, found \"-\""),
+        ("[1, 2]", "[1, inf]", "table[0].row[0].printed.lloyd: expected figures up to 1e30, found inf"),
+        (
+            "[\"e_rms\", \"e_max\"]",
+            "[\"e_rms\", \"e_rms\"]",
+            "table[0].columns: expected some of %e_rms, %e_max, E Pa, nu, each once, found %e_rms, %e_rms",
+        ),
+        (
+            "[[table.row]]\nobject = \"triangle\"",
+            "[[table.fit]]\nobjective = \"offdiag\"\n[[table.row]]\nobject = \"triangle\"",
+            "table[1].fit[1].name: expected a name of its own, found \"offdiag\" again",
+        ),
+        (
+            "[[table]]\nname = \"B\"",
+            "[[table.row]]\nobject = \"other\"\nscene = \"b/scene.toml\"\n[[table]]\nname = \"B\"",
+            "table[0].row[1].scene: expected a file of another name than scene.toml, found b/scene.toml",
+        ),
         ("kind = \"timing\"", "kind = \"timed\"", "unknown variant"),
     ] {
         let (folder, _) = written(TRIANGLES);

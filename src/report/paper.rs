@@ -6,7 +6,7 @@ use super::surface::surface_figure;
 use super::table::aligned;
 use super::write_files;
 use crate::error::Result;
-use crate::study::{Column, Paper, PaperRow, PaperTable};
+use crate::study::{Column, Paper, PaperRow, PaperTable, file_stem, heading};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ const FALLS: &str = "†";
 /// A table as text for the terminal.
 pub fn paper_text(table: &PaperTable) -> String {
     let (header, rows) = cells(table);
-    let mut text = format!("{}: {}\n\n{}", heading(table), table.title, aligned(&header, &rows));
+    let mut text = format!("{}: {}\n\n{}", heading(&table.name), table.title, aligned(&header, &rows));
     for line in remarks(table) {
         writeln!(text, "{line}").expect("a String grows");
     }
@@ -31,7 +31,7 @@ fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
         let rule: Vec<String> =
             header.iter().enumerate().map(|(i, _)| if i < 2 { "---" } else { "---:" }.to_string()).collect();
-        write!(text, "\n## {}: {}\n\n{}{}", heading(table), table.title, line(&header), line(&rule))
+        write!(text, "\n## {}: {}\n\n{}{}", heading(&table.name), table.title, line(&header), line(&rule))
             .expect("a String grows");
         rows.iter().for_each(|row| text.push_str(&line(row)));
         for line in remarks(table) {
@@ -51,18 +51,18 @@ fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
 pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
     let mut files: Vec<(String, String)> = Vec::new();
     for table in &paper.tables {
-        files.push((format!("{}.csv", stem(table)), raw(table)));
+        files.push((format!("{}.csv", file_stem(&table.name)), raw(table)));
     }
     let mut figures = Vec::new();
     for table in paper.tables.iter().filter(|table| !table.surfaces.is_empty()) {
-        let file = format!("{}.svg", stem(table));
+        let file = format!("{}.svg", file_stem(&table.name));
         files.push((file.clone(), surface_figure(&table.title, &table.surfaces)?));
         figures.push((table.title.clone(), file));
     }
     // A scene without loads has no shapes to show.
     for scene in paper.scenes.iter().filter(|scene| !scene.outcome.fem.is_empty()) {
         let outcome = &scene.outcome;
-        let precision = format!("{}-precision.svg", scene.stem);
+        let precision = format!("{}.precision.svg", scene.stem);
         files.push((precision.clone(), Comparison::of_scene(outcome).plot()?));
         figures.push((format!("{}: error against time to fit", outcome.scene), precision));
         for table in &paper.tables {
@@ -71,7 +71,8 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
             let Some(row) = table.rows.iter().find(of_scene) else { continue };
             let (_, best) = table.best(&row.object);
             let Some(best) = best else { continue };
-            let file = format!("{}-{}.svg", scene.stem, load);
+            let plain = load.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+            let file = format!("{}-{plain}.svg", scene.stem);
             if files.iter().all(|(name, _)| *name != file)
                 && let Some(figure) = deformed(outcome, load, &["frobenius", "spectral", &best.fit])
             {
@@ -83,19 +84,6 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
     files.push(("paper.md".into(), markdown(paper, &figures)));
     let named: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
     write_files(folder, &named)
-}
-
-/// Table 1, figure 9, torsion.
-fn heading(table: &PaperTable) -> String {
-    match table.name.chars().next() {
-        Some(c) if c.is_ascii_digit() => format!("Table {}", table.name),
-        Some(c) => c.to_uppercase().collect::<String>() + &table.name[c.len_utf8()..],
-        None => String::new(),
-    }
-}
-
-fn stem(table: &PaperTable) -> String {
-    heading(table).to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-")
 }
 
 fn figure(column: Column, value: f64) -> String {
@@ -143,18 +131,20 @@ fn cells(table: &PaperTable) -> (Vec<String>, Vec<Vec<String>>) {
 /// What is told under a table: the best of both, why figures differ, and its note.
 fn remarks(table: &PaperTable) -> Vec<String> {
     let mut lines = Vec::new();
-    let place = table.columns.iter().position(|c| *c == Column::ERms);
+    let errors = |values: &[Option<f64>]| {
+        let shown = table.columns.iter().zip(values).filter(|(c, _)| matches!(c, Column::ERms | Column::EMax));
+        let text = |(column, value): (&Column, &Option<f64>)| value.map_or("-".into(), |v| figure(*column, v));
+        shown.map(text).collect::<Vec<_>>().join(" / ")
+    };
     for object in table.objects() {
         let (printed, found) = table.best(object);
-        if let (Some(place), Some(found)) = (place, found) {
-            let pair = |values: &[f64]| format!("{:.2} / {:.2}", values[0], values[1]);
-            let own: Vec<f64> = found.found[place..].iter().map(|v| v.unwrap_or(f64::NAN)).collect();
-            let theirs = printed.and_then(|row| Some((row, &row.printed.as_ref()?[place..])));
-            let theirs = theirs.map_or(String::new(), |(row, values)| {
-                format!("; the best printed is {} with {}", row.fit, pair(values))
-            });
-            lines.push(format!("{object}: the best of ours is {} with {}{theirs}", found.fit, pair(&own)));
-        }
+        let Some(found) = found else { continue };
+        let theirs = printed.and_then(|row| Some((row, row.printed.as_ref()?)));
+        let theirs = theirs.map_or(String::new(), |(row, values)| {
+            let values: Vec<Option<f64>> = values.iter().map(|v| Some(*v)).collect();
+            format!("; the best printed is {} with {}", row.fit, errors(&values))
+        });
+        lines.push(format!("{object}: the best of ours is {} with {}{theirs}", found.fit, errors(&found.found)));
     }
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for row in &table.rows {

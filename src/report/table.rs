@@ -147,7 +147,11 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
     });
     let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
     let starts = agreements(outcome);
-    let notes = finite.chain(measured).chain(own).chain(starts.iter().map(agreed));
+    let silent = loads.iter().zip(&outcome.gauged).filter(|(_, reading)| reading.is_none()).map(|(load, _)| {
+        let why = "it needs a force along its axis that acts at one side of it alone";
+        format!("the gauge says nothing under {}: {why}", load.name)
+    });
+    let notes = finite.chain(silent).chain(measured).chain(own).chain(starts.iter().map(agreed));
     notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
 }
 

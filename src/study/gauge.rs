@@ -2,7 +2,7 @@
 
 use super::cases::Case;
 use super::outcome::Outcome;
-use super::scene::{Gauge, LoadCase, Scene};
+use super::scene::{Gauge, LoadCase, Part, Scene};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::Action;
@@ -37,16 +37,31 @@ impl Gauged {
             return Err(at(Error::expected("axis", "\"x\" or \"y\" in a plane mesh", "\"z\"")));
         }
         let points = gauge.part.selection(d).and_then(|s| s.points(mesh)).map_err(at)?;
+        if points.is_empty() {
+            return Err(at(Error::new("measures nothing: the selected part has no points")));
+        }
         let gauged = Gauged { points, axis: gauge.axis, area: gauge.area, forces: Vec::new() };
         if gauged.strain(mesh, &vec![0.0; mesh.points.len()]).is_none() {
             let found = format!("{} points without extent in some direction", gauged.points.len());
-            return Err(at(Error::expected("where", "a part that is a body of its own", found)));
+            let key = if matches!(gauge.part, Part::Group(_)) { "group" } else { "where" };
+            return Err(at(Error::expected(key, "a part that is a body of its own", found)));
         }
+        let along = |p: usize| mesh.point(p)[gauge.axis];
+        let (low, high) = gauged
+            .points
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &p| (low.min(along(p)), high.max(along(p))));
+        // Forces at one side of the gauge alone are the same in all its sections.
+        let aside = |case: &Case| {
+            let acts = |p: &usize| case.forces[p * d..(p + 1) * d].iter().any(|f| *f != 0.0);
+            let loaded = || (0..mesh.point_count()).filter(acts);
+            loaded().all(|p| along(p) >= high) || loaded().all(|p| along(p) <= low)
+        };
         let force = |(case, load): (&Case, &LoadCase)| {
             let along = |k: usize| case.forces.iter().skip(k).step_by(d).sum::<f64>();
             let largest = (0..d).map(|k| along(k).abs()).fold(0.0, f64::max);
             let pulls = matches!(load.action, Action::Traction(_) | Action::Force(_));
-            Some(along(gauge.axis)).filter(|f| pulls && largest > 0.0 && f.abs() > 1e-6 * largest)
+            Some(along(gauge.axis)).filter(|f| pulls && aside(case) && largest > 0.0 && f.abs() > 1e-6 * largest)
         };
         Ok(Gauged { forces: cases.iter().zip(&scene.loads).map(force).collect(), ..gauged })
     }

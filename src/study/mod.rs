@@ -31,7 +31,9 @@ pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record};
 pub use outcome::{FitOutcome, FittedLoad, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
-pub use paper::{Column, Index, Paper, PaperRow, PaperTable, Surface, run_paper, write_experiments};
+pub use paper::{
+    Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,
+};
 pub use run::{Progress, Reference, fit_mesh, run, run_with};
 pub use scene::{
     BoxEntry, DampingRecipe, DiscEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, MotionRecipe, NamedFit,

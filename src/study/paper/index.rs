@@ -57,6 +57,9 @@ pub struct RowEntry {
     pub why: BTreeMap<String, String>,
 }
 
+/// No printed figure is larger.
+const LARGEST: f64 = 1e30;
+
 /// How the figures of a table come about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -110,21 +113,77 @@ impl Index {
     /// # Errors
     /// The file is missing or wrong: names the file, the key, what was expected and what was found.
     pub fn load(path: &Path) -> Result<Index> {
-        let index: Index = file::parse_toml(&file::read_text(path)?).map_err(|e| e.in_file(path))?;
-        index.check().map_err(|e| e.in_file(path))?;
+        Index::parse(&file::read_text(path)?).map_err(|e| e.in_file(path))
+    }
+
+    /// # Errors
+    /// As [`Index::load`], without the file.
+    pub fn parse(text: &str) -> Result<Index> {
+        let index: Index = file::parse_toml(text)?;
+        index.check()?;
         Ok(index)
     }
 
+    /// That there are tables of these names.
+    ///
+    /// # Errors
+    /// There is none of one of them.
+    pub fn expect(&self, names: &[String]) -> Result<()> {
+        match names.iter().find(|name| self.table.iter().all(|table| table.name != **name)) {
+            Some(name) => {
+                let known: Vec<&str> = self.table.iter().map(|table| table.name.as_str()).collect();
+                Err(Error::expected("table", format!("one of {}", known.join(", ")), format!("\"{name}\"")))
+            }
+            None => Ok(()),
+        }
+    }
+
     fn check(&self) -> Result<()> {
+        if self.table.is_empty() {
+            return Err(Error::expected("table", "at least one [[table]]", "none"));
+        }
+        let mut scenes: Vec<&RowEntry> = Vec::new();
         for (i, table) in self.table.iter().enumerate() {
-            if self.table[..i].iter().any(|other| other.name == table.name) {
-                let found = format!("\"{}\" again", table.name);
-                return Err(Error::expected(format!("table[{i}].name"), "a name of its own", found));
+            let at = |key: &str| format!("table[{i}].{key}");
+            let stem = file_stem(&table.name);
+            if !table.name.contains(|c: char| c.is_ascii_alphanumeric()) {
+                return Err(Error::expected(
+                    at("name"),
+                    "a name with letters or digits",
+                    format!("\"{}\"", table.name),
+                ));
+            }
+            if let Some(other) = self.table[..i].iter().find(|other| file_stem(&other.name) == stem) {
+                let found = if other.name == table.name { "again" } else { "whose files are those of another" };
+                return Err(Error::expected(at("name"), "a name of its own", format!("\"{}\" {found}", table.name)));
             }
             table.check().map_err(|e| e.under(format!("table[{i}]")))?;
+            for (j, row) in table.row.iter().enumerate() {
+                let same = |other: &&&RowEntry| other.stem() == row.stem() && other.scene != row.scene;
+                if let (Some(file), Some(other)) = (&row.scene, scenes.iter().find(same)) {
+                    let named = other.scene.as_deref().unwrap_or(Path::new("")).display().to_string();
+                    let expected = format!("a file of another name than {named}");
+                    return Err(Error::expected(at(&format!("row[{j}].scene")), expected, file.display()));
+                }
+                scenes.push(row);
+            }
         }
         Ok(())
     }
+}
+
+/// Table 1, figure 9, torsion: as it is headed.
+pub fn heading(name: &str) -> String {
+    match name.chars().next() {
+        Some(c) if c.is_ascii_digit() => format!("Table {name}"),
+        Some(c) => c.to_uppercase().collect::<String>() + &name[c.len_utf8()..],
+        None => String::new(),
+    }
+}
+
+/// What its files are called.
+pub fn file_stem(name: &str) -> String {
+    heading(name).to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-")
 }
 
 impl RowEntry {
@@ -148,10 +207,13 @@ impl TableEntry {
         misplaced("young", surface, self.young.is_some())?;
         misplaced("poisson", surface, self.poisson.is_some())?;
         misplaced("fit", !scenes, !self.fit.is_empty())?;
-        for range in [self.young, self.poisson].into_iter().flatten() {
-            if !(range[0] < range[1] && range.iter().all(|v| v.is_finite())) {
-                return Err(Error::expected("young", "a range such as [1, 1e4]", format!("{range:?}")));
+        for (key, range, such) in [("young", self.young, "[1, 1e4]"), ("poisson", self.poisson, "[0, 0.5]")] {
+            if let Some(range) = range.filter(|r| !(r[0] < r[1] && r.iter().all(|v| v.is_finite()))) {
+                return Err(Error::expected(key, format!("a range such as {such}"), format!("{range:?}")));
             }
+        }
+        if self.row.is_empty() {
+            return Err(Error::expected("row", "at least one [[table.row]]", "none"));
         }
         let known: &[Column] = match self.kind {
             Kind::Scenes => &[Column::ERms, Column::EMax, Column::Young, Column::Poisson],
@@ -159,10 +221,12 @@ impl TableEntry {
             Kind::Motion => &[Column::Frames],
             Kind::Surface => &[Column::YoungRatio, Column::PoissonShift],
         };
-        if self.columns.is_empty() || self.columns.iter().any(|column| !known.contains(column)) {
+        let again = (1..self.columns.len()).any(|i| self.columns[..i].contains(&self.columns[i]));
+        if self.columns.is_empty() || again || self.columns.iter().any(|column| !known.contains(column)) {
             let names: Vec<&str> = known.iter().map(|column| column.name()).collect();
             let found: Vec<&str> = self.columns.iter().map(|column| column.name()).collect();
-            return Err(Error::expected("columns", format!("some of {}", names.join(", ")), found.join(", ")));
+            let expected = format!("some of {}, each once", names.join(", "));
+            return Err(Error::expected("columns", expected, found.join(", ")));
         }
         for (j, row) in self.row.iter().enumerate() {
             let at = |e: Error| e.under(format!("row[{j}]"));
@@ -172,6 +236,11 @@ impl TableEntry {
             if let Some((fit, printed)) = row.printed.iter().find(|(_, p)| p.len() != self.columns.len()) {
                 let expected = format!("{} figures, one for each column", self.columns.len());
                 return Err(at(Error::expected(format!("printed.{fit}"), expected, printed.len())));
+            }
+            let odd = |printed: &Vec<f64>| printed.iter().copied().find(|v| !v.is_finite() || v.abs() > LARGEST);
+            if let Some((fit, value)) = row.printed.iter().find_map(|(fit, printed)| Some((fit, odd(printed)?))) {
+                let expected = format!("figures up to {LARGEST:e}");
+                return Err(at(Error::expected(format!("printed.{fit}"), expected, format!("{value:e}"))));
             }
         }
         Ok(())

@@ -4,7 +4,7 @@ mod index;
 mod outcome;
 mod surface;
 
-pub use index::{Column, Index, Kind, RowEntry, TableEntry};
+pub use index::{Column, Index, Kind, RowEntry, TableEntry, file_stem, heading};
 pub use outcome::{Paper, PaperRow, PaperScene, PaperTable, Surface};
 
 use super::comparison::{MethodOutcome, measure_recipes};
@@ -21,6 +21,7 @@ use surface::{of_surface, surface};
 
 /// The files of the paper whose method this is: the index, its scenes and their meshes, by path.
 const SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/paper.rs"));
+const INDEX: &str = "paper/index.toml";
 /// Random shapes of each element that is timed.
 const SHAPES: usize = 100;
 /// Poisson's ratio of what is timed, and the modulus, Pa.
@@ -37,7 +38,18 @@ pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
         create_folder(path.parent().unwrap_or(folder))?;
         write_whole(&path, text.as_bytes())?;
     }
-    Ok(folder.join("paper/index.toml"))
+    Ok(folder.join(INDEX))
+}
+
+impl Index {
+    /// That of the shipped experiments.
+    ///
+    /// # Errors
+    /// None: it is tested.
+    pub fn shipped() -> Result<Index> {
+        let text = SHIPPED.iter().find(|(name, _)| *name == INDEX).map_or("", |(_, text)| text);
+        Index::parse(text)
+    }
 }
 
 /// Runs the tables of these names, or all, of the index at `path`; its scenes are relative to it, and each is run once.
@@ -45,10 +57,7 @@ pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
 /// # Errors
 /// A table is unknown, a scene or an element is wrong, or a figure is printed for a fit that is not there.
 pub fn run_paper(index: &Index, names: &[String], path: &Path, progress: &mut Progress) -> Result<Paper> {
-    if let Some(name) = names.iter().find(|name| index.table.iter().all(|table| table.name != **name)) {
-        let known: Vec<&str> = index.table.iter().map(|table| table.name.as_str()).collect();
-        return Err(Error::expected("table", format!("one of {}", known.join(", ")), format!("\"{name}\"")));
-    }
+    index.expect(names)?;
     let mut paper = Paper { title: index.title.clone(), tables: Vec::new(), scenes: Vec::new() };
     for (i, table) in index.table.iter().enumerate() {
         if !names.is_empty() && !names.contains(&table.name) {
@@ -69,6 +78,10 @@ impl Paper {
             fits.map(|mut fits| fits.remove(0))
         });
         let fits: Vec<NamedFit> = entries.collect::<Result<_>>()?;
+        if let Some(i) = (1..fits.len()).find(|&i| fits[..i].iter().any(|fit| fit.name == fits[i].name)) {
+            let found = format!("\"{}\" again", fits[i].name);
+            return Err(Error::expected(format!("fit[{i}].name"), "a name of its own", found));
+        }
         for (j, row) in table.row.iter().enumerate() {
             let at = |e: Error| e.placed(|e| e.under(format!("row[{j}]")));
             let stage = |progress: &mut Progress, what: &str, done, total| {
@@ -84,7 +97,7 @@ impl Paper {
                 Kind::Surface => {
                     let (young, poisson) = (table.young.unwrap_or_default(), table.poisson.unwrap_or_default());
                     let found = surface(row, &fits, young, poisson, folder).map_err(at)?;
-                    let own = found.iter().map(|surface| of_surface(row, surface)).collect();
+                    let own = found.iter().map(|surface| of_surface(table, row, surface)).collect();
                     surfaces.extend(found);
                     Ok(own)
                 }

@@ -1,6 +1,6 @@
 //! The moduli of a box of one element over those that were asked for.
 
-use super::index::RowEntry;
+use super::index::{Column, RowEntry, TableEntry};
 use super::material;
 use super::outcome::{PaperRow, Surface};
 use crate::error::{Error, Result};
@@ -51,7 +51,7 @@ pub fn surface(
 }
 
 /// The largest departure of a surface from what was asked: `E/E_in` furthest from one, and ν furthest from ν_in.
-pub fn of_surface(row: &RowEntry, surface: &Surface) -> PaperRow {
+pub fn of_surface(table: &TableEntry, row: &RowEntry, surface: &Surface) -> PaperRow {
     let asked = surface.young.iter().flat_map(|e| surface.poisson.iter().map(move |nu| [*e, *nu]));
     let known = || asked.clone().zip(&surface.found).filter_map(|(asked, found)| Some((asked, (*found)?)));
     let furthest = |from: f64, of: &dyn Fn([f64; 2], [f64; 2]) -> f64| {
@@ -59,5 +59,7 @@ pub fn of_surface(row: &RowEntry, surface: &Surface) -> PaperRow {
     };
     let young = furthest(1.0, &|asked, found| found[0] / asked[0]);
     let poisson = furthest(0.0, &|asked, found| found[1] - asked[1]);
-    PaperRow::new(row, &surface.fit, vec![young, poisson], false, surface.found.iter().all(Option::is_some))
+    let figure = |column: &Column| if *column == Column::YoungRatio { young } else { poisson };
+    let found = table.columns.iter().map(figure).collect();
+    PaperRow::new(row, &surface.fit, found, false, surface.found.iter().all(Option::is_some))
 }
