@@ -8,8 +8,7 @@ fn main() {
     let code: Vec<String> =
         files("elements", "toml").iter().map(|(name, path, text)| element(name, path, text)).collect();
     write("elements.rs", &code);
-    let code =
-        files("materials", "toml").into_iter().map(|(name, path, _)| format!("({name:?}, include_str!({path:?})),"));
+    let code = files("materials", "toml").into_iter().map(|(name, path, _)| included(&name, &path));
     write("materials.rs", &code.collect::<Vec<_>>());
     let scenes = files("scenes/paper", "toml");
     let named = |(name, _, _): &(String, PathBuf, String)| {
@@ -17,10 +16,8 @@ fn main() {
         scenes.iter().any(|(_, _, text)| text.contains(&path))
     };
     let meshes = files("scenes/meshes", "msh").into_iter().filter(named);
-    let code =
-        scenes.iter().map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("paper/{name}.toml")));
-    let code = code
-        .chain(meshes.map(|(name, path, _)| format!("({:?}, include_str!({path:?})),", format!("meshes/{name}.msh"))));
+    let code = scenes.iter().map(|(name, path, _)| included(&format!("paper/{name}.toml"), path));
+    let code = code.chain(meshes.map(|(name, path, _)| included(&format!("meshes/{name}.msh"), &path)));
     write("paper.rs", &code.collect::<Vec<_>>());
 }
 
@@ -40,6 +37,10 @@ fn files(folder: &str, ending: &str) -> Vec<(String, PathBuf, String)> {
         (name, path, text)
     };
     paths.into_iter().map(read).collect()
+}
+
+fn included(name: &str, path: &Path) -> String {
+    format!("({name:?}, include_str!({path:?})),")
 }
 
 fn element(name: &str, path: &Path, text: &str) -> String {

@@ -152,6 +152,12 @@ impl Element {
         self.nodes() > self.dimension() + 1
     }
 
+    /// The node that sits at a corner of the cell.
+    pub fn corner_node(&self, corner: usize) -> Option<usize> {
+        let at = self.cell.corners()[corner];
+        self.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < 1e-9))
+    }
+
     /// One table per side of the cell, in the cell's order, exact for a traction that is constant on flat sides.
     pub fn sides(&self) -> &[SideTable] {
         self.sides.get_or_init(|| self.cell.sides().iter().map(|side| self.side_table(side)).collect())

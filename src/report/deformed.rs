@@ -2,7 +2,8 @@
 
 use crate::element::Element;
 use crate::mesh::{CellBlock, Mesh, Selection, SideIndex};
-use crate::study::Outcome;
+use crate::springs::norm;
+use crate::study::{DisplacementError, Outcome};
 use std::collections::BTreeSet;
 use svg::Document;
 use svg::node::element::path::Data;
@@ -25,13 +26,14 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     let d = mesh.dimension;
     let place = outcome.fits.first()?.loads.iter().position(|l| l.name == load)?;
     let fem = outcome.fem.get(place)?;
-    let mut panels: Vec<(&str, &Vec<f64>)> = Vec::new();
+    let mut panels: Vec<(&str, &Vec<f64>, Option<DisplacementError>)> = Vec::new();
     for name in fits {
         let fit = outcome.fits.iter().find(|fit| fit.fit.name == **name);
-        let found = fit.and_then(|fit| fit.loads.get(place)?.displacement.as_ref());
-        panels.extend(found.filter(|_| panels.iter().all(|(known, _)| known != name)).map(|u| (*name, u)));
+        let found =
+            fit.and_then(|fit| fit.loads.get(place)).and_then(|l| Some((*name, l.displacement.as_ref()?, l.error)));
+        panels.extend(found.filter(|_| panels.iter().all(|(known, ..)| known != name)));
     }
-    let largest = fem.chunks_exact(d).map(|u| u.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.0, f64::max);
+    let largest = fem.chunks_exact(d).map(norm).fold(0.0, f64::max);
     if panels.is_empty() || largest == 0.0 {
         return None;
     }
@@ -45,7 +47,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     };
     let rest = moved(&vec![0.0; fem.len()]);
     let body = moved(fem);
-    let nets: Vec<Vec<[f64; 2]>> = panels.iter().map(|(_, u)| moved(u)).collect();
+    let nets: Vec<Vec<[f64; 2]>> = panels.iter().map(|(_, u, _)| moved(u)).collect();
     let all = || nets.iter().flatten().chain(&rest).chain(&body);
     let range = |k: usize| all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x[k]), b.max(x[k])));
     let (across, up) = (range(0), range(1));
@@ -56,7 +58,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
         .set("viewBox", (0.0, 0.0, width, height.ceil()))
         .set("font-family", "sans-serif")
         .add(Path::new().set("d", format!("M0,0H{width}V{}H0z", height.ceil())).set("fill", "white"));
-    for (i, ((name, _), net)) in panels.iter().zip(&nets).enumerate() {
+    for (i, ((name, _, error), net)) in panels.iter().zip(&nets).enumerate() {
         let left = PANEL * i as f64 + (PANEL - scale * (across.1 - across.0)) / 2.0;
         let on_page = |x: &[f64; 2]| (left + scale * (x[0] - across.0), CAPTION + MARGIN + scale * (up.1 - x[1]));
         let path = |points: &[[f64; 2]], color: &str, dashes: &str, width: f64| {
@@ -75,8 +77,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
                 .set("text-anchor", "middle")
                 .set("font-size", size)
         };
-        let load = &outcome.fits.iter().find(|fit| fit.fit.name == **name)?.loads[place];
-        let error = load.error.map_or(String::new(), |e| format!("%e_rms {:.2}, %e_max {:.2}", e.rms, e.max));
+        let error = error.map_or(String::new(), |e| format!("%e_rms {:.2}, %e_max {:.2}", e.rms, e.max));
         document = document
             .add(path(&rest, "#999", "0.6 2.4", 0.8))
             .add(path(&body, "#0072b2", "5 3", 1.1))
@@ -128,7 +129,7 @@ fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
     let mut add = |element: &Element, nodes: &[usize], corners: &[usize]| {
         let around = (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]);
         for ends in around {
-            let at = ends.map(|corner| corner_node(element, corner).map(|a| nodes[a]));
+            let at = ends.map(|corner| element.corner_node(corner).map(|a| nodes[a]));
             if let [Some(a), Some(b)] = at {
                 edges.insert([a.min(b), a.max(b)]);
             }
@@ -145,7 +146,7 @@ fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
             let nodes = &connectivity[cell.cell * element.nodes()..][..element.nodes()];
             let corners = element.cell.sides()[side].corners;
             let points: Option<Vec<&[f64]>> =
-                corners.iter().map(|&c| corner_node(element, c).map(|a| mesh.point(nodes[a]))).collect();
+                corners.iter().map(|&c| element.corner_node(c).map(|a| mesh.point(nodes[a]))).collect();
             let centre = |k: usize| nodes.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / nodes.len() as f64;
             if points.is_some_and(|points| faces_viewer(&points, [centre(0), centre(1), centre(2)])) {
                 add(element, nodes, corners);
@@ -153,10 +154,4 @@ fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
         }
     }
     edges.into_iter().collect()
-}
-
-/// The node that sits at a corner of the cell.
-fn corner_node(element: &Element, corner: usize) -> Option<usize> {
-    let at = element.cell.corners()[corner];
-    element.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < 1e-9))
 }

@@ -83,9 +83,9 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
 }
 
 /// Writes texts under their names into `folder`, and returns the paths.
-fn write_files(folder: &Path, files: &[(&str, String)]) -> Result<Vec<PathBuf>> {
+fn write_files<N: AsRef<Path>>(folder: &Path, files: &[(N, String)]) -> Result<Vec<PathBuf>> {
     create_folder(folder)?;
-    let write = |(name, text): &(&str, String)| {
+    let write = |(name, text): &(N, String)| {
         let path = folder.join(name);
         write_whole(&path, text.as_bytes())?;
         Ok(path)

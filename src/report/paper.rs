@@ -82,8 +82,7 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
         }
     }
     files.push(("paper.md".into(), markdown(paper, &figures)));
-    let named: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
-    write_files(folder, &named)
+    write_files(folder, &files)
 }
 
 fn figure(column: Column, value: f64) -> String {
@@ -97,6 +96,11 @@ fn figure(column: Column, value: f64) -> String {
         Column::YoungRatio => format!("{value:.3}"),
         Column::PoissonShift => format!("{value:+.3}"),
     }
+}
+
+fn joined<'a>(figures: impl Iterator<Item = (&'a Column, &'a Option<f64>)>) -> String {
+    let text = |(column, value): (&Column, &Option<f64>)| value.map_or("-".into(), |v| figure(*column, v));
+    figures.map(text).collect::<Vec<_>>().join(" / ")
 }
 
 /// The rows as they are read: the object once, then a row for each fit, the printed figures beside the found ones.
@@ -113,16 +117,14 @@ fn cells(table: &PaperTable) -> (Vec<String>, Vec<Vec<String>>) {
     for row in &table.rows {
         let first = row.object != object;
         object = &row.object;
-        let join = |values: &[Option<f64>]| {
-            let text = |(column, value): (&Column, &Option<f64>)| value.map_or("-".into(), |v| figure(*column, v));
-            table.columns.iter().zip(values).map(text).collect::<Vec<_>>().join(" / ")
-        };
+        let join = |values: &[Option<f64>]| joined(table.columns.iter().zip(values));
         let mut cells = vec![if first { row.object.clone() } else { String::new() }, row.fit.clone()];
         if printed {
             let values = |printed: &Vec<f64>| join(&printed.iter().map(|v| Some(*v)).collect::<Vec<_>>());
             cells.push(row.printed.as_ref().map_or(String::new(), values));
         }
-        cells.push(join(&row.found) + if row.stands { "" } else { " †" });
+        let mark = if row.stands { String::new() } else { format!(" {FALLS}") };
+        cells.push(join(&row.found) + &mark);
         rows.push(cells);
     }
     (header, rows)
@@ -133,8 +135,7 @@ fn remarks(table: &PaperTable) -> Vec<String> {
     let mut lines = Vec::new();
     let errors = |values: &[Option<f64>]| {
         let shown = table.columns.iter().zip(values).filter(|(c, _)| matches!(c, Column::ERms | Column::EMax));
-        let text = |(column, value): (&Column, &Option<f64>)| value.map_or("-".into(), |v| figure(*column, v));
-        shown.map(text).collect::<Vec<_>>().join(" / ")
+        joined(shown)
     };
     for object in table.objects() {
         let (printed, found) = table.best(object);

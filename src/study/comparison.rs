@@ -12,7 +12,7 @@ use super::whole::WholeBody;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
-use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
+use crate::fit::{CellFits, Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
 use crate::material::Material;
 use crate::mesh::CellBlock;
 use crate::springs::Springs;
@@ -77,22 +77,32 @@ pub fn compare_element(
         recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) }));
     }
     let cell: Vec<usize> = (0..element.nodes()).collect();
-    recipes.extend(published_of(element, &element.positions, &cell, material).map(Recipe::Published));
+    let published = Method::ALL.into_iter().filter(|m| serves(*m, element, &element.positions, &cell, material));
+    recipes.extend(published.map(Recipe::Published));
     measure_recipes(element, material, shapes, &recipes, progress)
 }
 
-/// The published methods that have a formula for the first of `cells` and the material.
-fn published_of(
+/// Whether a published method has a formula for the first of `cells` and the material.
+fn serves(method: Method, element: &Element, points: &[f64], cells: &[usize], material: Material) -> bool {
+    let first = &cells[..element.nodes()];
+    let fit = |springs| published::fit(method, element, &springs, points, first, material);
+    Springs::select(element, None).and_then(fit).is_ok()
+}
+
+/// The constants of each cell by a recipe that looks at one cell at a time; `None` for any other.
+pub fn fit_each_cell(
+    recipe: &Recipe,
     element: &Element,
+    springs: &Springs,
     points: &[f64],
     cells: &[usize],
     material: Material,
-) -> impl Iterator<Item = Method> {
-    let springs = Springs::select(element, None);
-    Method::ALL.into_iter().filter(move |method| {
-        let first = &cells[..element.nodes()];
-        springs.as_ref().is_ok_and(|s| published::fit(*method, element, s, points, first, material).is_ok())
-    })
+) -> Option<Result<CellFits>> {
+    match recipe {
+        Recipe::Published(method) => Some(published::fit(*method, element, springs, points, cells, material)),
+        Recipe::Stiffness(fit) => Some(fit_cells(element, springs, points, cells, material.moduli(), fit, &mut |_| {})),
+        _ => None,
+    }
 }
 
 /// Fits `shapes` random shapes of the element by each recipe, on one thread.
@@ -125,12 +135,9 @@ pub fn measure_recipes(
             _ => return Err(Error::expected("recipe", "a fit of single elements", recipe.name(None))),
         };
         progress(&format!("{name} by {solver}"), done, recipes.len());
-        let fit = |points: &[f64], cells: &[usize]| match recipe {
-            Recipe::Published(method) => published::fit(*method, element, &springs, points, cells, material),
-            _ => {
-                let fit = recipe.at_rest().expect("it is a fit of single elements");
-                fit_cells(element, &springs, points, cells, moduli, &fit, &mut |_| {})
-            }
+        let fit = |points: &[f64], cells: &[usize]| {
+            let of_cells = fit_each_cell(recipe, element, &springs, points, cells, material);
+            of_cells.expect("it is a fit of single elements")
         };
         let mut seconds = Vec::new();
         let fitted = loop {
@@ -184,17 +191,16 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     scene.fits = Vec::new();
     (scene.motion, scene.output.frequencies) = (None, 0);
     let all = optional.then_some(Some(every));
-    let serves = |method: &Method| {
-        let of =
-            |b: &CellBlock| published_of(&b.element, &mesh.points, &b.connectivity, material).any(|m| m == *method);
-        mesh.blocks.iter().all(of)
+    let serves_all = |method: &Method| {
+        let block = |b: &CellBlock| serves(*method, &b.element, &mesh.points, &b.connectivity, material);
+        mesh.blocks.iter().all(block)
     };
     for groups in std::iter::once(None).chain(all) {
         let at_rest = objectives(higher_modes).into_iter().map(|objective| NamedFit::new(Fit::new(objective), None));
         let of_whole = whole.then(|| NamedFit::of(Recipe::Whole(Box::default()), None));
         let mut fits: Vec<NamedFit> = at_rest.chain(of_whole).collect();
         if groups.is_none() {
-            let published = Method::ALL.into_iter().filter(serves);
+            let published = Method::ALL.into_iter().filter(serves_all);
             fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }
         if scene.law().is_some() {

@@ -1,19 +1,16 @@
 //! Natural frequencies of the finite elements and the networks of a scene, side by side.
 
 use super::outcome::Outcome;
+use super::raised::{RELEASE, Raised};
 use super::run::Progress;
 use super::scene::Scene;
-use crate::dynamics::largest_square;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Entries, Lumping, Support, finite_elements, lumped_masses, unheld_bodies};
 use crate::solve::{System, lowest_modes};
-use faer::sparse::Triplet;
 
 /// Share of the largest ω² by which all are raised where some motion meets no stiffness.
 const SHIFT: f64 = 1e-4;
-/// Share of the largest ω² below which the lowest is no rounding.
-const RELEASE: f64 = 1e-9;
 
 /// The lowest natural frequencies of one model, with masses lumped at its points.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,17 +82,11 @@ impl Vibrations<'_> {
             return Ok(lowest_modes(&system, &factor, self.masses, d, self.count)?.frequencies());
         }
         // (K + σ M) φ = (ω² + σ) M φ.
-        let masses: Vec<f64> = self.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
-        let held: Vec<bool> = (0..masses.len()).map(|dof| self.support.is_fixed(dof)).collect();
-        let largest = largest_square(stiffness.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
-        let raised = |share: f64| {
-            let mut entries = stiffness.clone();
-            entries.extend(masses.iter().enumerate().map(|(dof, m)| Triplet::new(dof, dof, share * largest * m)));
-            System::new(&entries, self.support)
-        };
+        let mut raised = Raised::new(stiffness.clone(), self.masses, self.support, d);
+        let largest = raised.largest;
         let releases = || Error::new("some motion releases energy: it does not vibrate");
-        raised(RELEASE)?.cholesky().ok_or_else(releases)?;
-        let system = raised(SHIFT)?;
+        raised.by(RELEASE * largest)?.cholesky().ok_or_else(releases)?;
+        let system = raised.by(SHIFT * largest)?;
         let factor = system.cholesky().ok_or_else(releases)?;
         let modes = lowest_modes(&system, &factor, self.masses, d, self.rigid + self.count)?;
         let squares = modes.squares[self.rigid..].iter().map(|square| square - SHIFT * largest);

@@ -14,6 +14,7 @@ mod moduli;
 mod motion;
 mod outcome;
 mod paper;
+mod raised;
 mod random;
 mod run;
 mod scene;

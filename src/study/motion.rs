@@ -1,21 +1,18 @@
 //! The finite elements and the networks of a scene in motion.
 
 use super::outcome::Outcome;
+use super::raised::{RELEASE, Raised};
 use super::run::Progress;
 use super::scene::{DampingRecipe, MotionRecipe};
 use crate::dynamics::{
-    Account, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation, largest_square,
+    Account, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation,
 };
 use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, LinearElastic, Network, Support, finite_elements};
-use crate::solve::System;
-use faer::sparse::Triplet;
 use std::time::Instant;
 
-/// A network releases energy where some ω² is below zero by this share of the largest; less is rounding.
-const RELEASE: f64 = 1e-9;
 /// A displacement of so many times the body's size is none.
 const AWAY: f64 = 1e9;
 
@@ -259,22 +256,14 @@ impl Run<'_> {
 ///
 /// `K + σ M` is positive definite from `σ = −ω²` of the lowest mode on.
 fn growth(network: &Network, mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
-    let (d, support) = (mesh.dimension, &planned.support);
-    let masses: Vec<f64> = planned.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
-    let held: Vec<bool> = (0..masses.len()).map(|dof| support.is_fixed(dof)).collect();
-    let mut entries = network.stiffness(&mesh.points);
-    let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
+    let stiffness = network.stiffness(&mesh.points);
+    let mut raised = Raised::new(stiffness, &planned.masses, &planned.support, mesh.dimension);
+    let largest = raised.largest;
     if !(largest > 0.0 && largest.is_finite()) {
         return Ok(None);
     }
-    let springs = entries.len();
     let mut shift = RELEASE * largest;
-    entries.extend(masses.iter().enumerate().map(|(dof, m)| Triplet::new(dof, dof, shift * m)));
-    let system = System::new(&entries, support)?;
-    let mut stands = |shift: f64| -> Result<bool> {
-        entries[springs..].iter_mut().zip(&masses).for_each(|(entry, m)| entry.val = shift * m);
-        Ok(system.renewed(&entries, support)?.cholesky().is_some())
-    };
+    let mut stands = |shift: f64| -> Result<bool> { Ok(raised.by(shift)?.cholesky().is_some()) };
     if stands(shift)? {
         return Ok(None);
     }

@@ -17,13 +17,9 @@ impl Corners {
     /// # Errors
     /// The nodes are not just the corners of the cell.
     pub fn of(element: &Element) -> Result<Corners> {
-        let (cell, d) = (element.cell, element.dimension());
+        let cell = element.cell;
         let corners = cell.corners();
-        let here = |a: usize, corner: &[f64]| {
-            element.positions[a * d..(a + 1) * d].iter().zip(corner).all(|(x, c)| (x - c).abs() < 1e-9)
-        };
-        let node = |corner: &&[f64]| (0..element.nodes()).find(|&a| here(a, corner));
-        let nodes: Option<Vec<usize>> = corners.iter().map(node).collect();
+        let nodes: Option<Vec<usize>> = (0..corners.len()).map(|corner| element.corner_node(corner)).collect();
         let Some(nodes) = nodes.filter(|_| element.nodes() == corners.len()) else {
             let expected = format!("{} nodes at the corners of the cell", corners.len());
             return Err(Error::expected(&element.name, expected, format!("{} nodes", element.nodes())));

@@ -4,10 +4,10 @@ use super::index::{Column, RowEntry, TableEntry};
 use super::material;
 use super::outcome::{PaperRow, Surface};
 use crate::error::{Error, Result};
-use crate::fit::{fit_cells, published};
 use crate::springs::Springs;
+use crate::study::comparison::fit_each_cell;
 use crate::study::moduli::Lattice;
-use crate::study::scene::{NamedFit, Recipe, load_element};
+use crate::study::scene::{NamedFit, load_element};
 use std::path::Path;
 
 /// Steps along each constant.
@@ -33,13 +33,9 @@ pub fn surface(
         for &e in &youngs {
             for &nu in &poissons {
                 let material = material(element.dimension(), e, nu)?;
-                let of_cells = |points: &[f64], cells: &[usize]| match &fit.recipe {
-                    Recipe::Published(method) => published::fit(*method, &element, &springs, points, cells, material),
-                    recipe => {
-                        let missing = || Error::expected("fit", "a fit of single elements", &fit.name);
-                        let fit = recipe.at_rest().ok_or_else(missing)?;
-                        fit_cells(&element, &springs, points, cells, material.moduli(), &fit, &mut |_| {})
-                    }
+                let of_cells = |points: &[f64], cells: &[usize]| {
+                    let missing = || Error::expected("fit", "a fit of single elements", &fit.name);
+                    fit_each_cell(&fit.recipe, &element, &springs, points, cells, material).ok_or_else(missing)?
                 };
                 let lattice = Lattice::of(&element, &size, of_cells)?;
                 found.push(lattice.of_springs().map(|m| [m.young / material.thickness(), m.poisson]));

@@ -309,10 +309,7 @@ impl NewtonEntry {
 
 impl FixEntry {
     pub fn check(self) -> Result<(Part, Option<Vec<usize>>)> {
-        let part = Part::named(self.group, self.condition)?;
-        if part == Part::Everything {
-            return Err(Error::new("expected \"group\" or \"where\", found neither"));
-        }
+        let part = Part::said(self.group, self.condition)?;
         let axes = match self.axes {
             None => None,
             Some(axes) => {
@@ -360,10 +357,10 @@ impl LoadEntry {
             return Err(Error::new(format!("expected {expected}, found {}", actions.len())));
         }
         let action = actions.remove(0);
-        let part = Part::named(self.group, self.condition)?;
-        if part == Part::Everything && !matches!(action, Action::Body(_)) {
-            return Err(Error::new("expected \"group\" or \"where\", found neither"));
-        }
+        let part = match action {
+            Action::Body(_) => Part::named(self.group, self.condition)?,
+            _ => Part::said(self.group, self.condition)?,
+        };
         Ok(LoadCase { name, part, action, measured: self.measured })
     }
 }

@@ -27,10 +27,7 @@ impl GaugeEntry {
     /// # Errors
     /// The part is not said or said twice, the axis is none, or the cross-section is not positive.
     pub fn check(self) -> Result<Gauge> {
-        let part = Part::named(self.group, self.condition)?;
-        if part == Part::Everything {
-            return Err(Error::new("expected \"group\" or \"where\", found neither"));
-        }
+        let part = Part::said(self.group, self.condition)?;
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);
         let axis =
             axis.ok_or_else(|| Error::expected("axis", "\"x\", \"y\" or \"z\"", format!("\"{}\"", self.axis)))?;

@@ -275,6 +275,14 @@ impl Part {
         }
     }
 
+    /// As [`Part::named`], but not everything.
+    pub(super) fn said(group: Option<String>, condition: Option<String>) -> Result<Part> {
+        match Part::named(group, condition)? {
+            Part::Everything => Err(Error::new("expected \"group\" or \"where\", found neither")),
+            part => Ok(part),
+        }
+    }
+
     /// The part as a selection of a mesh of that dimension.
     ///
     /// # Errors

@@ -185,10 +185,7 @@ impl MotionEntry {
         }
         let finite_elements = self.finite_elements.unwrap_or(true);
         let damping = self.damping.map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
-        let part = |group, condition, key: String| match Part::named(group, condition).map_err(|e| e.under(&key))? {
-            Part::Everything => Err(Error::at(key, "expected \"group\" or \"where\", found neither")),
-            part => Ok(part),
-        };
+        let part = |group, condition, key: String| Part::said(group, condition).map_err(|e| e.under(key));
         let watch = self.watch.map(|w| part(w.group, w.condition, "watch".into())).transpose()?;
         let mut pulls = Vec::new();
         for (i, pull) in self.pull.into_iter().enumerate() {
