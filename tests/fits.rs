@@ -273,10 +273,8 @@ fn exact_rationals_agree() {
 fn single_precision_agrees_to_its_rounding() {
     for case in cases(3).iter().filter(|case| case.springs.content.is_none()) {
         for weight in [Weight::None, Weight::OffDiagonal] {
-            let table = case.element.tabulation.map(|v| *v as f32);
             let x: Vec<f32> = case.x.iter().map(|x| *x as f32).collect();
-            let moduli = Moduli { lambda: case.moduli.lambda as f32, mu: case.moduli.mu as f32 };
-            let single = constants_in(weight, &case.springs, &table, &x, &moduli).unwrap();
+            let single = constants_in(weight, &case.springs, &case.element.tabulation, &x, &case.moduli).unwrap();
             let k = case.fit(Fit::new(Objective::Frobenius(weight)));
             for (single, k) in single.iter().zip(&k) {
                 assert!((f64::from(*single) - k).abs() < 1e-4 * case.r.norm(), "{}: {single} {k}", case.name);

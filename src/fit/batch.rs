@@ -1,5 +1,6 @@
 //! Fits of many cells, one cell per lane of the machine's registers.
 
+use super::careful::Careful;
 use super::constrained::solve_nonnegative;
 use super::least_squares::{normal_equations, off_diagonal_equations};
 use super::method::{Method, Verdict};
@@ -8,7 +9,7 @@ use super::normal::{Normal, Rank};
 use super::{Certificate, Fit, Objective, Weight};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Lanes, Real, Scalar};
+use crate::scalar::{Lanes, Real, Scalar, Twofold};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, Placement};
 use pulp::{Simd, WithSimd};
@@ -76,7 +77,7 @@ impl WithSimd for Batch<'_> {
                 // One of them has no regular equations. Each alone in all lanes: its digits do not depend on the others.
                 alone = cell + count;
             } else {
-                tally.add(room.fit_singular(nodes, constants).map_err(|fault| (cell, fault))?);
+                tally.add(room.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
                 cell += 1;
             }
         }
@@ -157,15 +158,23 @@ impl<'a, S: Simd> Room<'a, S> {
         if !self.measure(nodes.len() / self.element.nodes()) {
             return false;
         }
-        if let Some(method) = &mut self.method {
+        if let Some(mut method) = self.method.take() {
             let zero = self.x[0].zero();
             zero.vectorize(
                 #[inline(always)]
                 || method.solve(self.springs, &self.x, &self.geometry, &self.moduli, &self.measured),
             );
+            let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
-                tally.add(method.finish(|value| value.as_slice()[lane], constants));
+                let mut verdict = method.finish(|value| value.as_slice()[lane], constants);
+                if verdict.delicate
+                    && let Ok(careful) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
+                {
+                    verdict = careful;
+                }
+                tally.add(verdict);
             }
+            self.method = Some(method);
             return true;
         }
         if self.by_nodes {
@@ -238,8 +247,8 @@ impl<'a, S: Simd> Room<'a, S> {
         }
     }
 
-    /// A single cell, with all care.
-    fn fit_singular(&mut self, nodes: &[usize], constants: &mut [f64]) -> Result<Verdict, Fault> {
+    /// A single cell; in twice the digits if it is delicate, or its shape is.
+    fn fit_alone(&mut self, nodes: &[usize], constants: &mut [f64], is_delicate: bool) -> Result<Verdict, Fault> {
         let mut x = vec![0.0; self.x.len()];
         self.placement.place(&self.element.tabulation, self.points, nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
@@ -247,6 +256,22 @@ impl<'a, S: Simd> Room<'a, S> {
         let mut measured = vec![0.0; self.measured.len()];
         if !self.springs.function_gradients(&x, &mut measured) {
             return Err(Fault::Unmeasured);
+        }
+        let Room { element, springs, moduli, fit, .. } = self;
+        if is_delicate || Geometry::quality(&element.tabulation, &x) <= Lanes::<S>::delicate() {
+            let careful = Careful { element, springs, moduli, fit };
+            let d = element.dimension();
+            // The differences of nodes are exact there, as long as the cell is not laid into a plane of its own.
+            let exact = |i: usize| {
+                let of = |node: usize| Twofold::from(self.points[node * d + i % d]);
+                of(nodes[i / d]) - &of(nodes[0])
+            };
+            let is_embedded = element.space() > d;
+            let x: Vec<Twofold> =
+                (0..x.len()).map(|i| if is_embedded { Twofold::from(x[i]) } else { exact(i) }).collect();
+            if let Some(verdict) = careful.constants(&x, &measured, constants) {
+                return Ok(verdict);
+            }
         }
         if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
@@ -265,7 +290,7 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
         spread(&self.fit, self.springs, constants, &k);
-        Ok(Verdict { certificate: None, rank, reached: true })
+        Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
     /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first. False if one is zero
@@ -289,7 +314,7 @@ impl<'a, S: Simd> Room<'a, S> {
         regular
     }
 
-    /// The coordinates of the cells' nodes, one cell per lane; lanes without a cell repeat the first. False if a cell of a
+    /// The coordinates of the cells' nodes from the first of each, as [`Placement`] has them, one cell per lane; lanes without a cell repeat the first. False if a cell of a
     /// surface or curve has no tangents.
     #[inline(always)]
     fn gather(&mut self, nodes: &[usize]) -> bool {
@@ -325,10 +350,11 @@ impl<'a, S: Simd> Room<'a, S> {
         let x = &mut self.x.as_chunks_mut::<D>().0[..n];
         for lane in 0..Lanes::<S>::COUNT {
             let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
+            let first = &points[cell[0]];
             for (x, &node) in x.iter_mut().zip(cell) {
                 let point = &points[node];
                 for k in 0..D {
-                    x[k].as_mut_slice()[lane] = point[k];
+                    x[k].as_mut_slice()[lane] = point[k] - first[k];
                 }
             }
         }

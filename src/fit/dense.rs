@@ -297,6 +297,27 @@ fn outers<T: Scalar, const A: usize>(a: &mut [T], g: &[T], n: usize, s: usize, c
     }
 }
 
+/// A limit set for `f64` at half of its digits, in numbers of another precision.
+pub fn at_half<T: Real>(limit: f64) -> f64 {
+    limit * (2.0 * T::epsilon() / f64::EPSILON).sqrt()
+}
+
+/// A limit set at the rounding of `f64`.
+pub fn at_rounding<T: Real>(limit: f64) -> f64 {
+    limit * 2.0 * T::epsilon() / f64::EPSILON
+}
+
+/// Nine tenths of the longest step that keeps every κ positive.
+#[inline(always)]
+pub fn room_below<T: Real>(kappa: &[T], step: &[T]) -> T {
+    let mut longest = kappa[0].constant(&f64::MAX);
+    for (kappa, step) in kappa.iter().zip(step) {
+        let fall = step.negated();
+        longest = fall.choose(&longest.least(&(kappa.clone() / &fall)), &longest);
+    }
+    longest.scaled(&0.9)
+}
+
 /// The sum of the diagonal.
 #[inline(always)]
 pub fn trace<T: Scalar>(a: &[T], n: usize) -> T {

@@ -21,6 +21,9 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use std::sync::Mutex;
 
+/// A search has no more iterations; a swarm keeps what each has found.
+const MOST_ITERATIONS: u64 = 1_000_000_000;
+
 /// What minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Solver {
@@ -73,8 +76,8 @@ impl Solver {
                 return Err(Error::expected("solver", expected, format!("\"{name}\"")));
             }
         };
-        if iterations == Some(0) {
-            return Err(Error::expected("iterations", "a number above 0", 0));
+        if let Some(count) = iterations.filter(|count| !(1..=MOST_ITERATIONS).contains(count)) {
+            return Err(Error::expected("iterations", format!("a number from 1 to {MOST_ITERATIONS}"), count));
         }
         let iterations = iterations.unwrap_or(Solver::DEFAULT_ITERATIONS);
         let solver = Solver::General { method, iterations, topology };

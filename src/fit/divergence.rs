@@ -5,8 +5,8 @@
 //! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
 //! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
 
-use super::dense::{add_outers, factorize, inner, invert, row_products, solve, tie, trace};
-use super::reduction::{Reduced, room_below};
+use super::dense::{add_outers, at_rounding, factorize, inner, invert, room_below, row_products, solve, tie, trace};
+use super::reduction::Reduced;
 use crate::scalar::Real;
 
 const STEPS: usize = 150;
@@ -94,7 +94,8 @@ impl<T: Real> Divergence<T> {
             }
             add_outers(&mut self.matrix, h, p, &self.trial, &reduced.unknowns, 1.0);
             // A pivot that is only rounding is no stand.
-            let definite = factorize(&mut self.matrix, p, 0.0, &mut self.pivots) - &one.constant(&FLOOR);
+            let definite =
+                factorize(&mut self.matrix, p, 0.0, &mut self.pivots) - &one.constant(&at_rounding::<T>(FLOOR));
             inside = inside.least(&definite);
             for i in 0..c {
                 self.kappa[i] = inside.choose(&self.trial[i], &self.kappa[i]);
@@ -131,7 +132,7 @@ impl<T: Real> Divergence<T> {
                     *diagonal = diagonal.clone() + &(share / &self.trial[i]);
                 }
             }
-            factorize(&mut self.hessian, c, FLOOR, &mut self.hessian_pivots);
+            factorize(&mut self.hessian, c, at_rounding::<T>(FLOOR), &mut self.hessian_pivots);
             for i in 0..c {
                 self.trial[i] = self.gradient[i].negated();
             }

@@ -10,10 +10,11 @@
 //!   `(P g)_a = (r_aᵀ S⁻¹ d) n`, so that `w = h² (∇N_j − ∇N_i) + (1 − h²) S⁻¹ d`.
 
 use super::Weight;
+use super::linear_motions::{LinearMotions, from_mean};
 use super::normal::Normal;
 use crate::element::Tabulation;
 use crate::material::Moduli;
-use crate::scalar::{Scalar, adjugate, difference, dot, multiple, plus_multiple, product, zeros};
+use crate::scalar::{Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use std::array::from_fn;
@@ -76,7 +77,7 @@ fn equations<T: Scalar, const D: usize>(
     let zero = x[0][0].zero();
     let (m, lengths) = (springs.len(), springs.pairs.len());
     let pairs = &springs.pairs[..];
-    let Normal { gram, rhs, edges, inverse_squares: q, images, .. } = normal;
+    let Normal { gram, rhs, edges, inverse_squares: q, images, positions, .. } = normal;
     gram.resize(m * m, zero.clone());
     images.resize(lengths * D, zero.clone());
     let images = images.as_chunks_mut::<D>().0;
@@ -117,27 +118,33 @@ fn equations<T: Scalar, const D: usize>(
         }
         Weight::Modal { higher } => {
             let (h2, rest) = scales(&zero, higher);
-            let inverse = multiple(&rest, &inverse_spread(x));
-            // (1 − h²) S⁻¹ d_s
-            for (image, d) in images.iter_mut().zip(edges) {
-                *image = product(&inverse, d);
+            positions.resize(n * D, zero.clone());
+            let q = positions.as_chunks_mut::<D>().0;
+            from_mean(x, q);
+            let linear = LinearMotions::of(q);
+            let q = &*q;
+            // (1 − h²) S⁻¹ d_s = (1 − h²) U⁻¹ D⁻¹ (q_j − q_i)
+            for (image, &[i, j]) in images.iter_mut().zip(pairs) {
+                *image = linear.in_space(&linear.weighted(&rest, &difference(&q[j], &q[i])));
             }
-            let images = &*images;
+            let of_springs = &*images;
             cell.energies(
                 rhs,
                 #[inline(always)]
                 |s, grad: &[[T; D]]| {
                     let plain = difference(&grad[pairs[s][1]], &grad[pairs[s][0]]);
-                    let w = plus_multiple(&images[s], &h2, &plain);
+                    let w = plus_multiple(&of_springs[s], &h2, &plain);
                     (dot(&edges[s], &w).squared(), dot(&w, &w))
                 },
             );
-            // g_s·y_t = (h² c_st + (1 − h²) d_sᵀ S⁻¹ d_t) n_s·n_t, c_st the ends of equal sign less those of unequal
+            // g_s·y_t = (h² c_st + (1 − h²) d_sᵀ S⁻¹ d_t) n_s·n_t, d_sᵀ S⁻¹ d_t in the basis where it is diagonal, c_st the ends of equal sign less those of unequal
             for t in 0..lengths {
+                images[t] = difference(&q[pairs[t][1]], &q[pairs[t][0]]);
+                let along = linear.weighted(&rest, &images[t]);
                 for s in 0..=t {
                     let ([a, b], [c, d]) = (pairs[s], pairs[t]);
                     let ends = i8::from(a == c) + i8::from(b == d) - i8::from(a == d) - i8::from(b == c);
-                    let mut factor = dot(&edges[s], &images[t]);
+                    let mut factor = dot(&images[s], &along);
                     if ends != 0 {
                         factor = factor.plus_product(&h2, &zero.constant(&T::exact(ends.into())));
                     }
@@ -268,20 +275,28 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
         }
         let volume = self.geometry.content();
         // y_a = h² c_a + (1 − h²) V S⁻¹ r_a, ∇y = h² Σ_a c_a ∇N_aᵀ + linear
-        let (h2, linear) = match weight {
-            Weight::Modal { higher } => {
-                let (h2, rest) = scales(&zero, higher);
-                (h2, multiple(&(rest * &volume), &inverse_spread(self.x)))
-            }
-            _ => (zero.one(), from_fn(|_| zeros(&zero))),
-        };
+        let (mut h2, mut linear) = (zero.one(), from_fn(|_| zeros(&zero)));
+        let mut q = self.x.to_vec();
+        let mut motions = None;
+        if let Weight::Modal { higher } = weight {
+            let rest;
+            (h2, rest) = scales(&zero, higher);
+            from_mean(self.x, &mut q);
+            let (found, factor) = (LinearMotions::of(&mut q), rest * &volume);
+            linear = found.inverse_spread(&factor);
+            motions = Some((found, factor));
+        }
         for (s, &[i, j]) in self.springs.pairs.iter().enumerate() {
             let d = &self.edges[s];
             row[s] = match weight {
                 Weight::OffDiagonal => zero.clone() - &(two.clone() * &self.q[s] * &dot(d, &c[i]) * &dot(d, &c[j])),
                 _ => {
-                    let along = h2.clone() * &dot(d, &difference(&c[j], &c[i]));
-                    (along + &dot(d, &product(&linear, d))).squared() * &self.q[s]
+                    let mut along = h2.clone() * &dot(d, &difference(&c[j], &c[i]));
+                    if let Some((motions, factor)) = &motions {
+                        let turned = difference(&q[j], &q[i]);
+                        along = along + &dot(&turned, &motions.weighted(factor, &turned));
+                    }
+                    along.squared() * &self.q[s]
                 }
             };
         }
@@ -335,26 +350,6 @@ fn density<T: Scalar, const D: usize>(h: &[[T; D]; D], lambda: &T, mu: &T) -> T 
 fn scales<T: Scalar>(zero: &T, higher: f64) -> (T, T) {
     let h2 = zero.constant(&T::exact(higher)).squared();
     (h2.clone(), zero.one() - &h2)
-}
-
-/// `S⁻¹`, `S = Σ_a r_a r_aᵀ` about the mean of the nodes.
-#[inline(always)]
-pub fn inverse_spread<T: Scalar, const D: usize>(x: &[[T; D]]) -> [[T; D]; D] {
-    let zero = x[0][0].zero();
-    let share = zero.one() / &zero.constant(&T::exact(x.len() as f64));
-    let mut mean: [T; D] = zeros(&zero);
-    for x in x {
-        mean = plus_multiple(&mean, &share, x);
-    }
-    let mut spread: [[T; D]; D] = from_fn(|_| zeros(&zero));
-    for x in x {
-        let r = difference(x, &mean);
-        for k in 0..D {
-            spread[k] = plus_multiple(&spread[k], &r[k], &r);
-        }
-    }
-    let (adjugate, determinant) = adjugate(&spread);
-    multiple(&(zero.one() / &determinant), &adjugate)
 }
 
 /// Zeros in the lower triangle.

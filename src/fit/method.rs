@@ -2,11 +2,11 @@
 
 use super::ambiguity::{KEPT, least_frobenius};
 use super::constrained::solve_nonnegative;
-use super::dense::{inner, row_products};
+use super::dense::{at_half, factorize, inner, row_products};
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
 use super::reduction::Reduced;
-use super::spectral::{GAP, Spectral};
+use super::spectral::{EXACT, GAP, Spectral};
 use super::{Fit, Objective, Weight};
 use crate::material::Moduli;
 use crate::scalar::Real;
@@ -16,6 +16,14 @@ use nalgebra::DMatrix;
 
 /// Below this curvature of the barrier (see [`Spectral`]) the optimum may not be unique.
 const AMBIGUOUS: f64 = 1e6;
+
+/// A motion softer than this, relative to the stiffest, leaves the squares in normal equations half of the digits of `f64`.
+const SOFTEST: f64 = 1e-4;
+
+/// A pivot of the normal equations below this has cost more than seven digits.
+const LEAST_PIVOT: f64 = 1e-6;
+/// A softest motion of so many rounding errors is known to nine digits.
+const KNOWN: f64 = 1e9;
 
 /// Optimum and bound of a certified fit, in N/m (of the weighted matrix).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +42,7 @@ pub struct Certificate {
 impl Certificate {
     /// `(value − bound)/value`; relative to a millionth of ‖R‖ where the value is smaller.
     pub fn gap(&self) -> f64 {
-        (self.value - self.bound) / self.value.max(super::spectral::EXACT * self.size)
+        (self.value - self.bound) / self.value.max(EXACT * self.size)
     }
 }
 
@@ -61,6 +69,8 @@ pub struct Verdict {
     pub rank: Rank,
     /// The iteration reached what it was asked for.
     pub reached: bool,
+    /// So soft a motion beside so stiff ones takes too many digits.
+    pub delicate: bool,
 }
 
 impl<T: Real> Method<T> {
@@ -112,14 +122,92 @@ impl<T: Real> Method<T> {
         }
     }
 
+    /// The constants as they are, `[springs]`, N/m: no bound is kept, and of several optima it is the one that was found. None
+    /// where springs are linearly dependent or an iteration did not end.
+    pub fn constants(mut self) -> Option<Vec<T>> {
+        let kappa = match &mut self.solver {
+            Solver::LeastSquares { normal, .. } => {
+                if !normal.solve_regular() {
+                    return None;
+                }
+                &normal.rhs
+            }
+            Solver::Spectral(solver) => &solver.kappa,
+            Solver::Divergence(solver) if solver.reached.exceeds(&solver.reached.zero()) => &solver.kappa,
+            Solver::Divergence(_) => return None,
+        };
+        let constant = |unknown: &usize| kappa[*unknown].clone() * &self.reduced.scales[*unknown];
+        Some(self.reduced.unknowns.iter().map(constant).collect())
+    }
+
+    /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have.
+    pub fn finish_alone(mut self, constants: &mut [f64]) -> Verdict {
+        // What is as soft as rounding says nothing of the constants.
+        let is_known = self.reduced.softest.rounded() > KNOWN * T::epsilon();
+        let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
+        if let (Solver::LeastSquares { normal, .. }, false) = (&self.solver, self.nonnegative) {
+            let equations = normal.rounded();
+            let found: Vec<f64> = match self.clone().constants() {
+                Some(k) => k.iter().map(Real::rounded).collect(),
+                None => {
+                    verdict.rank = Rank::Deficient;
+                    let kappa = equations.least_norm();
+                    let of = |unknown: &usize| kappa[*unknown] * self.reduced.scales[*unknown].rounded();
+                    self.reduced.unknowns.iter().map(of).collect()
+                }
+            };
+            constants.copy_from_slice(&found);
+            return verdict;
+        }
+        let found = self.finish(Real::rounded, constants);
+        verdict = Verdict { reached: found.reached && is_known, ..found };
+        if let Some(certificate) = &mut verdict.certificate {
+            // The constants are rounded to what they are written as.
+            certificate.value += 4.0 * self.reduced.order as f64 * f64::EPSILON * certificate.size;
+        }
+        verdict
+    }
+
+    /// After a spectral solution: how far constants are from the optimum at most, relative to the value, if they reach the
+    /// `value` (N/m) that is said of them, which is proved here by the pivots of `value I ± (R − K)`.
+    pub fn distance_from_optimum(&mut self, constants: &[f64], value: f64) -> Option<f64> {
+        let Solver::Spectral(solver) = &self.solver else { return None };
+        let (p, any) = (self.reduced.order, self.reduced.size.clone());
+        let mut kappa = vec![any.zero(); self.reduced.scales.len()];
+        for (&unknown, k) in self.reduced.unknowns.iter().zip(constants) {
+            kappa[unknown] = any.constant(k) / &self.reduced.scales[unknown];
+        }
+        let value = any.constant(&value) / &any;
+        let (mut e, mut pivots) = (vec![any.zero(); p * p], vec![any.zero(); p]);
+        for sign in [-1.0, 1.0] {
+            self.reduced.residual(&kappa, &mut e);
+            e.iter_mut().for_each(|entry| *entry = entry.clone().scaled(&sign));
+            (0..p).for_each(|i| e[i * p + i] = e[i * p + i].clone() + &value);
+            if !(factorize(&mut e, p, 0.0, &mut pivots).rounded() > 0.0) {
+                return None;
+            }
+        }
+        let floor = value.greatest(&any.constant(&at_half::<T>(EXACT)));
+        Some(((value - &solver.bound) / &floor).rounded())
+    }
+
     /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it.
     pub fn finish(&mut self, lane: impl Fn(&T) -> f64, constants: &mut [f64]) -> Verdict {
-        let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true };
+        let delicate = !(lane(&self.reduced.softest) > SOFTEST);
+        let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true, delicate };
         let kappa: Vec<f64> = match &self.solver {
             Solver::LeastSquares { normal, .. } => {
                 let all = |values: &[T]| values.iter().map(&lane).collect();
                 let normal = Normal::new(all(&normal.gram), all(&normal.rhs));
-                let (kappa, rank) = if self.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
+                let mut eliminated = normal.clone();
+                let (kappa, rank) = match self.nonnegative {
+                    true => solve_nonnegative(&normal),
+                    false if eliminated.solve_regular() => {
+                        verdict.delicate |= eliminated.least_pivot() < LEAST_PIVOT;
+                        (eliminated.rhs, Rank::Full)
+                    }
+                    false => normal.solve(),
+                };
                 verdict.rank = rank;
                 kappa
             }

@@ -2,6 +2,7 @@
 
 mod ambiguity;
 mod batch;
+mod careful;
 mod closed_form;
 mod congruence;
 mod constrained;
@@ -9,11 +10,13 @@ mod dense;
 mod descent;
 mod divergence;
 mod least_squares;
+mod linear_motions;
 mod method;
 mod nodal;
 mod normal;
 mod norms;
 mod objective;
+mod precision;
 pub mod published;
 mod reduction;
 mod residual;
@@ -27,6 +30,7 @@ pub use method::Certificate;
 pub use normal::Rank;
 pub use norms::Norm;
 pub use objective::{Choices, Objective, Weight};
+pub use precision::{condition, constants_of_kind, distance_from_optimum};
 pub use residual::{ElementErrors, Spread, element_errors};
 pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 

@@ -17,6 +17,8 @@ pub struct Normal<T = f64> {
     pub(super) edges: Vec<T>,
     /// Room for their images under the inverse spread of the nodes, `[springs × dimension]`.
     pub(super) images: Vec<T>,
+    /// Room for the nodes in an orthogonal basis of the linear motions, `[nodes × dimension]`.
+    pub(super) positions: Vec<T>,
     /// Room for their inverse squares, `[springs]`.
     pub(super) inverse_squares: Vec<T>,
     pub(super) pivots: Vec<T>,
@@ -40,7 +42,7 @@ impl<T> Default for Normal<T> {
 
 impl<T> Normal<T> {
     pub fn new(gram: Vec<T>, rhs: Vec<T>) -> Normal<T> {
-        Normal { gram, rhs, edges: vec![], images: vec![], inverse_squares: vec![], pivots: vec![] }
+        Normal { gram, rhs, edges: vec![], images: vec![], positions: vec![], inverse_squares: vec![], pivots: vec![] }
     }
 
     pub fn size(&self) -> usize {
@@ -91,7 +93,7 @@ impl<T: Scalar> Normal<T> {
     fn factorize(&mut self, m: usize) -> bool {
         self.pivots.resize(m, self.rhs[0].zero());
         let (gram, rhs, inverse) = (&mut self.gram[..m * m], &mut self.rhs[..m], &mut self.pivots[..m]);
-        let least = T::exact(RANK * T::epsilon());
+        let least = T::exact(RANK * T::given());
         for s in 0..m {
             let (before, row) = gram.split_at_mut(s * m);
             let row = &mut row[..=s];
@@ -162,6 +164,11 @@ impl Normal {
         if copy.solve_regular() {
             return (copy.rhs, Rank::Full);
         }
+        (self.least_norm(), Rank::Deficient)
+    }
+
+    /// The optimum of least norm in the scaling with a unit diagonal; motions below rounding of the largest count as none.
+    pub fn least_norm(&self) -> Vec<f64> {
         let (scaled, scale) = self.scaled();
         let m = self.size();
         let eigen = DMatrix::from_vec(m, m, scaled.gram).symmetric_eigen();
@@ -171,7 +178,14 @@ impl Normal {
             *c = if value > least { *c / value } else { 0.0 };
         }
         let k = &eigen.eigenvectors * coefficients;
-        (k.iter().zip(&scale).map(|(k, s)| k * s).collect(), Rank::Deficient)
+        k.iter().zip(&scale).map(|(k, s)| k * s).collect()
+    }
+
+    /// After [`Normal::solve_regular`]: the least pivot relative to its diagonal entry; its inverse times rounding is what elimination
+    /// has cost.
+    pub fn least_pivot(&self) -> f64 {
+        let m = self.size();
+        (0..m).map(|s| 1.0 / (self.pivots[s] * self.gram[s * m + s])).fold(1.0, f64::min)
     }
 }
 

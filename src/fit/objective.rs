@@ -54,6 +54,18 @@ impl Objective {
     /// The balance of the divergence where none is given; chosen by the study in the README.
     pub const DEFAULT_BALANCE: f64 = 0.25;
 
+    /// Every objective with its default numbers; modal ones where the element has motions beyond constant strain.
+    pub fn all(higher_modes: bool) -> Vec<Objective> {
+        let modal = Weight::Modal { higher: Objective::DEFAULT_HIGHER };
+        let mut all = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
+        all.extend(higher_modes.then_some(Objective::Frobenius(modal)));
+        all.extend([Objective::Frobenius(Weight::Relative), Objective::Spectral(Weight::None)]);
+        all.extend(higher_modes.then_some(Objective::Spectral(modal)));
+        all.push(Objective::Spectral(Weight::Relative));
+        all.push(Objective::Divergence { balance: Objective::DEFAULT_BALANCE });
+        all
+    }
+
     /// The objective called `name`.
     ///
     /// # Errors

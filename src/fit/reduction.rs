@@ -3,9 +3,9 @@
 
 use super::Weight;
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
-use super::least_squares::inverse_spread;
+use super::linear_motions::LinearMotions;
 use crate::material::Moduli;
-use crate::scalar::{Real, Scalar, difference, dot, multiple, plus_multiple, product, zeros};
+use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -24,6 +24,10 @@ pub struct Reduced<T> {
     pub scales: Vec<T>,
     /// N/m, or 1 where the weight takes the unit out.
     pub size: T,
+    /// What the weight takes out, N/m, or 1.
+    unit: T,
+    /// The least pivot of R̂ relative to its diagonal, where the weight divides by R; about the softest motion over the stiffest.
+    pub softest: T,
     mix: Vec<T>,
     nodal: Vec<T>,
     work: Vec<T>,
@@ -48,6 +52,8 @@ impl<T: Real> Reduced<T> {
             unknowns,
             scales: room(count),
             size: any.one(),
+            unit: any.one(),
+            softest: any.one(),
             mix: room((n - 1) * n),
             nodal: room((n - 1) * d),
             work: room(full * (d + 2)),
@@ -98,7 +104,7 @@ impl<T: Real> Reduced<T> {
     }
 
     /// The map from nodes to differences, `[nodes − 1 × nodes]`. Modal: seen through `h + (1 − h) P`, P the projection on the
-    /// linear motions, `X S⁻¹ Xᵀ` with X the positions in differences and `S = Xᵀ X`.
+    /// linear motions, `X S⁻¹ Xᵀ` with X the positions in differences and `S = XᵀX`.
     #[inline(always)]
     fn set_mix<const D: usize>(&mut self, weight: Weight, x: &[[T; D]]) {
         let n = x.len();
@@ -114,13 +120,15 @@ impl<T: Real> Reduced<T> {
             }
         }
         let Weight::Modal { higher } = weight else { return };
-        let inverse = multiple(&zero.constant(&(1.0 - higher)), &inverse_spread(x));
-        for (row, r) in self.mix.chunks_exact_mut(n).zip(&*positions) {
-            let image = product(&inverse, r);
+        let (rest, q) = (zero.constant(&(1.0 - higher)), self.work[..(n - 1) * D].as_chunks_mut::<D>().0);
+        q.clone_from_slice(positions);
+        let linear = LinearMotions::of(q);
+        for (row, r) in self.mix.chunks_exact_mut(n).zip(&*q) {
+            let image = linear.weighted(&rest, r);
             for entry in row.iter_mut() {
                 *entry = entry.clone().scaled(&higher);
             }
-            for (other, plain) in positions.iter().zip(self.differences.chunks_exact(n)) {
+            for (other, plain) in q.iter().zip(self.differences.chunks_exact(n)) {
                 let projection = dot(&image, other);
                 for (entry, c) in row.iter_mut().zip(plain) {
                     *entry = entry.clone().plus_product(&projection, &zero.constant(c));
@@ -258,12 +266,19 @@ impl<T: Real> Reduced<T> {
     }
 
     /// `h ← R̂^(−1/2) h`, here with the Cholesky factor, which differs by a rotation: `R̂ = L Lᵀ`, `h ← L⁻¹ h`, `R̂ ← I`.
+    ///
+    /// R̂ has a trace of `order` before, for roots of numbers that are odd powers of two apart round differently.
     #[inline(always)]
     fn divide_by_stiffness(&mut self) {
         let p = self.order;
         let zero = self.size.zero();
+        self.unit = trace(&self.stiffness, p).scaled(&(1.0 / p as f64));
+        let inverse = zero.one() / &self.unit;
+        for entry in &mut self.stiffness[..p * p] {
+            *entry = entry.clone() * &inverse;
+        }
         let inverse = &mut self.work[..p];
-        factorize(&mut self.stiffness[..p * p], p, 0.0, inverse);
+        self.softest = factorize(&mut self.stiffness[..p * p], p, 0.0, inverse);
         for h in self.gradients[..self.norms.len() * p].chunks_exact_mut(p) {
             for i in 1..p {
                 let mut sum = h[i].clone();
@@ -311,7 +326,7 @@ impl<T: Real> Reduced<T> {
             }
         }
         for scale in &mut self.scales {
-            *scale = self.size.clone() / scale;
+            *scale = self.size.clone() * &self.unit / scale;
         }
     }
 
@@ -375,15 +390,4 @@ fn differences(nodes: usize) -> Vec<f64> {
         row[i] = -(i as f64) * scale;
     }
     rows
-}
-
-/// Nine tenths of the longest step that keeps every κ positive.
-#[inline(always)]
-pub fn room_below<T: Real>(kappa: &[T], step: &[T]) -> T {
-    let mut longest = kappa[0].constant(&f64::MAX);
-    for (kappa, step) in kappa.iter().zip(step) {
-        let fall = step.negated();
-        longest = fall.choose(&longest.least(&(kappa.clone() / &fall)), &longest);
-    }
-    longest.scaled(&0.9)
 }

@@ -64,6 +64,11 @@ impl<S: Simd> Scalar for Lanes<S> {
     }
 
     #[inline(always)]
+    fn delicate() -> f64 {
+        1e-3
+    }
+
+    #[inline(always)]
     fn constant(&self, c: &f64) -> Lanes<S> {
         Lanes::splat(self.simd, *c)
     }
@@ -103,13 +108,18 @@ impl<S: Simd> Real for Lanes<S> {
     }
 
     #[inline(always)]
+    fn rounded(&self) -> f64 {
+        self.as_slice()[0]
+    }
+
+    #[inline(always)]
     fn choose(&self, yes: &Lanes<S>, no: &Lanes<S>) -> Lanes<S> {
         let positive = self.simd.greater_than_f64s(self.values, self.simd.splat_f64s(0.0));
         Lanes { simd: self.simd, values: self.simd.select_f64s(positive, yes.values, no.values) }
     }
 }
 
-struct Work<F>(F);
+pub(super) struct Work<F>(pub F);
 
 impl<R, F: FnOnce() -> R> WithSimd for Work<F> {
     type Output = R;

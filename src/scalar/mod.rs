@@ -1,11 +1,15 @@
 //! What the kernels of the least-squares fits need of a number: + − × ÷ and one comparison.
 //!
-//! The same source runs on `f64`, on [`Lanes`] of them (one element per lane), on `f32` for studies of rounding, and
-//! on exact rationals.
+//! The same source runs on `f64`, on [`Lanes`] of them (one element per lane), on `f32` and on pairs of `f64` for studies of
+//! rounding, and on exact rationals.
 
 mod lanes;
+mod sum;
+mod twofold;
 
 pub use lanes::Lanes;
+pub use sum::Sum;
+pub use twofold::Twofold;
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -26,6 +30,17 @@ pub trait Scalar:
 
     /// Largest relative error of one operation.
     fn epsilon() -> f64;
+
+    /// Largest relative error of what is given, coordinates and tabulations; what lies below is not told from zero.
+    fn given() -> f64 {
+        Self::epsilon()
+    }
+
+    /// Below this share of the largest that its columns' lengths allow a Jacobian determinant counts as zero: of as many digits its
+    /// own rounding takes. Lanes leave more to numbers that have them.
+    fn delicate() -> f64 {
+        9.0 * Self::given()
+    }
 
     /// `c` as a number of the kind of `self`.
     fn constant(&self, c: &Self::Constant) -> Self;
@@ -77,6 +92,9 @@ pub trait Real: Scalar<Constant = f64> {
     /// `yes` where `self > 0`, otherwise `no`; also where `self` is not a number.
     fn choose(&self, yes: &Self, no: &Self) -> Self;
 
+    /// The nearest `f64`, of the first lane.
+    fn rounded(&self) -> f64;
+
     #[inline(always)]
     fn least(&self, other: &Self) -> Self {
         (other.clone() - self).choose(self, other)
@@ -107,6 +125,11 @@ impl Real for f64 {
     #[inline(always)]
     fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
         work()
+    }
+
+    #[inline(always)]
+    fn rounded(&self) -> f64 {
+        *self
     }
 
     #[inline(always)]
@@ -240,5 +263,4 @@ macro_rules! plain {
 }
 
 plain!(f64, |value| value, f64::EPSILON / 2.0);
-plain!(f32, |value| value as f32, f32::EPSILON as f64 / 2.0);
 plain!(BigRational, |value| BigRational::from_float(value).expect("constants are finite"), 0.0);

@@ -12,10 +12,6 @@ use crate::scalar::{Scalar, adjugate, multiple, zeros};
 use nalgebra::DMatrix;
 use std::array::from_fn;
 
-/// Where a Jacobian determinant counts as zero: this many rounding errors of the largest that its columns' lengths allow
-/// are lost in the determinant itself.
-const FLAT: f64 = 9.0;
-
 /// Why an element has no stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fault {
@@ -55,7 +51,7 @@ impl<T: Scalar> Geometry<T> {
     }
 
     /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m. Returns false where a Jacobian is not
-    /// safely positive; what is wrong then, [`Geometry::set`] can tell.
+    /// safely positive, see [`Scalar::delicate`]; what is wrong then, [`Geometry::set`] can tell.
     #[inline(always)]
     pub fn update(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         // A number of nodes known at compile time unrolls the loops, which for few nodes are all overhead.
@@ -74,7 +70,7 @@ impl<T: Scalar> Geometry<T> {
     fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let x = &x.as_chunks::<D>().0[..n];
         let mut positive = true;
-        let flat = T::exact((FLAT * T::epsilon()).powi(2));
+        let flat = T::exact(T::delicate().powi(2));
         let reference = table.gradients.chunks_exact(n * D);
         let physical = self.gradients.chunks_exact_mut(n * D);
         for (q, (((dn, grad), volume), w)) in
@@ -160,6 +156,16 @@ impl Geometry {
         }
     }
 
+    /// The least `det J / Π ‖J_l‖` over the quadrature points of the element with nodes at `x`, J_l the columns of J: 1 for right angles,
+    /// 0 for no volume, negative where it is turned inside out.
+    pub fn quality(table: &Tabulation, x: &[f64]) -> f64 {
+        match table.dimension {
+            2 => quality::<2>(table, x),
+            3 => quality::<3>(table, x),
+            _ => quality::<1>(table, x),
+        }
+    }
+
     /// The fault of an element whose Jacobian is not safely positive; none if only the bound left the range of `f64`.
     fn fault<const D: usize>(&self, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
         let (mut positive, mut negative) = (0, 0);
@@ -168,7 +174,7 @@ impl Geometry {
             let (_, determinant) = adjugate(&j);
             let bound = squared_bound(&j);
             let flat = if bound > 0.0 && bound.is_finite() {
-                determinant * determinant <= (FLAT * f64::epsilon()).powi(2) * bound
+                determinant * determinant <= f64::delicate().powi(2) * bound
             } else {
                 determinant == 0.0
             };
@@ -261,6 +267,19 @@ fn jacobian<T: Scalar, const D: usize>(x: &[[T; D]], dn: &[[T::Constant; D]]) ->
     j
 }
 
+fn quality<const D: usize>(table: &Tabulation, x: &[f64]) -> f64 {
+    let of = |dn: &[f64]| {
+        let j = jacobian(x.as_chunks::<D>().0, dn.as_chunks::<D>().0);
+        let (_, determinant) = adjugate(&j);
+        // Length by length: their product may be beyond the range of numbers.
+        (0..D).fold(determinant, |ratio, l| {
+            let length = (0..D).map(|k| j[k][l] * j[k][l]).sum::<f64>().sqrt();
+            if length > 0.0 { ratio / length } else { 0.0 }
+        })
+    };
+    table.gradients.chunks_exact(table.nodes * D).map(of).fold(f64::INFINITY, f64::min)
+}
+
 /// The product of the squared lengths of the columns: `det² J` is at most that (Hadamard).
 #[inline(always)]
 fn squared_bound<T: Scalar, const D: usize>(j: &[[T; D]; D]) -> T {
@@ -279,6 +298,11 @@ impl std::fmt::Display for Fault {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             Fault::Reversed => write!(f, "its nodes are numbered the other way round (negative Jacobian everywhere)"),
+            Fault::Tangled { point, determinant, .. } if *determinant > 0.0 => write!(
+                f,
+                "the element is flat at quadrature point {point}: its Jacobian determinant there, {determinant:.3e}, is within \
+                 the rounding of its nodes"
+            ),
             Fault::Tangled { point, determinant, largest } => write!(
                 f,
                 "the element is tangled: its Jacobian determinant goes from {largest:.3e} down to {determinant:.3e} at \

@@ -1,4 +1,7 @@
-//! Where the nodes of a cell are: in space, or in the cell's own plane or line where it is less than its space.
+//! Where the nodes of a cell are from its first: in space, or in the cell's own plane or line where it is less than its space.
+//!
+//! Far from the origin coordinates have few digits left for a shape, and sums of them lose those; their differences are exact
+//! (Sterbenz 1974).
 
 use super::Fault;
 use crate::element::Tabulation;
@@ -21,7 +24,8 @@ impl Placement {
         Placement { frame: room(table.dimension * table.space), spatial: room(table.nodes * table.space) }
     }
 
-    /// Writes the positions of `nodes` among `points`, `[points × space]`, into `x`, `[nodes × dimension]`.
+    /// Writes the positions of `nodes` among `points`, `[points × space]`, from the first of them into `x`,
+    /// `[nodes × dimension]`.
     ///
     /// # Errors
     /// A cell of a surface or curve has no tangents.
@@ -29,14 +33,15 @@ impl Placement {
         let (d, space) = (table.dimension, table.space);
         if self.frame.is_empty() {
             gather(points, d, nodes, x);
+            from_first(d, x);
             return Ok(());
         }
         gather(points, space, nodes, &mut self.spatial);
+        from_first(space, &mut self.spatial);
         self.set_frame(table)?;
-        let origin = &self.spatial[..space];
         for (local, at) in x.chunks_exact_mut(d).zip(self.spatial.chunks_exact(space)) {
             for (local, e) in local.iter_mut().zip(self.frame.chunks_exact(space)) {
-                *local = e.iter().zip(at.iter().zip(origin)).map(|(e, (x, o))| e * (x - o)).sum();
+                *local = e.iter().zip(at).map(|(e, x)| e * x).sum();
             }
         }
         Ok(())
@@ -67,6 +72,13 @@ impl Placement {
         }
         Ok(())
     }
+}
+
+/// Takes the first position from all.
+fn from_first(dimension: usize, x: &mut [f64]) {
+    let (first, rest) = x.split_at_mut(dimension);
+    rest.chunks_exact_mut(dimension).for_each(|x| x.iter_mut().zip(&*first).for_each(|(x, o)| *x -= o));
+    first.fill(0.0);
 }
 
 fn norm(vector: &[f64]) -> f64 {

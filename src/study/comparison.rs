@@ -46,18 +46,6 @@ pub struct MethodOutcome {
     pub moduli: Option<EffectiveModuli>,
 }
 
-/// The objectives that are compared; `modal` where the element has motions beyond constant strain.
-fn objectives(higher_modes: bool) -> Vec<Objective> {
-    let modal = Weight::Modal { higher: Objective::DEFAULT_HIGHER };
-    let mut all = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
-    all.extend(higher_modes.then_some(Objective::Frobenius(modal)));
-    all.extend([Objective::Frobenius(Weight::Relative), Objective::Spectral(Weight::None)]);
-    all.extend(higher_modes.then_some(Objective::Spectral(modal)));
-    all.push(Objective::Spectral(Weight::Relative));
-    all.push(Objective::Divergence { balance: Objective::DEFAULT_BALANCE });
-    all
-}
-
 /// Fits `shapes` random shapes of the element with every objective, the spectral one with every solver, and by the published
 /// formulas that it has; on one thread.
 ///
@@ -71,7 +59,7 @@ pub fn compare_element(
     progress: &mut Progress,
 ) -> Result<Vec<MethodOutcome>> {
     let mut recipes: Vec<Recipe> =
-        objectives(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))).collect();
+        Objective::all(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))).collect();
     for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
         let solver = Solver::General { method, iterations, topology: None };
         recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) }));
@@ -196,7 +184,8 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
         mesh.blocks.iter().all(block)
     };
     for groups in std::iter::once(None).chain(all) {
-        let at_rest = objectives(higher_modes).into_iter().map(|objective| NamedFit::new(Fit::new(objective), None));
+        let at_rest =
+            Objective::all(higher_modes).into_iter().map(|objective| NamedFit::new(Fit::new(objective), None));
         let of_whole = whole.then(|| NamedFit::of(Recipe::Whole(Box::default()), None));
         let mut fits: Vec<NamedFit> = at_rest.chain(of_whole).collect();
         if groups.is_none() {

@@ -10,12 +10,15 @@
 
 mod side;
 
-use super::dense::{add_outers, factorize, inner, mirror, row_products, solve, tie, trace};
-use super::reduction::{Reduced, room_below};
+use super::dense::{
+    add_outers, at_half, at_rounding, factorize, inner, mirror, room_below, row_products, solve, tie, trace,
+};
+use super::reduction::Reduced;
 use crate::scalar::Real;
 use side::Side;
 
-/// The duality gap that is asked for, relative to t; relative to `EXACT ‖R‖` where t is smaller still.
+/// The duality gap that is asked for, relative to t; relative to `EXACT ‖R‖` where t is smaller still. Of `f64`; in numbers of other
+/// precision as much of their digits.
 pub const GAP: f64 = 1e-8;
 /// Below this fraction of ‖R‖ rounding in R itself hides t.
 pub const EXACT: f64 = 1e-6;
@@ -89,7 +92,7 @@ impl<T: Real> Spectral<T> {
         let zero = self.value.zero();
         let one = zero.one();
         self.start(reduced);
-        let floor = one.constant(&EXACT);
+        let floor = one.constant(&at_half::<T>(EXACT));
         let complexity = (2 * p + if self.nonnegative { c } else { 0 }) as f64;
         let mut mu = zero.clone();
         let mut kappa = self.kappa.clone();
@@ -131,7 +134,7 @@ impl<T: Real> Spectral<T> {
                 mu = inside.choose(&followed, &mu);
             }
             let decrement = self.directions(&mut mu, &previous);
-            let end = self.value.greatest(&floor).scaled(&(0.4 * GAP / complexity));
+            let end = self.value.greatest(&floor).scaled(&(0.4 * at_half::<T>(GAP) / complexity));
             // Centred and at the end: stay.
             let centred = one.constant(&0.2) - &decrement;
             let done = (end.clone().scaled(&1.001) - &mu).choose(&centred, &zero.clone().scaled(&-1.0));
@@ -205,7 +208,7 @@ impl<T: Real> Spectral<T> {
         }
         // Kept for the repair of the bound: the Gram matrix of the springs' matrices.
         self.gram[..c * c].clone_from_slice(&self.hessian[..c * c]);
-        factorize(&mut self.gram[..c * c], c, FLOOR, &mut self.gram_pivots);
+        factorize(&mut self.gram[..c * c], c, at_rounding::<T>(FLOOR), &mut self.gram_pivots);
         solve(&self.gram[..c * c], c, &self.gram_pivots, &mut self.kappa);
         if self.nonnegative {
             let mut mean = zero.clone();
@@ -225,7 +228,7 @@ impl<T: Real> Spectral<T> {
                 square = square + &twice;
             }
         }
-        self.value = square.sqrt().scaled(&1.05) + &zero.constant(&EXACT);
+        self.value = square.sqrt().scaled(&1.05) + &zero.constant(&at_half::<T>(EXACT));
     }
 
     /// Gradient and Hessian of the barrier at the trial point, whose sides are factorised.
@@ -284,7 +287,7 @@ impl<T: Real> Spectral<T> {
             self.newton[i] = self.gradient[i].negated();
             self.tangent[i] = if i == c { zero.one() } else { zero.clone() };
         }
-        factorize(&mut self.hessian, c + 1, FLOOR, &mut self.pivots);
+        factorize(&mut self.hessian, c + 1, at_rounding::<T>(FLOOR), &mut self.pivots);
         solve(&self.hessian, c + 1, &self.pivots, &mut self.newton);
         solve(&self.hessian, c + 1, &self.pivots, &mut self.tangent);
         let square = inner(&self.newton, &self.gradient).negated();

@@ -1,0 +1,103 @@
+//! The linear motions of an element, `u_a = A r_a` with r_a its nodes from their mean: what modal weights tell apart.
+
+use crate::scalar::{Scalar, plus_multiple, zeros};
+use std::array::from_fn;
+
+/// `R = Q U` with Q of orthogonal columns and U unit upper triangular, R the rows r_a: `S⁻¹ = (RᵀR)⁻¹ = U⁻¹ D⁻¹ U⁻ᵀ`,
+/// `D = QᵀQ`, and the projection on the linear motions is `Q D⁻¹ Qᵀ`.
+///
+/// By Gram and Schmidt's modified method, which loses the condition of R in digits, where S would lose its square; without roots,
+/// which rational numbers have not.
+pub struct LinearMotions<T, const D: usize> {
+    /// `U⁻¹`, upper triangular: row k, column l.
+    pub back: [[T; D]; D],
+    /// `D⁻¹`.
+    pub inverse_squares: [T; D],
+}
+
+impl<T: Scalar, const D: usize> LinearMotions<T, D> {
+    /// Replaces the rows R in `q` by those of Q.
+    #[inline(always)]
+    pub fn of(q: &mut [[T; D]]) -> LinearMotions<T, D> {
+        let zero = q[0][0].zero();
+        let mut back: [[T; D]; D] = from_fn(|_| zeros(&zero));
+        let mut inverse_squares: [T; D] = zeros(&zero);
+        for l in 0..D {
+            back[l][l] = zero.one();
+            for m in 0..l {
+                let mut along = zero.clone();
+                for row in q.iter() {
+                    along = along.plus_product(&row[m], &row[l]);
+                }
+                let share = along * &inverse_squares[m];
+                for row in q.iter_mut() {
+                    row[l] = row[l].clone().minus_product(&share, &row[m]);
+                }
+                for k in 0..=m {
+                    back[k][l] = back[k][l].clone().minus_product(&share, &back[k][m]);
+                }
+            }
+            let mut square = zero.clone();
+            for row in q.iter() {
+                square = square.plus_product(&row[l], &row[l]);
+            }
+            inverse_squares[l] = zero.one() / &square;
+        }
+        LinearMotions { back, inverse_squares }
+    }
+
+    /// `D⁻¹ v` times `factor`.
+    #[inline(always)]
+    pub fn weighted(&self, factor: &T, v: &[T; D]) -> [T; D] {
+        let mut weighted = v.clone();
+        for l in 0..D {
+            weighted[l] = weighted[l].clone() * &self.inverse_squares[l] * factor;
+        }
+        weighted
+    }
+
+    /// `U⁻¹ v`.
+    #[inline(always)]
+    pub fn in_space(&self, v: &[T; D]) -> [T; D] {
+        let mut image = v.clone();
+        for k in 0..D {
+            for l in k + 1..D {
+                image[k] = image[k].clone().plus_product(&self.back[k][l], &v[l]);
+            }
+        }
+        image
+    }
+
+    /// `factor S⁻¹`.
+    #[inline(always)]
+    pub fn inverse_spread(&self, factor: &T) -> [[T; D]; D] {
+        let zero = factor.zero();
+        let mut inverse: [[T; D]; D] = from_fn(|_| zeros(&zero));
+        for l in 0..D {
+            let scale = self.inverse_squares[l].clone() * factor;
+            for i in 0..=l {
+                for j in 0..=l {
+                    let product = self.back[i][l].clone() * &scale;
+                    inverse[i][j] = inverse[i][j].clone().plus_product(&product, &self.back[j][l]);
+                }
+            }
+        }
+        inverse
+    }
+}
+
+/// Writes the rows r_a of nodes at `x` into `q`.
+#[inline(always)]
+pub fn from_mean<T: Scalar, const D: usize>(x: &[[T; D]], q: &mut [[T; D]]) {
+    let zero = x[0][0].zero();
+    let share = zero.constant(&T::exact(-1.0)) / &zero.constant(&T::exact(x.len() as f64));
+    let mut less: [T; D] = zeros(&zero);
+    for x in x {
+        less = plus_multiple(&less, &share, x);
+    }
+    for (q, x) in q.iter_mut().zip(x) {
+        for k in 0..D {
+            q[k] = x[k].clone() + &less[k];
+        }
+    }
+}

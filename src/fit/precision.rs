@@ -1,0 +1,100 @@
+//! One element in another kind of number: in twice the digits, to tell what rounding did, or in half of them.
+
+use super::least_squares::normal_equations;
+use super::method::Method;
+use super::normal::Normal;
+use super::{Fit, Weight, constants_in};
+use crate::element::Element;
+use crate::material::Moduli;
+use crate::scalar::{Real, Twofold};
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+
+/// The constants of one element with every operation in numbers of the kind of `any`, `[springs]`, N/m; nodes at `x`,
+/// `[nodes × dimension]`, m. Tabulation and moduli are taken as they are; of springs on functions the gradients are known in
+/// `f64` alone. Iterations end where they do in `f64`, and no bound is kept.
+///
+/// None if the Jacobian is not positive everywhere or the springs are linearly dependent.
+pub fn constants_of_kind<T: Real>(
+    any: &T,
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: &Moduli,
+    fit: &Fit,
+) -> Option<Vec<T>> {
+    match solved(any, element, springs, x, moduli, fit) {
+        Some(method) => method?.constants(),
+        None => {
+            let x = differences(any, element.dimension(), x);
+            constants_in(fit.objective.weight()?, springs, &element.tabulation, &x, moduli)
+        }
+    }
+}
+
+/// How far the constants of a spectral fit are from the optimum at most, relative to the `value` (N/m) that is said of them, proved
+/// in twice the digits: that they reach it, by the pivots of `value I ± (R − K)`, and that nothing reaches less than the bound,
+/// by the dual pair. None if that fails, or the objective is another.
+pub fn distance_from_optimum(
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: &Moduli,
+    fit: &Fit,
+    (constants, value): (&[f64], f64),
+) -> Option<f64> {
+    solved(&Twofold::from(0.0), element, springs, x, moduli, fit)??.distance_from_optimum(constants, value)
+}
+
+/// The objective solved for one element; `Some(None)` if that has no stiffness, `None` if the objective has a closed form.
+fn solved<T: Real>(
+    any: &T,
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: &Moduli,
+    fit: &Fit,
+) -> Option<Option<Method<T>>> {
+    let mut method = Method::of_kind(any, springs, fit)?;
+    let x = differences(any, element.dimension(), x);
+    let mut geometry = Geometry::of_kind(any, &element.tabulation);
+    if !geometry.update(&element.tabulation, &x) {
+        return Some(None);
+    }
+    let plain: Vec<f64> = x.iter().map(Real::rounded).collect();
+    let mut measured = vec![0.0; springs.functions.len() * plain.len()];
+    if !springs.function_gradients(&plain, &mut measured) {
+        return Some(None);
+    }
+    let measured: Vec<T> = measured.iter().map(|g| any.constant(g)).collect();
+    any.vectorize(
+        #[inline(always)]
+        || method.solve(springs, &x, &geometry, moduli, &measured),
+    );
+    Some(Some(method))
+}
+
+/// The ratio of the largest to the least eigenvalue of the normal equations of an element, scaled to a unit diagonal; what a
+/// relative change of the shape or the stiffness does to the constants is at most about so many times as large. `None` where they
+/// are singular, the element has no stiffness, or the springs measure functions.
+pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64], moduli: &Moduli) -> Option<f64> {
+    if !springs.functions.is_empty() || weight == Weight::Relative {
+        return None;
+    }
+    let x = differences(&0.0, element.dimension(), x);
+    let mut geometry = Geometry::new(&element.tabulation);
+    geometry.set(&element.tabulation, &x).ok()?;
+    let mut normal = Normal::default();
+    normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
+    let (scaled, _) = normal.scaled();
+    let m = scaled.size();
+    let eigenvalues = nalgebra::DMatrix::from_vec(m, m, scaled.gram).symmetric_eigenvalues();
+    let (least, largest) = (eigenvalues.min(), eigenvalues.max());
+    // Below rounding of the largest the least says nothing.
+    (least > m as f64 * f64::EPSILON * largest).then(|| largest / least)
+}
+
+/// The nodes from the first, which is exact where they are near each other.
+fn differences<T: Real>(any: &T, dimension: usize, x: &[f64]) -> Vec<T> {
+    x.iter().enumerate().map(|(i, v)| any.constant(v) - &any.constant(&x[i % dimension])).collect()
+}

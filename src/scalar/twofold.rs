@@ -1,0 +1,204 @@
+//! Numbers of twice the digits of `f64`, the reference that rounding is measured against, and `f32`, the other way.
+
+use super::lanes::Work;
+use super::{Real, Scalar};
+use std::ops::{Add, Div, Mul, Sub};
+
+/// `hi + lo`, with lo at most half a unit in the last place of hi: 32 digits in the range of `f64`.
+///
+/// Sum and product are algorithms 6 and 12 of Joldes, Muller, Popescu, ACM Trans. Math. Softw. 44 (2017); the quotient takes a
+/// third digit by long division, the root one step of Newton's method (Karp and Markstein 1997).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twofold {
+    pub hi: f64,
+    pub lo: f64,
+}
+
+impl From<f64> for Twofold {
+    fn from(value: f64) -> Twofold {
+        Twofold { hi: value, lo: 0.0 }
+    }
+}
+
+/// `a + b` exactly.
+#[inline(always)]
+fn two_sum(a: f64, b: f64) -> Twofold {
+    let hi = a + b;
+    let other = hi - a;
+    Twofold { hi, lo: (a - (hi - other)) + (b - other) }
+}
+
+/// `a + b` exactly where |a| ≥ |b|.
+#[inline(always)]
+fn fast_two_sum(a: f64, b: f64) -> Twofold {
+    let hi = a + b;
+    Twofold { hi, lo: b - (hi - a) }
+}
+
+impl Twofold {
+    #[inline(always)]
+    fn times(self, y: f64) -> Twofold {
+        let high = self.hi * y;
+        let low = self.lo.mul_add(y, self.hi.mul_add(y, -high));
+        fast_two_sum(high, low)
+    }
+}
+
+impl Add<&Twofold> for Twofold {
+    type Output = Twofold;
+
+    #[inline(always)]
+    fn add(self, y: &Twofold) -> Twofold {
+        let (s, t) = (two_sum(self.hi, y.hi), two_sum(self.lo, y.lo));
+        let v = fast_two_sum(s.hi, s.lo + t.hi);
+        fast_two_sum(v.hi, t.lo + v.lo)
+    }
+}
+
+impl Sub<&Twofold> for Twofold {
+    type Output = Twofold;
+
+    #[inline(always)]
+    fn sub(self, y: &Twofold) -> Twofold {
+        self + &Twofold { hi: -y.hi, lo: -y.lo }
+    }
+}
+
+impl Mul<&Twofold> for Twofold {
+    type Output = Twofold;
+
+    #[inline(always)]
+    fn mul(self, y: &Twofold) -> Twofold {
+        let high = self.hi * y.hi;
+        let rest = self.hi.mul_add(y.hi, -high);
+        let low = self.lo.mul_add(y.hi, self.hi.mul_add(y.lo, self.lo * y.lo));
+        fast_two_sum(high, rest + low)
+    }
+}
+
+impl Div<&Twofold> for Twofold {
+    type Output = Twofold;
+
+    #[inline(always)]
+    fn div(self, y: &Twofold) -> Twofold {
+        let first = self.hi / y.hi;
+        let rest = self - &y.times(first);
+        let second = rest.hi / y.hi;
+        let third = (rest - &y.times(second)).hi / y.hi;
+        fast_two_sum(first, second) + &Twofold::from(third)
+    }
+}
+
+impl Scalar for Twofold {
+    type Constant = f64;
+
+    fn exact(value: f64) -> f64 {
+        value
+    }
+
+    /// A quotient errs by less than 10·2⁻¹⁰⁶, the worst of the four.
+    fn epsilon() -> f64 {
+        10.0 * 2f64.powi(-106)
+    }
+
+    fn given() -> f64 {
+        f64::EPSILON / 2.0
+    }
+
+    fn constant(&self, c: &f64) -> Twofold {
+        Twofold::from(*c)
+    }
+
+    #[inline(always)]
+    fn scaled(self, c: &f64) -> Twofold {
+        self.times(*c)
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: &Twofold, b: &Twofold) -> Twofold {
+        self + &(*a * b)
+    }
+
+    #[inline(always)]
+    fn minus_product(self, a: &Twofold, b: &Twofold) -> Twofold {
+        self - &(*a * b)
+    }
+
+    fn exceeds(&self, other: &Twofold) -> bool {
+        (*self - other).hi > 0.0
+    }
+}
+
+impl Real for Twofold {
+    fn sqrt(self) -> Twofold {
+        let root = self.hi.sqrt();
+        if !(root > 0.0) {
+            return Twofold::from(root);
+        }
+        let rest = self - &Twofold::from(root).times(root);
+        fast_two_sum(root, rest.hi / (2.0 * root))
+    }
+
+    /// For the machine's products that are rounded once with their sum.
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        pulp::Arch::new().dispatch(Work(work))
+    }
+
+    fn rounded(&self) -> f64 {
+        self.hi
+    }
+
+    fn choose(&self, yes: &Twofold, no: &Twofold) -> Twofold {
+        if self.hi > 0.0 { *yes } else { *no }
+    }
+}
+
+impl Scalar for f32 {
+    type Constant = f64;
+
+    fn exact(value: f64) -> f64 {
+        value
+    }
+
+    fn epsilon() -> f64 {
+        f64::from(f32::EPSILON) / 2.0
+    }
+
+    fn constant(&self, c: &f64) -> f32 {
+        *c as f32
+    }
+
+    fn scaled(self, c: &f64) -> f32 {
+        self * *c as f32
+    }
+
+    fn plus_product(self, a: &f32, b: &f32) -> f32 {
+        self + a * b
+    }
+
+    fn minus_product(self, a: &f32, b: &f32) -> f32 {
+        self - a * b
+    }
+
+    fn exceeds(&self, other: &f32) -> bool {
+        self > other
+    }
+}
+
+impl Real for f32 {
+    fn sqrt(self) -> f32 {
+        f32::sqrt(self)
+    }
+
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        work()
+    }
+
+    fn rounded(&self) -> f64 {
+        f64::from(*self)
+    }
+
+    fn choose(&self, yes: &f32, no: &f32) -> f32 {
+        if *self > 0.0 { *yes } else { *no }
+    }
+}
