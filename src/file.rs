@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The file's bytes.
 ///
@@ -26,35 +27,65 @@ pub fn ending(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-/// Creates `path` with `content`, or replaces it; a failure leaves what was there before.
+/// Creates `path` with `content`, or replaces it; a failure leaves what was there before. A link stays one, and a file that is
+/// replaced keeps its permissions; what is no file, such as a device, is written to as it is.
 ///
 /// # Errors
 /// The folder is missing or read-only, or the disk is full.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
-    let name = path.file_name().ok_or_else(|| Error::new("expected the name of a file to write").in_file(path))?;
-    let partial = path.with_file_name(format!(".{}.{}.partial", name.to_string_lossy(), std::process::id()));
-    let written = fs::File::create(&partial).and_then(|mut file| {
-        file.write_all(content)?;
-        file.sync_all()?;
-        fs::rename(&partial, path)
-    });
-    written.map_err(|e| {
-        let _ = fs::remove_file(&partial);
-        Error::new(format!("cannot be written: {e}")).in_file(path)
-    })
+    if path.file_name().is_none() || path.is_dir() {
+        return Err(Error::new("expected the name of a file to write, found a folder").in_file(path));
+    }
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let old = fs::metadata(&target).ok();
+    let written = if old.as_ref().is_some_and(|old| !old.is_file()) {
+        fs::File::options().write(true).open(&target).and_then(|mut file| file.write_all(content))
+    } else {
+        let partial = partial_beside(&target);
+        let written = fs::File::create(&partial).and_then(|mut file| {
+            old.map_or(Ok(()), |old| file.set_permissions(old.permissions()))?;
+            file.write_all(content)?;
+            file.sync_all()?;
+            fs::rename(&partial, &target)
+        });
+        written.inspect_err(|_| drop(fs::remove_file(&partial)))
+    };
+    written.map_err(|e| Error::new(format!("cannot be written: {e}")).in_file(path))
 }
 
-/// Whether [`create_folder`] could succeed, without creating anything.
+/// A name of its own in each process and thread, short whatever the file is called.
+fn partial_beside(path: &Path) -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    path.with_file_name(format!(".springfit.{}.{count}.partial", std::process::id()))
+}
+
+/// Whether files could be written into `path`, which may not be there yet: asked before long work. Nothing stays behind.
 ///
 /// # Errors
-/// Something that is no folder stands in the way.
+/// Something that is no folder stands in the way, or the folder is read-only.
 pub fn check_folder(path: &Path) -> Result<()> {
-    let existing = path.ancestors().find(|p| p.as_os_str().is_empty() || p.exists());
-    match existing {
-        Some(place) if !place.as_os_str().is_empty() && !place.is_dir() => {
-            Err(Error::new("the folder cannot be created: a file stands in the way").in_file(path))
-        }
-        _ => Ok(()),
+    let exists = |p: &&Path| !p.as_os_str().is_empty() && p.exists();
+    let place = path.ancestors().find(exists).unwrap_or(Path::new("."));
+    if !place.is_dir() {
+        return Err(Error::new("the folder cannot be created: a file stands in the way").in_file(path));
+    }
+    let probe = partial_beside(&place.join("probe"));
+    let tried = fs::File::create(&probe).and_then(|_| fs::remove_file(&probe));
+    tried.map_err(|e| Error::new(format!("nothing can be written there: {e}")).in_file(path))
+}
+
+/// Whether [`write_whole`] could write that file.
+///
+/// # Errors
+/// It is a folder, or its folder is missing or read-only.
+pub fn check_file(path: &Path) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match path.is_dir() {
+        true => Err(Error::new("expected the name of a file to write, found a folder").in_file(path)),
+        false if !folder.is_dir() => Err(Error::new("cannot be written: its folder does not exist").in_file(path)),
+        false if path.exists() && !path.is_file() => Ok(()),
+        false => check_folder(folder).map_err(|e| Error::new(e.problem()).in_file(path)),
     }
 }
 

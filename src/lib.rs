@@ -17,4 +17,4 @@ pub mod study;
 pub mod symbolic;
 pub mod whole;
 
-pub use file::{check_folder, files_in, write_whole};
+pub use file::{check_file, check_folder, files_in, write_whole};

@@ -624,6 +624,7 @@ fn lumped_masses_are_positive() {
             groups: Default::default(),
             reversed: 0,
             unused_points: 0,
+            quality: Default::default(),
         };
         let rows = masses(&mesh, 1000.0, 0.5);
         let hrz = lumped_masses(&mesh, 1000.0, 0.5, Lumping::Hrz);
@@ -767,7 +768,7 @@ fn faults_are_named() {
     assert_eq!(error(free(), Options { iterations: 0, ..plain }), "iterations: expected at least one, found 0");
     assert_eq!(
         error(free(), Options { solver: gradients(0.0), ..plain }),
-        "solver.tolerance: expected a number above zero and below one, found 0"
+        "solver.tolerance: expected a number from 1e-15 to below 1, found 0.0"
     );
     let newmark = Integrator::Newmark { beta: 0.0, gamma: 0.5 };
     assert_eq!(

@@ -314,12 +314,24 @@ fn wrong_keys_are_told() {
     let force = "group = \"zmax\"\nforce = [\"0.01*sin(60*t)\", 0, \"0.1*t\"]";
     let pull = "displacement = [\"free\", \"1e-4*(1 - cos(80*t))\", \"free\"]";
     let cases = [
-        ("step = 0.001", "step = -0.001", "motion.step: expected a time above zero in s, found -0.001"),
-        ("step = 0.001", "step = nan", "motion.step: expected a time above zero in s, found NaN"),
+        (
+            "step = 0.001",
+            "step = -0.001",
+            "motion.step: expected a time above zero in s, from 1e-30 to 1e30, found -0.001",
+        ),
+        ("step = 0.001", "step = nan", "motion.step: expected a time above zero in s, from 1e-30 to 1e30, found NaN"),
         ("step = 0.001", "step = 0.06", "motion.duration: expected at least one step of 0.06 s, found 0.05 s"),
         ("step = 0.001", "step = 1e-12", "motion.step: expected at most 1e9 steps in all, found 5e10"),
-        ("duration = 0.05", "duration = 0", "motion.duration: expected a time above zero in s, found 0"),
-        ("duration = 0.05", "duration = inf", "motion.duration: expected a time above zero in s, found inf"),
+        (
+            "duration = 0.05",
+            "duration = 0",
+            "motion.duration: expected a time above zero in s, from 1e-30 to 1e30, found 0.0",
+        ),
+        (
+            "duration = 0.05",
+            "duration = inf",
+            "motion.duration: expected a time above zero in s, from 1e-30 to 1e30, found inf",
+        ),
         ("duration = 0.05\n", "", ":13: motion: missing field \"duration\""),
         (
             "\"newmark\"",
@@ -356,12 +368,38 @@ fn wrong_keys_are_told() {
         (
             "linear = true",
             "solver = \"conjugate-gradients\"\nremainder = 1",
-            "motion.remainder: expected a share above 0 and below 1, found 1",
+            "motion.remainder: expected a share from 1e-15 to below 1, found 1.0",
+        ),
+        (
+            "linear = true",
+            "solver = \"conjugate-gradients\"\nremainder = 1e-170",
+            "motion.remainder: expected a share from 1e-15 to below 1, found 1e-170",
+        ),
+        (
+            "watch =",
+            "gravity = [0, 0, 1e300]\nwatch =",
+            "motion.gravity: expected finite numbers of m/s², at most 1e30, found 1e300",
+        ),
+        (
+            "duration = 0.05\nstep = 0.001",
+            "duration = 1e300\nstep = 1e299",
+            "motion.duration: expected a time above zero in s, from 1e-30 to 1e30, found 1e300",
+        ),
+        (
+            "\"0.1*t\"",
+            "\"sqrt(0.0499 - t)\"",
+            "motion.force[0].force[2]: expected finite values at all times of the motion, found NaN at 0.05 s",
+        ),
+        (
+            "\"1e-4*(1 - cos(80*t))\"",
+            "\"sqrt(0.05 - t)\"",
+            "motion.pull[0].displacement[1]: expected finite values at all times of the motion, found NaN at 0.0505 s, \
+             half a step after the end",
         ),
         ("linear = true", "iterations = 0", "motion.iterations: expected a number above 0, found 0"),
         ("linear = true", "tolerance = 2", "motion.tolerance: expected a share above 0 and below 1, found 2"),
         ("every = 0.01", "every = 0.0005", "motion.every: expected at least one step of 0.001 s, found 0.0005 s"),
-        ("every = 0.01", "every = -1", "motion.every: expected a time above zero in s, found -1"),
+        ("every = 0.01", "every = -1", "motion.every: expected a time above zero in s, from 1e-30 to 1e30, found -1.0"),
         ("density = 1000\n", "", "material.density: expected a number of kg/m³, for [motion] moves masses, found none"),
         (
             "watch = { group = \"zmax\" }",
@@ -395,7 +433,7 @@ fn wrong_keys_are_told() {
         (
             "watch =",
             "damping = { rayleigh = [0.1, -1] }\nwatch =",
-            "motion.damping.rayleigh: expected two numbers that are not negative, in 1/s and s, found -1",
+            "motion.damping.rayleigh: expected two numbers that are not negative, in 1/s and s, at most 1e30, found -1.0",
         ),
         (
             pull,
@@ -483,6 +521,13 @@ fn an_explicit_step_beyond_its_limit_is_refused_with_the_limit() {
     assert!(!folder.path().join("out").exists());
 }
 
+/// A force is asked for until the end, not after it.
+#[test]
+fn a_force_may_end_with_the_motion() {
+    let text = edited(BLOCK, "\"0.1*t\"", "\"sqrt(0.05 - t)\"");
+    assert!(outcome(&text).motion.unwrap().models.iter().all(|model| model.ending == MotionEnding::Complete));
+}
+
 /// A network of negative springs is told with how fast it runs away; a linear step too long for that is not begun, and the others are.
 #[test]
 fn an_indefinite_network_is_told() {
@@ -507,4 +552,12 @@ fn an_indefinite_network_is_told() {
     }
     assert!(report::table(&outcome).contains("not begun"));
     assert!(report::motion_csv(indefinite).lines().count() == 1);
+    // However far the steps are solved, what is definite is decided alike.
+    for remainder in ["0.9", "1e-15"] {
+        let solver = format!("linear = true\nsolver = \"conjugate-gradients\"\nremainder = {remainder}");
+        let outcome = self::outcome(&edited(&text, "linear = true", &solver));
+        let [_, indefinite, sound] = &outcome.motion.as_ref().unwrap().models[..] else { panic!("three models move") };
+        assert!(matches!(&indefinite.ending, MotionEnding::Refused(why) if why.contains("releases energy")));
+        assert_eq!((sound.steps, &sound.ending), (2, &MotionEnding::Complete));
+    }
 }

@@ -197,7 +197,7 @@ fn errors_of_scenes_say_what_was_expected_and_found() {
         ),
         (
             fit("objective = \"lloyd\"\nsprings = [\"bulk\"]"),
-            "fit[0].objective: springs: expected a spring between the nodes 0 and 1, an edge, for lloyd, found none",
+            "fit[0].springs: expected groups of length springs, beside which lloyd adds its own, found \"bulk\"",
         ),
         (
             fit("objective = \"sampled\""),
@@ -211,11 +211,20 @@ fn errors_of_scenes_say_what_was_expected_and_found() {
             fit("objective = \"sampled\"\nlaw = \"neo-hookean\"\nshapes = { loads = [\"pull\"] }"),
             "fit[0].shapes.loads: belongs to a material with a \"law\": without one no load is followed",
         ),
+        (fit("objective = \"lloyd\"\nname = \" \""), "fit[0].name: expected a name, found \" \""),
+        (
+            fit("objective = \"lloyd\"\nsprings = [\"edge\", \"bulk\"]"),
+            "fit[0].springs: expected groups of length springs, beside which lloyd adds its own, found \"bulk\"",
+        ),
+        (
+            fit("objective = \"frobenius\"\nsolver = \"nelder-mead\"\niterations = 9_000_000_000"),
+            "fit[0].iterations: expected a number from 1 to 1000000000, found 9000000000",
+        ),
         (gauge("axis = \"x\"\narea = 1"), "gauge: expected \"group\" or \"where\", found neither"),
         (gauge("where = \"x > 0\"\naxis = \"r\"\narea = 1"), "gauge.axis: expected \"x\", \"y\" or \"z\", found \"r\""),
         (
             gauge("where = \"x > 0\"\naxis = \"x\"\narea = 0"),
-            "gauge.area: expected a positive cross-section in m², found 0",
+            "gauge.area: expected a positive cross-section in m², from 1e-30 to 1e30, found 0.0",
         ),
         (
             gauge("where = \"x > 0\"\naxis = \"z\"\narea = 1"),

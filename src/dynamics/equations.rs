@@ -18,11 +18,14 @@ pub enum Solver {
     ConjugateGradients { tolerance: f64 },
 }
 
+/// Conjugate gradients go on until so much of the right-hand side is left; below is rounding.
+pub const LEAST_TOLERANCE: f64 = 1e-15;
+
 impl Solver {
     pub(super) fn check(self) -> Result<()> {
         match self {
-            Solver::ConjugateGradients { tolerance } if !(tolerance > 0.0 && tolerance < 1.0) => {
-                Err(Error::expected("solver.tolerance", "a number above zero and below one", tolerance))
+            Solver::ConjugateGradients { tolerance } if !(LEAST_TOLERANCE..1.0).contains(&tolerance) => {
+                Err(Error::expected("solver.tolerance", "a number from 1e-15 to below 1", format!("{tolerance:?}")))
             }
             _ => Ok(()),
         }
@@ -79,6 +82,12 @@ pub(super) trait Equations: std::fmt::Debug {
 
     /// What solutions with this A have in common; false where A is known not to be positive definite.
     fn prepare(&mut self) -> bool;
+
+    /// After [`Equations::prepare`], whether solving for `x`, a force that nothing is orthogonal to, meets positive curvature alone;
+    /// `x` is lost.
+    fn is_definite(&mut self, x: &mut [f64]) -> bool {
+        self.solve(x, None).end != End::Indefinite
+    }
 
     /// `x ← A⁻¹ x`, in the order of the rows; `guess` gives what may be near it for each degree of freedom.
     fn solve(&mut self, x: &mut [f64], guess: Option<&[f64]>) -> Solved;

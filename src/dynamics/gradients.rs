@@ -5,6 +5,8 @@ use super::equations::{End, Equations, Solved};
 use super::incomplete::Incomplete;
 use crate::error::{Error, Result};
 
+/// How far definiteness is followed, whatever is asked of solutions.
+const DEFINITE: f64 = 1e-10;
 /// A solution has no more iterations.
 const ITERATIONS: usize = 5000;
 
@@ -155,6 +157,13 @@ impl<const D: usize> Equations for Gradients<D> {
         }
         let count = self.blocks.len() - 1;
         self.incomplete.refill(&self.pattern, &self.blocks[..count])
+    }
+
+    fn is_definite(&mut self, x: &mut [f64]) -> bool {
+        let tolerance = std::mem::replace(&mut self.tolerance, DEFINITE);
+        let solved = self.solve(x, None);
+        self.tolerance = tolerance;
+        solved.end != End::Indefinite
     }
 
     fn solve(&mut self, x: &mut [f64], guess: Option<&[f64]>) -> Solved {

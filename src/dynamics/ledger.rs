@@ -1,5 +1,7 @@
 //! Energy and momentum of a motion, and where they came from.
 
+use crate::scalar::Sum;
+
 /// What is conserved, or is not, at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Account {
@@ -35,11 +37,11 @@ pub struct Balance {
     pub drift: f64,
 }
 
-/// The sums as they grow.
+/// The sums as they grow, over all steps and degrees of freedom.
 #[derive(Debug)]
 pub(super) struct Ledger {
-    pub work: f64,
-    pub dissipated: f64,
+    pub work: Sum,
+    pub dissipated: Sum,
     /// Total energy at the start, J.
     pub start: f64,
     /// Largest energy met, J.
@@ -63,8 +65,8 @@ impl Ledger {
     pub fn new(start: f64, forces: &Forces, held: &[bool], kinetic: f64) -> Ledger {
         let acting = (0..held.len()).map(|dof| acting(forces, held, dof)).collect();
         Ledger {
-            work: 0.0,
-            dissipated: 0.0,
+            work: Sum::default(),
+            dissipated: Sum::default(),
             start,
             largest: start.abs(),
             acting,
@@ -75,12 +77,12 @@ impl Ledger {
 
     /// Adds a step `way`, at whose end the forces are these and the held degrees of freedom have this kinetic energy.
     pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64) {
-        self.work += kinetic - self.kinetic;
+        self.work.add(kinetic - self.kinetic);
         self.kinetic = kinetic;
         for (dof, way) in way.iter().enumerate() {
             let now = acting(forces, held, dof);
-            self.work += way * (self.acting[dof] + now) / 2.0;
-            self.dissipated += way * (self.viscous[dof] + forces.viscous[dof]) / 2.0;
+            self.work.add(way * (self.acting[dof] + now) / 2.0);
+            self.dissipated.add(way * (self.viscous[dof] + forces.viscous[dof]) / 2.0);
             self.acting[dof] = now;
         }
         self.viscous.copy_from_slice(forces.viscous);

@@ -18,7 +18,7 @@ mod simulation;
 
 pub use damping::{Dampers, Damping};
 pub use drive::{Curve, Drive};
-pub use equations::Solver;
+pub use equations::{LEAST_TOLERANCE, Solver};
 pub use integrator::Integrator;
 pub use ledger::{Account, Balance};
 pub use limit::largest_square;

@@ -28,8 +28,9 @@ pub enum Outcome {
 pub struct Step {
     pub outcome: Outcome,
     pub iterations: usize,
-    /// What is left of the equations, relative to the forces that act; NaN where nobody looked: of linearised steps and linear models.
-    pub residual: f64,
+    /// What is left of the equations, relative to the forces that act; `None` where nobody looked: of linearised steps and linear
+    /// models.
+    pub residual: Option<f64>,
     /// Iterations whose matrix was not positive definite and had to be modified; a linearised step is made with a definite one at once.
     pub modified: usize,
     /// Of conjugate gradients, in all.
@@ -170,7 +171,7 @@ impl Trial {
         equations: &mut dyn Equations,
     ) -> Step {
         let mut step =
-            Step { outcome: Outcome::NoResponse, iterations: 1, residual: f64::NAN, modified: 0, solver_iterations: 0 };
+            Step { outcome: Outcome::NoResponse, iterations: 1, residual: None, modified: 0, solver_iterations: 0 };
         if !self.evaluate(resistance, target, start, equations.order(), Tangent::None) {
             return step;
         }
@@ -195,13 +196,13 @@ impl Trial {
         tolerance: f64,
     ) -> Step {
         let mut made =
-            Step { outcome: Outcome::Stalled, iterations: 0, residual: f64::NAN, modified: 0, solver_iterations: 0 };
+            Step { outcome: Outcome::Stalled, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
         // A single step has no second chance: it is as exact to the first order with either tangent.
         let tangent = if iterations == 1 { Tangent::Definite } else { Tangent::Exact };
         if !self.evaluate(resistance, target, start, equations.order(), tangent) {
             return Step { outcome: Outcome::NoResponse, ..made };
         }
-        made.residual = self.size;
+        made.residual = Some(self.size);
         while made.iterations < iterations {
             if self.size <= tolerance {
                 break;
@@ -213,7 +214,7 @@ impl Trial {
             if iterations == 1 {
                 equations.order().iter().zip(&self.step).for_each(|(&dof, s)| target.delta[dof] += s);
                 let outcome = if end == End::Exact { Outcome::Linearized } else { Outcome::Stalled };
-                return Step { outcome, residual: f64::NAN, ..made };
+                return Step { outcome, residual: None, ..made };
             }
             let (potential, size) = (self.potential, self.size);
             let slope: f64 = self.residual.iter().zip(&self.step).map(|(r, s)| r * s).sum();
@@ -236,7 +237,7 @@ impl Trial {
                 self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
                 return made;
             }
-            made.residual = self.size;
+            made.residual = Some(self.size);
             if is_rounding {
                 return Step { outcome: Outcome::Converged, ..made };
             }

@@ -1,6 +1,6 @@
 //! A motion step by step.
 
-use super::equations::{End, Equations};
+use super::equations::Equations;
 use super::integrator::{Integrator, Past};
 use super::ledger::{self, Account, Balance, Forces, Ledger};
 use super::limit::longest_step;
@@ -161,7 +161,7 @@ impl<'a> Simulation<'a> {
         let Some(equations) = self.equations.as_mut().filter(|_| is_prepared) else { return false };
         let mut random = generator();
         let mut x: Vec<f64> = equations.order().iter().map(|_| random()).collect();
-        equations.solve(&mut x, None).end != End::Indefinite
+        equations.is_definite(&mut x)
     }
 
     /// Prepares the matrix of a linear model, unless that is done.
@@ -236,7 +236,7 @@ impl<'a> Simulation<'a> {
             velocity[dof] = self.state.velocity[dof] + h * rest / self.resistance.mass[dof];
             delta[dof] = h * velocity[dof];
         }
-        Step { outcome: Outcome::Converged, iterations: 0, residual: 0.0, modified: 0, solver_iterations: 0 }
+        Step { outcome: Outcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
     }
 
     /// Undoes an explicit step.
@@ -300,7 +300,7 @@ impl<'a> Simulation<'a> {
         self.resistance.viscous(&self.state.velocity, &mut self.viscous);
         let (kinetic, held) = self.kinetic();
         ledger.add(&self.way, &self.forces_now(), &self.resistance.held, held);
-        ledger.largest = ledger.largest.max(kinetic).max(ledger.work.abs()).max(ledger.dissipated);
+        ledger.largest = ledger.largest.max(kinetic).max(ledger.work.value().abs()).max(ledger.dissipated.value());
         self.ledger = Some(ledger);
     }
 
@@ -323,9 +323,9 @@ impl<'a> Simulation<'a> {
         let x = self.positions();
         let (mass, v) = (&self.resistance.mass, &self.state.velocity);
         let sums = |ledger: &mut Ledger| {
-            let (energy, Ledger { work, dissipated, start, .. }) = (kinetic + elastic, &*ledger);
+            let (energy, start) = (kinetic + elastic, ledger.start);
+            let (work, dissipated) = (ledger.work.value(), ledger.dissipated.value());
             let gained = energy - start - work + dissipated;
-            let (work, dissipated) = (*work, *dissipated);
             ledger.largest = ledger.largest.max(energy.abs());
             let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
             Balance { work, dissipated, drift }

@@ -113,6 +113,22 @@ impl Cell {
         }
     }
 
+    /// Pairs of corners that an edge joins.
+    pub fn edges(self) -> Vec<[usize; 2]> {
+        let mut edges: Vec<[usize; 2]> = Vec::new();
+        for side in self.sides() {
+            let corners = side.corners;
+            let next = |i: usize| corners[(i + 1) % corners.len()];
+            for (i, &a) in corners.iter().enumerate().filter(|(i, a)| **a != next(*i)) {
+                let edge = [a.min(next(i)), a.max(next(i))];
+                if !edges.contains(&edge) {
+                    edges.push(edge);
+                }
+            }
+        }
+        if edges.is_empty() { vec![[0, 1]] } else { edges }
+    }
+
     /// Whether the point is in the cell or on its boundary, to rounding.
     pub fn contains(self, at: &[f64]) -> bool {
         let centre = self.centre();

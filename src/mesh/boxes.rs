@@ -1,6 +1,6 @@
 //! Rectangles and bricks filled with one element.
 
-use super::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::{CellBlock, CellIndex, Group, Mesh, Quality, sorted};
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, HashMap};
@@ -35,6 +35,7 @@ impl BoxMesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            quality: Quality::default(),
         };
         let mut connectivity = Vec::new();
         // Points of neighbouring cells meet; their place is told in 2⁻²⁰ of a cell.
@@ -66,7 +67,7 @@ impl BoxMesh {
         }
         mesh.blocks.push(CellBlock { element: self.element.clone(), connectivity });
         mesh.groups = self.groups(&mesh);
-        mesh.orient()?;
+        mesh.orient(false)?;
         mesh.reversed = 0;
         Ok(mesh)
     }

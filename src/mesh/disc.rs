@@ -1,6 +1,6 @@
 //! Round discs and domes of triangles.
 
-use super::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::{CellBlock, CellIndex, Group, Mesh, Quality, sorted};
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
@@ -69,6 +69,7 @@ impl DiscMesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            quality: Quality::default(),
         };
         let rim = self.rings[self.rings.len() - 1];
         let around: Vec<usize> = (total - rim..total).collect();
@@ -78,7 +79,7 @@ impl DiscMesh {
         mesh.groups.insert("middle".into(), Group { points: vec![0], ..Group::default() });
         let cells = (0..mesh.cell_count()).map(|cell| CellIndex { block: 0, cell }).collect();
         mesh.groups.insert("body".into(), Group { points: (0..total).collect(), sides: Vec::new(), cells });
-        mesh.orient()?;
+        mesh.orient(false)?;
         mesh.reversed = 0;
         Ok(mesh)
     }

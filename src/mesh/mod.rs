@@ -5,6 +5,7 @@ mod disc;
 mod field;
 pub mod gmsh;
 mod grouping;
+mod quality;
 mod reader;
 mod selection;
 mod source;
@@ -13,6 +14,7 @@ pub mod vtk;
 pub use boxes::BoxMesh;
 pub use disc::DiscMesh;
 pub use field::Field;
+pub use quality::{Below, Gate, Quality, Worst};
 pub use selection::{CellIndex, Selection, SideIndex};
 pub use source::{Format, MeshSource, SourceBlock};
 
@@ -36,6 +38,7 @@ pub struct Mesh {
     pub reversed: usize,
     /// Points of the file that belong to no cell and were left out.
     pub unused_points: usize,
+    pub quality: Quality,
 }
 
 /// Cells of one element type.
@@ -64,11 +67,19 @@ impl CellBlock {
 
 impl Mesh {
     /// Gives each cell of a file its element: one of `own` if it serves the cell type, else a shipped one.
-    /// Coordinates are multiplied by `scale`.
+    /// Coordinates are multiplied by `scale`. Cells of poor quality are told.
     ///
     /// # Errors
     /// No element serves a cell type, or a cell is tangled or flat.
     pub fn resolve(source: &MeshSource, own: &[Arc<Element>], scale: f64) -> Result<Mesh> {
+        Mesh::resolve_within(source, own, scale, None)
+    }
+
+    /// The same with a gate of one's own for the cells; then points that do not fit together are looked for as well.
+    ///
+    /// # Errors
+    /// As there, unless the gate skips such cells; the gate refuses a cell, or none is left.
+    pub fn resolve_within(source: &MeshSource, own: &[Arc<Element>], scale: f64, gate: Option<Gate>) -> Result<Mesh> {
         let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
         if dimension == 0 {
             return Err(Error::expected("cells", "lines, surface or solid cells", "none"));
@@ -87,6 +98,7 @@ impl Mesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            quality: Quality::default(),
         };
         let mut served: BTreeMap<u32, usize> = BTreeMap::new();
         for block in source.blocks.iter().filter(|b| b.dimension == dimension) {
@@ -114,7 +126,15 @@ impl Mesh {
             }
         }
         mesh.drop_unused_points();
-        mesh.orient()?;
+        let faulty = mesh.orient(gate.is_some_and(|gate| gate.below == Below::Skip))?;
+        if !faulty.is_empty() {
+            mesh.quality.skipped = faulty.len();
+            mesh.remove(&faulty)?;
+        }
+        mesh.pass(gate.unwrap_or_default())?;
+        if gate.is_some() {
+            mesh.find_misfits();
+        }
         Ok(mesh)
     }
 
@@ -163,10 +183,11 @@ impl Mesh {
         }
     }
 
-    /// Turns reversed cells and makes sure that every cell has a volume.
-    fn orient(&mut self) -> Result<()> {
+    /// Turns reversed cells and makes sure that every cell has a volume; returns those that have none if they are to be left out.
+    fn orient(&mut self, skip: bool) -> Result<Vec<CellIndex>> {
         let d = self.dimension;
-        for block in &mut self.blocks {
+        let mut faulty = Vec::new();
+        for (index, block) in self.blocks.iter_mut().enumerate() {
             let element = block.element.clone();
             let table = &element.tabulation;
             let mut geometry = Geometry::new(table);
@@ -186,14 +207,16 @@ impl Mesh {
                     }
                     (Err(fault), _) => Some(fault),
                 };
-                if let Some(fault) = fault {
+                if fault.is_some() && skip {
+                    faulty.push(CellIndex { block: index, cell });
+                } else if let Some(fault) = fault {
                     let first = &self.points[nodes[0] * d..][..d];
                     let key = format!("{} cell {} at {first:?} m", element.name, cell + 1);
                     return Err(Error::at(key, fault.to_string()));
                 }
             }
         }
-        Ok(())
+        Ok(faulty)
     }
 
     pub fn point_count(&self) -> usize {

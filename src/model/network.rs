@@ -159,8 +159,20 @@ impl Network {
 
     /// How many constants are below zero.
     pub fn negative(&self) -> usize {
-        let lengths = self.lengths.iter().map(|s| s.constant);
-        lengths.chain(self.others.iter().map(|s| s.constant)).filter(|k| *k < 0.0).count()
+        self.negative_springs().count()
+    }
+
+    /// The `count` springs that push hardest where they should pull: their points and constants, the least first.
+    pub fn most_negative(&self, count: usize) -> Vec<(&[usize], f64)> {
+        let mut springs: Vec<(&[usize], f64)> = self.negative_springs().collect();
+        springs.sort_by(|a, b| a.1.total_cmp(&b.1));
+        springs.truncate(count);
+        springs
+    }
+
+    fn negative_springs(&self) -> impl Iterator<Item = (&[usize], f64)> {
+        let lengths = self.lengths.iter().map(|s| (&s.points[..], s.constant));
+        lengths.chain(self.others.iter().map(|s| (&s.points[..], s.constant))).filter(|(_, k)| *k < 0.0)
     }
 }
 

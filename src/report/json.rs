@@ -4,6 +4,7 @@ use super::agreement::{Agreement, SAME, agreements};
 use super::frequencies::frequency_json;
 use super::motion::{motion_json, motion_options};
 use crate::fit::{Family, Fit, Norm, Objective, Solver, Source, Spread, Weights};
+use crate::mesh::Mesh;
 use crate::solve::{Ending, Standing};
 use crate::study::{
     FitOutcome, FittedLoad, Followed, ForceRecipe, LoadOutcome, MeasuredLoad, Outcome, Reading, Recipe, SampledRecipe,
@@ -21,6 +22,7 @@ pub fn report(outcome: &Outcome) -> String {
         "element_types": outcome.mesh.blocks.iter().map(|b| b.element.name.as_str()).collect::<Vec<_>>(),
         "turned_elements": outcome.mesh.reversed,
         "unused_nodes": outcome.mesh.unused_points,
+        "quality": quality(&outcome.mesh),
         "springs": outcome.fits.iter().map(|f| f.network.len()).max(),
         "young": outcome.material.young(),
         "poisson": outcome.material.poisson(),
@@ -36,6 +38,18 @@ pub fn report(outcome: &Outcome) -> String {
         "fits": outcome.fits.iter().map(|f| fit(f, outcome.mesh.cell_count(), outcome.material.thickness())).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&value).expect("a value of finite numbers and text is JSON") + "\n"
+}
+
+fn quality(mesh: &Mesh) -> Value {
+    let quality = &mesh.quality;
+    json!({
+        "worst": quality.worst.as_ref().map(|worst| worst.quality),
+        "worst_cell": quality.worst.as_ref().map(|worst| worst.cell.as_str()),
+        "poor_elements": quality.poor,
+        "skipped_elements": quality.skipped,
+        "coincident_nodes": quality.coincident,
+        "hanging_nodes": quality.hanging,
+    })
 }
 
 fn reading(reading: Reading) -> Value {
@@ -111,8 +125,8 @@ fn fit(outcome: &FitOutcome, elements: usize, thickness: f64) -> Value {
         })),
         "sampled": outcome.sampled.as_ref().map(|s| json!({
             "shapes": s.shapes,
-            "trained": spread(s.trained),
-            "held_out": s.held_out.map(spread),
+            "trained": spread(Some(s.trained)),
+            "held_out": s.held_out.map(|held_out| spread(Some(held_out))),
             "agreeing_starts": s.agreeing,
             "loads": s.loads,
         })),
@@ -209,8 +223,8 @@ fn fitted(load: &FittedLoad) -> Value {
     json!({ "load": load.name, "before": load.before, "after": load.after })
 }
 
-fn spread(spread: Spread) -> Value {
-    json!({ "mean": spread.mean, "max": spread.max })
+fn spread(spread: Option<Spread>) -> Value {
+    json!({ "mean": spread.map(|s| s.mean), "max": spread.map(|s| s.max) })
 }
 
 fn load(outcome: &LoadOutcome) -> Value {

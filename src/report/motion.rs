@@ -70,7 +70,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
             let negative = outcome.fits[fit].network.negative();
             notes.push(format!(
                 "{name}: indefinite, a motion that releases energy grows by e every {:.1e} s at rest; it has {negative} \
-                 negative springs: nonnegative = true forbids them, and constants of objective = \"whole\" stay positive",
+                 negative springs",
                 1.0 / growth
             ));
         }

@@ -28,7 +28,10 @@ fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
     let mut text = format!("# {}\n", paper.title);
     for table in &paper.tables {
         let (header, rows) = cells(table);
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        // A bar in a name would end its cell.
+        let line = |cells: &[String]| {
+            format!("| {} |\n", cells.iter().map(|c| c.replace('|', "\\|")).collect::<Vec<_>>().join(" | "))
+        };
         let rule: Vec<String> =
             header.iter().enumerate().map(|(i, _)| if i < 2 { "---" } else { "---:" }.to_string()).collect();
         write!(text, "\n## {}: {}\n\n{}{}", heading(&table.name), table.title, line(&header), line(&rule))
@@ -39,7 +42,7 @@ fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
         }
     }
     for (title, file) in figures {
-        write!(text, "\n![{title}]({file})\n").expect("a String grows");
+        write!(text, "\n![{title}](<{file}>)\n").expect("a String grows");
     }
     text
 }

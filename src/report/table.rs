@@ -5,6 +5,7 @@ use super::frequencies::{frequency_notes, frequency_table};
 use super::json::status;
 use super::motion::{motion_notes, motion_table};
 use crate::fit::Spread;
+use crate::mesh::Quality;
 use crate::solve::{Ending, Standing};
 use crate::study::{FitOutcome, Followed, LoadOutcome, Outcome, Reading, Recipe, WholeOutcome};
 use comfy_table::presets::NOTHING;
@@ -33,7 +34,31 @@ pub fn summary(outcome: &Outcome) -> String {
         writeln!(text, "{} points of the file belong to no element and were left out", mesh.unused_points)
             .expect("a String grows");
     }
+    for line in quality(&mesh.quality) {
+        writeln!(text, "{line}").expect("a String grows");
+    }
     text
+}
+
+/// What is wrong with the cells and points of a mesh, one line each.
+fn quality(quality: &Quality) -> Vec<String> {
+    let mut lines = Vec::new();
+    if quality.skipped > 0 {
+        lines.push(format!("{} cells of poor quality, flat or tangled, were left out", quality.skipped));
+    }
+    if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
+        lines.push(format!(
+            "{} cells have a quality below {:e}, the worst {:.1e} ({}): their constants lose as many digits",
+            quality.poor, quality.least, worst.quality, worst.cell
+        ));
+    }
+    if quality.coincident > 0 {
+        lines.push(format!("{} points are at the place of another: the body is open there", quality.coincident));
+    }
+    if quality.hanging > 0 {
+        lines.push(format!("{} points hang in the middle of edges that do not have them", quality.hanging));
+    }
+    lines
 }
 
 /// One row per fit; then, where they were asked for, natural frequencies and motions, one row per model.
@@ -76,13 +101,13 @@ pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
 
 fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
     let elements = outcome.mesh.cell_count();
-    let pair = |mean: f64, max: f64| if mean.is_nan() { "-".into() } else { format!("{mean:.4} / {max:.4}") };
+    let pair = |spread: Option<Spread>| spread.map_or("-".into(), |s| format!("{:.4} / {:.4}", s.mean, s.max));
     let mut row = vec![
         fit.fit.name.clone(),
         fit.network.len().to_string(),
         fit.network.negative().to_string(),
-        pair(fit.frobenius.mean, fit.frobenius.max),
-        pair(fit.spectral.mean, fit.spectral.max),
+        pair(fit.frobenius),
+        pair(fit.spectral),
         format!("{:.2}", 1e6 * fit.seconds / elements.max(1) as f64),
     ];
     if sampled {

@@ -57,6 +57,7 @@ impl Controls {
         if !folder.is_dir() {
             return Err(Error::new("expected a folder that exists, for the checkpoint").in_file(folder));
         }
+        file::check_file(path)?;
         self.read().map(|_| ())
     }
 

@@ -152,7 +152,7 @@ fn pulled(
                     at[1..=d].copy_from_slice(mesh.point(p));
                     let program = program.clone();
                     let curve = Curve::new(move |t| program.evaluate(&[t, at[1], at[2], at[3]]));
-                    finite(planned, &curve, points.len()).map_err(|e| e.under(&key))?;
+                    finite(planned, &curve, points.len(), 1).map_err(|e| e.under(&key))?;
                     if !varies {
                         shared = Some(curve.clone());
                     }
@@ -176,7 +176,7 @@ fn pushed(planned: &mut Planned, mesh: &Mesh, push: &Push) -> Result<()> {
     let mut felt = false;
     for (k, expression) in push.force.iter().enumerate() {
         let curve = Curve::of(expression)?;
-        finite(planned, &curve, 1).map_err(|e| e.under(format!("force[{k}]")))?;
+        finite(planned, &curve, 1, 0).map_err(|e| e.under(format!("force[{k}]")))?;
         if *expression == Expr::integer(0) {
             continue;
         }
@@ -198,17 +198,18 @@ fn pushed(planned: &mut Planned, mesh: &Mesh, push: &Push) -> Result<()> {
     }
 }
 
-/// That a curve, one of `count`, is finite whenever a step asks for it.
-fn finite(planned: &Planned, curve: &Curve, count: usize) -> Result<()> {
-    let (h, halves) = (planned.recipe.options.step, 2 * planned.recipe.steps + 1);
+/// That a curve, one of `count`, is finite whenever a step asks for it: up to `beyond` half steps after the end, from where a pull
+/// takes its velocity.
+fn finite(planned: &Planned, curve: &Curve, count: usize, beyond: usize) -> Result<()> {
+    let (h, halves) = (planned.recipe.options.step, 2 * planned.recipe.steps + beyond);
     let trials = (TRIALS / count.max(1)).max(100);
     let stride = halves.div_ceil(trials);
     let mut times = (0..=halves).step_by(stride).chain([halves]).map(|i| i as f64 * h / 2.0);
-    match times.find(|t| !curve.at(*t).is_finite()) {
-        Some(t) => Err(Error::new(format!(
-            "expected finite values at all times of the motion, found {} at {t} s",
-            curve.at(t)
-        ))),
-        None => Ok(()),
-    }
+    let Some(t) = times.find(|t| !curve.at(*t).is_finite()) else { return Ok(()) };
+    // Without the last digits, which half steps leave.
+    let shown: f64 = format!("{t:.9e}").parse().unwrap_or(t);
+    let after = if t > planned.recipe.duration * (1.0 + 1e-9) { ", half a step after the end" } else { "" };
+    let problem =
+        format!("expected finite values at all times of the motion, found {} at {shown} s{after}", curve.at(t));
+    Err(Error::new(problem))
 }

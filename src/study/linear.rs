@@ -10,6 +10,9 @@ use crate::model::{Support, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
 use std::time::Instant;
 
+/// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
+const SOLVED: f64 = 1e-6;
+
 /// The finite element solutions, and what the comparison with a network reuses.
 pub struct LinearBody {
     pub displacements: Vec<Vec<f64>>,
@@ -56,7 +59,15 @@ impl LinearBody {
             }
             let (system, factor) = &body.systems[body.system_of[i]];
             let start = Instant::now();
-            let (u, _) = system.solve(factor, &case.forces);
+            let (u, residual) = system.solve(factor, &case.forces);
+            if !(residual <= SOLVED) {
+                let expected = format!("equations that can be solved to {SOLVED:.0e} of the forces");
+                return Err(Error::expected(
+                    "mesh",
+                    expected,
+                    format!("{residual:.1e} left under load \"{}\"", case.name),
+                ));
+            }
             body.seconds.push(assembly + setup[body.system_of[i]] + start.elapsed().as_secs_f64());
             body.displacements.push(u);
         }
@@ -95,8 +106,7 @@ impl LinearBody {
             let stands = stability.standing != Standing::Singular;
             let solution = factor.as_ref().filter(|_| stands).map(|factor| system.solve(factor, &case.forces));
             let seconds_lem = assembly + setup + start.elapsed().as_secs_f64();
-            // A factor of a nearly singular matrix gives numbers that solve nothing.
-            let displacement = solution.filter(|(u, residual)| *residual < 1e-6 && u.iter().all(|u| u.is_finite()));
+            let displacement = solution.filter(|(u, residual)| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
             let displacement = displacement.map(|(u, _)| u);
             fit.loads.push(LoadOutcome {
                 name: case.name.clone(),

@@ -1,3 +1,5 @@
+use crate::scalar::Sum;
+
 /// Distances of the network's points from those of the finite elements, in percent of the largest displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisplacementError {
@@ -10,7 +12,7 @@ pub struct DisplacementError {
 /// Natsupakpong and Çavuşoğlu (2010), section 3. `fem` and `lem` are `[points × dimension]`, m; `None` if the finite
 /// elements do not move.
 pub fn displacement_error(fem: &[f64], lem: &[f64], dimension: usize) -> Option<DisplacementError> {
-    let square = |a: &[f64]| a.iter().map(|x| x * x).sum::<f64>();
+    let square = |a: &[f64]| a.iter().map(|x| x * x).collect::<Sum>().value();
     let largest = fem.chunks_exact(dimension).map(square).fold(0.0, f64::max).sqrt();
     if largest == 0.0 {
         return None;

@@ -135,6 +135,9 @@ pub fn move_models(
     let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(square).fold(0.0, f64::max).sqrt();
     for (i, fit) in outcome.fits.iter().enumerate() {
         let growth = growth(&fit.network, mesh, planned)?;
+        if growth.is_some() {
+            progress(&indefinite(&fit.fit.name, &fit.network), 0, 0);
+        }
         let damping = planned.damping(Some(&fit.network), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
         let options = planned.recipe.options;
@@ -250,6 +253,22 @@ impl Run<'_> {
         let watched = if watched.is_empty() { Vec::new() } else { (0..d).map(mean).collect() };
         Record { watched, error: None, account: simulation.account() }
     }
+}
+
+/// What is told of a network before it moves.
+fn indefinite(name: &str, network: &Network) -> String {
+    let worst = network.most_negative(3).into_iter().map(|(points, constant)| {
+        let points: Vec<String> = points.iter().map(|p| (p + 1).to_string()).collect();
+        format!("{constant:.2e} at points {}", points.join(" "))
+    });
+    let worst: Vec<String> = worst.collect();
+    format!(
+        "{name} is indefinite and may run away: {} of its {} springs are negative, the worst {} (N/m for lengths); \
+         nonnegative = true forbids them, and constants of objective = \"whole\" stay positive",
+        network.negative(),
+        network.len(),
+        worst.join(", ")
+    )
 }
 
 /// How fast the fastest motion grows that releases energy, 1/s, to a tenth; `None` where none does.

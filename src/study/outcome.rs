@@ -58,8 +58,9 @@ pub struct FitOutcome {
     pub gap: Option<f64>,
     /// Where `(1 − ε) R ⪯ K ⪯ (1 + ε) R` holds in every cell with ε < 1: the relative error of the model's energy.
     pub energy_error: Option<f64>,
-    pub frobenius: Spread,
-    pub spectral: Spread,
+    /// Of the elements' matrices; `None` for whole-object fits, whose springs belong to no element.
+    pub frobenius: Option<Spread>,
+    pub spectral: Option<Spread>,
     /// What the network is as a material, where the scene asks for it: under linear displacements of its boundary.
     pub moduli: Option<EffectiveModuli>,
     /// Of a published method: what it takes for granted and does not find.

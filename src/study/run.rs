@@ -11,6 +11,7 @@ use super::outcome::{FitOutcome, Outcome, SampledOutcome};
 use super::scene::{NamedFit, Recipe, SampledRecipe, Scene};
 use super::stages::stages;
 use super::whole::WholeBody;
+use crate::element::SpringKind;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Unmet};
 use crate::fit::{ElementErrors, Objective, SampledFits, Spread, Weight, element_errors, fit_cells, fit_sampled};
@@ -22,7 +23,7 @@ use crate::whole::raise_idle;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Told the stage, the steps done and the steps in all.
+/// Told the stage, the steps done and the steps in all; with none in all, what is to be known at once.
 pub type Progress<'a> = dyn FnMut(&str, usize, usize) + 'a;
 
 /// Runs the scene. Work is done only for what the scene names.
@@ -118,7 +119,11 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     if let Some(gauged) = gauged {
         gauged.measure(&mut outcome);
     }
-    course.follow(scene, energy.as_ref(), &mut outcome, progress)?;
+    if controls.cancelled() {
+        progress("ended early: no motion, no frequencies", 0, 0);
+    } else {
+        course.follow(scene, energy.as_ref(), &mut outcome, progress)?;
+    }
     Ok(outcome)
 }
 
@@ -163,6 +168,11 @@ pub fn fit_mesh(
         (&Recipe::Published(method), ..) => {
             let of_method = |e: Error| e.placed(|e| Error::at("objective", e.to_string()));
             for block in &mesh.blocks {
+                let named = named.springs.iter().flat_map(|springs| block.element.select_groups(Some(springs)));
+                if let Some(group) = named.flatten().find(|group| group.kind != SpringKind::Length) {
+                    let expected = format!("groups of length springs, beside which {} adds its own", method.name());
+                    return Err(Error::expected("springs", expected, format!("\"{}\"", group.name)));
+                }
                 let own = published::unmet(method, &block.element, &mesh.points, &block.connectivity, material);
                 unmet = Some(unmet.unwrap_or(Unmet::default()).and(own.map_err(of_method)?));
             }
@@ -227,7 +237,7 @@ pub fn fit_mesh(
     let largest = certificates().map(|c| c.value).reduce(f64::max);
     let relative =
         matches!(&named.recipe, Recipe::Stiffness(fit) if fit.objective == Objective::Spectral(Weight::Relative));
-    let unknown = Spread { mean: f64::NAN, max: f64::NAN };
+    let spread = |values: &[f64]| whole.is_none().then(|| Spread::of(values));
     Ok(FitOutcome {
         fit: named.clone(),
         network,
@@ -239,8 +249,8 @@ pub fn fit_mesh(
         ambiguous: certificates().filter(|c| c.ambiguous).count(),
         gap: certificates().map(|c| c.gap()).reduce(f64::max),
         energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
-        frobenius: if whole.is_some() { unknown } else { Spread::of(&errors.frobenius) },
-        spectral: if whole.is_some() { unknown } else { Spread::of(&errors.spectral) },
+        frobenius: spread(&errors.frobenius),
+        spectral: spread(&errors.spectral),
         whole,
         moduli: None,
         unmet,

@@ -164,11 +164,16 @@ impl<'a> WholeBody<'a> {
             if let (Some(snapshot), Ok(())) = (snapshot, &kept) {
                 kept = saved.keep(snapshot, ends || snapshot.stage == stages);
             }
-            !ends && kept.is_ok()
+            !ends
         };
         let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch);
         let found = found.map_err(|e| saved.blame(e))?;
-        kept.map(|()| WholeOutcome::of(recipe, &wanted, &found)).map(|outcome| (found.network, outcome))
+        if let Err(e) = kept {
+            // What was found is worth more than what it would go on from.
+            progress(&format!("{}: the checkpoint is not the last state: {e}", named.name), 0, 0);
+        }
+        let outcome = WholeOutcome::of(recipe, &wanted, &found);
+        Ok((found.network, outcome))
     }
 }
 

@@ -31,8 +31,15 @@ const YOUNG: f64 = 10e3;
 /// Writes the shipped experiments into `folder`, and returns the path of their index.
 ///
 /// # Errors
-/// The folder or a file cannot be written.
+/// A file there has been changed, which is kept; the folder or a file cannot be written.
 pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
+    let differs =
+        |(name, text): &&(&str, &str)| std::fs::read(folder.join(name)).is_ok_and(|old| old != text.as_bytes());
+    if let Some((name, _)) = SHIPPED.iter().find(differs) {
+        let index = folder.join(INDEX);
+        let problem = "differs from the shipped file, which would replace it: run what is there with --index";
+        return Err(Error::new(format!("{problem} {}, or move it away", index.display())).in_file(&folder.join(name)));
+    }
     for (name, text) in SHIPPED {
         let path = folder.join(name);
         create_folder(path.parent().unwrap_or(folder))?;

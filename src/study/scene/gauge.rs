@@ -31,8 +31,9 @@ impl GaugeEntry {
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);
         let axis =
             axis.ok_or_else(|| Error::expected("axis", "\"x\", \"y\" or \"z\"", format!("\"{}\"", self.axis)))?;
-        if !(self.area > 0.0 && self.area.is_finite()) {
-            return Err(Error::expected("area", "a positive cross-section in m²", self.area));
+        if !(1e-30..=1e30).contains(&self.area) {
+            let expected = "a positive cross-section in m², from 1e-30 to 1e30";
+            return Err(Error::expected("area", expected, format!("{:?}", self.area)));
         }
         Ok(Gauge { part, axis, area: self.area })
     }

@@ -2,7 +2,7 @@
 
 use super::{Scene, load_element, load_elements};
 use crate::error::{Error, Result};
-use crate::mesh::{BoxMesh, DiscMesh, Mesh, MeshSource};
+use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,21 @@ pub struct MeshInput {
     /// Element files to look in before the shipped ones, relative to the scene.
     #[serde(default)]
     pub elements: Vec<String>,
+    /// Of the cells of a file.
+    pub quality: Option<QualityEntry>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct QualityEntry {
+    pub least: Option<f64>,
+    pub below: Option<String>,
+}
+
+impl QualityEntry {
+    fn gate(&self) -> Result<Gate> {
+        Gate::named(self.below.as_deref(), self.least).map_err(|e| e.under("mesh.quality"))
+    }
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -71,6 +86,12 @@ impl MeshInput {
         if !(self.scale > 0.0 && self.scale.is_finite()) {
             return Err(Error::expected("mesh.scale", "a positive number of metres per mesh unit", self.scale));
         }
+        if let Some(quality) = &self.quality {
+            if self.file.is_none() {
+                return Err(Error::at("mesh.quality", "belongs to a mesh in a \"file\": what is generated is regular"));
+            }
+            quality.gate()?;
+        }
         Ok(())
     }
 
@@ -120,8 +141,9 @@ impl Scene {
         if let Some(file) = &self.mesh.file {
             let own = load_elements(&self.mesh.elements, folder).map_err(|e| e.placed(|e| self.at("mesh", e)))?;
             let path = folder.join(file);
+            let gate = self.mesh.quality.as_ref().map(QualityEntry::gate).transpose()?;
             let source = MeshSource::read(&path)?;
-            return Mesh::resolve(&source, &own, self.mesh.scale).map_err(|e| e.in_file(&path));
+            return Mesh::resolve_within(&source, &own, self.mesh.scale, gate).map_err(|e| e.in_file(&path));
         }
         if let Some(disc) = &self.mesh.disc {
             return disc.build(self.mesh.scale, folder).map_err(|e| e.placed(|e| self.at("mesh.disc", e)));

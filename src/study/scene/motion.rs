@@ -2,7 +2,7 @@
 
 use super::Part;
 use super::value::Varying;
-use crate::dynamics::{Integrator, Options, Solver};
+use crate::dynamics::{Integrator, LEAST_TOLERANCE, Options, Solver};
 use crate::error::{Error, Result};
 use crate::model::Lumping;
 use crate::symbolic::{Expr, Scope, parse_rational};
@@ -120,6 +120,8 @@ const REMAINDER: f64 = 1e-8;
 const MOST_STEPS: f64 = 1e9;
 /// Rows of a motion's table over time.
 const MOST_STATES: f64 = 1e6;
+/// No time, acceleration or damping is larger; beyond, squares leave the range of numbers.
+const LARGEST: f64 = 1e30;
 /// Quotients of decimals are not exact.
 const SLACK: f64 = 1.0 - 1e-12;
 /// States that are written where the scene does not say.
@@ -139,7 +141,7 @@ impl MotionRecipe {
     /// In words.
     pub fn title(&self) -> String {
         let (step, name) = (self.options.step, integrator_name(self.options.integrator));
-        format!("{} s in {} steps of {step} s by {name}", self.duration, self.steps)
+        format!("{:?} s in {} steps of {step:?} s by {name}", self.duration, self.steps)
     }
 
     /// The steps at whose end a state is written: the first at or after each multiple of `every`, and the last.
@@ -156,9 +158,9 @@ impl MotionEntry {
     /// # Errors
     /// A value is unknown or out of range, or keys contradict each other.
     pub fn check(self) -> Result<MotionRecipe> {
-        let positive = |key: &str, value: f64| match value > 0.0 && value.is_finite() {
+        let positive = |key: &str, value: f64| match (1.0 / LARGEST..=LARGEST).contains(&value) {
             true => Ok(value),
-            false => Err(Error::expected(key, "a time above zero in s", value)),
+            false => Err(Error::expected(key, "a time above zero in s, from 1e-30 to 1e30", format!("{value:?}"))),
         };
         let (duration, step) = (positive("duration", self.duration)?, positive("step", self.step)?);
         if duration < step * (1.0 - 1e-9) {
@@ -180,8 +182,8 @@ impl MotionEntry {
             return Err(Error::expected("every", format!("at most {MOST_STATES} states in all"), found));
         }
         let gravity = self.gravity.unwrap_or_default();
-        if let Some(g) = gravity.iter().find(|g| !g.is_finite()) {
-            return Err(Error::expected("gravity", "finite numbers of m/s²", g));
+        if let Some(g) = gravity.iter().find(|g| !(g.abs() <= LARGEST)) {
+            return Err(Error::expected("gravity", "finite numbers of m/s², at most 1e30", format!("{g:?}")));
         }
         let finite_elements = self.finite_elements.unwrap_or(true);
         let damping = self.damping.map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
@@ -274,8 +276,12 @@ impl Method<'_> {
             "factor" => Solver::Factor,
             "conjugate-gradients" => {
                 let tolerance = self.remainder.unwrap_or(REMAINDER);
-                if !(tolerance > 0.0 && tolerance < 1.0) {
-                    return Err(Error::expected("remainder", "a share above 0 and below 1", tolerance));
+                if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
+                    return Err(Error::expected(
+                        "remainder",
+                        "a share from 1e-15 to below 1",
+                        format!("{tolerance:?}"),
+                    ));
                 }
                 Solver::ConjugateGradients { tolerance }
             }
@@ -300,13 +306,17 @@ impl Method<'_> {
 impl DampingEntry {
     fn check(self, finite_elements: bool) -> Result<DampingRecipe> {
         match (self.rayleigh, self.ratio) {
-            (Some(pair), None) => match pair.iter().find(|x| !(**x >= 0.0 && x.is_finite())) {
-                Some(x) => Err(Error::expected("rayleigh", "two numbers that are not negative, in 1/s and s", x)),
+            (Some(pair), None) => match pair.iter().find(|x| !(0.0..=LARGEST).contains(*x)) {
+                Some(x) => {
+                    let expected = "two numbers that are not negative, in 1/s and s, at most 1e30";
+                    Err(Error::expected("rayleigh", expected, format!("{x:?}")))
+                }
                 None => Ok(DampingRecipe::Rayleigh(pair)),
             },
             (None, Some(ratio)) => {
-                if !(ratio >= 0.0 && ratio.is_finite()) {
-                    return Err(Error::expected("ratio", "a damping ratio that is not negative", ratio));
+                if !(0.0..=LARGEST).contains(&ratio) {
+                    let expected = "a damping ratio that is not negative, at most 1e30";
+                    return Err(Error::expected("ratio", expected, format!("{ratio:?}")));
                 }
                 if finite_elements {
                     let problem = "is that of springs, which finite elements have not: expected \"rayleigh\", or \

@@ -1,0 +1,202 @@
+//! How good the cells of a mesh are, and whether its points fit together.
+
+use super::{CellIndex, Mesh};
+use crate::error::{Error, Result};
+use crate::springs::distance;
+use crate::stiffness::{Geometry, Placement};
+use std::collections::HashMap;
+
+/// What becomes of cells whose quality is below the least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Below {
+    /// They are told.
+    #[default]
+    Warn,
+    /// The mesh is not taken.
+    Refuse,
+    /// They are left out, as are cells that are flat or tangled.
+    Skip,
+}
+
+/// The quality that is asked of cells: the least `det J / Π ‖J_l‖` over the quadrature points, J_l the columns of the Jacobian; 1
+/// where the reference directions stay at right angles, 0 where the cell is flat. The determinant loses `−log₁₀` of it in digits,
+/// and the constants with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gate {
+    pub least: f64,
+    pub below: Below,
+}
+
+impl Default for Gate {
+    /// Four digits lost leave twelve: what is worse is told.
+    fn default() -> Gate {
+        Gate { least: 1e-4, below: Below::Warn }
+    }
+}
+
+impl Gate {
+    /// # Errors
+    /// The word is unknown, or the least quality is not between 0 and 1.
+    pub fn named(below: Option<&str>, least: Option<f64>) -> Result<Gate> {
+        let gate = Gate::default();
+        let below = match below {
+            None => gate.below,
+            Some("warn") => Below::Warn,
+            Some("refuse") => Below::Refuse,
+            Some("skip") => Below::Skip,
+            Some(other) => {
+                return Err(Error::expected("below", "\"warn\", \"refuse\" or \"skip\"", format!("\"{other}\"")));
+            }
+        };
+        let least = least.unwrap_or(gate.least);
+        if !(0.0..=1.0).contains(&least) {
+            return Err(Error::expected("least", "a quality from 0 to 1", format!("{least:?}")));
+        }
+        Ok(Gate { least, below })
+    }
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Quality {
+    /// Of all cells.
+    pub worst: Option<Worst>,
+    /// Cells below the least quality that were kept, and what that was.
+    pub poor: usize,
+    pub least: f64,
+    /// Cells left out: of poor quality, flat or tangled.
+    pub skipped: usize,
+    /// Points at the place of another.
+    pub coincident: usize,
+    /// Points in the middle of an edge of a cell that does not have them.
+    pub hanging: usize,
+}
+
+/// The cell of least quality.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Worst {
+    pub quality: f64,
+    /// The element, the number of the cell from 1, and its first point, m.
+    pub cell: String,
+}
+
+impl Mesh {
+    /// Measures every cell and does with the poor ones what the gate says.
+    ///
+    /// # Errors
+    /// The gate refuses cells that are below its least quality, or no cell is left.
+    pub(super) fn pass(&mut self, gate: Gate) -> Result<()> {
+        let mut poor: Vec<CellIndex> = Vec::new();
+        let mut worst: Option<(f64, CellIndex)> = None;
+        self.each_quality(|cell, quality| {
+            if worst.is_none_or(|(least, _)| quality < least) {
+                worst = Some((quality, cell));
+            }
+            if quality < gate.least {
+                poor.push(cell);
+            }
+        });
+        let named = worst.map(|(quality, cell)| Worst { quality, cell: self.cell_name(cell) });
+        if let (Some(worst), Below::Refuse, false) = (&named, gate.below, poor.is_empty()) {
+            let found = format!("{} below it, the least {:.2e} of {}", cells(poor.len()), worst.quality, worst.cell);
+            return Err(Error::expected("quality", format!("cells of at least {:e}", gate.least), found));
+        }
+        if gate.below == Below::Skip && !poor.is_empty() {
+            self.quality.skipped += poor.len();
+            self.remove(&poor)?;
+            return self.pass(gate);
+        }
+        self.quality.worst = named;
+        (self.quality.poor, self.quality.least) = (poor.len(), gate.least);
+        Ok(())
+    }
+
+    fn each_quality(&self, mut visit: impl FnMut(CellIndex, f64)) {
+        for (block, cells) in self.blocks.iter().enumerate() {
+            let table = &cells.element.tabulation;
+            let mut placement = Placement::new(table);
+            let mut x = vec![0.0; cells.element.nodes() * cells.element.dimension()];
+            for (cell, nodes) in cells.cells().enumerate() {
+                let quality =
+                    placement.place(table, &self.points, nodes, &mut x).map_or(0.0, |()| Geometry::quality(table, &x));
+                visit(CellIndex { block, cell }, quality);
+            }
+        }
+    }
+
+    pub(super) fn cell_name(&self, CellIndex { block, cell }: CellIndex) -> String {
+        let element = &self.blocks[block].element;
+        let first = self.blocks[block].connectivity[cell * element.nodes()];
+        format!("{} cell {} at {:?} m", element.name, cell + 1, self.point(first))
+    }
+
+    /// Takes cells out, and the points that only they have.
+    ///
+    /// # Errors
+    /// No cell is left.
+    pub(super) fn remove(&mut self, cells: &[CellIndex]) -> Result<()> {
+        let mut new: Vec<Vec<usize>> = self.blocks.iter().map(|block| vec![0; block.cells().len()]).collect();
+        cells.iter().for_each(|at| new[at.block][at.cell] = usize::MAX);
+        for (block, new) in self.blocks.iter_mut().zip(&mut new) {
+            let n = block.element.nodes();
+            let mut kept = 0;
+            for (cell, new) in new.iter_mut().enumerate().filter(|(_, new)| **new != usize::MAX) {
+                block.connectivity.copy_within(cell * n..(cell + 1) * n, kept * n);
+                *new = kept;
+                kept += 1;
+            }
+            block.connectivity.truncate(kept * n);
+        }
+        if self.cell_count() == 0 {
+            return Err(Error::expected("quality", "cells that may be kept", "none"));
+        }
+        for group in self.groups.values_mut() {
+            group.cells.retain(|at| new[at.block][at.cell] != usize::MAX);
+            group.cells.iter_mut().for_each(|at| at.cell = new[at.block][at.cell]);
+        }
+        let unused = self.unused_points;
+        self.drop_unused_points();
+        self.unused_points += unused;
+        Ok(())
+    }
+
+    /// Counts points at the place of another, and points in the middle of a straight edge between two others. Places count as one
+    /// within a millionth of the shortest edge.
+    pub(super) fn find_misfits(&mut self) {
+        let mut edges: Vec<[usize; 2]> = Vec::new();
+        // Nodes that are no corners: middles of edges that have them.
+        let mut between = vec![false; self.point_count()];
+        for block in &self.blocks {
+            let element = &block.element;
+            let corner = |c: usize| element.corner_node(c);
+            let own: Vec<[usize; 2]> =
+                element.cell.edges().iter().filter_map(|[a, b]| Some([corner(*a)?, corner(*b)?])).collect();
+            let corners: Vec<usize> = (0..element.cell.corners().len()).filter_map(corner).collect();
+            for nodes in block.cells() {
+                edges.extend(own.iter().map(|[a, b]| [nodes[*a].min(nodes[*b]), nodes[*a].max(nodes[*b])]));
+                (0..nodes.len()).filter(|a| !corners.contains(a)).for_each(|a| between[nodes[a]] = true);
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let d = self.dimension;
+        let length = |[a, b]: &[usize; 2]| distance(self.point(*a), self.point(*b));
+        let unit = 1e-6 * edges.iter().map(length).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+        let key = |x: [f64; 3]| x.map(|x| (x / unit).round() as i64);
+        let place = |p: usize| std::array::from_fn(|k| if k < d { self.points[p * d + k] } else { 0.0 });
+        let middle = |[a, b]: [usize; 2]| {
+            let (a, b): ([f64; 3], [f64; 3]) = (place(a), place(b));
+            std::array::from_fn(|k| (a[k] + b[k]) / 2.0)
+        };
+        let mut places: HashMap<[i64; 3], usize> = HashMap::new();
+        let coincident = (0..self.point_count()).filter(|&p| places.insert(key(place(p)), p).is_some()).count();
+        let hangs =
+            |edge: &[usize; 2]| places.get(&key(middle(*edge))).is_some_and(|p| !edge.contains(p) && !between[*p]);
+        let hanging = edges.iter().filter(|edge| hangs(edge)).count();
+        (self.quality.coincident, self.quality.hanging) = (coincident, hanging);
+    }
+}
+
+fn cells(count: usize) -> String {
+    if count == 1 { "1 cell".into() } else { format!("{count} cells") }
+}
