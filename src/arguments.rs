@@ -26,6 +26,17 @@ pub enum Command {
     Compare(CompareArguments),
     /// Run the experiments of the paper whose method this is, its printed figures beside ours
     Paper(PaperArguments),
+    /// Try stiff and extreme cases: what came out beside twice the digits or closed forms; exit code 1 if an error is too large
+    Stability(StabilityArguments),
+}
+
+#[derive(Args)]
+pub struct StabilityArguments {
+    /// A shipped element's name, an element file, or a scene [default: an element of each kind, bodies and motions]
+    pub what: Option<String>,
+    /// Where the table and the maps go [default: out/stability, or out/stability-NAME]
+    #[arg(long)]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -175,6 +186,12 @@ pub struct FitArguments {
     /// Mesh units to metres
     #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
     pub scale: f64,
+    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]
+    #[arg(long)]
+    pub below: Option<String>,
+    /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
+    #[arg(long)]
+    pub least: Option<f64>,
     /// An element file to look in before the shipped ones; may be repeated
     #[arg(long)]
     pub element: Vec<String>,

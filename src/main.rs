@@ -4,7 +4,7 @@ mod arguments;
 
 use arguments::{
     CheckArguments, Command, CommandLine, CompareArguments, DeriveArguments, FitArguments, PaperArguments,
-    PlaneArgument, RunArguments,
+    PlaneArgument, RunArguments, StabilityArguments,
 };
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -12,7 +12,7 @@ use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::{ClosedForm, Weight};
 use springfit::material::{Material, Plane, parse_pressure};
-use springfit::mesh::{Mesh, MeshSource, Selection, vtk};
+use springfit::mesh::{Gate, Mesh, MeshSource, Selection, vtk};
 use springfit::model::Support;
 use springfit::report::Comparison;
 use springfit::springs::Springs;
@@ -29,6 +29,11 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
+    // A file that may not grow further is an error like a full disk, not the end.
+    #[cfg(unix)]
+    unsafe {
+        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
+    }
     let command = CommandLine::parse().command;
     let done = |result: Result<()>| result.map(|()| ExitCode::SUCCESS);
     let result = match command {
@@ -38,11 +43,12 @@ fn main() -> ExitCode {
         Command::Derive(arguments) => done(derive(&arguments)),
         Command::Compare(arguments) => done(compare(&arguments)),
         Command::Paper(arguments) => done(paper(&arguments)),
+        Command::Stability(arguments) => stability(&arguments),
     };
     match result {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            tell(&format!("error: {error}"));
             ExitCode::from(2)
         }
     }
@@ -69,15 +75,20 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
     let mut bar = Bar::new();
     let outcome = run_with(&scene, &controls, &mut |stage, done, total| bar.show(stage, done, total))?;
     bar.clear();
+    // Files first: who reads the table may have gone away.
+    let paths = report::write_outputs(&outcome, &scene.output, &folder);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
-    tell(&outcome);
-    written(&report::write_outputs(&outcome, &scene.output, &folder)?)
+    notes(&outcome);
+    written(&paths?)
 }
 
-fn tell(outcome: &study::Outcome) {
-    for note in report::notes(outcome) {
-        eprintln!("note: {note}");
-    }
+fn notes(outcome: &study::Outcome) {
+    report::notes(outcome).iter().for_each(|note| tell(&format!("note: {note}")));
+}
+
+/// A line on standard error; if nobody can read it, nothing is lost.
+fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// The first interrupt ends whole-object fits at their best point, the second the program.
@@ -88,7 +99,7 @@ fn end_early(controls: &Arc<Controls>) {
         if controls.cancelled.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("ending the whole-object fits where they are; again to end at once");
+        tell("ending the whole-object fits where they are; again to end at once");
     });
 }
 
@@ -97,6 +108,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     if !["vtu", "json", "csv"].contains(&ending) {
         return Err(Error::expected("--output", "a file ending in .vtu, .json or .csv", arguments.output.display()));
     }
+    springfit::check_file(&arguments.output)?;
     let young = parse_pressure(&arguments.young).map_err(|e| e.under("--young"))?;
     // Of the fits that serve every element alike, the one with the least error among those that always stand.
     let chosen = arguments.objective.clone();
@@ -136,7 +148,10 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let own = load_elements(&arguments.element, Path::new(""))
         .map_err(|e| e.placed(|e| Error::at("--element", e.problem())))?;
     let source = MeshSource::read(&arguments.mesh)?;
-    let mesh = Mesh::resolve(&source, &own, arguments.scale).map_err(|e| e.in_file(&arguments.mesh))?;
+    let asked = arguments.below.is_some() || arguments.least.is_some();
+    let gate = Gate::named(arguments.below.as_deref(), arguments.least).map_err(Error::of_option)?;
+    let mesh = Mesh::resolve_within(&source, &own, arguments.scale, asked.then_some(gate));
+    let mesh = mesh.map_err(|e| e.in_file(&arguments.mesh))?;
     let plane = arguments.plane.map(plane);
     let material = Material::for_body(mesh.cell_dimension(), young, arguments.poisson, plane, arguments.thickness)
         .and_then(|m| arguments.area.map_or(Ok(m), |area| m.with_area(area)))
@@ -167,7 +182,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let outcome = study::Outcome::of_fit(arguments.mesh.display().to_string(), mesh, material, masses, outcome);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
     if whole {
-        tell(&outcome);
+        notes(&outcome);
     }
     print(&format!("written: {}\n", arguments.output.display()))
 }
@@ -253,8 +268,9 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
             let study = study::compare_stretches(&element, material, law, arguments.stretch, &mut progress);
             let study = study.map_err(|e| e.placed(Error::of_option))?;
             bar.clear();
+            let paths = report::write_stretches(&study, &folder);
             print(&report::stretches_text(&study))?;
-            return written(&report::write_stretches(&study, &folder)?);
+            return written(&paths?);
         }
         if arguments.iterations == 0 {
             return Err(Error::expected("--iterations", "a number above 0", 0));
@@ -266,8 +282,9 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
         Comparison::of_element(title, &outcomes, material.young())
     };
     bar.clear();
+    let paths = comparison.write(&folder);
     print(&comparison.table())?;
-    written(&comparison.write(&folder)?)
+    written(&paths?)
 }
 
 fn paper(arguments: &PaperArguments) -> Result<()> {
@@ -283,11 +300,31 @@ fn paper(arguments: &PaperArguments) -> Result<()> {
     let paper = study::run_paper(&index, &arguments.table, &path, &mut |stage, d, t| bar.show(stage, d, t));
     bar.clear();
     let paper = paper.map_err(|e| e.placed(Error::of_option))?;
+    let written = report::write_paper(&paper, &folder);
     for table in &paper.tables {
         print(&(report::paper_text(table) + "\n"))?;
     }
-    let written = report::write_paper(&paper, &folder)?;
+    let written = written?;
     print(&format!("written: {} files in {}\n", written.len(), folder.display()))
+}
+
+fn stability(arguments: &StabilityArguments) -> Result<ExitCode> {
+    let what = arguments.what.as_deref();
+    let stem = what.map(|what| Path::new(what).file_stem().unwrap_or_default().to_string_lossy());
+    let name = stem.map_or("stability".to_string(), |stem| format!("stability-{stem}"));
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(name));
+    springfit::check_folder(&folder)?;
+    let mut bar = Bar::new();
+    let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    let outcome = match what {
+        Some(path) if is_scene(Path::new(path)) => study::sweep_scene(&Scene::load(Path::new(path))?, &mut progress)?,
+        _ => study::sweep(what.map(Element::load).transpose()?, &mut progress)?,
+    };
+    bar.clear();
+    let paths = report::write_stability(&outcome, &folder);
+    print(&report::stability_text(&outcome))?;
+    written(&paths?)?;
+    Ok(if outcome.lost().count() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 fn written(paths: &[PathBuf]) -> Result<()> {
@@ -332,6 +369,11 @@ impl Bar {
     }
 
     fn show(&mut self, stage: &str, done: usize, total: usize) {
+        if total == 0 {
+            self.clear();
+            tell(&format!("note: {stage}"));
+            return;
+        }
         if self.bar.is_none() && std::io::stderr().is_terminal() && self.start.elapsed() > Duration::from_secs(1) {
             let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}");
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());

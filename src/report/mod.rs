@@ -12,6 +12,7 @@ mod network;
 mod paper;
 mod pictures;
 mod series;
+mod stability;
 mod stretches;
 mod surface;
 mod table;
@@ -26,6 +27,7 @@ pub use network::{network_csv, network_json};
 pub use paper::{paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use series::write_series;
+pub use stability::{stability_text, write_stability};
 pub use stretches::{stretches_text, write_stretches};
 pub use table::{notes, summary, table};
 
@@ -48,9 +50,6 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     let moved = || outcome.motion.iter().flat_map(|motion| &motion.models).zip(&motion_stems);
     let mut written = Vec::new();
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    if output.report != Some(false) {
-        files.push((folder.join("report.json"), report(outcome).into_bytes()));
-    }
     if output.csv {
         for (fit, stem) in outcome.fits.iter().zip(&stems) {
             files.push((folder.join(format!("{stem}.csv")), network_csv(&fit.network).into_bytes()));
@@ -59,7 +58,8 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     for (model, stem) in moved() {
         files.push((folder.join(format!("{stem}.csv")), motion_csv(model).into_bytes()));
     }
-    if !files.is_empty() || output.vtu {
+    let reports = output.report != Some(false);
+    if !files.is_empty() || output.vtu || reports {
         create_folder(folder)?;
     }
     for (path, content) in files {
@@ -78,6 +78,12 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         for (model, stem) in moved().filter(|(model, _)| !model.states.is_empty()) {
             written.push(write_series(outcome, model, stem, folder)?);
         }
+    }
+    // Last: where it is, the others are.
+    if reports {
+        let path = folder.join("report.json");
+        write_whole(&path, report(outcome).as_bytes())?;
+        written.push(path);
     }
     Ok(written)
 }

@@ -18,6 +18,7 @@ mod raised;
 mod random;
 mod run;
 mod scene;
+mod stability;
 mod stages;
 mod stretches;
 mod whole;
@@ -41,6 +42,7 @@ pub use scene::{
     Output, Part, Pull, Push, Recipe, SampledRecipe, Scene, ShapesEntry, Start, WholeRecipe, integrator_name,
     load_elements,
 };
+pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, sweep, sweep_scene};
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
 pub use whole::WholeBody;

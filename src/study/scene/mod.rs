@@ -104,6 +104,9 @@ impl Scene {
         let folder = path.parent().unwrap_or(Path::new(""));
         for (i, fit) in entry.fit.into_iter().enumerate() {
             for fit in fit.check(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))? {
+                if fit.name.trim().is_empty() {
+                    return Err(Error::expected(format!("fit[{i}].name"), "a name", format!("\"{}\"", fit.name)));
+                }
                 if fits.iter().any(|f| f.name == fit.name) {
                     let expected = "a name of its own";
                     return Err(Error::expected(format!("fit[{i}].name"), expected, format!("\"{}\" again", fit.name)));
@@ -189,6 +192,14 @@ impl Scene {
             motion,
             output: entry.output,
         })
+    }
+
+    /// The same scene with Young's modulus times `factor`, and of another Poisson's ratio where one is given.
+    pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
+        let mut scene = self.clone();
+        scene.material.young.0 *= factor;
+        scene.material.poisson = poisson.unwrap_or(scene.material.poisson);
+        scene
     }
 
     /// The material of a body of that dimension.

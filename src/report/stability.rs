@@ -1,0 +1,252 @@
+//! A sweep as a table, as CSV, and as maps of its errors.
+
+use super::comparison::csv;
+use super::table::aligned;
+use super::write_files;
+use crate::error::Result;
+use crate::study::{Family, StabilityOutcome, StabilityRow, Verdict};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use svg::Document;
+use svg::node::element::{Rectangle, Text, Title};
+
+/// Pixels of one case in a map, and beside and above them.
+const CELL: (usize, usize) = (22, 20);
+const BESIDE: usize = 190;
+const ABOVE: usize = 96;
+/// What an error of 1e-16, 1e-14, … 1e-2 and more is drawn as: light where all digits are right (Crameri's lajolla, turned).
+const SHADES: [&str; 8] = ["#fffbe0", "#fbe6a1", "#f6ca69", "#e99f51", "#dd7350", "#b64a4a", "#6d3632", "#1f1a0c"];
+const REFUSED: &str = "#c8ccd4";
+const TOLD: &str = "#9db8d9";
+
+/// What came of each family and method, worst first to see, then what is lost and why cases were refused.
+pub fn stability_text(outcome: &StabilityOutcome) -> String {
+    let header: Vec<String> = [
+        "family",
+        "of",
+        "cases",
+        "accurate",
+        "input-\nlimited",
+        "dependent",
+        "refused",
+        "told",
+        "LOST",
+        "worst\nerror",
+        "worst error\nin f32",
+        "largest\ncondition",
+        "k < 0",
+    ]
+    .map(String::from)
+    .into();
+    let mut text = format!("{}\n\n{}", outcome.title, aligned(&header, &families(outcome)));
+    let reasons = reasons(outcome);
+    if !reasons.is_empty() {
+        text += "\nWhere there is no answer, or something to be told\n";
+    }
+    for (family, words, count) in reasons {
+        writeln!(text, "  {:<16} {count:>4}  {words}", family.name()).expect("a String grows");
+    }
+    for row in outcome.lost() {
+        let (error, allowed) = (number(row.error), number(row.allowed));
+        let StabilityRow { subject, case, method, .. } = row;
+        writeln!(text, "LOST: {subject}, {case}, {method}: error {error}, allowed {allowed}").expect("a String grows");
+    }
+    let (cases, lost) = (outcome.rows.len(), outcome.lost().count());
+    writeln!(text, "{cases} cases in {:.1} s, {lost} lost", outcome.seconds).expect("a String grows");
+    text
+}
+
+/// One row per family and kind of method.
+fn families(outcome: &StabilityOutcome) -> Vec<Vec<String>> {
+    let mut keys: Vec<(Family, &str)> = outcome.rows.iter().map(|row| (row.family, row.method.as_str())).collect();
+    keys.sort();
+    keys.dedup();
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
+    let row = |&(family, method): &(Family, &str)| {
+        let rows: Vec<&StabilityRow> =
+            outcome.rows.iter().filter(|row| (row.family, row.method.as_str()) == (family, method)).collect();
+        let count = |name: &str| rows.iter().filter(|row| row.verdict.name() == name).count();
+        let accurate = rows.iter().filter(|row| row.verdict == Verdict::Accurate);
+        let worst = largest(&mut accurate.clone().filter_map(|row| row.error));
+        let single = largest(&mut accurate.filter_map(|row| row.single));
+        let condition = largest(&mut rows.iter().filter_map(|row| row.condition));
+        let negative = rows.iter().filter_map(|row| row.negative).fold([0, 0], |[a, b], [n, m]| [a + n, b + m]);
+        let mut cells = vec![family.name().to_string(), method.to_string(), rows.len().to_string()];
+        for name in ["accurate", "input-limited", "dependent", "refused", "told", "LOST"] {
+            let count = count(name);
+            cells.push(if count == 0 { "-".into() } else { count.to_string() });
+        }
+        cells.extend([number(worst), number(single), number(condition)]);
+        let share = |[n, m]: [usize; 2]| format!("{:.0} %", 100.0 * n as f64 / m as f64);
+        cells.push(if negative[1] == 0 { "-".into() } else { share(negative) });
+        cells
+    };
+    keys.iter().map(row).collect()
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("-".into(), |v| if v == 0.0 { "0".into() } else { format!("{v:.1e}") })
+}
+
+/// Reasons with their numbers taken out, so that like ones are counted together; the first stands for them.
+fn reasons(outcome: &StabilityOutcome) -> Vec<(Family, String, usize)> {
+    let mut found: Vec<(Family, String, String, usize)> = Vec::new();
+    for row in &outcome.rows {
+        let words = row.verdict.words();
+        if words.is_empty() {
+            continue;
+        }
+        let plain: String = words.chars().filter(|c| c.is_alphabetic() || *c == ' ').collect();
+        match found.iter_mut().find(|(family, known, ..)| *family == row.family && *known == plain) {
+            Some(known) => known.3 += 1,
+            None => found.push((row.family, plain, words.into(), 1)),
+        }
+    }
+    found.into_iter().map(|(family, _, words, count)| (family, words, count)).collect()
+}
+
+/// Every case in full.
+fn table(outcome: &StabilityOutcome) -> String {
+    let header = [
+        "of",
+        "family",
+        "case",
+        "method",
+        "status",
+        "words",
+        "error",
+        "allowed",
+        "error_f32",
+        "condition",
+        "negative",
+        "springs",
+        "softest",
+        "step_s",
+        "iterations",
+    ]
+    .map(String::from);
+    let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+    let row = |row: &StabilityRow| {
+        let count = |of: usize| row.negative.map_or(String::new(), |negative| negative[of].to_string());
+        vec![
+            row.subject.clone(),
+            row.family.name().into(),
+            row.case.clone(),
+            row.method.clone(),
+            row.verdict.name().into(),
+            row.verdict.words().into(),
+            full(row.error),
+            full(row.allowed),
+            full(row.single),
+            full(row.condition),
+            count(0),
+            count(1),
+            full(row.softest),
+            full(row.step),
+            row.iterations.map_or(String::new(), |count| count.to_string()),
+        ]
+    };
+    csv(&header, &outcome.rows.iter().map(row).collect::<Vec<_>>())
+}
+
+/// One map for each subject with a case per column and a method per row, in the order of the sweep; an SVG file's text.
+fn map(subject: &str, rows: &[&StabilityRow]) -> String {
+    let (mut methods, mut cases): (Vec<&str>, Vec<(Family, &str)>) = Default::default();
+    for row in rows {
+        if !methods.contains(&row.method.as_str()) {
+            methods.push(&row.method);
+        }
+        if !cases.contains(&(row.family, row.case.as_str())) {
+            cases.push((row.family, &row.case));
+        }
+    }
+    let place = |row: &StabilityRow| {
+        let column = cases.iter().position(|case| *case == (row.family, row.case.as_str())).unwrap_or(0);
+        let line = methods.iter().position(|method| *method == row.method).unwrap_or(0);
+        // A gap between families.
+        let gaps = cases[..=column].windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
+        (BESIDE + column * CELL.0 + 6 * gaps, ABOVE + line * CELL.1)
+    };
+    let width = rows.iter().map(|row| place(row).0).max().unwrap_or(0) + CELL.0 + 30;
+    let height = ABOVE + methods.len() * CELL.1 + 62;
+    let words = |x: usize, y: usize, size: usize, text: &str| {
+        Text::new(text).set("x", x).set("y", y).set("font-size", size).set("font-family", "sans-serif")
+    };
+    let mut picture = Document::new()
+        .set("viewBox", (0, 0, width.max(760), height))
+        .set("width", width.max(760))
+        .set("height", height);
+    picture = picture.add(Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white"));
+    picture = picture.add(words(12, 24, 16, &format!("{subject}: error of each case against its reference")));
+    picture = picture.add(words(12, 42, 12, "a column for each case, in the order of stability.csv"));
+    for (line, method) in methods.iter().enumerate() {
+        picture = picture.add(words(12, ABOVE + line * CELL.1 + 15, 13, method));
+    }
+    let mut last = None;
+    for (family, case) in &cases {
+        let Some(row) = rows.iter().find(|row| (row.family, row.case.as_str()) == (*family, *case)) else { continue };
+        if last != Some(*family) {
+            let (x, _) = place(row);
+            let name = words(x + 4, ABOVE - 6, 12, family.name());
+            picture = picture.add(name.set("transform", format!("rotate(-32 {} {})", x + 4, ABOVE - 6)));
+        }
+        last = Some(*family);
+    }
+    for row in rows {
+        let (x, y) = place(row);
+        let said = format!(
+            "{}, {}: {} {} {}",
+            row.case,
+            row.method,
+            row.verdict.name(),
+            number(row.error),
+            row.verdict.words()
+        );
+        let color = match (&row.verdict, row.error) {
+            (Verdict::Refused(_), _) => REFUSED,
+            (Verdict::Told(_) | Verdict::Dependent, _) => TOLD,
+            (_, Some(error)) => shade(error),
+            (_, None) => TOLD,
+        };
+        let edge = if row.verdict == Verdict::Lost { "red" } else { "white" };
+        let cell = Rectangle::new().set("x", x).set("y", y).set("width", CELL.0 - 1).set("height", CELL.1 - 1);
+        let cell = cell.set("fill", color).set("stroke", edge).set("stroke-width", if edge == "red" { 3 } else { 1 });
+        picture = picture.add(cell.add(Title::new(said)));
+    }
+    let base = height - 40;
+    let legend = SHADES.iter().enumerate().map(|(i, color)| (*color, format!("1e{}", 2 * i as i32 - 16)));
+    let legend = legend.chain([(REFUSED, "refused".into()), (TOLD, "told".into())]);
+    let mut x = BESIDE;
+    for (color, name) in legend {
+        let key = Rectangle::new().set("x", x).set("y", base).set("width", 16).set("height", 16);
+        picture = picture.add(key.set("fill", color).set("stroke", "#888"));
+        picture = picture.add(words(x + 21, base + 13, 12, &name));
+        x += 28 + 8 * name.len();
+    }
+    picture.to_string()
+}
+
+fn shade(error: f64) -> &'static str {
+    let decade = if error > 0.0 { error.log10() } else { -16.0 };
+    let place = ((decade + 16.0) / 2.0).floor().clamp(0.0, (SHADES.len() - 1) as f64);
+    SHADES[place as usize]
+}
+
+/// Writes `stability.csv` and a map for each subject as SVG into `folder`, and returns the paths.
+///
+/// # Errors
+/// The folder or a file cannot be written.
+pub fn write_stability(outcome: &StabilityOutcome, folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut subjects: Vec<&str> = Vec::new();
+    for row in &outcome.rows {
+        if !subjects.contains(&row.subject.as_str()) {
+            subjects.push(&row.subject);
+        }
+    }
+    let mut files = vec![("stability.csv".to_string(), table(outcome))];
+    for (subject, stem) in subjects.iter().zip(super::file_stems(subjects.iter().copied())) {
+        let rows: Vec<&StabilityRow> = outcome.rows.iter().filter(|row| row.subject == *subject).collect();
+        files.push((format!("{stem}.svg"), map(subject, &rows)));
+    }
+    write_files(folder, &files)
+}

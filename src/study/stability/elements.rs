@@ -1,0 +1,167 @@
+//! The constants of one element in every case, against twice the digits.
+
+use super::outcome::{StabilityRow, Verdict};
+use super::shapes::{ShapeCase, shape_cases};
+use crate::element::Element;
+use crate::error::Result;
+use crate::fit::{
+    CellFits, Fit, Objective, Weight, condition, constants_of_kind, distance_from_optimum, fit_cells, fit_element,
+};
+use crate::scalar::{Real, Twofold};
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+use crate::study::random::Random;
+use nalgebra::{DMatrix, DVectorView};
+use rayon::prelude::*;
+
+/// The relative error of constants that is promised, where rounding the nodes' places costs less.
+pub const PROMISED: f64 = 1e-9;
+/// The gap that a spectral fit proves, with the rounding of its bound.
+const GAP: f64 = 1.1e-8;
+/// Rounding of the nodes' places that an error is allowed to be worth, in units of 2⁻⁵³ of the element's size: each is rounded some
+/// ten times on its way into a Jacobian.
+const ROUNDINGS: f64 = 32.0;
+/// Patterns of moved nodes that are tried.
+const PATTERNS: u64 = 4;
+/// How far nodes are moved, of the element's size, from the farthest down while constants change by more than a tenth.
+const MOVES: [f64; 4] = [1.0 / (1u64 << 26) as f64, 1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 42) as f64, 1e-15];
+/// kg/m³.
+const DENSITY: f64 = 1000.0;
+
+/// Every case of the element by every objective.
+///
+/// # Errors
+/// The element has no springs or no valid shape.
+pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
+    let springs = Springs::select(element, None)?;
+    let rows = shape_cases(element)?.into_par_iter().flat_map_iter(|case| {
+        let subject = Subject { element, springs: &springs, case: &case };
+        Objective::all(element.has_higher_modes()).into_iter().map(|o| subject.row(o)).collect::<Vec<_>>()
+    });
+    Ok(rows.collect())
+}
+
+struct Subject<'a> {
+    element: &'a Element,
+    springs: &'a Springs,
+    case: &'a ShapeCase,
+}
+
+impl Subject<'_> {
+    fn row(&self, objective: Objective) -> StabilityRow {
+        let Subject { element, springs, case } = self;
+        let of = |verdict| StabilityRow::new(&element.name, case.family, &case.name, &objective.title(), verdict);
+        let (fit, moduli) = (Fit::new(objective), case.material.moduli());
+        let cell: Vec<usize> = (0..element.nodes()).collect();
+        let fits = match fit_cells(element, springs, &case.x, &cell, moduli, &fit, &mut |_| {}) {
+            Ok(fits) => fits,
+            Err(e) => return of(Verdict::Refused(e.problem().into())),
+        };
+        let k = &fits.constants;
+        let reference = constants_of_kind(&Twofold::from(0.0), element, springs, &case.x, &moduli, &fit);
+        let mut row = match (objective, &reference) {
+            _ if k.iter().any(|k| !k.is_finite()) => of(Verdict::Lost).with_error(f64::INFINITY, PROMISED),
+            _ if fits.deficient > 0 => of(Verdict::Dependent),
+            _ if fits.unreached > 0 => {
+                of(Verdict::Refused("no end is reached: a motion is too soft beside the stiffest".into()))
+            }
+            (Objective::Spectral(_), _) => {
+                let said = (&k[..], fits.certificates[0].value);
+                match distance_from_optimum(element, springs, &case.x, &moduli, &fit, said) {
+                    Some(distance) => self.judged(of, distance, GAP, objective),
+                    None => of(Verdict::Lost).with_error(f64::INFINITY, GAP),
+                }
+            }
+            (_, Some(reference)) => self.judged(of, distance(k, reference), PROMISED, objective),
+            (_, None) => of(Verdict::Refused("the springs are dependent, or a motion is as soft as rounding".into())),
+        };
+        let single = constants_of_kind(&0f32, element, springs, &case.x, &moduli, &fit);
+        let closed = !matches!(objective, Objective::Spectral(_));
+        row.single = single
+            .zip(reference)
+            .filter(|_| closed)
+            .map(|(k, reference)| distance(&k.iter().map(Real::rounded).collect::<Vec<_>>(), &reference));
+        row.single = row.single.filter(|error| error.is_finite());
+        let weight = objective.weight().filter(|weight| *weight != Weight::Relative).unwrap_or(Weight::None);
+        row.condition = condition(weight, element, springs, &case.x, &moduli);
+        row.negative = Some([k.iter().filter(|k| **k < 0.0).count(), k.len()]);
+        self.measure(&fits, &mut row);
+        row
+    }
+
+    /// A verdict on an error that may be so large, or what rounding the places of the nodes costs.
+    fn judged(
+        &self,
+        of: impl Fn(Verdict) -> StabilityRow,
+        error: f64,
+        promised: f64,
+        objective: Objective,
+    ) -> StabilityRow {
+        if error <= promised {
+            return of(Verdict::Accurate).with_error(error, promised);
+        }
+        let allowed = self.unavoidable(objective).max(promised);
+        of(if error <= allowed { Verdict::InputLimited } else { Verdict::Lost }).with_error(error, allowed)
+    }
+
+    /// The relative change of the constants when each node moves by some roundings of the element's size.
+    fn unavoidable(&self, objective: Objective) -> f64 {
+        let Subject { element, springs, case } = self;
+        let d = element.dimension();
+        let size = (0..case.x.len()).map(|i| (case.x[i] - case.x[i % d]).abs()).fold(0.0, f64::max);
+        let moduli = case.material.moduli();
+        let of = |x: &[f64]| fit_element(element, springs, x, moduli, &Fit::new(objective)).ok();
+        let Some(k) = of(&case.x) else { return f64::INFINITY };
+        let mut worst = 0.0f64;
+        for pattern in 0..PATTERNS {
+            let change = |step: f64| {
+                let mut random = Random::new(pattern);
+                let x: Vec<f64> = case.x.iter().map(|x| x + step * size * random.symmetric().signum()).collect();
+                of(&x).map_or(f64::INFINITY, |other| difference(&other, &k))
+            };
+            let changes = MOVES.map(|step| (step, change(step)));
+            let small = changes.iter().find(|(_, change)| *change < 0.1).unwrap_or(&changes[3]);
+            worst = worst.max(small.1 / small.0);
+        }
+        ROUNDINGS * f64::EPSILON / 2.0 * worst
+    }
+
+    /// The network of the element alone: its softest motion and its longest explicit step.
+    fn measure(&self, fits: &CellFits, row: &mut StabilityRow) {
+        let Subject { element, springs, case } = self;
+        let (d, n, mut geometry) = (element.dimension(), case.x.len(), Geometry::new(&element.tabulation));
+        if geometry.set(&element.tabulation, &case.x).is_err() {
+            return;
+        }
+        let (mut g, mut k) = (Vec::new(), DMatrix::zeros(n, n));
+        springs.gradients(&case.x, &geometry, &mut g);
+        for (g, constant) in g.chunks_exact(n).zip(&fits.constants) {
+            let g = DVectorView::from_slice(g, n);
+            k.ger(*constant, &g, &g, 1.0);
+        }
+        if k.iter().any(|entry| !entry.is_finite()) {
+            return;
+        }
+        let mut eigenvalues: Vec<f64> = k.symmetric_eigenvalues().iter().copied().collect();
+        eigenvalues.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
+        let largest = eigenvalues[0].abs();
+        // Without the rigid motions, which are the nearest to zero.
+        eigenvalues.truncate(n - d * (d + 1) / 2);
+        let least = eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
+        row.softest = (largest > 0.0).then_some(least / largest);
+        let mass = DENSITY * case.material.thickness() * geometry.content() / element.nodes() as f64;
+        row.step = Some(2.0 * (mass / largest).sqrt()).filter(|step| step.is_finite());
+    }
+}
+
+/// `max |a − b| / max |b|`, with b in twice the digits.
+fn distance(a: &[f64], b: &[Twofold]) -> f64 {
+    let size = b.iter().map(|b| b.hi.abs()).fold(0.0, f64::max);
+    let away = a.iter().zip(b).map(|(a, b)| (Twofold::from(*a) - b).hi.abs()).fold(0.0, f64::max);
+    if away == 0.0 { 0.0 } else { away / size }
+}
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let size = b.iter().map(|b| b.abs()).fold(0.0, f64::max);
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+}

@@ -1,0 +1,146 @@
+//! Stiff motions, and elements pulled to twice their length and pressed to nothing.
+
+use super::elements::PROMISED;
+use super::outcome::{Family, StabilityRow, Verdict};
+use crate::dynamics::{Integrator, Motion, Options, Simulation, Solver};
+use crate::element::Element;
+use crate::error::Result;
+use crate::material::{Energy, Material, State};
+use crate::model::{LengthSpring, Network};
+use crate::stiffness::Geometry;
+use nalgebra::{Complex, Matrix3};
+
+/// Steps, s, and stiffness over mass, 1/s².
+const STEPS: [f64; 4] = [1e-6, 1e-4, 1e-2, 1.0];
+const SQUARES: [f64; 5] = [1.0, 1e4, 1e8, 1e12, 1e14];
+const COUNT: i32 = 40;
+/// Of the body length that is left or reached.
+const LENGTHS: [f64; 7] = [2.0, 1.5, 0.5, 0.1, 1e-3, 1e-6, 0.0];
+
+/// Stiff motions of two masses, and the straight elements among these stretched and pressed.
+///
+/// # Errors
+/// None but those of shipped files, which are tested.
+pub fn sweep_motions(elements: &[Element]) -> Result<Vec<StabilityRow>> {
+    let mut rows = Vec::new();
+    for square in SQUARES {
+        for step in STEPS {
+            for (kind, masses) in [("alike", [1.0, 1.0]), ("1e-9 and 1e3 kg", [1e-9, 1e3])] {
+                for solver in [Solver::Factor, Solver::ConjugateGradients { tolerance: 1e-14 }] {
+                    rows.push(implicit(square, step, kind, masses, solver));
+                }
+                rows.push(explicit(square, step, kind, masses));
+            }
+        }
+    }
+    for element in elements.iter().filter(|element| element.nodes() == element.cell.corners().len()) {
+        rows.extend(collapse(element)?);
+    }
+    Ok(rows)
+}
+
+/// Two masses on a spring of `k/m = square`, m the reduced mass.
+fn pair(square: f64, masses: [f64; 2]) -> Network {
+    let reduced = 1.0 / (1.0 / masses[0] + 1.0 / masses[1]);
+    let lengths = vec![LengthSpring { points: [0, 1], constant: square * reduced, rest: 1.0 }];
+    Network { dimension: 2, lengths, others: Vec::new() }
+}
+
+fn case(square: f64, step: f64, kind: &str) -> String {
+    format!("k/m = {square:.0e}/s2, step {step:.0e} s, masses {kind}")
+}
+
+/// Implicit Euler of the spring stretched by one against its own closed form, `Re (1 − iωh)⁻ⁿ`.
+fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Solver) -> StabilityRow {
+    let method = match solver {
+        Solver::Factor => "implicit Euler, factor",
+        Solver::ConjugateGradients { .. } => "implicit Euler, conjugate gradients",
+    };
+    let of = |verdict| StabilityRow::new("two masses", Family::Motion, &case(square, step, kind), method, verdict);
+    let network = pair(square, masses);
+    let points = [0.0, 0.0, 1.0, 0.0];
+    let options = Options { step, integrator: Integrator::ImplicitEuler, linear: true, solver, ..Options::default() };
+    let mut simulation = match Simulation::new(Motion::free(&network, &points, &masses), options) {
+        Ok(simulation) => simulation,
+        Err(e) => return of(Verdict::Refused(e.to_string())),
+    };
+    let share = masses[1] / (masses[0] + masses[1]);
+    let stretch = 1e-3;
+    let start = [-share * stretch, 0.0, (1.0 - share) * stretch, 0.0];
+    if let Err(e) = simulation.start(&start, &[0.0; 4]) {
+        return of(Verdict::Refused(e.to_string()));
+    }
+    let (mut worst, mut iterations) = (0.0f64, 0);
+    let root = Complex::new(1.0, -step * square.sqrt());
+    for n in 1..=COUNT {
+        iterations += simulation.step().solver_iterations;
+        let u = &simulation.state().displacement;
+        let exact = root.powi(-n).re;
+        worst = worst.max(((u[2] - u[0]) / stretch - exact).abs());
+    }
+    let mut row = of(judge(worst)).with_error(worst, PROMISED);
+    row.iterations = Some(iterations);
+    row.step = Some(simulation.longest_step());
+    row
+}
+
+/// Symplectic Euler: refused beyond its limit, bounded within it.
+fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRow {
+    let of = |verdict| {
+        StabilityRow::new("two masses", Family::Motion, &case(square, step, kind), "symplectic Euler", verdict)
+    };
+    let network = pair(square, masses);
+    let points = [0.0, 0.0, 1.0, 0.0];
+    let options = Options { step, integrator: Integrator::SymplecticEuler, ..Options::default() };
+    let limit = 2.0 / square.sqrt();
+    match Simulation::new(Motion::free(&network, &points, &masses), options) {
+        Err(e) if step > 0.999 * limit => of(Verdict::Refused(e.to_string())),
+        Err(_) => of(Verdict::Lost),
+        Ok(_) if step > 1.001 * limit => of(Verdict::Lost),
+        Ok(simulation) => {
+            let longest = simulation.longest_step();
+            let error = (longest / limit - 1.0).abs();
+            // The limit is bounded from above by a part in a thousand.
+            let mut row = of(if error <= 1e-3 { Verdict::Accurate } else { Verdict::Lost }).with_error(error, 1e-3);
+            row.step = Some(longest);
+            row
+        }
+    }
+}
+
+/// An element of a neo-Hookean material stretched evenly along x, its energy against `W(F) V`; nothing is left of it at zero.
+fn collapse(element: &Element) -> Result<Vec<StabilityRow>> {
+    let d = element.dimension();
+    let plane = (d == 2).then_some(crate::material::Plane::Strain);
+    let material = Material::for_body(d, 10e3, 0.3, plane, None)?;
+    let energy = Energy::load("neo-hookean", material)?;
+    let state = if d == 2 { State::PlaneStrain { thickness: 1.0 } } else { State::Solid };
+    let mut geometry = Geometry::new(&element.tabulation);
+    let rest = &element.positions;
+    if geometry.set(&element.tabulation, rest).is_err() {
+        return Ok(Vec::new());
+    }
+    let volume = geometry.content();
+    let row = |length: f64| {
+        let name = format!("to {length} of its length");
+        let of = |verdict| StabilityRow::new(&element.name, Family::Collapse, &name, "neo-Hookean", verdict);
+        let x: Vec<f64> = rest.iter().enumerate().map(|(i, x)| if i % d == 0 { length * x } else { *x }).collect();
+        let mut f = Matrix3::identity();
+        f[(0, 0)] = length;
+        let exact = volume * energy.respond(&f).0;
+        match geometry.respond(&energy, state, &x) {
+            None if exact.is_finite() => of(Verdict::Lost),
+            None => of(Verdict::Refused("no response: the energy is not finite".into())),
+            Some(found) => {
+                let finite = found.force.iter().chain(found.tangent.iter()).all(|v| v.is_finite());
+                let error = if finite { (found.energy - exact).abs() / exact.abs() } else { f64::INFINITY };
+                of(judge(error)).with_error(error, PROMISED)
+            }
+        }
+    };
+    Ok(LENGTHS.into_iter().map(row).collect())
+}
+
+fn judge(error: f64) -> Verdict {
+    if error <= PROMISED { Verdict::Accurate } else { Verdict::Lost }
+}

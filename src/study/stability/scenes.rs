@@ -1,0 +1,98 @@
+//! A scene in other materials and other sizes: what must stay the same, and what the networks become.
+
+use super::elements::PROMISED;
+use super::outcome::{Family, StabilityOutcome, StabilityRow, Verdict};
+use crate::dynamics::largest_square;
+use crate::error::Result;
+use crate::model::{Lumping, lumped_masses};
+use crate::solve::Standing;
+use crate::study::outcome::{FitOutcome, Outcome};
+use crate::study::run::{Progress, run};
+use crate::study::scene::Scene;
+use std::time::Instant;
+
+const RATIOS: [f64; 8] = [-0.9, -0.5, 0.0, 0.3, 0.45, 0.49, 0.499, 0.499999];
+/// Factors of Young's modulus and of all lengths.
+const STIFFER: [f64; 6] = [1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12];
+const LONGER: [f64; 5] = [1e-7, 1e-3, 10.0, 1e4, 1e8];
+/// kg/m³, where the scene has none.
+const DENSITY: f64 = 1000.0;
+
+/// Runs the scene at rest in each case; its motion, its gauge and its outputs are left out. Errors of displacements must not depend
+/// on units: `e_rms` of each load against that of the scene as it is.
+///
+/// # Errors
+/// The scene itself does not run.
+pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOutcome> {
+    let start = Instant::now();
+    let mut plain = scene.clone();
+    (plain.motion, plain.gauge, plain.output) = (None, None, Default::default());
+    let base = run(&plain, &mut |_, _, _| {})?;
+    let mut cases: Vec<(Family, String, Scene, bool)> = Vec::new();
+    for factor in STIFFER {
+        cases.push((Family::Young, format!("E times {factor:e}"), plain.of_material(factor, None), true));
+    }
+    for factor in LONGER {
+        let mut other = plain.clone();
+        other.mesh.scale *= factor;
+        cases.push((Family::Size, format!("lengths times {factor:e}"), other, true));
+    }
+    for nu in RATIOS {
+        cases.push((Family::Poisson, format!("nu = {nu}"), plain.of_material(1.0, Some(nu)), false));
+    }
+    let mut rows: Vec<StabilityRow> = Vec::new();
+    let total = cases.len();
+    for (done, (family, case, other, same)) in cases.iter().enumerate() {
+        progress(case, done, total);
+        let subject = &base.scene;
+        match run(other, &mut |_, _, _| {}) {
+            Ok(outcome) => {
+                for (fit, known) in outcome.fits.iter().zip(&base.fits) {
+                    let row = |verdict| StabilityRow::new(subject, *family, case, &fit.fit.name, verdict);
+                    rows.push(of_fit(row, &outcome, fit, same.then_some(known)));
+                }
+            }
+            Err(e) => {
+                let verdict = Verdict::Refused(e.to_string());
+                rows.push(StabilityRow::new(subject, *family, case, "all", verdict));
+            }
+        }
+    }
+    Ok(StabilityOutcome { title: base.scene, rows, seconds: start.elapsed().as_secs_f64() })
+}
+
+/// `known` is the fit whose errors must be the same.
+fn of_fit(
+    row: impl Fn(Verdict) -> StabilityRow,
+    outcome: &Outcome,
+    fit: &FitOutcome,
+    known: Option<&FitOutcome>,
+) -> StabilityRow {
+    let changes = known.iter().flat_map(|known| fit.loads.iter().zip(&known.loads)).map(|(new, old)| {
+        match (new.error, old.error) {
+            (Some(new), Some(old)) => (new.rms - old.rms).abs() / old.rms.max(1e-9),
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
+        }
+    });
+    let error = changes.fold(None, |worst: Option<f64>, change| Some(worst.map_or(change, |w| w.max(change))));
+    let standing = fit.stability.as_ref().map(|stability| stability.standing);
+    let mut row = match (error, standing) {
+        (Some(error), _) if error > PROMISED => row(Verdict::Lost).with_error(error, PROMISED),
+        (_, Some(Standing::Indefinite)) => row(Verdict::Told("the network is indefinite".into())),
+        (_, Some(Standing::Singular)) => row(Verdict::Told("the network is a mechanism".into())),
+        (_, Some(Standing::Soft)) => row(Verdict::Told("the network is near a mechanism".into())),
+        (Some(error), _) => row(Verdict::Accurate).with_error(error, PROMISED),
+        (None, _) if fit.deficient > 0 => row(Verdict::Dependent),
+        (None, _) => row(Verdict::Told("sound".into())),
+    };
+    row.negative = Some([fit.network.negative(), fit.network.len()]);
+    row.softest = fit.stability.as_ref().map(|stability| stability.energy_ratio[0]);
+    let (mesh, thickness) = (&outcome.mesh, outcome.material.thickness());
+    let masses = lumped_masses(mesh, DENSITY, thickness, Lumping::Hrz);
+    let masses: Vec<f64> = masses.iter().flat_map(|m| vec![*m; mesh.dimension]).collect();
+    let entries = fit.network.stiffness(&mesh.points);
+    let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &vec![false; masses.len()]);
+    row.step = Some(2.0 / largest.sqrt()).filter(|step| step.is_finite());
+    row
+}

@@ -1,0 +1,174 @@
+//! What is promised in stiff and extreme cases, and the gate for poor cells.
+
+use springfit::element::Element;
+use springfit::report;
+use springfit::study::{Family, Scene, StabilityRow, Verdict, sweep, sweep_scene};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn swept(name: &str) -> Vec<StabilityRow> {
+    sweep(Some(Element::load(name).unwrap()), &mut |_, _, _| {}).unwrap().rows
+}
+
+fn program(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// Nothing is lost, every case has a verdict with its figure or its reason, and what must be refused is.
+#[test]
+fn every_case_ends_accurate_or_with_its_reason() {
+    for name in ["tri3", "quad4", "tet4", "tri6"] {
+        let rows = swept(name);
+        for row in &rows {
+            let told = format!("{name}, {}, {}: {:?} {:?}", row.case, row.method, row.verdict, row.error);
+            assert!(row.verdict != Verdict::Lost, "{told}");
+            assert_eq!(row.verdict.words().is_empty(), !matches!(row.verdict, Verdict::Refused(_) | Verdict::Told(_)));
+            let finite = [row.error, row.allowed, row.single, row.condition, row.softest, row.step];
+            assert!(finite.into_iter().flatten().all(f64::is_finite), "{told}");
+            if matches!(row.verdict, Verdict::Accurate | Verdict::InputLimited) {
+                assert!(row.error.unwrap() <= row.allowed.unwrap(), "{told}");
+            }
+            if row.verdict == Verdict::Accurate {
+                assert!(row.allowed.unwrap() <= 1.1e-8, "{told}");
+            }
+        }
+        let all = |family| rows.iter().filter(move |row| row.family == family);
+        for family in [Family::Young, Family::Size, Family::Place] {
+            assert!(all(family).all(|row| row.verdict == Verdict::Accurate), "{name} {family:?}");
+        }
+        assert!(all(Family::Reversed).all(|row| row.verdict.words().contains("numbered the other way round")));
+        // Single precision loses what it must: the figure is a measured one.
+        assert!(all(Family::Poisson).filter_map(|row| row.single).all(|error| error > 1e-9 && error < 1e-2));
+    }
+}
+
+#[test]
+fn the_program_writes_its_table_and_maps() {
+    let folder = TempDir::new().unwrap();
+    let output = program(folder.path(), &["stability", "tri3"]);
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("Poisson's ratio") && text.contains(", 0 lost"), "{text}");
+    let out = folder.path().join("out/stability-tri3");
+    let table = fs::read_to_string(out.join("stability.csv")).unwrap();
+    assert!(table.starts_with("of,family,case,method,status,words,error,allowed"), "{table}");
+    assert!(table.lines().count() > 200);
+    assert!(fs::read_to_string(out.join("tri3.svg")).unwrap().contains("<title>"));
+    let output = program(folder.path(), &["stability", "tri33"]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.starts_with("error: element: expected one of bar2, "), "{error}");
+}
+
+/// Errors of displacements do not depend on units.
+#[test]
+fn a_scene_gives_the_same_errors_in_all_units() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("box.toml");
+    let text = "[mesh]\nbox = { element = \"tet4\", size = [1, 1, 1], cells = [2, 2, 2] }\n[material]\nyoung = 10e3\n\
+                poisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n[[fit]]\nobjective = \"frobenius\"\n[[fix]]\n\
+                group = \"zmin\"\n[[load]]\ngroup = \"zmax\"\ntraction = [10, 0, 10]\n";
+    fs::write(&path, text).unwrap();
+    let outcome = sweep_scene(&Scene::load(&path).unwrap(), &mut |_, _, _| {}).unwrap();
+    assert_eq!(outcome.lost().count(), 0, "{}", report::stability_text(&outcome));
+    let same = outcome.rows.iter().filter(|row| matches!(row.family, Family::Young | Family::Size));
+    assert_eq!(same.clone().count(), 22);
+    assert!(same.clone().all(|row| row.error.is_some_and(|error| error < 1e-9)), "{:?}", same.collect::<Vec<_>>());
+}
+
+/// Two good tetrahedra and, after them, as many as are asked for whose fourth node is `height` above the others.
+fn mesh(flat: &[f64]) -> String {
+    let mut nodes =
+        vec!["1 0 0 0".to_string(), "2 1 0 0".into(), "3 0 1 0".into(), "4 0 0 1".into(), "5 0 0 -1".into()];
+    let mut cells = vec!["1 4 2 1 1 1 2 3 4".to_string(), "2 4 2 1 1 1 3 2 5".into()];
+    for (i, height) in flat.iter().enumerate() {
+        nodes.push(format!("{} 1 1 {height:e}", 6 + i));
+        cells.push(format!("{} 4 2 1 1 1 2 3 {}", 3 + i, 6 + i));
+    }
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}\n$EndNodes\n$Elements\n{}\n{}\n$EndElements\n",
+        nodes.len(),
+        nodes.join("\n"),
+        cells.len(),
+        cells.join("\n")
+    )
+}
+
+fn fitted(folder: &Path, arguments: &[&str]) -> Output {
+    let plain = ["fit", "m.msh", "--young", "10kPa", "--poisson", "0.3", "-o", "k.csv"];
+    program(folder, &[&plain, arguments].concat())
+}
+
+#[test]
+fn poor_cells_are_told_refused_or_skipped() {
+    let folder = TempDir::new().unwrap();
+    let place = folder.path();
+    fs::write(place.join("m.msh"), mesh(&[1e-7])).unwrap();
+    let springs = || fs::read_to_string(place.join("k.csv")).unwrap().lines().count() - 1;
+    let output = fitted(place, &[]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{output:?}");
+    assert!(
+        text.contains("1 cells have a quality below 1e-4, the worst 7.1e-8 (tet4 cell 3 at [0.0, 0.0, 0.0] m)"),
+        "{text}"
+    );
+    let all = springs();
+    let output = fitted(place, &["--below", "skip"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("1 cells of poor quality, flat or tangled, were left out"), "{text}");
+    assert!(text.contains("5 points") && springs() < all, "{text}");
+    let errors = [
+        (
+            ["--below", "refuse"],
+            "error: m.msh: quality: expected cells of at least 1e-4, found 1 cell below it, the least 7.07e-8 of tet4 cell 3 \
+             at [0.0, 0.0, 0.0] m\n",
+        ),
+        (["--below", "drop"], "error: --below: expected \"warn\", \"refuse\" or \"skip\", found \"drop\"\n"),
+        (["--least", "2"], "error: --least: expected a quality from 0 to 1, found 2.0\n"),
+    ];
+    for (arguments, error) in errors {
+        let output = fitted(place, &arguments);
+        assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(2), error));
+    }
+    // A flat cell is an error, unless it may be skipped.
+    fs::write(place.join("m.msh"), mesh(&[0.0, 0.5])).unwrap();
+    let output = fitted(place, &[]);
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("tet4 cell 3 at [0.0, 0.0, 0.0] m: the element has no volume")
+    );
+    let output = fitted(place, &["--below", "skip"]);
+    assert!(
+        output.status.success() && String::from_utf8_lossy(&output.stdout).contains("6 points, 3 tet4"),
+        "{output:?}"
+    );
+}
+
+#[test]
+fn a_scene_names_its_gate() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("m.msh"), mesh(&[1e-7])).unwrap();
+    let scene = |quality: &str| {
+        let text = format!(
+            "[mesh]\nfile = \"m.msh\"\n{quality}\n[material]\nyoung = 10e3\npoisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n"
+        );
+        fs::write(folder.path().join("s.toml"), text).unwrap();
+        program(folder.path(), &["run", "s.toml"])
+    };
+    let output = scene("quality = { below = \"skip\", least = 1e-3 }");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("were left out"), "{output:?}");
+    let report = fs::read_to_string(folder.path().join("out/s/report.json")).unwrap();
+    assert!(report.contains("\"skipped_elements\": 1"), "{report}");
+    for (quality, error) in [
+        (
+            "quality = { below = \"never\" }",
+            "mesh.quality.below: expected \"warn\", \"refuse\" or \"skip\", found \"never\"",
+        ),
+        ("quality = { least = -1 }", "mesh.quality.least: expected a quality from 0 to 1, found -1.0"),
+    ] {
+        let output = scene(quality);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(error), "{output:?}");
+    }
+}
