@@ -40,13 +40,20 @@ impl MeshSource {
     /// The file is missing, of another kind, damaged or cut short, or has a coordinate that is not finite.
     pub fn read(path: &Path) -> Result<MeshSource> {
         let bytes = crate::file::read(path)?;
-        let ending = crate::file::ending(path);
-        let source = match ending.as_str() {
-            "msh" => super::gmsh::parse(&bytes),
-            "vtu" | "vtk" => super::vtk::parse(&bytes, &ending),
+        MeshSource::parse(&bytes, &crate::file::ending(path)).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads the content of a file with this ending: `msh`, `vtu` or `vtk`.
+    ///
+    /// # Errors
+    /// Those of [`MeshSource::read`].
+    pub fn parse(bytes: &[u8], ending: &str) -> Result<MeshSource> {
+        let source = match ending {
+            "msh" => super::gmsh::parse(bytes),
+            "vtu" | "vtk" => super::vtk::parse(bytes, ending),
             _ => Err(Error::new("expected a mesh ending in .msh, .vtu or .vtk")),
         };
-        source.and_then(MeshSource::checked).map_err(|e| e.in_file(path))
+        source.and_then(MeshSource::checked)
     }
 
     fn checked(self) -> Result<MeshSource> {

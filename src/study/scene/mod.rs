@@ -88,11 +88,18 @@ impl Scene {
     /// # Errors
     /// Names the file, the key, what was expected and what was found.
     pub fn load(path: &Path) -> Result<Scene> {
-        let text = file::read_text(path)?;
-        Scene::parse(&text, path).map_err(|e| e.in_file(path))
+        Scene::parse(&file::read_text(path)?, path)
     }
 
-    fn parse(text: &str, path: &Path) -> Result<Scene> {
+    /// Checks the text of a scene that stands at `path`, from where other files are named.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Scene> {
+        Scene::checked(text, path).map_err(|e| e.in_file(path))
+    }
+
+    fn checked(text: &str, path: &Path) -> Result<Scene> {
         let entry: SceneFile = file::parse_toml(text)?;
         let mesh = entry.mesh;
         mesh.check()?;
