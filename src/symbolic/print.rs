@@ -14,7 +14,9 @@ impl Expr {
                 for (i, term) in terms.iter().enumerate() {
                     match (i, term.is_negative()) {
                         (0, _) => text += &term.text(names),
-                        (_, true) => write!(text, " - {}", term.clone().negated().text(names)).expect("a String grows"),
+                        (_, true) => {
+                            write!(text, " - {}", term.clone().negated().as_operand(names)).expect("a String grows")
+                        }
                         (_, false) => write!(text, " + {}", term.text(names)).expect("a String grows"),
                     }
                 }
