@@ -99,6 +99,7 @@ impl Element {
         for (a, node) in definition.nodes.iter().enumerate() {
             values.push(scope.expression(&node.shape).map_err(|e| e.under(format!("nodes[{a}].shape")))?);
         }
+        proof::moderate(&definition, &values)?;
         proof::nodal(&definition, &values)?;
         let rule = proof::quadrature(&definition, &definition.quadrature, "quadrature")?;
         let volumetric = definition.volumetric_quadrature.as_ref();
@@ -109,6 +110,7 @@ impl Element {
         proof::formats(&definition)?;
 
         let functions = ShapeFunctions::new(values, dimension);
+        proof::tabulable(&functions, rule.weights.len() + volumetric.as_ref().map_or(0, |r| r.weights.len()))?;
         let tabulation = Tabulation::new(&functions, &rule, volumetric.as_ref());
         proof::finite(&tabulation)?;
         Ok(Element {

@@ -1,17 +1,22 @@
 //! What an element file must satisfy before a number is computed from it. Identities of polynomials with rational
 //! coefficients are decided exactly; those of other functions are sampled in floating point.
 
-use super::Tabulation;
 use super::cell::Cell;
 use super::constant::Constant;
 use super::definition::{Definition, FormatEntry, Rule};
 use super::quadrature::{MOST_POINTS, Quadrature};
+use super::{ShapeFunctions, Tabulation};
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;
 use num_traits::Zero;
 
 const MOST_NODES: usize = 512;
+/// Twice those of a cube of 8³ nodes.
+const MOST_PARTS: usize = 80_000;
+const MOST_GRADIENT_PARTS: usize = 5_000_000;
+/// A few seconds.
+const MOST_STEPS: usize = 1_000_000_000;
 /// Sampled identities hold to this; a few roundings of numbers of size one.
 const ROUNDING: f64 = 1e-12;
 /// How far inside the cell, as a share of the way to its centre, a function is looked at that has no value at a node.
@@ -37,6 +42,27 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// That the proofs, which look at every shape function at every node, end soon, and that the gradients fit into memory.
+pub fn moderate(definition: &Definition, shapes: &[Expr]) -> Result<()> {
+    let check = |what: &str, most: usize, parts: usize| {
+        let expected = format!("{what} of at most {most} numbers, names and operations in all");
+        if parts <= most { Ok(()) } else { Err(Error::expected("nodes", expected, parts)) }
+    };
+    check("shape functions", MOST_PARTS, shapes.iter().map(Expr::parts).sum())?;
+    let parts: usize = shapes.iter().map(Expr::most_parts_of_derivative).sum();
+    check("gradients", MOST_GRADIENT_PARTS, definition.cell.dimension() * parts)
+}
+
+/// That the shape functions and their gradients can be evaluated at so many points.
+pub fn tabulable(functions: &ShapeFunctions, points: usize) -> Result<()> {
+    let steps = functions.parts().saturating_mul(points);
+    if steps <= MOST_STEPS {
+        return Ok(());
+    }
+    let expected = format!("a rule at whose points the shape functions take at most {MOST_STEPS} steps to evaluate");
+    Err(Error::expected("quadrature", expected, format!("{steps} at {points} points")))
 }
 
 /// Kronecker property, partition of unity, linear completeness.

@@ -1,7 +1,7 @@
 //! Shape functions and their gradients as numbers, at the points of a quadrature rule.
 
 use super::quadrature::Quadrature;
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Program};
 
 /// What the numerical code knows of an element: `N_a(ξ_q)`, `∂N_a/∂ξ_k(ξ_q)`, `w_q`.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,9 +39,11 @@ impl Tabulation {
             table.weights.extend(vec![0.0; other.weights.len()]);
         }
         let points = rule.points.iter().chain(volumetric.iter().flat_map(|other| &other.points));
+        let values: Vec<Program> = functions.values.iter().map(Program::of).collect();
+        let gradients: Vec<Program> = functions.gradients.iter().flatten().map(Program::of).collect();
         for point in points.copied().collect::<Vec<f64>>().chunks_exact(rule.dimension) {
-            table.values.extend(functions.values.iter().map(|n| n.evaluate(point)));
-            table.gradients.extend(functions.gradients.iter().flatten().map(|dn| dn.evaluate(point)));
+            table.values.extend(values.iter().map(|n| n.evaluate(point)));
+            table.gradients.extend(gradients.iter().map(|dn| dn.evaluate(point)));
         }
         table
     }
@@ -91,5 +93,10 @@ impl ShapeFunctions {
     pub fn new(values: Vec<Expr>, dimension: usize) -> ShapeFunctions {
         let gradients = values.iter().map(|n| (0..dimension).map(|k| n.derivative(k)).collect()).collect();
         ShapeFunctions { values, gradients }
+    }
+
+    /// How many numbers, variables and operations they consist of.
+    pub(super) fn parts(&self) -> usize {
+        self.values.iter().chain(self.gradients.iter().flatten()).map(Expr::parts).sum()
     }
 }

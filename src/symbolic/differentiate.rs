@@ -44,6 +44,20 @@ impl Expr {
     }
 }
 
+impl Expr {
+    /// At least as many parts as a derivative has before zeros drop out: a product repeats all its factors for each.
+    pub(crate) fn most_parts_of_derivative(&self) -> usize {
+        match self {
+            Expr::Number(_) | Expr::Variable(_) => 1,
+            Expr::Sum(inner) => 1 + inner.iter().map(Expr::most_parts_of_derivative).sum::<usize>(),
+            Expr::Product(inner) => {
+                1 + inner.len() * self.parts() + inner.iter().map(Expr::most_parts_of_derivative).sum::<usize>()
+            }
+            Expr::Power(inner, _) | Expr::Call(_, inner) => 8 + 2 * inner.parts() + inner.most_parts_of_derivative(),
+        }
+    }
+}
+
 /// `(1 − x²)^(−1/2)`.
 fn root_of_complement(x: Expr) -> Expr {
     let square = Expr::power(x, BigRational::from_integer(2.into()));

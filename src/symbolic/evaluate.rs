@@ -2,6 +2,10 @@ use super::{Expr, Function};
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 
+/// A number with more binary digits, or a larger power, is not worth being exact: no text can ask for hours.
+const MOST_EXACT_BITS: u64 = 8000;
+const LARGEST_EXACT_EXPONENT: i32 = 1000;
+
 /// A number an expression can be evaluated in. `None` where the value is not one of these numbers.
 pub trait Value: Clone {
     fn from_rational(c: &BigRational) -> Option<Self>;
@@ -9,6 +13,11 @@ pub trait Value: Clone {
     fn times(self, other: Self) -> Self;
     fn to_power(self, exponent: &BigRational) -> Option<Self>;
     fn apply(self, function: Function) -> Option<Self>;
+
+    /// Whether it is small enough to go on with.
+    fn is_moderate(&self) -> bool {
+        true
+    }
 }
 
 impl Value for f64 {
@@ -56,8 +65,10 @@ impl Value for BigRational {
         self * other
     }
     fn to_power(self, exponent: &BigRational) -> Option<BigRational> {
-        // A larger power would have too many digits to be worth being exact.
-        let n = exponent.to_i32().filter(|n| exponent.is_integer() && n.abs() <= 1000)?;
+        let n = exponent.to_i32().filter(|n| exponent.is_integer() && n.abs() <= LARGEST_EXACT_EXPONENT)?;
+        if bits(&self).saturating_mul(n.unsigned_abs().into()) > MOST_EXACT_BITS {
+            return None;
+        }
         if self.is_zero() && n < 0 {
             return None;
         }
@@ -73,6 +84,13 @@ impl Value for BigRational {
             _ => None,
         }
     }
+    fn is_moderate(&self) -> bool {
+        bits(self) <= MOST_EXACT_BITS
+    }
+}
+
+fn bits(c: &BigRational) -> u64 {
+    c.numer().bits().max(c.denom().bits())
 }
 
 impl Expr {
@@ -86,11 +104,11 @@ impl Expr {
             Expr::Variable(v) => Some(at[*v].clone()),
             Expr::Sum(terms) => {
                 let (first, rest) = terms.split_first()?;
-                rest.iter().try_fold(first.value(at)?, |s, t| Some(s.plus(t.value(at)?)))
+                rest.iter().try_fold(first.value(at)?, |s, t| Some(s.plus(t.value(at)?)).filter(T::is_moderate))
             }
             Expr::Product(factors) => {
                 let (first, rest) = factors.split_first()?;
-                rest.iter().try_fold(first.value(at)?, |s, f| Some(s.times(f.value(at)?)))
+                rest.iter().try_fold(first.value(at)?, |s, f| Some(s.times(f.value(at)?)).filter(T::is_moderate))
             }
             Expr::Power(base, exponent) => base.value(at)?.to_power(exponent),
             Expr::Call(function, argument) => argument.value(at)?.apply(*function),

@@ -5,31 +5,69 @@ use num_traits::{One, ToPrimitive};
 /// More terms than any element needs, and a higher degree; an expansion beyond them is given up.
 const MOST_TERMS: usize = 5000;
 const LARGEST_DEGREE: u32 = 1000;
+const LARGEST_POWER: u32 = 64;
+/// Binary digits of a coefficient.
+const MOST_BITS: u64 = 8000;
+/// Sums and products of two coefficients of few digits, over all steps of an expansion: half a second or so.
+const MOST_WORK: u64 = 1_000_000;
 
 impl Polynomial {
     /// The expansion of `expr` in `variables` variables, or `None` if it is not a polynomial of moderate size.
     pub fn expand(expr: &Expr, variables: usize) -> Option<Polynomial> {
-        let one = || Polynomial::constant(BigRational::one(), variables);
-        let times = |p: Polynomial, q: &Polynomial| {
-            let moderate =
-                p.term_count() * q.term_count() <= 10 * MOST_TERMS && p.degree() + q.degree() <= LARGEST_DEGREE;
-            moderate.then(|| &p * q).filter(|product| product.term_count() <= MOST_TERMS)
-        };
+        Expansion { variables, work_left: MOST_WORK }.of(expr)
+    }
+}
+
+struct Expansion {
+    variables: usize,
+    work_left: u64,
+}
+
+impl Expansion {
+    fn of(&mut self, expr: &Expr) -> Option<Polynomial> {
         match expr {
-            Expr::Number(c) => Some(Polynomial::constant(c.clone(), variables)),
-            Expr::Variable(v) => Some(Polynomial::variable(*v, variables)),
-            Expr::Sum(terms) => {
-                terms.iter().try_fold(Polynomial::default(), |sum, t| Some(&sum + &Polynomial::expand(t, variables)?))
-            }
-            Expr::Product(factors) => {
-                factors.iter().try_fold(one(), |p, f| times(p, &Polynomial::expand(f, variables)?))
-            }
+            Expr::Number(c) => Some(Polynomial::constant(c.clone(), self.variables)),
+            Expr::Variable(v) => Some(Polynomial::variable(*v, self.variables)),
+            Expr::Sum(terms) => terms.iter().try_fold(Polynomial::default(), |sum, t| {
+                let term = self.of(t)?;
+                self.plus(&sum, &term)
+            }),
+            Expr::Product(factors) => factors.iter().try_fold(self.one(), |product, f| {
+                let factor = self.of(f)?;
+                self.times(&product, &factor)
+            }),
             Expr::Power(base, exponent) => {
-                let n = exponent.to_u32().filter(|n| exponent.is_integer() && *n <= 64)?;
-                let base = Polynomial::expand(base, variables)?;
-                (0..n).try_fold(one(), |p, _| times(p, &base))
+                let n = exponent.to_u32().filter(|n| exponent.is_integer() && *n <= LARGEST_POWER)?;
+                let base = self.of(base)?;
+                (0..n).try_fold(self.one(), |power, _| self.times(&power, &base))
             }
             Expr::Call(..) => None,
         }
+    }
+
+    fn one(&self) -> Polynomial {
+        Polynomial::constant(BigRational::one(), self.variables)
+    }
+
+    fn plus(&mut self, p: &Polynomial, q: &Polynomial) -> Option<Polynomial> {
+        self.spend(p.term_count() + q.term_count(), p.largest_bits().max(q.largest_bits()))?;
+        Some(p + q).filter(|sum| sum.term_count() <= MOST_TERMS)
+    }
+
+    fn times(&mut self, p: &Polynomial, q: &Polynomial) -> Option<Polynomial> {
+        let products = p.term_count() * q.term_count();
+        if products > 10 * MOST_TERMS || p.degree() + q.degree() > LARGEST_DEGREE {
+            return None;
+        }
+        self.spend(products, p.largest_bits() + q.largest_bits())?;
+        Some(p * q).filter(|product| product.term_count() <= MOST_TERMS)
+    }
+
+    /// `None` if numbers of so many digits, or so many operations on them, are too much.
+    fn spend(&mut self, operations: usize, bits: u64) -> Option<()> {
+        // A sum of fractions takes a common divisor, which takes a pass over the digits for each digit.
+        let each = 1 + bits / 16 + (bits / 256).pow(2);
+        self.work_left = self.work_left.checked_sub((operations as u64).saturating_mul(each))?;
+        (bits <= MOST_BITS).then_some(())
     }
 }

@@ -16,7 +16,7 @@ const LONGEST_TEXT: usize = 10_000;
 const DEEPEST_NESTING: usize = 100;
 /// A chain of operators is a tree as deep as it is long.
 const MOST_OPERATORS: usize = 1000;
-/// Named sub-expressions are copied to where they are used; this bounds what they can grow to.
+/// Named sub-expressions are copied to where they are used, and `ramp(a)` is `a*step(a)`; this bounds what they grow to.
 const MOST_PARTS: usize = 2000;
 /// About a thousand digits.
 const MOST_BITS: u64 = 3322;
@@ -116,7 +116,10 @@ impl Scope {
                 let argument = real(0)?;
                 match function(identifier) {
                     Some(Called::Sqrt) => Expr::power(argument, BigRational::new(1.into(), 2.into())),
-                    Some(Called::Ramp) => Expr::product([argument.clone(), Expr::call(Function::Step, argument)]),
+                    Some(Called::Ramp) => {
+                        lexed.count(&argument)?;
+                        Expr::product([argument.clone(), Expr::call(Function::Step, argument)])
+                    }
                     Some(Called::Function(f)) => Expr::call(f, argument),
                     None => return Err(Error::new(unknown_function(identifier))),
                 }
@@ -148,10 +151,7 @@ impl Scope {
             return Ok(Expr::Variable(v));
         }
         if let Some((_, expr)) = self.definitions.iter().find(|(n, _)| n == name) {
-            lexed.parts.set(lexed.parts.get() + expr.parts());
-            if lexed.parts.get() > MOST_PARTS {
-                return Err(Error::new(format!("expected at most {MOST_PARTS} terms and factors in all")));
-            }
+            lexed.count(expr)?;
             return Ok(expr.clone());
         }
         let mut known: Vec<&str> = self.variables.iter().map(String::as_str).collect();
@@ -212,8 +212,19 @@ fn shortened(text: &str) -> String {
 struct Lexed {
     rewritten: String,
     literals: Vec<BigRational>,
-    /// Terms and factors that came in with named sub-expressions so far.
+    /// Terms and factors that have been copied so far.
     parts: Cell<usize>,
+}
+
+impl Lexed {
+    /// That one more copy of `expr` is not too much.
+    fn count(&self, expr: &Expr) -> Result<()> {
+        self.parts.set(self.parts.get() + expr.parts());
+        if self.parts.get() <= MOST_PARTS {
+            return Ok(());
+        }
+        Err(Error::new(format!("expected at most {MOST_PARTS} terms and factors in all")))
+    }
 }
 
 /// Splits into numbers, names, operators and parentheses, and makes sure that operands and operators alternate.

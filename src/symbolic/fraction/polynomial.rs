@@ -74,6 +74,11 @@ impl Polynomial {
         self.terms.len()
     }
 
+    /// Binary digits of the largest numerator or denominator of a coefficient.
+    pub fn largest_bits(&self) -> u64 {
+        self.terms.values().map(|c| c.numer().bits().max(c.denom().bits())).max().unwrap_or(0)
+    }
+
     /// The largest sum of exponents of a term.
     pub fn degree(&self) -> u32 {
         self.terms.keys().map(|e| e.iter().sum()).max().unwrap_or(0)
