@@ -10,7 +10,7 @@ use super::reader::{Encoding, Reader, quoted};
 use super::source::{Format, MeshSource, SourceBlock};
 use crate::error::{Error, Result};
 use nodes::Nodes;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Reads a Gmsh mesh. Points keep the file's order; cells of one type in the same physical groups form one block.
 ///
@@ -119,12 +119,8 @@ impl File {
         for ((cell_type, tags), connectivity) in cells.into_lists() {
             let Some((dimension, nodes_per_cell)) = types::find(cell_type) else { continue };
             let name = |tag| self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{dimension}:{tag}"));
-            let mut groups: Vec<String> = Vec::new();
-            for group in tags.into_iter().map(name) {
-                if !groups.contains(&group) {
-                    groups.push(group);
-                }
-            }
+            let mut known = HashSet::new();
+            let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
             blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups });
         }
         Ok(MeshSource { format: Format::Gmsh, points: nodes.points, blocks })

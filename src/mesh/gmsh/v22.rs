@@ -7,6 +7,9 @@ use crate::error::Result;
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::{Encoding, Reader};
 
+/// A cell is compared with each group it is in already.
+const MOST_GROUPS: usize = 1000;
+
 /// Cell type and physical tags, ascending.
 pub(super) type Key = (u32, Vec<u32>);
 
@@ -113,6 +116,10 @@ impl Cells {
         let again = *last_type == cell_type && self.entity == entity && self.nodes == self.next;
         if again && physical != 0 && !groups.is_empty() && !groups.contains(&physical) {
             groups.push(physical);
+            if groups.len() > MOST_GROUPS {
+                let expected = format!("element {element} in at most {MOST_GROUPS} physical groups");
+                return Err(reader.expected(&expected, "more"));
+            }
             return Ok(());
         }
         self.close();

@@ -15,6 +15,7 @@ pub(super) struct Numbers {
 pub(super) struct Blocks {
     header: Vec<u8>,
     numbers: Numbers,
+    data: u64,
 }
 
 impl Blocks {
@@ -33,7 +34,12 @@ impl Blocks {
         let fits = encoded_length(usize::try_from(compressed).ok()?) <= data.len();
         let total = size.checked_mul(count.checked_sub(1)?)?.checked_add(if last == 0 { size } else { last })?;
         let plausible = size > 0 && last <= size && total / MOST_COMPRESSION <= compressed;
-        (fits && plausible).then_some(Blocks { header, numbers })
+        (fits && plausible).then_some(Blocks { header, numbers, data: total })
+    }
+
+    /// Bytes that header and data take up once decoded.
+    pub fn size(&self) -> u64 {
+        self.data.saturating_add(self.header.len() as u64)
     }
 
     /// The header in base64 with the size of the last block where it had 0 for "whole", which the decoder takes for
@@ -49,6 +55,12 @@ impl Blocks {
 }
 
 impl Numbers {
+    /// Bytes of an array that is not compressed: they stand after their number.
+    pub fn size_of(self, text: &[u8]) -> u64 {
+        let size = decoded(text, self.width()).and_then(|header| self.read(&header, 0));
+        size.unwrap_or(0).min(text.len() as u64)
+    }
+
     fn width(self) -> usize {
         if self.wide { 8 } else { 4 }
     }

@@ -4,7 +4,7 @@ use super::cells::{shape, without_raster};
 use crate::error::{Error, Result};
 use crate::mesh::grouping::Gather;
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// An array with more values than this does not name groups.
 const MOST_GROUPS: usize = 1000;
@@ -42,8 +42,8 @@ impl PointArray {
     }
 }
 
-/// Cell type, nodes per cell, and the value of each grouping array that the cell's piece has.
-type Key = (u8, usize, Vec<Option<i128>>);
+/// Cell type, nodes per cell, and place and value of each grouping array that the cell's piece has.
+type Key = (u8, usize, Vec<(usize, i128)>);
 
 /// The mesh of all pieces, one after the other.
 ///
@@ -51,14 +51,19 @@ type Key = (u8, usize, Vec<Option<i128>>);
 /// A cell is of a type without a fixed shape, has the wrong number of nodes or names a point that its piece lacks.
 pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
     let arrays = grouping_arrays(&pieces);
+    let places: HashMap<&str, usize> = arrays.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
     let mut points = Vec::new();
     let mut cells: Gather<Key> = Gather::new();
     let mut nodes = Vec::new();
     for piece in pieces {
         check_lengths(&piece)?;
-        let columns: Vec<Option<&Labels>> =
-            arrays.iter().map(|name| piece.labels.iter().find(|labels| labels.name == *name)).collect();
-        let mut key: Key = (0, 0, vec![None; columns.len()]);
+        let mut columns = BTreeMap::new();
+        for labels in &piece.labels {
+            if let Some(&place) = places.get(labels.name.as_str()) {
+                columns.entry(place).or_insert(&labels.values);
+            }
+        }
+        let mut key: Key = (0, 0, Vec::new());
         let mut start = 0;
         for (i, (&cell_type, &end)) in piece.types.iter().zip(&piece.ends).enumerate() {
             let Some((_, node_count)) = shape(cell_type) else {
@@ -88,9 +93,8 @@ pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
             }
             key.0 = without_raster(cell_type, &mut nodes);
             key.1 = nodes.len();
-            for (value, column) in key.2.iter_mut().zip(&columns) {
-                *value = column.and_then(|labels| labels.values.get(i).copied());
-            }
+            key.2.clear();
+            key.2.extend(columns.iter().map(|(&place, values)| (place, values[i])));
             cells.list(&key).extend_from_slice(&nodes);
             start = end;
         }
@@ -98,7 +102,7 @@ pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
     }
     let blocks = cells.into_lists().filter_map(|((cell_type, nodes_per_cell, values), connectivity)| {
         let (dimension, _) = shape(cell_type)?;
-        let groups = arrays.iter().zip(values).filter_map(|(name, value)| Some(format!("{name}={}", value?))).collect();
+        let groups = values.into_iter().map(|(place, value)| format!("{}={value}", arrays[place])).collect();
         Some(SourceBlock { dimension, cell_type: cell_type.into(), nodes_per_cell, connectivity, groups })
     });
     Ok(MeshSource { format: Format::Vtk, blocks: blocks.collect(), points })
@@ -121,19 +125,19 @@ fn check_lengths(piece: &Piece) -> Result<()> {
 
 /// The names, in order of occurrence, of the arrays with few enough values.
 fn grouping_arrays(pieces: &[Piece]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
+    let mut names: Vec<&str> = Vec::new();
+    let mut values: HashMap<&str, HashSet<i128>> = HashMap::new();
     for labels in pieces.iter().flat_map(|piece| &piece.labels) {
-        if !names.contains(&labels.name) {
-            names.push(labels.name.clone());
+        let of_name = values.entry(&labels.name).or_insert_with(|| {
+            names.push(&labels.name);
+            HashSet::new()
+        });
+        for &value in &labels.values {
+            if of_name.len() > MOST_GROUPS {
+                break;
+            }
+            of_name.insert(value);
         }
     }
-    names.retain(|name| {
-        let mut values = HashSet::new();
-        let labels = pieces.iter().flat_map(|piece| &piece.labels).filter(|labels| labels.name == *name);
-        labels.flat_map(|labels| &labels.values).all(|&value| {
-            values.insert(value);
-            values.len() <= MOST_GROUPS
-        })
-    });
-    names
+    names.into_iter().filter(|name| values[name].len() <= MOST_GROUPS).map(str::to_string).collect()
 }

@@ -6,6 +6,13 @@ use crate::error::{Error, Result};
 use std::borrow::Cow;
 use std::ops::Range;
 
+/// A grid has six tags inside one another; the decoder calls itself for each.
+const DEEPEST_TAGS: usize = 32;
+/// All arrays together may take up so many times the bytes of the file, as an array of one number alone may a thousand
+/// times its own, and so many bytes in any case.
+const MOST_GROWTH: u64 = 100;
+const ALWAYS_ALLOWED: u64 = 1 << 24;
+
 /// Names of the data arrays of a piece.
 #[derive(Default)]
 pub(super) struct PieceArrays {
@@ -34,14 +41,23 @@ pub(super) fn checked_arrays(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Vec<PieceAr
     for range in &file.field_data {
         fixed.to_mut()[range.clone()].fill(b' ');
     }
-    if file.compressed {
-        for array in &file.arrays {
-            let text = file.text_of(array, bytes).unwrap_or(0..0);
+    let most = ALWAYS_ALLOWED.saturating_add(MOST_GROWTH.saturating_mul(bytes.len() as u64));
+    let mut size = 0_u64;
+    for array in &file.arrays {
+        let text = file.text_of(array, bytes).unwrap_or(0..0);
+        if !file.compressed {
+            size = size.saturating_add(file.header.size_of(&bytes[text]));
+        } else {
             let blocks = Blocks::read(&bytes[text.clone()], file.header);
             let blocks = blocks.ok_or_else(|| Error::at(&array.name, "its compressed data do not fit their header"))?;
+            size = size.saturating_add(blocks.size());
             if let Some(header) = blocks.with_last_size() {
                 fixed.to_mut()[text.start..text.start + header.len()].copy_from_slice(header.as_bytes());
             }
+        }
+        if size > most {
+            let expected = format!("at most {most} bytes of data up to here in a file of {}", bytes.len());
+            return Err(Error::expected(&array.name, expected, size));
         }
     }
     Ok((fixed, file.pieces))
@@ -56,6 +72,8 @@ struct ArrayTag {
 
 #[derive(Default)]
 struct Tags {
+    /// Of the tags that are open.
+    depth: usize,
     opened: bool,
     closed: bool,
     compressed: bool,
@@ -69,6 +87,14 @@ struct Tags {
 
 impl Tags {
     fn add(&mut self, tag: &Tag, bytes: &[u8]) -> Result<()> {
+        match tag.name.first() {
+            Some(b'/') => self.depth = self.depth.saturating_sub(1),
+            _ => self.depth += usize::from(!tag.empty),
+        }
+        if self.depth > DEEPEST_TAGS {
+            let name = String::from_utf8_lossy(tag.name).into_owned();
+            return Err(Error::expected(name, format!("at most {DEEPEST_TAGS} tags inside one another"), self.depth));
+        }
         match tag.name {
             b"VTKFile" => self.root(tag)?,
             b"/VTKFile" => self.closed = true,
