@@ -2,16 +2,39 @@
 
 use crate::error::{Error, Result};
 use std::fs;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// More than a mesh has that fits into memory with its model; what is no file on a disk may never end.
+const LARGEST_FILE: u64 = 4_000_000_000;
+/// Elements of hundreds of nodes have less.
+const LONGEST_TOML: usize = 1_000_000;
 
 /// The file's bytes.
 ///
 /// # Errors
-/// The file is missing or unreadable.
+/// The file is missing or unreadable, or larger than 4 GB.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|e| Error::new(format!("cannot be read: {e}")).in_file(path))
+    let (length, bytes) =
+        content(path, LARGEST_FILE).map_err(|e| Error::new(format!("cannot be read: {e}")).in_file(path))?;
+    let found = length.max(bytes.len() as u64);
+    if found > LARGEST_FILE {
+        return Err(Error::new(format!("expected a file of at most 4 GB, found {found} bytes")).in_file(path));
+    }
+    Ok(bytes)
+}
+
+/// The length that the file has by its folder, and its bytes unless they are more than `most`.
+fn content(path: &Path, most: u64) -> std::io::Result<(u64, Vec<u8>)> {
+    let file = fs::File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    if length <= most {
+        bytes.reserve_exact(usize::try_from(length).unwrap_or(0));
+        file.take(most + 1).read_to_end(&mut bytes)?;
+    }
+    Ok((length, bytes))
 }
 
 /// The file's text.
@@ -117,8 +140,12 @@ pub fn create_folder(path: &Path) -> Result<()> {
 /// Reads TOML into a structure; what is wrong is named by key and line.
 ///
 /// # Errors
-/// The text is not TOML, or a key is unknown, missing or of the wrong type.
+/// The text is too long or not TOML, or a key is unknown, missing or of the wrong type.
 pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
+    if text.len() > LONGEST_TOML {
+        let problem = format!("expected at most {LONGEST_TOML} bytes of TOML, found {}", text.len());
+        return Err(Error::new(problem));
+    }
     let line = |span: Option<std::ops::Range<usize>>| span.map(|s| text[..s.start].matches('\n').count() + 1);
     let place = |error: Error, at: Option<usize>| at.into_iter().fold(error, Error::on_line);
     let deserializer = toml::Deserializer::parse(text)
