@@ -19,12 +19,12 @@ pub struct Error {
 impl Error {
     /// A fault without a key, in words.
     pub fn new(problem: impl Into<String>) -> Self {
-        Error { file: None, line: None, key: None, problem: problem.into() }
+        Error { file: None, line: None, key: None, problem: on_one_line(problem.into()) }
     }
 
     /// A fault at `key`, in words.
     pub fn at(key: impl Into<String>, problem: impl Into<String>) -> Self {
-        Error { key: Some(key.into()), ..Error::new(problem) }
+        Error { key: Some(on_one_line(key.into())), ..Error::new(problem) }
     }
 
     /// A fault at `key`: `expected …, found …`.
@@ -46,11 +46,11 @@ impl Error {
 
     /// Puts `parent` before the key: `shape` under `nodes[3]` is `nodes[3].shape`.
     pub fn under(mut self, parent: impl fmt::Display) -> Self {
-        self.key = Some(match self.key {
+        self.key = Some(on_one_line(match self.key {
             Some(key) if key.starts_with('[') => format!("{parent}{key}"),
             Some(key) => format!("{parent}.{key}"),
             None => parent.to_string(),
-        });
+        }));
         self
     }
 
@@ -78,6 +78,11 @@ impl Error {
     pub fn problem(&self) -> &str {
         &self.problem
     }
+}
+
+/// Names and texts that are quoted from a file may have line ends in them.
+fn on_one_line(text: String) -> String {
+    if text.contains(char::is_control) { text.replace(char::is_control, "\u{fffd}") } else { text }
 }
 
 impl fmt::Display for Error {
