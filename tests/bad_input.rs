@@ -759,12 +759,12 @@ fn shape_functions() {
             "own.toml: nodes[1].shape: column 101: expected at most 100 open parentheses, found '(' in \"{shown}\""
         ),
     );
-    let long = edited(TETRAHEDRON, "\"xi\" }", &format!("\"{}0\" }}", "1 + ".repeat(250_000)));
+    let long = edited(TETRAHEDRON, "\"xi\" }", &format!("\"{}0\" }}", "1 + ".repeat(200_000)));
     let shown = format!("{}...", &"1 + ".repeat(15)[..57]);
     refusals.expect_of_files(
         &long,
         &unit_mesh(),
-        &format!("own.toml: nodes[1].shape: expected at most 10000 characters, found 1000001 in \"{shown}\""),
+        &format!("own.toml: nodes[1].shape: expected at most 10000 characters, found 800001 in \"{shown}\""),
     );
     refusals.expect_of_files("", &unit_mesh(), "own.toml:1: missing field \"name\"");
     refusals.finish();
@@ -1199,6 +1199,55 @@ fn expressions_without_bound() {
         &sums,
         &format!("own.toml: let.a2: expected at most 2000 terms and factors in all in \"{shown}...\""),
     )]);
+}
+
+/// A tetrahedron whose first shape function is another, of so many nodes.
+fn with_shape(definition: &str, shape: &str, nodes: usize) -> String {
+    let node = format!("    {{ at = [0, 0, 0], shape = \"{shape}\" }},\n");
+    let first = "    { at = [0, 0, 0], shape = \"1 - xi - eta - zeta\" },\n";
+    let element = edited(TETRAHEDRON, first, &node.repeat(nodes));
+    edited(&element, "nodes = [\n    { at", &format!("let = {{ a = \"{definition}\" }}\nnodes = [\n    {{ at"))
+}
+
+#[test]
+fn inputs_without_bound() {
+    let mut refusals = Refusals::default();
+    let ramps = format!("{}xi{}", "ramp(".repeat(40), ")".repeat(40));
+    let shown = "ramp(".repeat(12).chars().take(57).collect::<String>();
+    refusals.expect_of_elements(&[(
+        "\"xi\" }",
+        &format!("\"{ramps}\" }}"),
+        &format!("own.toml: nodes[1].shape: expected at most 2000 terms and factors in all in \"{shown}...\""),
+    )]);
+    for (element, message) in [
+        (
+            with_shape(&format!("xi{}", " + xi".repeat(990)), "a + a", 80),
+            "own.toml: nodes: expected shape functions of at most 80000 numbers, names and operations in all, found 158643",
+        ),
+        (
+            with_shape(&format!("xi{}", "*xi".repeat(990)), "a + a", 1),
+            "own.toml: nodes: expected gradients of at most 5000000 numbers, names and operations in all, found 5904396",
+        ),
+        (
+            edited(
+                &with_shape(&format!("xi{}", "*xi".repeat(249)), "1 - xi - eta - zeta + a - a + a - a", 1),
+                "degree = 1",
+                "degree = 32",
+            ),
+            "own.toml: quadrature: expected a rule at whose points the shape functions take at most 1000000000 steps to \
+             evaluate, found 1308474666 at 5202 points",
+        ),
+    ] {
+        refusals.expect_of_files(&element, &unit_mesh(), message);
+    }
+    let long = format!("{BRICK}# {}\n", "x".repeat(1_000_000));
+    let message = format!("scene.toml: expected at most 1000000 bytes of TOML, found {}", long.len());
+    refusals.expect_of_scene(&long, &message);
+    let groups: Vec<String> = (1..=1001).map(|group| format!("4 2 {group} 1 1 2 3 4")).collect();
+    let mesh = msh(&UNIT_NODES, &groups.iter().map(String::as_str).collect::<Vec<_>>());
+    let message = "mesh.msh:1013: $Elements: expected element 1001 in at most 1000 physical groups, found more";
+    refusals.expect_of_files(TETRAHEDRON, &mesh, message);
+    refusals.finish();
 }
 
 #[test]

@@ -297,6 +297,35 @@ fn coordinates_that_are_not_finite_are_refused_by_name() {
     assert_eq!(MeshSource::read(&path).unwrap_err().to_string(), expected);
 }
 
+#[test]
+fn files_without_end_are_refused_unread() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.msh");
+    fs::File::create(&path).unwrap().set_len(5_000_000_000).unwrap();
+    let expected = format!("{}: expected a file of at most 4 GB, found 5000000000 bytes", path.display());
+    assert_eq!(MeshSource::read(&path).unwrap_err().to_string(), expected);
+}
+
+#[test]
+fn tags_and_data_without_bound_are_refused() {
+    let error = |text: &str| vtk::parse(text.as_bytes(), "vtu").unwrap_err().to_string();
+    let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
+    let deep = text.replace("<Points>", &"<Points>".repeat(100_000));
+    assert_eq!(error(&deep), "Points: expected at most 32 tags inside one another, found 33");
+    // 2000 arrays that share 300000 bytes, 4JMEAA in little-endian base64.
+    let array = "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/>";
+    let (arrays, data) = (array.repeat(2000), "A".repeat(400_000));
+    let shared = format!(
+        "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><PointData>{arrays}</PointData>\
+         <AppendedData encoding=\"base64\">_4JMEAAAA{data}</AppendedData></VTKFile>"
+    );
+    let most = (1 << 24) + 100 * shared.len();
+    let found = (most / 300_000 + 1) * 300_000;
+    let length = shared.len();
+    let expected = format!("a: expected at most {most} bytes of data up to here in a file of {length}, found {found}");
+    assert_eq!(error(&shared), expected);
+}
+
 /// One tetrahedron.
 fn binary_tetrahedron(version: &str, big_endian: bool) -> Vec<u8> {
     let mut bytes = format!("$MeshFormat\n{version} 1 8\n").into_bytes();
@@ -393,6 +422,10 @@ fn vtk_errors_say_what_was_expected_and_found() {
     assert_eq!(
         xml("type=\"UnstructuredGrid\"", "type=\"PolyData\""),
         "VTKFile: expected type UnstructuredGrid, found PolyData"
+    );
+    assert_eq!(
+        xml("type=\"UnstructuredGrid\"", "type=\"Poly\nData\""),
+        "VTKFile: expected type UnstructuredGrid, found Poly\u{fffd}Data"
     );
     let array = "the file is damaged: its cell data array \"gmsh:physical\" cannot be decoded";
     assert_eq!(xml("Name=\"gmsh:physical\"", "Name=\"gmsh:physical\" NumberOfComponents=\"2\""), array);
