@@ -1,0 +1,6 @@
+#![no_main]
+
+#[path = "../bodies/element.rs"]
+mod element;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| element::check(bytes));
