@@ -40,7 +40,8 @@ fn every_case_ends_accurate_or_with_its_reason() {
         }
         assert!(all(Family::Reversed).all(|row| row.verdict.words().contains("numbered the other way round")));
         // Single precision loses what it must: the figure is a measured one.
-        assert!(all(Family::Poisson).filter_map(|row| row.single).all(|error| error > 1e-9 && error < 1e-2));
+        let plain = all(Family::Poisson).filter(|row| row.method == "frobenius").filter_map(|row| row.single);
+        assert!(plain.clone().count() > 5 && plain.clone().all(|error| error > 1e-9 && error < 1e-4));
     }
 }
 

@@ -9,7 +9,8 @@ use super::dense::{add_outers, at_rounding, factorize, inner, invert, room_below
 use super::reduction::Reduced;
 use crate::scalar::Real;
 
-const STEPS: usize = 150;
+/// Near the incompressible the first steps are damped by the stiffness of the content, and there are hundreds.
+const STEPS: usize = 1000;
 const FLOOR: f64 = 1e-14;
 /// The square of the Newton decrement at which the next step leaves 1e-10 of the scale of the problem.
 const CLOSE: f64 = 1e-10;

@@ -13,7 +13,7 @@ use svg::node::element::{Rectangle, Text, Title};
 /// Pixels of one case in a map, and beside and above them.
 const CELL: (usize, usize) = (22, 20);
 const BESIDE: usize = 190;
-const ABOVE: usize = 96;
+const ABOVE: usize = 116;
 /// What an error of 1e-16, 1e-14, … 1e-2 and more is drawn as: light where all digits are right (Crameri's lajolla, turned).
 const SHADES: [&str; 8] = ["#fffbe0", "#fbe6a1", "#f6ca69", "#e99f51", "#dd7350", "#b64a4a", "#6d3632", "#1f1a0c"];
 const REFUSED: &str = "#c8ccd4";
@@ -215,7 +215,7 @@ fn map(subject: &str, rows: &[&StabilityRow]) -> String {
     }
     let base = height - 40;
     let legend = SHADES.iter().enumerate().map(|(i, color)| (*color, format!("1e{}", 2 * i as i32 - 16)));
-    let legend = legend.chain([(REFUSED, "refused".into()), (TOLD, "told".into())]);
+    let legend = legend.chain([(REFUSED, "refused".into()), (TOLD, "told or dependent".into())]);
     let mut x = BESIDE;
     for (color, name) in legend {
         let key = Rectangle::new().set("x", x).set("y", base).set("width", 16).set("height", 16);
