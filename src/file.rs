@@ -59,6 +59,7 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
     if path.file_name().is_none() || path.is_dir() {
         return Err(Error::new("expected the name of a file to write, found a folder").in_file(path));
     }
+    refuse_protected(path)?;
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = fs::metadata(&target).ok();
     let written = if old.as_ref().is_some_and(|old| !old.is_file()) {
@@ -74,6 +75,16 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
         written.inspect_err(|_| drop(fs::remove_file(&partial)))
     };
     written.map_err(|e| Error::new(format!("cannot be written: {e}")).in_file(path))
+}
+
+/// Files that are read-only and links that lead nowhere are not replaced.
+fn refuse_protected(path: &Path) -> Result<()> {
+    let problem = match (fs::metadata(path), fs::symlink_metadata(path)) {
+        (Ok(old), _) if old.is_file() && old.permissions().readonly() => "the file is read-only",
+        (Err(_), Ok(_)) => "it is a link to what is not there",
+        _ => return Ok(()),
+    };
+    Err(Error::new(format!("cannot be written: {problem}")).in_file(path))
 }
 
 /// A name of its own in each process and thread, short whatever the file is called.
@@ -108,6 +119,7 @@ pub fn check_file(path: &Path) -> Result<()> {
         true => Err(Error::new("expected the name of a file to write, found a folder").in_file(path)),
         false if !folder.is_dir() => Err(Error::new("cannot be written: its folder does not exist").in_file(path)),
         false if path.exists() && !path.is_file() => Ok(()),
+        false if refuse_protected(path).is_err() => refuse_protected(path),
         false => check_folder(folder).map_err(|e| Error::new(e.problem()).in_file(path)),
     }
 }

@@ -181,9 +181,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     }
     let outcome = study::Outcome::of_fit(arguments.mesh.display().to_string(), mesh, material, masses, outcome);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
-    if whole {
-        notes(&outcome);
-    }
+    notes(&outcome);
     print(&format!("written: {}\n", arguments.output.display()))
 }
 

@@ -183,6 +183,26 @@ proptest! {
     }
 }
 
+/// The energies of a thin triangle's edges are independent however thin it is, and weighed by R they have one optimum. Its constants
+/// were found with 80 digits for `E = 10 kPa`, `ν = 0.3` in plane stress; they grow as the inverse of the height.
+#[test]
+fn relative_fits_of_thin_triangles_are_optima() {
+    let element = Element::load("tri3").unwrap();
+    let springs = Springs::select(&element, None).unwrap();
+    let moduli = springfit::material::Material::for_body(2, 10e3, 0.3, None, None).unwrap().moduli();
+    let (sine, cosine) = 0.7f64.sin_cos();
+    for height in [1e-4, 1e-5, 1e-7] {
+        let x: Vec<f64> = [[0.0, 0.0], [1.0, 0.0], [0.4, height]]
+            .iter()
+            .flat_map(|[x, y]| [cosine * x - sine * y, sine * x + cosine * y])
+            .collect();
+        let k = fit_element(&element, &springs, &x, moduli, &Fit::new(Objective::Frobenius(Weight::Relative))).unwrap();
+        for (k, expected) in k.iter().zip([-364.0 / height, 606.0 / height, 909.0 / height]) {
+            assert!((k - expected).abs() < 2e-3 * expected.abs(), "{height:e}: {k:e} {expected:e}");
+        }
+    }
+}
+
 fn rational(value: f64) -> BigRational {
     BigRational::from_float(value).unwrap()
 }

@@ -146,6 +146,57 @@ fn poor_cells_are_told_refused_or_skipped() {
     );
 }
 
+/// A quadrilateral of which two nodes are one has a Jacobian at every quadrature point, and a spring of no length.
+#[test]
+fn a_node_that_is_there_twice_is_told() {
+    let folder = TempDir::new().unwrap();
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 2 0 0\n5 2 1 0\n$EndNodes\n\
+                $Elements\n2\n1 3 2 1 1 1 2 3 3\n2 3 2 1 1 2 4 5 3\n$EndElements\n";
+    fs::write(folder.path().join("m.msh"), text).unwrap();
+    let output = fitted(folder.path(), &["--objective", "frobenius"]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error.contains("quad4 cell 1 at [0.0, 0.0] m: one of its nodes is there twice"), "{error}");
+    assert!(!folder.path().join("k.csv").exists());
+    let output = fitted(folder.path(), &["--objective", "frobenius", "--below", "skip"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(!fs::read_to_string(folder.path().join("k.csv")).unwrap().contains("NaN"));
+}
+
+/// Points that coincide or hang in the middle of an edge are counted once each, whatever else is in the mesh.
+#[test]
+fn misfits_are_counted() {
+    let folder = TempDir::new().unwrap();
+    let mesh = |far: f64, extra: &str, cells: &str| {
+        let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0], [1.0, 0.5], [2.0, 0.5]];
+        let lines = nodes.iter().enumerate().map(|(i, [x, y])| format!("{} {} {} 0", i + 1, x + far, y));
+        let lines = lines.chain(extra.lines().map(String::from)).collect::<Vec<_>>();
+        let cells: Vec<&str> = cells.lines().collect();
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}\n$EndNodes\n$Elements\n{}\n{}\n$EndElements\n",
+            lines.len(),
+            lines.join("\n"),
+            cells.len(),
+            cells.join("\n")
+        )
+    };
+    let hanging = "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 8 7\n3 3 2 1 1 7 8 6 3";
+    let tiny = "9 0 0 0\n10 -1e-9 0 0\n11 0 -1e-9 0";
+    let cases = [
+        (mesh(0.0, "", hanging), "1 points hang", true),
+        (mesh(1e7, "", hanging), "1 points hang", true),
+        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points hang", true),
+        (mesh(0.0, "", "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 6 3"), "hang", false),
+        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points are at the place of another", true),
+    ];
+    for (text, words, told) in cases {
+        fs::write(folder.path().join("m.msh"), text).unwrap();
+        let output = fitted(folder.path(), &["--objective", "offdiag", "--below", "warn"]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success() && text.contains(words) == told, "{output:?}");
+    }
+}
+
 #[test]
 fn a_scene_names_its_gate() {
     let folder = TempDir::new().unwrap();

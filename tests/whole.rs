@@ -535,7 +535,7 @@ fn ended_fits_go_on() {
     assert!(error.contains("state.json: fits.whole.snapshot: expected the state of a fit with"), "{error}");
     std::fs::write(&path, "{}}").unwrap();
     let error = run_with(&scene, &controls, &mut |_, _, _| {}).unwrap_err().to_string();
-    assert!(error.contains("state.json: is no checkpoint"), "{error}");
+    assert!(error.contains("state.json: expected a checkpoint that springfit has written"), "{error}");
 }
 
 /// Displacements that forces do not change end at once, however large loads are; a network that does not stand is left as it is, and

@@ -267,9 +267,9 @@ impl<'a, S: Simd> Room<'a, S> {
                 of(nodes[i / d]) - &of(nodes[0])
             };
             let is_embedded = element.space() > d;
-            let x: Vec<Twofold> =
+            let exact_x: Vec<Twofold> =
                 (0..x.len()).map(|i| if is_embedded { Twofold::from(x[i]) } else { exact(i) }).collect();
-            if let Some(verdict) = careful.constants(&x, &measured, constants) {
+            if let Some(verdict) = careful.constants(&exact_x, (&x, &geometry), &measured, constants) {
                 return Ok(verdict);
             }
         }

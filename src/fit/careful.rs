@@ -1,14 +1,14 @@
 //! Cells that take more digits than `f64` has, slivers and needles: in numbers of twice as many.
 
 use super::Fit;
-use super::constrained::solve_nonnegative;
+use super::constrained::solve_precisely;
 use super::least_squares::normal_equations;
 use super::method::{Method, Verdict};
-use super::normal::{Normal, Rank};
+use super::normal::Normal;
 use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::{Real, Scalar, Twofold};
-use crate::springs::Springs;
+use crate::springs::{Springs, dot};
 use crate::stiffness::Geometry;
 
 /// What the cells of a block have in common.
@@ -20,9 +20,16 @@ pub struct Careful<'a> {
 }
 
 impl Careful<'_> {
-    /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `measured` as [`Method::solve`] needs it. None where
+    /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `plain` and `shape` are that
+    /// in `f64`, `measured` as [`Method::solve`] needs it. None where
     /// the Jacobian vanishes, or springs on functions are seen block by block, which is known in `f64` alone.
-    pub fn constants(&self, x: &[Twofold], measured: &[f64], constants: &mut [f64]) -> Option<Verdict> {
+    pub fn constants(
+        &self,
+        x: &[Twofold],
+        (plain, shape): (&[f64], &Geometry),
+        measured: &[f64],
+        constants: &mut [f64],
+    ) -> Option<Verdict> {
         let Careful { element, springs, moduli, fit } = *self;
         let any = Twofold::from(0.0);
         let mut geometry = Geometry::of_kind(&any, &element.tabulation);
@@ -35,7 +42,7 @@ impl Careful<'_> {
                 #[inline(always)]
                 || method.solve(springs, x, &geometry, moduli, &measured),
             );
-            return Some(method.finish_alone(constants));
+            return Some(method.finish_alone(are_independent(springs, fit.tied, plain, shape), constants));
         }
         if !springs.functions.is_empty() {
             return None;
@@ -47,16 +54,7 @@ impl Careful<'_> {
             normal.tied(&springs.groups, springs.names.len(), &mut tied);
             normal = tied;
         }
-        let (k, rank) = match fit.nonnegative {
-            true => solve_nonnegative(&normal.rounded()),
-            false => {
-                let equations = normal.rounded();
-                match normal.solve_regular() {
-                    true => (normal.rounded().rhs, Rank::Full),
-                    false => (equations.least_norm(), Rank::Deficient),
-                }
-            }
-        };
+        let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, Twofold::given());
         for (s, constant) in constants.iter_mut().enumerate() {
             *constant = k[if fit.tied { springs.groups[s] } else { s }];
         }
@@ -64,10 +62,18 @@ impl Careful<'_> {
     }
 }
 
-impl<T: Scalar + Real> Normal<T> {
-    /// The equations in `f64`.
-    pub(super) fn rounded(&self) -> Normal {
-        let all = |values: &[T]| values.iter().map(Real::rounded).collect();
-        Normal::new(all(&self.gram), all(&self.rhs))
+/// Whether no spring's matrix is a sum of the others', to rounding: whatever they are fitted to, there is one optimum.
+fn are_independent(springs: &Springs, tied: bool, x: &[f64], geometry: &Geometry) -> bool {
+    let (m, size) = (springs.len(), x.len());
+    let mut g = Vec::new();
+    springs.gradients(x, geometry, &mut g);
+    let row = |s: usize| &g[s * size..(s + 1) * size];
+    let entries = (0..m * m).map(|st| dot(row(st / m), row(st % m)).powi(2));
+    let mut normal = Normal::new(entries.collect(), vec![0.0; m]);
+    if tied {
+        let mut groups = Normal::default();
+        normal.tied(&springs.groups, springs.names.len(), &mut groups);
+        normal = groups;
     }
+    normal.solve_regular()
 }

@@ -2,6 +2,7 @@
 //! solver behind it for what pivoting cannot settle.
 
 use super::normal::{Normal, Rank};
+use crate::scalar::Real;
 use clarabel::algebra::{CscMatrix, MatrixMathMut};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 
@@ -13,6 +14,30 @@ const OPTIMALITY: f64 = 1e-10;
 /// end, the interior-point solver decides.
 pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
     normal.solve_determined(solve_scalable)
+}
+
+/// The optimum of equations in numbers of more digits, those of `f64` deciding which constants are zero where there is a bound; and
+/// the least pivot, as in [`Normal::least_pivot`].
+pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding: f64) -> (Vec<f64>, Rank, f64) {
+    let (near, mut free) = (normal.rounded(), normal.clone());
+    if !free.solve_to(rounding) {
+        let k = if nonnegative { solve_nonnegative(&near).0 } else { near.least_norm() };
+        return (k, Rank::Deficient, 1.0);
+    }
+    let (k, pivot) = (free.rounded().rhs, free.least_pivot());
+    if !nonnegative || k.iter().all(|k| *k >= 0.0) {
+        return (k, Rank::Full, pivot);
+    }
+    let (mut k, rank) = solve_nonnegative(&near);
+    let set: Vec<usize> = (0..k.len()).filter(|&s| k[s] > 0.0).collect();
+    let mut free = normal.restricted(&set);
+    if free.solve_to(rounding) {
+        let found = free.rounded().rhs;
+        if found.iter().all(|k| *k >= 0.0) {
+            set.iter().zip(found).for_each(|(&s, found)| k[s] = found);
+        }
+    }
+    (k, rank, pivot)
 }
 
 fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {

@@ -1,8 +1,8 @@
 //! The objectives that need R itself, on one element or on one per lane.
 
 use super::ambiguity::{KEPT, least_frobenius};
-use super::constrained::solve_nonnegative;
-use super::dense::{at_half, factorize, inner, row_products};
+use super::constrained::{solve_nonnegative, solve_precisely};
+use super::dense::{factorize, inner, row_products};
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
 use super::reduction::Reduced;
@@ -130,7 +130,7 @@ impl<T: Real> Method<T> {
     pub fn constants(mut self) -> Option<Vec<T>> {
         let kappa = match &mut self.solver {
             Solver::LeastSquares { normal, .. } => {
-                if !normal.solve_regular() {
+                if !normal.solve_to(T::epsilon()) {
                     return None;
                 }
                 &normal.rhs
@@ -143,23 +143,22 @@ impl<T: Real> Method<T> {
         Some(self.reduced.unknowns.iter().map(constant).collect())
     }
 
-    /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have.
-    pub fn finish_alone(mut self, constants: &mut [f64]) -> Verdict {
+    /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have; `independent` is
+    /// whether its springs are, whatever they are fitted to.
+    pub fn finish_alone(mut self, independent: bool, constants: &mut [f64]) -> Verdict {
         // What is as soft as rounding says nothing of the constants.
         let is_known = self.reduced.softest.rounded() > KNOWN * T::epsilon();
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
-        if let (Solver::LeastSquares { normal, .. }, false) = (&self.solver, self.nonnegative) {
-            let equations = normal.rounded();
-            let found: Vec<f64> = match self.clone().constants() {
-                Some(k) => k.iter().map(Real::rounded).collect(),
-                None => {
-                    verdict.rank = Rank::Deficient;
-                    let kappa = equations.least_norm();
-                    let of = |unknown: &usize| kappa[*unknown] * self.reduced.scales[*unknown].rounded();
-                    self.reduced.unknowns.iter().map(of).collect()
-                }
-            };
-            constants.copy_from_slice(&found);
+        if let Solver::LeastSquares { normal, .. } = &self.solver {
+            // Relative weights make pivots as small as the softest motion: that says nothing of what is given.
+            let relative = independent && self.weight == Weight::Relative;
+            let rounding = if relative { T::epsilon() } else { T::given() };
+            let (kappa, rank, pivot) = solve_precisely(normal, self.nonnegative, rounding);
+            for (constant, &unknown) in constants.iter_mut().zip(&self.reduced.unknowns) {
+                *constant = kappa[unknown] * self.reduced.scales[unknown].rounded();
+            }
+            verdict.rank = rank;
+            verdict.reached &= pivot > KNOWN * rounding.min(T::epsilon());
             return verdict;
         }
         let found = self.finish(Real::rounded, constants);
@@ -200,7 +199,7 @@ impl<T: Real> Method<T> {
                 return None;
             }
         }
-        let floor = value.greatest(&any.constant(&at_half::<T>(EXACT)));
+        let floor = value.greatest(&any.constant(&EXACT));
         Some(((value - &solver.bound) / &floor).rounded())
     }
 

@@ -191,8 +191,13 @@ impl CellFits {
                 let fault = unmeasured.map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
                 return fault.map_or(Ok(Tally::default()), Err);
             }
-            let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants };
-            batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+            let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
+            let tally = batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))?;
+            // As of a spring between two nodes at one place.
+            match constants.iter().position(|k| !k.is_finite()) {
+                Some(place) => Err(cell_fault(element, first + place / m, Fault::Unmeasured)),
+                None => Ok(tally),
+            }
         };
         let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
         for (round, (nodes, constants)) in rounds.enumerate() {

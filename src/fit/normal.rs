@@ -1,7 +1,7 @@
 //! Normal equations `M k = b` of a least-squares fit: assembly by groups and solution.
 
 use super::dense::{eliminate_row, solve as substitute, tie};
-use crate::scalar::Scalar;
+use crate::scalar::{Real, Scalar};
 use nalgebra::{DMatrix, DVector};
 
 /// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves about m of them;
@@ -79,21 +79,27 @@ impl<T: Scalar> Normal<T> {
     /// No scaling is needed: each pivot and its diagonal entry scale alike.
     #[inline(always)]
     pub fn solve_regular(&mut self) -> bool {
+        self.solve_to(T::given())
+    }
+
+    /// The same where what is given errs by `rounding`.
+    #[inline(always)]
+    pub fn solve_to(&mut self, rounding: f64) -> bool {
         // A size known at compile time unrolls the loops of the small systems, where they are most of the work.
         match self.size() {
             0 => true,
-            3 => self.factorize(3),
-            6 => self.factorize(6),
-            28 => self.factorize(28),
-            m => self.factorize(m),
+            3 => self.factorize(3, rounding),
+            6 => self.factorize(6, rounding),
+            28 => self.factorize(28, rounding),
+            m => self.factorize(m, rounding),
         }
     }
 
     #[inline(always)]
-    fn factorize(&mut self, m: usize) -> bool {
+    fn factorize(&mut self, m: usize, rounding: f64) -> bool {
         self.pivots.resize(m, self.rhs[0].zero());
         let (gram, rhs, inverse) = (&mut self.gram[..m * m], &mut self.rhs[..m], &mut self.pivots[..m]);
-        let least = T::exact(RANK * T::given());
+        let least = T::exact(RANK * rounding);
         for s in 0..m {
             let (before, row) = gram.split_at_mut(s * m);
             let row = &mut row[..=s];
@@ -108,15 +114,33 @@ impl<T: Scalar> Normal<T> {
     }
 }
 
+impl<T: Clone> Normal<T> {
+    /// The equations of the springs `set` alone.
+    pub fn restricted(&self, set: &[usize]) -> Normal<T> {
+        let m = self.size();
+        let entries = set.iter().flat_map(|&s| set.iter().map(move |&t| self.gram[s.max(t) * m + s.min(t)].clone()));
+        Normal::new(entries.collect(), set.iter().map(|&s| self.rhs[s].clone()).collect())
+    }
+}
+
+impl<T: Real> Normal<T> {
+    /// The equations, or what stands in their place, in `f64`.
+    pub fn rounded(&self) -> Normal {
+        let all = |values: &[T]| values.iter().map(Real::rounded).collect();
+        Normal::new(all(&self.gram), all(&self.rhs))
+    }
+
+    /// After [`Normal::solve_regular`]: the least pivot relative to its diagonal entry; its inverse times rounding is what elimination
+    /// has cost.
+    pub fn least_pivot(&self) -> f64 {
+        let m = self.size();
+        (0..m).map(|s| 1.0 / (self.pivots[s].rounded() * self.gram[s * m + s].rounded())).fold(1.0, f64::min)
+    }
+}
+
 impl Normal {
     pub fn entry(&self, s: usize, t: usize) -> f64 {
         self.gram[s.max(t) * self.size() + s.min(t)]
-    }
-
-    /// The equations of the springs `set` alone.
-    pub fn restricted(&self, set: &[usize]) -> Normal {
-        let entries = set.iter().flat_map(|&s| set.iter().map(move |&t| self.entry(s, t)));
-        Normal::new(entries.collect(), set.iter().map(|&s| self.rhs[s]).collect())
     }
 
     /// The same equations for `k_s/scale_s`, in which `M` has a unit diagonal, and the scales.
@@ -179,13 +203,6 @@ impl Normal {
         }
         let k = &eigen.eigenvectors * coefficients;
         k.iter().zip(&scale).map(|(k, s)| k * s).collect()
-    }
-
-    /// After [`Normal::solve_regular`]: the least pivot relative to its diagonal entry; its inverse times rounding is what elimination
-    /// has cost.
-    pub fn least_pivot(&self) -> f64 {
-        let m = self.size();
-        (0..m).map(|s| 1.0 / (self.pivots[s] * self.gram[s * m + s])).fold(1.0, f64::min)
     }
 }
 

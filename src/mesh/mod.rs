@@ -197,7 +197,9 @@ impl Mesh {
                 placement.place(table, points, nodes, &mut x).and_then(|()| geometry.set(table, &x))
             };
             for (cell, nodes) in block.connectivity.chunks_exact_mut(element.nodes()).enumerate() {
+                let twice = |(i, node): (usize, &usize)| nodes[..i].contains(node);
                 let fault = match (set(&self.points, nodes), &element.reflection) {
+                    _ if nodes.iter().enumerate().any(twice) => Some(Fault::Collapsed),
                     (Ok(()), _) => continue,
                     (Err(Fault::Reversed), Some(reflection)) => {
                         let turned: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();

@@ -4,7 +4,7 @@ use super::{CellIndex, Mesh};
 use crate::error::{Error, Result};
 use crate::springs::distance;
 use crate::stiffness::{Geometry, Placement};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// What becomes of cells whose quality is below the least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -161,7 +161,7 @@ impl Mesh {
     }
 
     /// Counts points at the place of another, and points in the middle of a straight edge between two others. Places count as one
-    /// within a millionth of the shortest edge.
+    /// within 1e-9 of the body and a tenth of the shortest edge; where coordinates do not tell so much, nothing is counted.
     pub(super) fn find_misfits(&mut self) {
         let mut edges: Vec<[usize; 2]> = Vec::new();
         // Nodes that are no corners: middles of edges that have them.
@@ -181,18 +181,36 @@ impl Mesh {
         edges.dedup();
         let d = self.dimension;
         let length = |[a, b]: &[usize; 2]| distance(self.point(*a), self.point(*b));
-        let unit = 1e-6 * edges.iter().map(length).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
-        let key = |x: [f64; 3]| x.map(|x| (x / unit).round() as i64);
-        let place = |p: usize| std::array::from_fn(|k| if k < d { self.points[p * d + k] } else { 0.0 });
-        let middle = |[a, b]: [usize; 2]| {
-            let (a, b): ([f64; 3], [f64; 3]) = (place(a), place(b));
-            std::array::from_fn(|k| (a[k] + b[k]) / 2.0)
-        };
+        let shortest = edges.iter().map(length).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+        let place =
+            |p: usize| -> [f64; 3] { std::array::from_fn(|k| if k < d { self.points[p * d + k] } else { 0.0 }) };
+        let all = || (0..self.point_count()).map(place);
+        let least: [f64; 3] = std::array::from_fn(|k| all().map(|x| x[k]).fold(f64::INFINITY, f64::min));
+        let extent = all().flat_map(|x| (0..3).map(move |k| x[k] - least[k])).fold(0.0, f64::max);
+        let rounding = 16.0 * f64::EPSILON * self.points.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let unit = (1e-9 * extent).min(0.1 * shortest).max(rounding);
+        if unit > 0.1 * shortest {
+            return;
+        }
+        let key = |x: [f64; 3]| -> [i64; 3] { std::array::from_fn(|k| ((x[k] - least[k]) / unit).floor() as i64) };
         let mut places: HashMap<[i64; 3], usize> = HashMap::new();
-        let coincident = (0..self.point_count()).filter(|&p| places.insert(key(place(p)), p).is_some()).count();
-        let hangs =
-            |edge: &[usize; 2]| places.get(&key(middle(*edge))).is_some_and(|p| !edge.contains(p) && !between[*p]);
-        let hanging = edges.iter().filter(|edge| hangs(edge)).count();
+        let near = |places: &HashMap<[i64; 3], usize>, x: [f64; 3]| {
+            let at = key(x);
+            let beside = (0..27).map(|i| [at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1]);
+            let mut found = beside.filter_map(|key| places.get(&key).copied());
+            found.find(|p| distance(&place(*p), &x) <= unit)
+        };
+        let mut coincident = 0;
+        for p in 0..self.point_count() {
+            coincident += usize::from(near(&places, place(p)).is_some());
+            places.entry(key(place(p))).or_insert(p);
+        }
+        let middle = |[a, b]: [usize; 2]| -> [f64; 3] {
+            let (a, b) = (place(a), place(b));
+            std::array::from_fn(|k| a[k] + (b[k] - a[k]) / 2.0)
+        };
+        let at_middle = |edge: &[usize; 2]| near(&places, middle(*edge)).filter(|p| !edge.contains(p) && !between[*p]);
+        let hanging = edges.iter().filter_map(at_middle).collect::<HashSet<usize>>().len();
         (self.quality.coincident, self.quality.hanging) = (coincident, hanging);
     }
 }

@@ -66,9 +66,8 @@ fn families(outcome: &StabilityOutcome) -> Vec<Vec<String>> {
         let rows: Vec<&StabilityRow> =
             outcome.rows.iter().filter(|row| (row.family, row.method.as_str()) == (family, method)).collect();
         let count = |name: &str| rows.iter().filter(|row| row.verdict.name() == name).count();
-        let accurate = rows.iter().filter(|row| row.verdict == Verdict::Accurate);
-        let worst = largest(&mut accurate.clone().filter_map(|row| row.error));
-        let single = largest(&mut accurate.filter_map(|row| row.single));
+        let worst = largest(&mut rows.iter().filter_map(|row| row.error));
+        let single = largest(&mut rows.iter().filter_map(|row| row.single));
         let condition = largest(&mut rows.iter().filter_map(|row| row.condition));
         let negative = rows.iter().filter_map(|row| row.negative).fold([0, 0], |[a, b], [n, m]| [a + n, b + m]);
         let mut cells = vec![family.name().to_string(), method.to_string(), rows.len().to_string()];

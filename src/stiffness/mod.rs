@@ -21,6 +21,8 @@ pub enum Fault {
     Tangled { point: usize, determinant: f64, largest: f64 },
     /// The Jacobian vanishes at every quadrature point: no length, area or volume.
     Flat,
+    /// One of its nodes is there twice.
+    Collapsed,
     /// What a spring measures has no finite gradient, or none at all.
     Unmeasured,
 }
@@ -309,6 +311,7 @@ impl std::fmt::Display for Fault {
                  quadrature point {point}"
             ),
             Fault::Flat => write!(f, "the element has no volume (its Jacobian vanishes)"),
+            Fault::Collapsed => write!(f, "one of its nodes is there twice: springs between them would have no length"),
             Fault::Unmeasured => write!(f, "what one of its springs measures has no finite gradient other than zero"),
         }
     }

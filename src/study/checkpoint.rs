@@ -66,7 +66,10 @@ impl Controls {
             return Ok(Checkpoint::default());
         };
         let text = file::read_text(path)?;
-        serde_json::from_str(&text).map_err(|e| Error::new(format!("is no checkpoint: {e}")).in_file(path))
+        serde_json::from_str(&text).map_err(|e| {
+            Error::new(format!("expected a checkpoint that springfit has written, found something else: {e}"))
+                .in_file(path)
+        })
     }
 }
 

@@ -27,7 +27,7 @@ use crate::file;
 use crate::fit::Fit;
 use crate::material::{Energy, Material};
 use crate::mesh::Selection;
-use crate::model::Action;
+use crate::model::{Action, Component};
 use crate::solve::Newton;
 use crate::symbolic::Scope;
 use entry::{MaterialEntry, SceneFile};
@@ -199,6 +199,16 @@ impl Scene {
             motion,
             output: entry.output,
         })
+    }
+
+    /// Whether something in it is written in metres besides its mesh: conditions, and loads that vary.
+    pub fn is_in_metres(&self) -> bool {
+        let conditions = self.supports.iter().map(|(part, _)| part).chain(self.loads.iter().map(|load| &load.part));
+        let varies = |load: &LoadCase| match &load.action {
+            Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
+            _ => load.measured.is_some(),
+        };
+        conditions.into_iter().any(|part| matches!(part, Part::Where(_))) || self.loads.iter().any(varies)
     }
 
     /// The same scene with Young's modulus times `factor`, and of another Poisson's ratio where one is given.

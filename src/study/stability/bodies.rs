@@ -1,7 +1,7 @@
 //! Whole bodies: regions of different stiffness, and meshes that do not fit together.
 
 use super::elements::PROMISED;
-use super::outcome::{Family, StabilityRow, Verdict};
+use super::outcome::{Family, StabilityRow, Verdict, worst};
 use crate::dynamics::largest_square;
 use crate::element::Element;
 use crate::error::Result;
@@ -94,7 +94,7 @@ fn solved(
         return Ok(of(Verdict::Refused("the stiffness is not positive definite in rounding".into())));
     };
     let (u, residual) = system.solve(&factor, f);
-    let error = ends.iter().map(|&dof| (u[dof] - exact).abs() / exact).fold(0.0, f64::max);
+    let error = worst(ends.iter().map(|&dof| (u[dof] - exact).abs() / exact));
     let mut diagonal = vec![0.0; f.len()];
     entries.iter().filter(|e| e.row == e.col).for_each(|e| diagonal[e.row] += e.val);
     let scaled: Entries = entries

@@ -90,6 +90,19 @@ impl Verdict {
     }
 }
 
+/// The largest; infinite if one is not a number.
+pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
+    errors.into_iter().fold(0.0, |worst, error| {
+        if error <= worst {
+            worst
+        } else if error > worst {
+            error
+        } else {
+            f64::INFINITY
+        }
+    })
+}
+
 /// What came of one case by one method. What a case has not is `None`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StabilityRow {

@@ -1,14 +1,14 @@
 //! A scene in other materials and other sizes: what must stay the same, and what the networks become.
 
 use super::elements::PROMISED;
-use super::outcome::{Family, StabilityOutcome, StabilityRow, Verdict};
+use super::outcome::{Family, StabilityOutcome, StabilityRow, Verdict, worst};
 use crate::dynamics::largest_square;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Lumping, lumped_masses};
 use crate::solve::Standing;
 use crate::study::outcome::{FitOutcome, Outcome};
 use crate::study::run::{Progress, run};
-use crate::study::scene::Scene;
+use crate::study::scene::{Recipe, Scene};
 use std::time::Instant;
 
 const RATIOS: [f64; 8] = [-0.9, -0.5, 0.0, 0.3, 0.45, 0.49, 0.499, 0.499999];
@@ -18,21 +18,35 @@ const LONGER: [f64; 5] = [1e-7, 1e-3, 10.0, 1e4, 1e8];
 /// kg/m³, where the scene has none.
 const DENSITY: f64 = 1000.0;
 
-/// Runs the scene at rest in each case; its motion, its gauge and its outputs are left out. Errors of displacements must not depend
-/// on units: `e_rms` of each load against that of the scene as it is.
+/// Runs the scene in each case: the fits of single cells and their displacements, without motion, gauge and outputs. Errors of
+/// displacements must not depend on units: `e_rms` of each load against that of the scene as it is, as a share of the largest
+/// displacement. Lengths are varied where no condition or expression of the scene is in metres.
 ///
 /// # Errors
-/// The scene itself does not run.
+/// The scene itself does not run, has a law, or no fit of single cells.
 pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOutcome> {
     let start = Instant::now();
     let mut plain = scene.clone();
     (plain.motion, plain.gauge, plain.output) = (None, None, Default::default());
+    if plain.law().is_some() {
+        let expected = "a scene at small deformation, whose answers know no unit";
+        return Err(scene.at("material.law", Error::new(format!("expected {expected}, found a law"))));
+    }
+    let alone = |recipe: &Recipe| matches!(recipe, Recipe::Stiffness(_) | Recipe::Published(_));
+    let kept: Vec<bool> = plain.fits.iter().map(|fit| alone(&fit.recipe)).collect();
+    let mut keep = kept.iter();
+    plain.fits.retain(|_| *keep.next().unwrap_or(&true));
+    let mut keep = kept.iter();
+    plain.entry_of.retain(|_| *keep.next().unwrap_or(&true));
+    if plain.fits.is_empty() {
+        return Err(scene.at("fit", Error::new("expected a fit of single cells, found none")));
+    }
     let base = run(&plain, &mut |_, _, _| {})?;
     let mut cases: Vec<(Family, String, Scene, bool)> = Vec::new();
     for factor in STIFFER {
         cases.push((Family::Young, format!("E times {factor:e}"), plain.of_material(factor, None), true));
     }
-    for factor in LONGER {
+    for factor in LONGER.into_iter().filter(|_| !plain.is_in_metres()) {
         let mut other = plain.clone();
         other.mesh.scale *= factor;
         cases.push((Family::Size, format!("lengths times {factor:e}"), other, true));
@@ -70,12 +84,13 @@ fn of_fit(
 ) -> StabilityRow {
     let changes = known.iter().flat_map(|known| fit.loads.iter().zip(&known.loads)).map(|(new, old)| {
         match (new.error, old.error) {
-            (Some(new), Some(old)) => (new.rms - old.rms).abs() / old.rms.max(1e-9),
+            (Some(new), Some(old)) => (new.rms - old.rms).abs() / 100.0,
             (None, None) => 0.0,
             _ => f64::INFINITY,
         }
     });
-    let error = changes.fold(None, |worst: Option<f64>, change| Some(worst.map_or(change, |w| w.max(change))));
+    let changes: Vec<f64> = changes.collect();
+    let error = (!changes.is_empty()).then(|| worst(changes));
     let standing = fit.stability.as_ref().map(|stability| stability.standing);
     let mut row = match (error, standing) {
         (Some(error), _) if error > PROMISED => row(Verdict::Lost).with_error(error, PROMISED),
@@ -84,7 +99,8 @@ fn of_fit(
         (_, Some(Standing::Soft)) => row(Verdict::Told("the network is near a mechanism".into())),
         (Some(error), _) => row(Verdict::Accurate).with_error(error, PROMISED),
         (None, _) if fit.deficient > 0 => row(Verdict::Dependent),
-        (None, _) => row(Verdict::Told("sound".into())),
+        (None, Some(Standing::Sound)) => row(Verdict::Told("sound".into())),
+        (None, None) => row(Verdict::Told("not examined: the scene has no loads".into())),
     };
     row.negative = Some([fit.network.negative(), fit.network.len()]);
     row.softest = fit.stability.as_ref().map(|stability| stability.energy_ratio[0]);
