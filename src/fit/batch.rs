@@ -314,8 +314,8 @@ impl<'a, S: Simd> Room<'a, S> {
         regular
     }
 
-    /// The coordinates of the cells' nodes from the first of each, as [`Placement`] has them, one cell per lane; lanes without a cell repeat the first. False if a cell of a
-    /// surface or curve has no tangents.
+    /// The coordinates of the cells' nodes from the first of each, as [`Placement`] has them, one cell per lane; lanes without a cell
+    /// repeat the first. False if a cell of a surface or curve has no tangents.
     #[inline(always)]
     fn gather(&mut self, nodes: &[usize]) -> bool {
         if self.element.space() > self.element.dimension() {

@@ -156,7 +156,8 @@ impl Mesh {
         }
         let unused = self.unused_points;
         self.drop_unused_points();
-        self.unused_points += unused;
+        // Those of the cells that are gone are not told again.
+        self.unused_points = unused;
         Ok(())
     }
 
