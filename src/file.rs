@@ -119,8 +119,10 @@ pub fn check_file(path: &Path) -> Result<()> {
         true => Err(Error::new("expected the name of a file to write, found a folder").in_file(path)),
         false if !folder.is_dir() => Err(Error::new("cannot be written: its folder does not exist").in_file(path)),
         false if path.exists() && !path.is_file() => Ok(()),
-        false if refuse_protected(path).is_err() => refuse_protected(path),
-        false => check_folder(folder).map_err(|e| Error::new(e.problem()).in_file(path)),
+        false => {
+            refuse_protected(path)?;
+            check_folder(folder).map_err(|e| Error::new(e.problem()).in_file(path))
+        }
     }
 }
 

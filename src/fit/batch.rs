@@ -9,9 +9,9 @@ use super::normal::{Normal, Rank};
 use super::{Certificate, Fit, Objective, Weight};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Lanes, Real, Scalar, Twofold};
+use crate::scalar::{Lanes, Real, Scalar};
 use crate::springs::Springs;
-use crate::stiffness::{Fault, Geometry, Placement};
+use crate::stiffness::{Fault, Geometry, Placement, gather};
 use pulp::{Simd, WithSimd};
 
 /// The cells of one block and where their constants go.
@@ -261,15 +261,12 @@ impl<'a, S: Simd> Room<'a, S> {
         if is_delicate || Geometry::quality(&element.tabulation, &x) <= Lanes::<S>::delicate() {
             let careful = Careful { element, springs, moduli, fit };
             let d = element.dimension();
-            // The differences of nodes are exact there, as long as the cell is not laid into a plane of its own.
-            let exact = |i: usize| {
-                let of = |node: usize| Twofold::from(self.points[node * d + i % d]);
-                of(nodes[i / d]) - &of(nodes[0])
-            };
-            let is_embedded = element.space() > d;
-            let exact_x: Vec<Twofold> =
-                (0..x.len()).map(|i| if is_embedded { Twofold::from(x[i]) } else { exact(i) }).collect();
-            if let Some(verdict) = careful.constants(&exact_x, (&x, &geometry), &measured, constants) {
+            let mut given = x.clone();
+            if element.space() == d {
+                // As they are, for their differences are exact in more digits.
+                gather(self.points, d, nodes, &mut given);
+            }
+            if let Some(verdict) = careful.constants(&given, (&x, &geometry), &measured, constants) {
                 return Ok(verdict);
             }
         }
@@ -283,11 +280,7 @@ impl<'a, S: Simd> Room<'a, S> {
         } else {
             normal = off_diagonal_equations(self.springs, &x, &geometry, self.moduli);
         }
-        if self.fit.tied {
-            let mut tied = Normal::default();
-            normal.tied(&self.springs.groups, self.springs.names.len(), &mut tied);
-            normal = tied;
-        }
+        let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
         spread(&self.fit, self.springs, constants, &k);
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
@@ -362,7 +355,7 @@ impl<'a, S: Simd> Room<'a, S> {
 }
 
 /// One constant per spring from the solution of the equations, which has one per group where they are tied.
-fn spread(fit: &Fit, springs: &Springs, constants: &mut [f64], k: &[f64]) {
+pub(super) fn spread(fit: &Fit, springs: &Springs, constants: &mut [f64], k: &[f64]) {
     for (s, constant) in constants.iter_mut().enumerate() {
         *constant = k[if fit.tied { springs.groups[s] } else { s }];
     }

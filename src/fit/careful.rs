@@ -1,13 +1,15 @@
 //! Cells that take more digits than `f64` has, slivers and needles: in numbers of twice as many.
 
 use super::Fit;
+use super::batch::spread;
 use super::constrained::solve_precisely;
 use super::least_squares::normal_equations;
-use super::method::{Method, Verdict};
+use super::method::Verdict;
 use super::normal::Normal;
+use super::precision::{differences, solved};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Real, Scalar, Twofold};
+use crate::scalar::{Scalar, Twofold};
 use crate::springs::{Springs, dot};
 use crate::stiffness::Geometry;
 
@@ -21,43 +23,33 @@ pub struct Careful<'a> {
 
 impl Careful<'_> {
     /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `plain` and `shape` are that
-    /// in `f64`, `measured` as [`Method::solve`] needs it. None where
+    /// from its first in `f64`, `measured` as [`Method::solve`] needs it. None where
     /// the Jacobian vanishes, or springs on functions are seen block by block, which is known in `f64` alone.
     pub fn constants(
         &self,
-        x: &[Twofold],
+        x: &[f64],
         (plain, shape): (&[f64], &Geometry),
         measured: &[f64],
         constants: &mut [f64],
     ) -> Option<Verdict> {
         let Careful { element, springs, moduli, fit } = *self;
         let any = Twofold::from(0.0);
+        let x = differences(&any, element.dimension(), x);
         let mut geometry = Geometry::of_kind(&any, &element.tabulation);
-        if !geometry.update(&element.tabulation, x) {
+        if !geometry.update(&element.tabulation, &x) {
             return None;
         }
-        if let Some(mut method) = Method::of_kind(&any, springs, fit) {
-            let measured: Vec<Twofold> = measured.iter().map(|g| Twofold::from(*g)).collect();
-            any.vectorize(
-                #[inline(always)]
-                || method.solve(springs, x, &geometry, moduli, &measured),
-            );
+        if let Some(method) = solved(springs, &x, &geometry, moduli, measured, fit) {
             return Some(method.finish_alone(are_independent(springs, fit.tied, plain, shape), constants));
         }
         if !springs.functions.is_empty() {
             return None;
         }
         let mut normal = Normal::default();
-        normal_equations(fit.objective.weight()?, springs, x, &geometry, moduli, &mut normal);
-        if fit.tied {
-            let mut tied = Normal::default();
-            normal.tied(&springs.groups, springs.names.len(), &mut tied);
-            normal = tied;
-        }
+        normal_equations(fit.objective.weight()?, springs, &x, &geometry, moduli, &mut normal);
+        let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, Twofold::given());
-        for (s, constant) in constants.iter_mut().enumerate() {
-            *constant = k[if fit.tied { springs.groups[s] } else { s }];
-        }
+        spread(fit, springs, constants, &k);
         Some(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 }
@@ -69,11 +61,5 @@ fn are_independent(springs: &Springs, tied: bool, x: &[f64], geometry: &Geometry
     springs.gradients(x, geometry, &mut g);
     let row = |s: usize| &g[s * size..(s + 1) * size];
     let entries = (0..m * m).map(|st| dot(row(st / m), row(st % m)).powi(2));
-    let mut normal = Normal::new(entries.collect(), vec![0.0; m]);
-    if tied {
-        let mut groups = Normal::default();
-        normal.tied(&springs.groups, springs.names.len(), &mut groups);
-        normal = groups;
-    }
-    normal.solve_regular()
+    Normal::new(entries.collect(), vec![0.0; m]).by_unknowns(springs, tied).solve_regular()
 }

@@ -2,6 +2,7 @@
 
 use super::dense::{eliminate_row, solve as substitute, tie};
 use crate::scalar::{Real, Scalar};
+use crate::springs::Springs;
 use nalgebra::{DMatrix, DVector};
 
 /// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves about m of them;
@@ -71,6 +72,16 @@ impl<T: Scalar> Normal<T> {
         for (s, &i) in groups.iter().enumerate() {
             tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
         }
+    }
+
+    /// The equations of these springs, or of one constant per group if they are `tied`.
+    pub fn by_unknowns(self, springs: &Springs, tied: bool) -> Normal<T> {
+        if !tied {
+            return self;
+        }
+        let mut groups = Normal::default();
+        self.tied(&springs.groups, springs.names.len(), &mut groups);
+        groups
     }
 
     /// `M = L D Lᵀ`, with L in the strict lower triangle, then `b ← M⁻¹ b`. Returns false if a pivot vanishes in some

@@ -23,12 +23,10 @@ pub fn constants_of_kind<T: Real>(
     moduli: &Moduli,
     fit: &Fit,
 ) -> Option<Vec<T>> {
-    match solved(any, element, springs, x, moduli, fit) {
-        Some(method) => method?.constants(),
-        None => {
-            let x = differences(any, element.dimension(), x);
-            constants_in(fit.objective.weight()?, springs, &element.tabulation, &x, moduli)
-        }
+    let x = differences(any, element.dimension(), x);
+    match shaped(element, springs, &x, moduli, fit)? {
+        Some(method) => method.constants(),
+        None => constants_in(fit.objective.weight()?, springs, &element.tabulation, &x, moduli),
     }
 }
 
@@ -43,35 +41,44 @@ pub fn distance_from_optimum(
     fit: &Fit,
     (constants, value): (&[f64], f64),
 ) -> Option<f64> {
-    solved(&Twofold::from(0.0), element, springs, x, moduli, fit)??.distance_from_optimum(constants, value)
+    let x = differences(&Twofold::from(0.0), element.dimension(), x);
+    shaped(element, springs, &x, moduli, fit)??.distance_from_optimum(constants, value)
 }
 
-/// The objective solved for one element; `Some(None)` if that has no stiffness, `None` if the objective has a closed form.
-fn solved<T: Real>(
-    any: &T,
+/// [`solved`] for the element with nodes at `x`; None if that has no stiffness or its springs no gradients.
+fn shaped<T: Real>(
     element: &Element,
     springs: &Springs,
-    x: &[f64],
+    x: &[T],
     moduli: &Moduli,
     fit: &Fit,
 ) -> Option<Option<Method<T>>> {
-    let mut method = Method::of_kind(any, springs, fit)?;
-    let x = differences(any, element.dimension(), x);
-    let mut geometry = Geometry::of_kind(any, &element.tabulation);
-    if !geometry.update(&element.tabulation, &x) {
-        return Some(None);
+    let mut geometry = Geometry::of_kind(x.first()?, &element.tabulation);
+    if !geometry.update(&element.tabulation, x) {
+        return None;
     }
     let plain: Vec<f64> = x.iter().map(Real::rounded).collect();
     let mut measured = vec![0.0; springs.functions.len() * plain.len()];
-    if !springs.function_gradients(&plain, &mut measured) {
-        return Some(None);
-    }
-    let measured: Vec<T> = measured.iter().map(|g| any.constant(g)).collect();
-    any.vectorize(
+    springs.function_gradients(&plain, &mut measured).then(|| solved(springs, x, &geometry, moduli, &measured, fit))
+}
+
+/// The objective solved for one element in numbers of the kind of `x`, `measured` as [`Method::solve`] needs it; None if it has a
+/// closed form.
+pub(super) fn solved<T: Real>(
+    springs: &Springs,
+    x: &[T],
+    geometry: &Geometry<T>,
+    moduli: &Moduli,
+    measured: &[f64],
+    fit: &Fit,
+) -> Option<Method<T>> {
+    let mut method = Method::of_kind(&x[0], springs, fit)?;
+    let measured: Vec<T> = measured.iter().map(|g| x[0].constant(g)).collect();
+    x[0].vectorize(
         #[inline(always)]
-        || method.solve(springs, &x, &geometry, moduli, &measured),
+        || method.solve(springs, x, geometry, moduli, &measured),
     );
-    Some(Some(method))
+    Some(method)
 }
 
 /// The ratio of the largest to the least eigenvalue of the normal equations of an element, scaled to a unit diagonal; what a
@@ -95,6 +102,6 @@ pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64]
 }
 
 /// The nodes from the first, which is exact where they are near each other.
-fn differences<T: Real>(any: &T, dimension: usize, x: &[f64]) -> Vec<T> {
+pub(super) fn differences<T: Real>(any: &T, dimension: usize, x: &[f64]) -> Vec<T> {
     x.iter().enumerate().map(|(i, v)| any.constant(v) - &any.constant(&x[i % dimension])).collect()
 }

@@ -33,11 +33,8 @@ pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOu
         return Err(scene.at("material.law", Error::new(format!("expected {expected}, found a law"))));
     }
     let alone = |recipe: &Recipe| matches!(recipe, Recipe::Stiffness(_) | Recipe::Published(_));
-    let kept: Vec<bool> = plain.fits.iter().map(|fit| alone(&fit.recipe)).collect();
-    let mut keep = kept.iter();
-    plain.fits.retain(|_| *keep.next().unwrap_or(&true));
-    let mut keep = kept.iter();
-    plain.entry_of.retain(|_| *keep.next().unwrap_or(&true));
+    let fits = scene.fits.iter().cloned().zip(scene.entry_of.iter().copied());
+    (plain.fits, plain.entry_of) = fits.filter(|(fit, _)| alone(&fit.recipe)).unzip();
     if plain.fits.is_empty() {
         return Err(scene.at("fit", Error::new("expected a fit of single cells, found none")));
     }
