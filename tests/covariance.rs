@@ -4,6 +4,7 @@ mod shapes;
 
 use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
+use num_traits::Signed;
 use proptest::prelude::*;
 use shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, permutations};
@@ -312,51 +313,48 @@ fn regular_elements_are_exact_towards_the_incompressible() {
     }
 }
 
-/// `min_k max_i |a_i − b_i k|`: at one of the crossings.
-fn least_largest(lines: &[(f64, f64)]) -> f64 {
-    let worst = |k: f64| lines.iter().map(|(a, b)| (a - b * k).abs()).fold(0.0, f64::max);
+/// The k of `min_k max_i |a_i − b_i k|`, at one of the crossings, and the minimum.
+fn least_largest(lines: &[(BigRational, BigRational)]) -> (BigRational, BigRational) {
+    let worst = |k: &BigRational| lines.iter().map(|(a, b)| (a - b * k).abs()).max().unwrap();
     let crossings = lines.iter().flat_map(|(a, b)| lines.iter().map(move |(c, d)| (a + c) / (b + d)));
-    crossings.map(worst).fold(f64::INFINITY, f64::min)
+    crossings.map(|k| (k.clone(), worst(&k))).min_by_key(|(_, value)| value.clone()).unwrap()
 }
 
 /// The spectral optimum of the triangle and the tetrahedron, whose motions are eigenvectors of every symmetric stiffness and whose
-/// constants may be taken all alike. With S = Σ r rᵀ and the energies of dilatation and shear, for sides of length one:
-/// triangle √3(λ + μ) − 3k and √3 μ − 3k/2; tetrahedron, times √2, λ + 2μ/3 − 4k', (2/3) μ − k', (2/3) μ − 2k'. The cube's is
-/// proved by its dual in twice the digits.
+/// constants are all alike, from the energies of dilatation and shear: triangle of side one, times √3, λ + μ − 3k and μ − 3k/2;
+/// tetrahedron of side √2, λ + 2μ/3 − 4k, 2μ/3 − k and 2μ/3 − 2k. The cube's is proved by its dual in twice the digits.
 #[test]
-fn regular_spectral_optima_are_certified_towards_the_incompressible() {
+fn regular_spectral_optima_are_exact_towards_the_incompressible() {
     for (element, x) in regular() {
         let springs = Springs::select(&element, None).unwrap();
         let cell: Vec<usize> = (0..element.nodes()).collect();
         for nu in RATIOS {
-            let moduli = rounded(&exact_moduli(nu));
-            let Moduli { lambda, mu } = moduli;
+            let exact = exact_moduli(nu);
+            let moduli = rounded(&exact);
             let fit = Fit::new(Objective::Spectral(Weight::None));
             let fits = fit_cells(&element, &springs, &x, &cell, moduli, &fit, &mut |_| {}).unwrap();
-            let value = fits.certificates[0].value;
-            let known = match element.name.as_str() {
-                "tri3" => Some(3f64.sqrt() * least_largest(&[(lambda + mu, 3f64.sqrt()), (mu, 0.75f64.sqrt())])),
-                // Sides of √2 times √½.
-                "tet4" => Some(least_largest(&[(lambda + 2.0 * mu / 3.0, 4.0), (mu / 1.5, 1.0), (mu / 1.5, 2.0)])),
-                _ => None,
+            let certificate = fits.certificates[0];
+            let Moduli { lambda, mu } = exact;
+            let (one, two, three) = (rational(1.0), rational(2.0), rational(3.0));
+            let shear = &two * &mu / &three;
+            let (lines, unit) = match element.name.as_str() {
+                "tri3" => (vec![(&lambda + &mu, three.clone()), (mu, three / &two)], 3f64.sqrt()),
+                "tet4" => (vec![(lambda + &shear, rational(4.0)), (shear.clone(), one), (shear, two)], 1.0),
+                _ => (Vec::new(), 1.0),
             };
-            // Below a millionth of R the value is rounding of the fit's own gap.
-            let size = value.max(1e-6 * (lambda + mu));
-            if let Some(known) = known {
-                assert!((value - known).abs() <= 1.1e-8 * size, "{} {nu}: {value} {known}", element.name);
+            assert!(certificate.gap() <= 1e-12, "{} {nu}: {certificate:?}", element.name);
+            if !lines.is_empty() {
+                let (k, value) = least_largest(&lines);
+                let known = |a: &BigRational| unit * num_traits::ToPrimitive::to_f64(a).unwrap();
+                let (k, value) = (known(&k), known(&value));
+                assert!((certificate.value - value).abs() <= 1e-12 * value, "{nu}: {certificate:?} {value}");
+                for found in &fits.constants {
+                    assert!((found - k).abs() <= 1e-12 * k, "{} {nu}: {found} {k}", element.name);
+                }
             }
-            // In twice the digits the optimum is known to 1e-12 and far beyond.
-            let precise = constants_of_kind(&Twofold::from(0.0), &element, &springs, &x, &moduli, &fit).unwrap();
-            let precise: Vec<f64> = precise.iter().map(|k| k.hi).collect();
-            let best = known.unwrap_or(value).min(value);
-            let scale = best.max(1e-6 * (lambda + mu));
-            let reached = best + 1e-12 * scale;
-            if known.is_some() {
-                let distance = distance_from_optimum(&element, &springs, &x, &moduli, &fit, (&precise, reached));
-                assert!(distance.is_some_and(|d| d <= 2e-12), "{} {nu}: {distance:?}", element.name);
-            }
-            let distance = distance_from_optimum(&element, &springs, &x, &moduli, &fit, (&fits.constants, value));
-            assert!(distance.is_some_and(|d| (-1e-12..=1.1e-8).contains(&d)), "{} {nu}: {distance:?}", element.name);
+            let said = (&fits.constants[..], certificate.value);
+            let distance = distance_from_optimum(&element, &springs, &x, &moduli, &fit, said);
+            assert!(distance.is_some_and(|d| (0.0..=1e-12).contains(&d)), "{} {nu}: {distance:?}", element.name);
         }
     }
 }

@@ -303,6 +303,7 @@ const SPECTRAL: [Weight; 2] = [Weight::None, Weight::Modal { higher: 0.316 }];
 #[test]
 fn spectral_optima_are_certified() {
     let mut random = Random(17);
+    let mut gaps = Vec::new();
     for case in cases(4) {
         for (weight, nonnegative, tied) in
             SPECTRAL.into_iter().flat_map(|w| [(w, false, false), (w, true, false), (w, false, true), (w, true, true)])
@@ -315,6 +316,12 @@ fn spectral_optima_are_certified() {
             let certificate = fits.certificates[0];
             let name = format!("{} {weight:?} nonnegative {nonnegative} tied {tied}", case.name);
             assert!(certificate.gap() <= 1e-8 && fits.unreached == 0, "{name}: {certificate:?}");
+            // A barrier alone leaves 4e-9. That of an exact fit is relative to the rounding of R.
+            let is_exact = certificate.value < 1e-5 * case.r.norm();
+            assert!(is_exact || nonnegative || certificate.gap() < 1e-10, "{name}: {certificate:?}");
+            if nonnegative && !is_exact {
+                gaps.push(certificate.gap());
+            }
             let value = case.largest_eigenvalue(weight, &fits.constants);
             // R and K are computed to about 1e-15 ‖R‖ here and there.
             let rounding = 1e-13 * case.r.norm();
@@ -331,6 +338,10 @@ fn spectral_optima_are_certified() {
             }
         }
     }
+    // Constants that are as good as zero may hide which are.
+    gaps.sort_by(f64::total_cmp);
+    let most = gaps[gaps.len() * 19 / 20];
+    assert!(most < 1e-10, "{most:e}");
 }
 
 /// With weight `relative` the value ε is dimensionless, and `(1 − ε) R ⪯ K ⪯ (1 + ε) R`.
@@ -422,8 +433,7 @@ fn certified_fits_know_no_scale() {
                     assert_eq!(fits.unreached, 0, "{} {young} {size}", case.name);
                     let factor = case.r.norm() / scaled.r.norm();
                     for (a, b) in case.normalised(&reference).zip(scaled.normalised(&fits.constants)) {
-                        // The optimum of the 2-norm is flat: its constants are free to the root of the gap.
-                        assert!((a - factor * b).abs() < 1e-3 * case.r.norm(), "{}: {a} {}", case.name, factor * b);
+                        assert!((a - factor * b).abs() < 1e-7 * case.r.norm(), "{}: {a} {}", case.name, factor * b);
                     }
                 }
             }

@@ -312,6 +312,8 @@ fn tags_and_data_without_bound_are_refused() {
     let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
     let deep = text.replace("<Points>", &"<Points>".repeat(100_000));
     assert_eq!(error(&deep), "Points: expected at most 32 tags inside one another, found 33");
+    let many = text.replace("<Piece ", &("<Piece/>".repeat(4096) + "<Piece "));
+    assert_eq!(error(&many), "expected at most 4096 pieces, found more");
     // 2000 arrays that share 300000 bytes, 4JMEAA in little-endian base64.
     let array = "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/>";
     let (arrays, data) = (array.repeat(2000), "A".repeat(400_000));

@@ -166,7 +166,8 @@ impl<'a, S: Simd> Room<'a, S> {
             );
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
-                let mut verdict = method.finish(|value| value.as_slice()[lane], constants);
+                let quality = Geometry::quality(&self.element.tabulation, &self.lane(lane));
+                let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
                 if verdict.delicate
                     && let Ok(careful) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
                 {
@@ -258,7 +259,8 @@ impl<'a, S: Simd> Room<'a, S> {
             return Err(Fault::Unmeasured);
         }
         let Room { element, springs, moduli, fit, .. } = self;
-        if is_delicate || Geometry::quality(&element.tabulation, &x) <= Lanes::<S>::delicate() {
+        let quality = Geometry::quality(&element.tabulation, &x);
+        if is_delicate || quality <= Lanes::<S>::delicate() {
             let careful = Careful { element, springs, moduli, fit };
             let d = element.dimension();
             let mut given = x.clone();
@@ -272,7 +274,7 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
-            return Ok(method.finish(|value| *value, constants));
+            return Ok(method.finish(|value| *value, quality, constants));
         }
         let mut normal = Normal::default();
         if self.springs.functions.is_empty() {
@@ -286,6 +288,11 @@ impl<'a, S: Simd> Room<'a, S> {
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
+    /// The coordinates of the cell in this lane.
+    fn lane(&self, lane: usize) -> Vec<f64> {
+        self.x.iter().map(|x| x.as_slice()[lane]).collect()
+    }
+
     /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first. False if one is zero
     /// or not finite.
     fn measure(&mut self, cells: usize) -> bool {
@@ -295,7 +302,7 @@ impl<'a, S: Simd> Room<'a, S> {
         let mut regular = true;
         let mut rows = vec![0.0; self.measured.len()];
         for lane in 0..cells {
-            let x: Vec<f64> = self.x.iter().map(|x| x.as_slice()[lane]).collect();
+            let x = self.lane(lane);
             rows.fill(0.0);
             regular &= self.springs.function_gradients(&x, &mut rows);
             let last = if lane == 0 { Lanes::<S>::COUNT } else { lane + 1 };

@@ -1,18 +1,16 @@
 //! The objectives that need R itself, on one element or on one per lane.
 
-use super::ambiguity::{KEPT, least_frobenius};
 use super::constrained::{solve_nonnegative, solve_precisely};
 use super::dense::{factorize, inner, row_products};
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
 use super::reduction::Reduced;
-use super::spectral::{EXACT, GAP, Spectral};
+use super::spectral::{EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
 use super::{Fit, Objective, Weight};
 use crate::material::Moduli;
 use crate::scalar::Real;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
-use nalgebra::DMatrix;
 
 /// Below this curvature of the barrier (see [`Spectral`]) the optimum may not be unique.
 const AMBIGUOUS: f64 = 1e6;
@@ -61,7 +59,7 @@ pub struct Method<T> {
 #[derive(Debug, Clone)]
 enum Solver<T> {
     LeastSquares { normal: Normal<T>, products: Vec<T> },
-    Spectral(Spectral<T>),
+    Spectral(Box<Spectral<T>>),
     Divergence(Divergence<T>),
 }
 
@@ -91,7 +89,7 @@ impl<T: Real> Method<T> {
             }
             Objective::Frobenius(_) => return None,
             Objective::Spectral(weight) => {
-                (weight, Solver::Spectral(Spectral::of_kind(any, &reduced, fit.nonnegative)))
+                (weight, Solver::Spectral(Box::new(Spectral::of_kind(any, &reduced, fit.nonnegative))))
             }
             Objective::Divergence { balance } => {
                 let solver = Divergence::of_kind(any, &reduced, balance, fit.nonnegative);
@@ -161,7 +159,7 @@ impl<T: Real> Method<T> {
             verdict.reached &= pivot > KNOWN * rounding.min(T::epsilon());
             return verdict;
         }
-        let found = self.finish(Real::rounded, constants);
+        let found = self.finish(Real::rounded, 1.0, constants);
         verdict = Verdict { reached: found.reached && is_known, ..found };
         if let Some(certificate) = &mut verdict.certificate {
             // The constants are rounded to what they are written as.
@@ -203,8 +201,8 @@ impl<T: Real> Method<T> {
         Some(((value - &solver.bound) / &floor).rounded())
     }
 
-    /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it.
-    pub fn finish(&mut self, lane: impl Fn(&T) -> f64, constants: &mut [f64]) -> Verdict {
+    /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it, and `quality` is that of its cell.
+    pub fn finish(&mut self, lane: impl Fn(&T) -> f64, quality: f64, constants: &mut [f64]) -> Verdict {
         let delicate = !(lane(&self.reduced.softest) > SOFTEST);
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true, delicate };
         let kappa: Vec<f64> = match &self.solver {
@@ -225,19 +223,18 @@ impl<T: Real> Method<T> {
             }
             Solver::Spectral(solver) => {
                 let size = lane(&self.reduced.size);
-                let value = size * lane(&solver.value);
-                let bound = size * lane(&solver.bound);
-                let mut kappa: Vec<f64> = solver.kappa.iter().map(&lane).collect();
+                let kappa = solver.kappa.iter().map(&lane).collect();
+                let mut optimum = Optimum { kappa, value: lane(&solver.value), bound: lane(&solver.bound) };
+                let problem = Problem::of(&self.reduced, solver, &lane, quality);
+                // Half of more digits than a double has is enough.
+                if T::epsilon() >= T::given() {
+                    refine(&problem, &mut optimum);
+                }
                 // A nonnegative optimum stays in the middle of the optima, away from the bounds.
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
-                let ambiguous = doubtful && {
-                    let p = self.reduced.order;
-                    let r = DMatrix::from_fn(p, p, |i, j| lane(&self.reduced.stiffness[i * p + j]));
-                    let rows: Vec<f64> = self.reduced.rows().iter().map(&lane).collect();
-                    least_frobenius(&r, &rows, &self.reduced.unknowns, lane(&solver.value), &mut kappa)
-                };
-                let value = if ambiguous { value * (1.0 + KEPT) } else { value };
-                let certificate = Certificate { value, bound, ambiguous, size };
+                let ambiguous = doubtful && least_frobenius(&problem, &mut optimum);
+                let Optimum { kappa, value, bound } = optimum;
+                let certificate = Certificate { value: size * value, bound: size * bound, ambiguous, size };
                 verdict.reached = certificate.gap() <= GAP;
                 verdict.certificate = Some(certificate);
                 kappa

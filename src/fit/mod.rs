@@ -1,6 +1,5 @@
 //! Spring constants from the stiffness of each element.
 
-mod ambiguity;
 mod batch;
 mod careful;
 mod closed_form;
@@ -9,6 +8,7 @@ mod constrained;
 mod dense;
 mod descent;
 mod divergence;
+mod jacobi;
 mod least_squares;
 mod linear_motions;
 mod method;

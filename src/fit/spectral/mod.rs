@@ -8,11 +8,19 @@
 //! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair,
 //! `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, Y alike; [`Spectral::bound`] checks it from scratch.
 
+mod ambiguity;
+mod problem;
+mod refinement;
 mod side;
+
+pub use ambiguity::least_frobenius;
+pub use problem::{Optimum, Problem};
+pub use refinement::refine;
 
 use super::dense::{
     add_outers, at_half, at_rounding, factorize, inner, mirror, room_below, row_products, solve, tie, trace,
 };
+use super::jacobi::eigenvectors;
 use super::reduction::Reduced;
 use crate::scalar::Real;
 use side::Side;
@@ -54,6 +62,9 @@ pub struct Spectral<T> {
     pivots: Vec<T>,
     newton: Vec<T>,
     tangent: Vec<T>,
+    /// Eigenvalues of E at the end, on the diagonal, and its eigenvectors, row by row.
+    eigenvalues: Vec<T>,
+    eigenvectors: Vec<T>,
     /// Factors of the Gram matrix of the springs' matrices.
     gram: Vec<T>,
     gram_pivots: Vec<T>,
@@ -79,6 +90,8 @@ impl<T: Real> Spectral<T> {
             pivots: room(c + 1),
             newton: room(c + 1),
             tangent: room(c + 1),
+            eigenvalues: room(p * p),
+            eigenvectors: room(p * p),
             gram: room(m * m),
             gram_pivots: room(c),
             room: room((p * p).max(m * p).max((c + 1) * (c + 1))),
@@ -171,6 +184,11 @@ impl<T: Real> Spectral<T> {
         }
         self.measure_curvature();
         self.bound = self.bound(reduced, &mu);
+        if T::epsilon() >= T::given() {
+            reduced.residual(&self.kappa, &mut self.eigenvalues);
+            mirror(&mut self.eigenvalues, reduced.order);
+            eigenvectors(&mut self.eigenvalues, reduced.order, &mut self.eigenvectors);
+        }
     }
 
     /// Both sides at the trial point, which goes into `kappa`; positive where it is inside the domain.

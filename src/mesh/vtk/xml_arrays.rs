@@ -8,6 +8,8 @@ use std::ops::Range;
 
 /// A grid has six tags inside one another; the decoder calls itself for each.
 const DEEPEST_TAGS: usize = 32;
+/// The decoder takes some two kilobytes for each, however short its tag.
+const MOST_PIECES: usize = 4096;
 /// All arrays together may take up so many times the bytes of the file, as an array of one number alone may a thousand
 /// times its own, and so many bytes in any case.
 const MOST_GROWTH: u64 = 100;
@@ -98,6 +100,9 @@ impl Tags {
         match tag.name {
             b"VTKFile" => self.root(tag)?,
             b"/VTKFile" => self.closed = true,
+            b"Piece" if self.pieces.len() == MOST_PIECES => {
+                return Err(Error::new(format!("expected at most {MOST_PIECES} pieces, found more")));
+            }
             b"Piece" => self.pieces.push(PieceArrays::default()),
             b"Points" => self.inside = Some("Points"),
             b"PointData" if !tag.empty => self.inside = Some("PointData"),

@@ -3,6 +3,7 @@
 //! With u the eigenvectors of `E = R̂ − K(κ)` at ±t, the optima differ from κ by the directions d with `K(d) u = 0`: such a d
 //! leaves the active eigenvalues, and has room until another eigenvalue reaches ±t.
 
+use super::problem::{Optimum, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// Eigenvalues within this fraction of ±t are active; the solver leaves them there to about 1e-9.
@@ -12,21 +13,16 @@ const FREE: f64 = 1e-5;
 /// Newton steps per weight of the barrier that keeps the other eigenvalues inside, and the weights.
 const STEPS: usize = 30;
 /// What the move may add to the value, of the 1e-8 that the gap may have.
-pub const KEPT: f64 = 2e-9;
+const KEPT: f64 = 2e-9;
 const WEIGHTS: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
-/// Moves κ, an optimum of value t, to the one of least `‖E‖_F`, to about 1e-6 of the way; `rows` are the h, `[springs ×
-/// order]`, `unknowns` the unknown of each. Returns false, κ unchanged, if the optimum is unique after all.
-pub fn least_frobenius(r: &DMatrix<f64>, rows: &[f64], unknowns: &[usize], t: f64, kappa: &mut [f64]) -> bool {
-    let p = r.nrows();
-    let mut springs = vec![DMatrix::zeros(p, p); kappa.len()];
-    for (h, &unknown) in rows.chunks_exact(p).zip(unknowns) {
-        let h = DVector::from_column_slice(h);
-        springs[unknown].ger(1.0, &h, &h, 1.0);
-    }
-    let mut e = r.clone();
-    springs.iter().zip(&*kappa).for_each(|(a, k)| e -= a * *k);
-    let eigen = e.clone().symmetric_eigen();
+/// Moves κ, an optimum of value t, to the one of least `‖E‖_F`, to about 1e-6 of the way. Returns false, κ unchanged, if the optimum
+/// is unique after all.
+pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
+    let Optimum { kappa, value: t, .. } = optimum;
+    let (p, t, springs) = (problem.order(), *t, problem.matrices());
+    let e = problem.error(kappa);
+    let eigen = e.symmetric_eigen();
     let (active, rest): (Vec<usize>, Vec<usize>) =
         (0..p).partition(|&i| eigen.eigenvalues[i].abs() > t * (1.0 - ACTIVE));
     // All of them are, or none where t is only the rounding of an exact fit.
@@ -67,10 +63,9 @@ pub fn least_frobenius(r: &DMatrix<f64>, rows: &[f64], unknowns: &[usize], t: f6
     // The directions are exact to rounding over `FREE`: as far as the value stays.
     for length in [1.0, 0.99, 0.9, 0.5] {
         let moved: Vec<f64> = kappa.iter().zip(step.iter()).map(|(k, d)| k + length * d).collect();
-        let mut e = r.clone();
-        springs.iter().zip(&moved).for_each(|(a, k)| e -= a * *k);
-        if e.symmetric_eigenvalues().amax() <= t * (1.0 + KEPT) {
-            kappa.copy_from_slice(&moved);
+        let value = problem.error(&moved).symmetric_eigenvalues().amax() + problem.rounding(&moved);
+        if value <= t * (1.0 + KEPT) {
+            *optimum = Optimum { kappa: moved, value: t.max(value), ..*optimum };
             return true;
         }
     }

@@ -1,0 +1,106 @@
+//! Eigenvalues and eigenvectors of small symmetric matrices, one in each lane, by Jacobi's rotations.
+
+use crate::scalar::Real;
+
+/// Sweeps over all pairs at most; six to eight are enough.
+const SWEEPS: usize = 16;
+
+/// `A = Vᵀ Λ V` of order n: Λ on the diagonal of `a`, of which both triangles are read, the eigenvectors in the rows of `v`. A lane
+/// that is at its end rests, so that its digits do not depend on the others.
+pub fn eigenvectors<T: Real>(a: &mut [T], n: usize, v: &mut [T]) {
+    let (zero, one) = (a[0].zero(), a[0].one());
+    for i in 0..n {
+        for j in 0..n {
+            v[i * n + j] = if i == j { one.clone() } else { zero.clone() };
+        }
+    }
+    one.vectorize(
+        #[inline(always)]
+        || {
+            for _ in 0..SWEEPS {
+                let (mut rest, mut size) = (zero.clone(), zero.clone());
+                for i in 0..n {
+                    size = size.plus_product(&a[i * n + i], &a[i * n + i]);
+                    for j in 0..i {
+                        rest = rest.plus_product(&a[i * n + j], &a[i * n + j]);
+                    }
+                }
+                let floor = size.scaled(&T::epsilon().powi(2));
+                let moves = rest.clone() - &floor;
+                if floor.exceeds(&rest) {
+                    break;
+                }
+                for i in 1..n {
+                    for j in 0..i {
+                        rotate(a, n, v, (i, j), &moves);
+                    }
+                }
+            }
+        },
+    );
+}
+
+/// Takes `A_ij` out, where `moves` is above zero.
+#[inline(always)]
+fn rotate<T: Real>(a: &mut [T], n: usize, v: &mut [T], (i, j): (usize, usize), moves: &T) {
+    let zero = moves.zero();
+    let entry = a[i * n + j].clone();
+    let difference = a[j * n + j].clone() - &a[i * n + i];
+    let twice = entry.clone().scaled(&2.0);
+    // tan of the angle, of the two the smaller: 2 A_ij / (d ± √(d² + 4 A_ij²))
+    let root = twice.clone().squared().plus_product(&difference, &difference).sqrt();
+    let denominator = difference.magnitude() + &root;
+    let tangent = denominator.choose(&(twice / &denominator.choose(&denominator, &zero.one())), &zero);
+    let tangent = difference.negated().choose(&tangent.negated(), &tangent);
+    let tangent = moves.choose(&tangent, &zero);
+    let cosine = zero.one() / &zero.one().plus_product(&tangent, &tangent).sqrt();
+    let sine = tangent.clone() * &cosine;
+    let turn = |rows: &mut [T]| {
+        for k in 0..n {
+            let (x, y) = (rows[i * n + k].clone(), rows[j * n + k].clone());
+            rows[i * n + k] = (x.clone() * &cosine).minus_product(&sine, &y);
+            rows[j * n + k] = (y * &cosine).plus_product(&sine, &x);
+        }
+    };
+    let (first, last) = (a[i * n + i].clone(), a[j * n + j].clone());
+    turn(a);
+    turn(v);
+    for k in 0..n {
+        a[k * n + i] = a[i * n + k].clone();
+        a[k * n + j] = a[j * n + k].clone();
+    }
+    a[i * n + i] = first.minus_product(&tangent, &entry);
+    a[j * n + j] = last.plus_product(&tangent, &entry);
+    let left = moves.choose(&zero, &entry);
+    a[i * n + j] = left.clone();
+    a[j * n + i] = left;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_are_orthonormal_and_rebuild_the_matrix() {
+        for n in 1..20 {
+            for repeated in [false, true] {
+                // Repeated eigenvalues: a multiple of I beside one direction.
+                let entry = |i: usize, j: usize| match repeated {
+                    true => f64::from(u8::from(i == j)) + 0.5 / ((1 + i) * (1 + j)) as f64,
+                    false => ((3 * i * j + i + j) as f64).sin() + 1.0 / (1 + i + j) as f64,
+                };
+                let given: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
+                let (mut a, mut v) = (given.clone(), vec![0.0; n * n]);
+                eigenvectors(&mut a, n, &mut v);
+                for i in 0..n {
+                    for j in 0..n {
+                        let product: f64 = (0..n).map(|k| v[i * n + k] * v[j * n + k]).sum();
+                        assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14, "{n}: {product}");
+                        let rebuilt: f64 = (0..n).map(|k| v[k * n + i] * a[k * n + k] * v[k * n + j]).sum();
+                        assert!((rebuilt - given[i * n + j]).abs() < 1e-13, "{n}: {rebuilt}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! The last digits of the optimum: Newton's method on the eigenvalues at ±t.
+//!
+//! Rounding leaves a barrier method half of the digits. Once it tells which eigenvalues of E are at t and which at −t, with eigenvectors
+//! `Q₊` and `Q₋`, these are equations, `Q₊ᵀ E(κ) Q₊ = tI` and `Q₋ᵀ E(κ) Q₋ = −tI`. The least t under them, with the eigenvalues expanded
+//! to second order, has steps that converge quadratically (Overton and Womersley, SIAM J. Matrix Anal. Appl. 16, 697, 1995);
+//! its multipliers U and V are the dual pair `X = Q₊ U Q₊ᵀ`, `Y = Q₋ V Q₋ᵀ` that proves the bound.
+
+use super::EXACT;
+use super::problem::{Optimum, Problem, Spectrum};
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Newton steps at most; one is enough from where the barrier ends, if no other eigenvalue is near.
+const STEPS: usize = 8;
+/// A first step above this, relative to t, does not begin at the optimum.
+const LARGEST: f64 = 0.1;
+/// What a step below this leaves, of the order of its square, is nothing, if the gap says the same,
+const CONVERGED: f64 = 1e-6;
+/// which is then below this, relative to t.
+const CLOSED: f64 = 1e-12;
+/// Steps that end below this went as far as rounding lets them.
+const SETTLED: f64 = 1e-10;
+/// Eigenvalues of the equations below this are zero: the motions of degenerate shapes repeat each other.
+const SINGULAR: f64 = 1e-9;
+/// How far beyond what the barrier tells an eigenvalue counts as active: the first, and what is tried where the steps do not converge.
+const WIDTHS: [f64; 5] = [1.0, 1e1, 1e-1, 1e2, 1e-2];
+
+/// Improves κ, value and bound as far as rounding lets them, or leaves them as they are: each is checked from scratch. An optimum of less
+/// than `EXACT` has nothing to find.
+pub fn refine(problem: &Problem, optimum: &mut Optimum) {
+    if !(optimum.value > EXACT) {
+        return;
+    }
+    let start = optimum.clone();
+    let mut tried = Vec::new();
+    for width in WIDTHS {
+        let mut kappa = start.kappa.clone();
+        let Some(active) = Active::at(problem, &mut kappa, start.value, width) else { continue };
+        let set = (active.above, active.below, active.free.clone());
+        if tried.contains(&set) {
+            continue;
+        }
+        tried.push(set);
+        if converge(problem, active, kappa, optimum) {
+            return;
+        }
+    }
+}
+
+/// Newton steps from κ; false where they do not converge.
+fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum: &mut Optimum) -> bool {
+    let mut last = 2.0 * LARGEST;
+    for _ in 0..STEPS {
+        let Some((step, t)) = active.step(problem) else { break };
+        let size = step.amax();
+        // Half of the last where they only rock in rounding.
+        if !(size < 0.5 * last) {
+            break;
+        }
+        last = size;
+        for (&unknown, step) in active.free.iter().zip(step.iter()) {
+            kappa[unknown] += active.t * step;
+        }
+        let is_inside = !problem.nonnegative || kappa.iter().all(|k| *k >= 0.0);
+        let rounding = problem.rounding(&kappa);
+        // Mostly the value is the one that the step foresees.
+        let foreseen = t * (1.0 + size * size) + rounding;
+        let is_near = size < CONVERGED && is_inside && problem.reaches(&kappa, foreseen);
+        let value = if is_near { foreseen } else { active.set(problem.spectrum(&kappa)) + rounding };
+        // Not by how much it is less: of a flat optimum κ has digits to win where t has none.
+        if is_inside && value <= optimum.value + rounding {
+            let bound = problem.bound(&active.x, &active.y);
+            *optimum = Optimum { kappa: kappa.clone(), value, bound: optimum.bound.max(bound) };
+            if is_near && value - bound < CLOSED * value + 3.0 * rounding {
+                return true;
+            }
+        }
+        if is_near {
+            active.set(problem.spectrum(&kappa));
+        }
+    }
+    last < SETTLED
+}
+
+/// Which eigenvalues are at ±t, and which constants above zero.
+struct Active {
+    t: f64,
+    /// Of E.
+    spectrum: Spectrum,
+    /// How many are at t, and how many at −t.
+    above: usize,
+    below: usize,
+    /// Unknowns that are not held at zero.
+    free: Vec<usize>,
+    /// The dual pair, of `tr X + tr Y = 1`.
+    x: DMatrix<f64>,
+    y: DMatrix<f64>,
+}
+
+impl Active {
+    /// As the barrier tells: with `X = μ (tI − E)⁻¹` and `Y = μ (tI + E)⁻¹` an eigenvalue is active if its multiplier is larger than its
+    /// distance from t over `width`, and so is the bound of a constant, which is set to zero here.
+    fn at(problem: &Problem, kappa: &mut [f64], t: f64, width: f64) -> Option<Active> {
+        let p = problem.order();
+        let empty = || DMatrix::zeros(p, p);
+        let spectrum = problem.spectrum.clone();
+        let mut active = Active { t, spectrum, above: 0, below: 0, free: Vec::new(), x: empty(), y: empty() };
+        let values = &active.spectrum.values;
+        if !(values.amax() < t) {
+            return None;
+        }
+        let mu = 1.0 / values.iter().map(|e| 1.0 / (t - e) + 1.0 / (t + e)).sum::<f64>();
+        let near = |distance: f64| distance * distance < width * width * mu * t;
+        active.above = values.iter().filter(|e| near(t - **e)).count();
+        active.below = values.iter().filter(|e| near(t + **e)).count();
+        if active.above + active.below == 0 || active.above + active.below > p {
+            return None;
+        }
+        let (q, shares) = (&active.spectrum.vectors, values.map(|e| mu / (t - e)));
+        active.x = combination(&q.columns(0, active.above).into_owned(), &diagonal(&shares, 0, active.above));
+        let shares = values.map(|e| mu / (t + e));
+        let first = p - active.below;
+        active.y = combination(&q.columns(first, active.below).into_owned(), &diagonal(&shares, first, active.below));
+        let mean = kappa.iter().map(|k| k.abs()).sum::<f64>() / kappa.len() as f64;
+        active.free = (0..kappa.len()).filter(|&i| !problem.nonnegative || !near(kappa[i] * t / mean)).collect();
+        if active.free.len() < kappa.len() {
+            (0..kappa.len()).filter(|i| !active.free.contains(i)).for_each(|i| kappa[i] = 0.0);
+            active.set(problem.spectrum(kappa));
+        }
+        Some(active)
+    }
+
+    /// Takes over the eigenvalues, and t, the largest.
+    fn set(&mut self, spectrum: Spectrum) -> f64 {
+        self.spectrum = spectrum;
+        self.t = self.spectrum.values.amax();
+        self.t
+    }
+
+    /// The step of the free unknowns, in units of t, and the t that it foresees; takes over the new dual pair.
+    ///
+    /// The second derivatives need the multipliers, of which the barrier knows a digit: they are solved for twice.
+    fn step(&mut self, problem: &Problem) -> Option<(DVector<f64>, f64)> {
+        let (p, f) = (problem.order(), self.free.len());
+        let values = &self.spectrum.values / self.t;
+        // w_s = Qᵀ h_s
+        let w = self.spectrum.vectors.transpose() * &problem.h;
+        let side = |sign, first, count, multipliers: &DMatrix<f64>| {
+            let q = self.spectrum.vectors.columns(first, count).into_owned();
+            let multipliers = q.transpose() * multipliers * &q;
+            let others = others(&w, &values, sign, first, count);
+            Side { sign, first, pairs: pairs(count), multipliers, bends: others.tr_mul(&w), others }
+        };
+        let mut sides = [side(1.0, 0, self.above, &self.x), side(-1.0, p - self.below, self.below, &self.y)];
+        let equations = sides[0].pairs.len() + sides[1].pairs.len();
+        // As many equations as unknowns: no second derivative matters.
+        let turns = if equations > f { 1 } else { 2 };
+        let mut solution = DVector::zeros(0);
+        for _ in 0..turns {
+            let (system, rhs) = self.system(problem, &w, &values, &sides);
+            solution = solve(system, &rhs)?;
+            let mut row = f + 1;
+            for side in &mut sides {
+                for &(a, b) in &side.pairs {
+                    side.multipliers[(a, b)] += solution[row] / weight(a, b);
+                    side.multipliers[(b, a)] = side.multipliers[(a, b)];
+                    row += 1;
+                }
+                make_positive(&mut side.multipliers);
+            }
+        }
+        let mut steps = DVector::zeros(problem.unknown_count());
+        self.free.iter().zip(solution.iter()).for_each(|(&unknown, step)| steps[unknown] = *step);
+        [self.x, self.y] = sides.map(|side| {
+            // The eigenvectors turn with the step, to first order.
+            let count = side.multipliers.nrows();
+            let mut changes = w.rows(side.first, count).transpose();
+            for (mut row, &unknown) in changes.row_iter_mut().zip(problem.unknowns) {
+                row *= -side.sign * steps[unknown];
+            }
+            let mut turned = side.others * changes;
+            (0..count).for_each(|i| turned[(side.first + i, i)] = 1.0);
+            combination(&(&self.spectrum.vectors * turned), &side.multipliers)
+        });
+        Some((solution.rows(0, f).into_owned(), self.t * solution[f]))
+    }
+
+    /// The equations of a step: unknowns that are free, t, and the changes of the multipliers.
+    fn system(
+        &self,
+        problem: &Problem,
+        w: &DMatrix<f64>,
+        values: &DVector<f64>,
+        sides: &[Side; 2],
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let (m, f) = (problem.h.ncols(), self.free.len());
+        let mut place = vec![None; problem.unknown_count()];
+        self.free.iter().enumerate().for_each(|(i, unknown)| place[*unknown] = Some(i));
+        let springs: Vec<(usize, usize)> = (0..m).filter_map(|s| Some((s, place[problem.unknowns[s]]?))).collect();
+        let size = f + 1 + sides.iter().map(|side| side.pairs.len()).sum::<usize>();
+        let (mut system, mut rhs) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        rhs[f] = -1.0;
+        let mut row = f + 1;
+        for Side { sign, first, pairs, multipliers, bends, .. } in sides {
+            if pairs.is_empty() {
+                continue;
+            }
+            let at = w.rows(*first, multipliers.nrows());
+            let weights = at.transpose() * multipliers * at;
+            for &(o, j) in &springs {
+                for &(s, i) in &springs {
+                    system[(i, j)] += 2.0 * weights[(s, o)] * bends[(s, o)];
+                }
+            }
+            for &(a, b) in pairs {
+                let multiplier = weight(a, b) * multipliers[(a, b)];
+                for &(s, i) in &springs {
+                    let entry = -sign * weight(a, b) * at[(a, s)] * at[(b, s)];
+                    system[(row, i)] += entry;
+                    system[(i, row)] += entry;
+                    rhs[i] -= entry * multiplier;
+                }
+                if a == b {
+                    system[(row, f)] = -1.0;
+                    system[(f, row)] = -1.0;
+                    rhs[row] = -sign * values[first + a];
+                    rhs[f] += multiplier;
+                }
+                row += 1;
+            }
+        }
+        (system, rhs)
+    }
+}
+
+/// The eigenvalues at t, or those at −t.
+struct Side {
+    sign: f64,
+    /// Their place among all.
+    first: usize,
+    /// The upper triangle of the multipliers.
+    pairs: Vec<(usize, usize)>,
+    multipliers: DMatrix<f64>,
+    /// `D w_s` over the other eigenvectors, D the reciprocals of the distances of their eigenvalues,
+    others: DMatrix<f64>,
+    /// and `w_sᵀ D w_t`: what bends the eigenvalues at ±t.
+    bends: DMatrix<f64>,
+}
+
+fn others(w: &DMatrix<f64>, values: &DVector<f64>, sign: f64, first: usize, count: usize) -> DMatrix<f64> {
+    let mut others = w.clone();
+    for (i, mut row) in others.row_iter_mut().enumerate() {
+        let is_active = i >= first && i < first + count;
+        row *= if is_active { 0.0 } else { 1.0 / (1.0 - sign * values[i]) };
+    }
+    others
+}
+
+fn pairs(order: usize) -> Vec<(usize, usize)> {
+    (0..order).flat_map(|b| (0..=b).map(move |a| (a, b))).collect()
+}
+
+/// With which entries of the upper triangle have the norm of the matrix.
+fn weight(a: usize, b: usize) -> f64 {
+    if a == b { 1.0 } else { std::f64::consts::SQRT_2 }
+}
+
+fn diagonal(values: &DVector<f64>, first: usize, count: usize) -> DMatrix<f64> {
+    DMatrix::from_diagonal(&values.rows(first, count).into_owned())
+}
+
+/// `Q U Qᵀ`.
+fn combination(q: &DMatrix<f64>, u: &DMatrix<f64>) -> DMatrix<f64> {
+    q * u * q.transpose()
+}
+
+/// Takes what is negative out of a symmetric matrix.
+fn make_positive(a: &mut DMatrix<f64>) {
+    if a.is_empty() || Cholesky::new(a.clone()).is_some() {
+        return;
+    }
+    let eigen = a.clone().symmetric_eigen();
+    *a = combination(&eigen.eigenvectors, &DMatrix::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0))));
+}
+
+/// The solution, or of many the least.
+fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
+    let factors = system.clone().lu();
+    if factors.lu_internal().diagonal().amin() > SINGULAR {
+        return factors.solve(rhs);
+    }
+    let eigen = system.symmetric_eigen();
+    let mut parts = eigen.eigenvectors.transpose() * rhs;
+    for (part, value) in parts.iter_mut().zip(eigen.eigenvalues.iter()) {
+        *part = if value.abs() > SINGULAR { *part / value } else { 0.0 };
+    }
+    let solution = eigen.eigenvectors * parts;
+    solution.iter().all(|entry| entry.is_finite()).then_some(solution)
+}
