@@ -8,8 +8,8 @@ const LARGEST_DEGREE: u32 = 1000;
 const LARGEST_POWER: u32 = 64;
 /// Binary digits of a coefficient.
 const MOST_BITS: u64 = 8000;
-/// Sums and products of two coefficients of few digits, over all steps of an expansion: half a second or so.
-const MOST_WORK: u64 = 1_000_000;
+/// Sums and products of two coefficients of few digits, over all steps of an expansion: a fifth of a second or so.
+const MOST_WORK: u64 = 400_000;
 
 impl Polynomial {
     /// The expansion of `expr` in `variables` variables, or `None` if it is not a polynomial of moderate size.
