@@ -282,8 +282,11 @@ fn make_positive(a: &mut DMatrix<f64>) {
     *a = combination(&eigen.eigenvectors, &DMatrix::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0))));
 }
 
-/// The solution, or of many the least.
+/// The solution, or of many the least; none where a distance of eigenvalues was zero.
 fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
+    if !system.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
     let factors = system.clone().lu();
     if factors.lu_internal().diagonal().amin() > SINGULAR {
         return factors.solve(rhs);
