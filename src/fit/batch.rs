@@ -166,7 +166,7 @@ impl<'a, S: Simd> Room<'a, S> {
             );
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
-                let quality = Geometry::quality(&self.element.tabulation, &self.lane(lane));
+                let quality = || Geometry::quality(&self.element.tabulation, &self.lane(lane));
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
                 if verdict.delicate
                     && let Ok(careful) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
@@ -274,7 +274,7 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
-            return Ok(method.finish(|value| *value, quality, constants));
+            return Ok(method.finish(|value| *value, || quality, constants));
         }
         let mut normal = Normal::default();
         if self.springs.functions.is_empty() {

@@ -40,7 +40,7 @@ impl Careful<'_> {
             return None;
         }
         if let Some(method) = solved(springs, &x, &geometry, moduli, measured, fit) {
-            return Some(method.finish_alone(are_independent(springs, fit.tied, plain, shape), constants));
+            return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
         }
         if !springs.functions.is_empty() {
             return None;

@@ -141,15 +141,15 @@ impl<T: Real> Method<T> {
         Some(self.reduced.unknowns.iter().map(constant).collect())
     }
 
-    /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have; `independent` is
-    /// whether its springs are, whatever they are fitted to.
-    pub fn finish_alone(mut self, independent: bool, constants: &mut [f64]) -> Verdict {
+    /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have; `independent`
+    /// tells whether its springs are, whatever they are fitted to.
+    pub fn finish_alone(mut self, independent: impl Fn() -> bool, constants: &mut [f64]) -> Verdict {
         // What is as soft as rounding says nothing of the constants.
         let is_known = self.reduced.softest.rounded() > KNOWN * T::epsilon();
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
         if let Solver::LeastSquares { normal, .. } = &self.solver {
             // Relative weights make pivots as small as the softest motion: that says nothing of what is given.
-            let relative = independent && self.weight == Weight::Relative;
+            let relative = self.weight == Weight::Relative && independent();
             let rounding = if relative { T::epsilon() } else { T::given() };
             let (kappa, rank, pivot) = solve_precisely(normal, self.nonnegative, rounding);
             for (constant, &unknown) in constants.iter_mut().zip(&self.reduced.unknowns) {
@@ -159,7 +159,7 @@ impl<T: Real> Method<T> {
             verdict.reached &= pivot > KNOWN * rounding.min(T::epsilon());
             return verdict;
         }
-        let found = self.finish(Real::rounded, 1.0, constants);
+        let found = self.finish(Real::rounded, || 1.0, constants);
         verdict = Verdict { reached: found.reached && is_known, ..found };
         if let Some(certificate) = &mut verdict.certificate {
             // The constants are rounded to what they are written as.
@@ -201,8 +201,9 @@ impl<T: Real> Method<T> {
         Some(((value - &solver.bound) / &floor).rounded())
     }
 
-    /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it, and `quality` is that of its cell.
-    pub fn finish(&mut self, lane: impl Fn(&T) -> f64, quality: f64, constants: &mut [f64]) -> Verdict {
+    /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it, and `quality` measures its cell where that
+    /// counts.
+    pub fn finish(&mut self, lane: impl Fn(&T) -> f64, quality: impl Fn() -> f64, constants: &mut [f64]) -> Verdict {
         let delicate = !(lane(&self.reduced.softest) > SOFTEST);
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true, delicate };
         let kappa: Vec<f64> = match &self.solver {
@@ -225,7 +226,7 @@ impl<T: Real> Method<T> {
                 let size = lane(&self.reduced.size);
                 let kappa = solver.kappa.iter().map(&lane).collect();
                 let mut optimum = Optimum { kappa, value: lane(&solver.value), bound: lane(&solver.bound) };
-                let problem = Problem::of(&self.reduced, solver, &lane, quality);
+                let problem = Problem::of(&self.reduced, solver, &lane, quality());
                 // Half of more digits than a double has is enough.
                 if T::epsilon() >= T::given() {
                     refine(&problem, &mut optimum);

@@ -116,9 +116,9 @@ impl<'a> Problem<'a> {
     /// Whether `‖E(κ)‖₂ < t`, by the pivots of `tI ± E`.
     pub fn reaches(&self, kappa: &[f64], t: f64) -> bool {
         let p = self.order();
-        let mut pivots = vec![0.0; p];
+        let (e, mut pivots) = (self.error(kappa), vec![0.0; p]);
         [-1.0, 1.0].into_iter().all(|sign| {
-            let mut side = self.error(kappa) * sign;
+            let mut side = &e * sign;
             (0..p).for_each(|i| side[(i, i)] += t);
             factorize(side.as_mut_slice(), p, 0.0, &mut pivots) > 0.0
         })
@@ -135,7 +135,7 @@ impl<'a> Problem<'a> {
     pub fn bound(&self, x: &DMatrix<f64>, y: &DMatrix<f64>) -> f64 {
         let z = x - y;
         let form = |a: &DMatrix<f64>, h: &DVectorView<f64>| h.dot(&(a * h));
-        let mut moved = vec![0.0; self.pivots.len()];
+        let mut moved = vec![0.0; self.unknown_count()];
         for (h, &unknown) in self.h.column_iter().zip(self.unknowns) {
             moved[unknown] += form(&z, &h);
         }
