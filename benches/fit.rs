@@ -57,7 +57,7 @@ fn main() {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     println!("on one core");
     println!("{:10} {:28} {:>14} {:>16}", "element", "fit", "ns/element", "elements/s");
-    let every: Vec<Element> = SHIPPED.iter().map(|s| s.load().expect("it is shipped")).collect();
+    let every: Vec<Element> = SHIPPED.iter().map(|s| Element::shipped(s).expect("it is shipped")).collect();
     // Of the others `cargo bench -- hex27` tells.
     let common = |e: &Element| e.nodes() == e.cell.corners().len() && e.dimension() > 1;
     let wanted = |e: &&Element| if chosen.is_empty() { common(e) } else { chosen.contains(&e.name) };

@@ -1,20 +1,14 @@
 #![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
 
-pub mod dynamics;
-pub mod element;
-pub mod error;
-mod file;
-pub mod fit;
-pub mod material;
-pub mod mesh;
-pub mod model;
+#[cfg(feature = "cli")]
 pub mod report;
-pub mod scalar;
-pub mod solve;
-pub mod springs;
-pub mod stiffness;
-pub mod study;
-pub mod symbolic;
-pub mod whole;
 
-pub use file::{check_file, check_folder, files_in, write_whole};
+pub use springfit_bodies::{dynamics, mesh, model, solve, whole};
+pub use springfit_foundation::{error, scalar, symbolic};
+pub use springfit_kernels::{element, fit, material, springs, stiffness};
+pub use springfit_studies::study;
+
+#[cfg(feature = "cli")]
+use springfit_foundation::file;
+pub use springfit_foundation::file::{check_file, check_folder, files_in, write_whole};

@@ -31,6 +31,7 @@ use std::time::{Duration, Instant};
 fn main() -> ExitCode {
     // A file that may not grow further is an error like a full disk, not the end.
     #[cfg(unix)]
+    #[allow(unsafe_code)]
     unsafe {
         libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
     }

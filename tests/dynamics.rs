@@ -610,7 +610,7 @@ fn explicit_steps_have_a_limit() {
 #[test]
 fn lumped_masses_are_positive() {
     for shipped in SHIPPED {
-        let element = shipped.load().unwrap();
+        let element = Element::shipped(shipped).unwrap();
         let d = element.dimension();
         let nodes = element.nodes();
         let points = element.positions.clone();

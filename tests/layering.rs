@@ -36,13 +36,19 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Every source of the crates, by its path within its crate's `src`.
 fn all() -> Vec<(PathBuf, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let read = |path: PathBuf| {
-        let text = std::fs::read_to_string(&path).unwrap();
-        (path.strip_prefix(&root).unwrap().to_path_buf(), text)
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let crates = ["foundation", "kernels", "bodies", "studies"].map(|name| root.join("crates").join(name).join("src"));
+    let read = |folder: PathBuf| {
+        let files = sources(&folder);
+        let relative = move |path: PathBuf| {
+            let text = std::fs::read_to_string(&path).unwrap();
+            (path.strip_prefix(&folder).unwrap().to_path_buf(), text)
+        };
+        files.into_iter().map(relative)
     };
-    sources(&root).into_iter().map(read).collect()
+    crates.into_iter().chain([root.join("src")]).flat_map(read).collect()
 }
 
 #[test]

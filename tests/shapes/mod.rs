@@ -16,7 +16,7 @@ impl Random {
 }
 
 pub fn elements() -> Vec<Element> {
-    SHIPPED.iter().map(|s| s.load().unwrap()).collect()
+    SHIPPED.iter().map(|s| Element::shipped(s).unwrap()).collect()
 }
 
 /// Reference positions under a random affine map of positive determinant, each node moved by up to 5 % of the size.

@@ -2,7 +2,8 @@
 
 mod energy;
 
-pub use energy::{Energy, SHIPPED, Tangent};
+pub use energy::{Energy, Tangent};
+pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};
 use serde::Deserialize;

@@ -1,6 +1,5 @@
 //! Finite elements from text: a cell, nodal shape functions, a quadrature rule and groups of springs.
 
-mod catalogue;
 mod cell;
 mod constant;
 mod definition;
@@ -11,11 +10,11 @@ mod rational;
 mod symmetry;
 mod tabulation;
 
-pub use catalogue::{SHIPPED, Shipped};
 pub use cell::{Cell, Side};
 pub use definition::{FormatEntry, Formats, SpringKind};
 pub use groups::{SpringGroup, coordinate_names};
 pub use quadrature::Quadrature;
+pub use springfit_shipped::{ELEMENTS as SHIPPED, ElementFile};
 pub use symmetry::permutations;
 pub use tabulation::{ShapeFunctions, Tabulation};
 
@@ -25,7 +24,7 @@ use crate::symbolic::{Polynomial, Scope};
 use definition::Definition;
 use groups::spring_groups;
 use num_rational::BigRational;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// An element that has been proved consistent.
@@ -71,13 +70,21 @@ impl Element {
             return Element::parse(&file::read_text(path)?).map_err(|e| e.in_file(path));
         }
         match SHIPPED.iter().find(|s| s.name == name_or_path) {
-            Some(shipped) => shipped.load(),
+            Some(file) => Element::shipped(file),
             None => {
                 let names: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
                 let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
                 Err(Error::expected("element", expected, format!("\"{name_or_path}\"")))
             }
         }
+    }
+
+    /// The element of a shipped file.
+    ///
+    /// # Errors
+    /// None for the files that are shipped: all are tested.
+    pub fn shipped(file: &ElementFile) -> Result<Element> {
+        Element::parse(file.text).map_err(|e| e.in_file(Path::new(&format!("elements/{}.toml", file.name))))
     }
 
     /// Parses and proves the text of an element file.
@@ -211,14 +218,6 @@ impl Element {
             return Err(Error::expected("springs", expected, format!("\"{unknown}\"")));
         }
         Ok(self.springs.iter().filter(|g| names.contains(&g.name)).collect())
-    }
-}
-
-impl Shipped {
-    /// # Errors
-    /// The file is wrong, which the tests over all shipped files exclude.
-    pub fn load(&self) -> Result<Element> {
-        Element::parse(self.text).map_err(|e| e.in_file(&PathBuf::from(format!("elements/{}.toml", self.name))))
     }
 }
 

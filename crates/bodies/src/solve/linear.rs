@@ -69,7 +69,7 @@ impl System {
     ///
     /// # Errors
     /// The matrix does not fit into memory.
-    pub(crate) fn renewed(&self, entries: &Entries, support: &Support) -> Result<System> {
+    pub fn renewed(&self, entries: &Entries, support: &Support) -> Result<System> {
         System::of(self.pattern.clone(), entries, support)
     }
 

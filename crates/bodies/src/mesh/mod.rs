@@ -256,14 +256,14 @@ fn entry(element: &Element, format: Format) -> Option<&FormatEntry> {
 fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Result<Arc<Element>> {
     let number = block.cell_type;
     let serves = |element: &&Arc<Element>| entry(element, format).is_some_and(|e| e.cell_type == number);
-    let shipped_number = |s: &crate::element::Shipped| match format {
+    let shipped_number = |s: &crate::element::ElementFile| match format {
         Format::Gmsh => s.gmsh,
         Format::Vtk => s.vtk,
     };
     let element = match own.iter().find(serves) {
         Some(element) => element.clone(),
         None => match SHIPPED.iter().find(|s| shipped_number(s) == Some(i64::from(number))) {
-            Some(shipped) => Arc::new(shipped.load()?),
+            Some(shipped) => Arc::new(Element::shipped(shipped)?),
             None => {
                 let cells = block.connectivity.len() / block.nodes_per_cell.max(1);
                 let known: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();

@@ -16,11 +16,10 @@ use crate::error::{Error, Result};
 use crate::file::{create_folder, write_whole};
 use crate::material::Material;
 use crate::solve::{Ending, Standing};
+use springfit_shipped::EXPERIMENTS;
 use std::path::{Path, PathBuf};
 use surface::{of_surface, surface};
 
-/// The files of the paper whose method this is: the index, its scenes and their meshes, by path.
-const SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/paper.rs"));
 const INDEX: &str = "paper/index.toml";
 /// Random shapes of each element that is timed.
 const SHAPES: usize = 100;
@@ -35,12 +34,12 @@ const YOUNG: f64 = 10e3;
 pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
     let differs =
         |(name, text): &&(&str, &str)| std::fs::read(folder.join(name)).is_ok_and(|old| old != text.as_bytes());
-    if let Some((name, _)) = SHIPPED.iter().find(differs) {
+    if let Some((name, _)) = EXPERIMENTS.iter().find(differs) {
         let index = folder.join(INDEX);
         let problem = "differs from the shipped file, which would replace it: run what is there with --index";
         return Err(Error::new(format!("{problem} {}, or move it away", index.display())).in_file(&folder.join(name)));
     }
-    for (name, text) in SHIPPED {
+    for (name, text) in EXPERIMENTS {
         let path = folder.join(name);
         create_folder(path.parent().unwrap_or(folder))?;
         write_whole(&path, text.as_bytes())?;
@@ -54,7 +53,7 @@ impl Index {
     /// # Errors
     /// None: it is tested.
     pub fn shipped() -> Result<Index> {
-        let text = SHIPPED.iter().find(|(name, _)| *name == INDEX).map_or("", |(_, text)| text);
+        let text = EXPERIMENTS.iter().find(|(name, _)| *name == INDEX).map_or("", |(_, text)| text);
         Index::parse(text)
     }
 }

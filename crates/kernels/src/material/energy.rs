@@ -6,6 +6,7 @@ use crate::file;
 use crate::symbolic::{Expr, Jet, Program, Scope};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use serde::Deserialize;
+use springfit_shipped::MATERIALS;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -63,9 +64,6 @@ struct Invariants {
     values: [f64; 4],
 }
 
-/// Name and text of the files of the folder `materials`, by name.
-pub static SHIPPED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/materials.rs"));
-
 impl Energy {
     /// The shipped energy of that name, or that of the file of that path, with the moduli of `material`.
     ///
@@ -76,12 +74,12 @@ impl Energy {
             let path = Path::new(name_or_path);
             return Energy::parse(&file::read_text(path)?, material).map_err(|e| e.in_file(path));
         }
-        match SHIPPED.iter().find(|(name, _)| *name == name_or_path) {
+        match MATERIALS.iter().find(|(name, _)| *name == name_or_path) {
             Some((name, text)) => {
                 Energy::parse(text, material).map_err(|e| e.in_file(Path::new(&format!("materials/{name}.toml"))))
             }
             None => {
-                let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
+                let names: Vec<_> = MATERIALS.iter().map(|(name, _)| *name).collect();
                 let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
                 Err(Error::expected("energy", expected, format!("\"{name_or_path}\"")))
             }

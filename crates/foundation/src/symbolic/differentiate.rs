@@ -46,7 +46,7 @@ impl Expr {
 
 impl Expr {
     /// At least as many parts as a derivative has before zeros drop out: a product repeats all its factors for each.
-    pub(crate) fn most_parts_of_derivative(&self) -> usize {
+    pub fn most_parts_of_derivative(&self) -> usize {
         match self {
             Expr::Number(_) | Expr::Variable(_) => 1,
             Expr::Sum(inner) => 1 + inner.iter().map(Expr::most_parts_of_derivative).sum::<usize>(),

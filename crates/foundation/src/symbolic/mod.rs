@@ -169,7 +169,7 @@ impl Expr {
     }
 
     /// How many numbers, variables and operations it consists of.
-    pub(crate) fn parts(&self) -> usize {
+    pub fn parts(&self) -> usize {
         1 + match self {
             Expr::Number(_) | Expr::Variable(_) => 0,
             Expr::Sum(inner) | Expr::Product(inner) => inner.iter().map(Expr::parts).sum(),

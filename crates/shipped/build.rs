@@ -1,5 +1,5 @@
-//! Build script: puts every element file of this folder into the library, with the cell types it serves, every file of the
-//! folder `materials`, and the experiments of `scenes/paper` with the meshes they name.
+//! Embeds every file of `elements`, with the cell types it serves, every file of `materials`, and the experiments of
+//! `scenes/paper` with the meshes they name.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -18,13 +18,16 @@ fn main() {
     let meshes = files("scenes/meshes", "msh").into_iter().filter(named);
     let code = scenes.iter().map(|(name, path, _)| included(&format!("paper/{name}.toml"), path));
     let code = code.chain(meshes.map(|(name, path, _)| included(&format!("meshes/{name}.msh"), &path)));
-    write("paper.rs", &code.collect::<Vec<_>>());
+    write("experiments.rs", &code.collect::<Vec<_>>());
 }
 
 /// Name, path and text of the files of a folder with that ending, by name.
 fn files(folder: &str, ending: &str) -> Vec<(String, PathBuf, String)> {
-    println!("cargo::rerun-if-changed={folder}");
-    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join(folder);
+    let package = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    // The package links to the folders of the repository; where a checkout has no links they are found from here.
+    let linked = package.join(folder);
+    let folder = if linked.is_dir() { linked } else { package.join("../..").join(folder) };
+    println!("cargo::rerun-if-changed={}", folder.display());
     let mut paths: Vec<PathBuf> = fs::read_dir(&folder)
         .expect("the folder can be read")
         .map(|entry| entry.expect("an entry can be read").path())
@@ -47,7 +50,7 @@ fn element(name: &str, path: &Path, text: &str) -> String {
     let table: toml::Table = text.parse().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let cell_type = |format: &str| table.get("formats").and_then(|f| f.get(format)?.get("type")?.as_integer());
     let (gmsh, vtk) = (cell_type("gmsh"), cell_type("vtk"));
-    format!("Shipped {{ name: {name:?}, gmsh: {gmsh:?}, vtk: {vtk:?}, text: include_str!({path:?}) }},")
+    format!("ElementFile {{ name: {name:?}, gmsh: {gmsh:?}, vtk: {vtk:?}, text: include_str!({path:?}) }},")
 }
 
 fn write(file: &str, entries: &[String]) {

@@ -11,7 +11,7 @@ pub use outcome::{Family, StabilityOutcome, StabilityRow, Verdict};
 pub use scenes::sweep_scene;
 
 use super::run::Progress;
-use crate::element::{Element, SHIPPED, Shipped};
+use crate::element::{Element, SHIPPED};
 use crate::error::Result;
 use elements::sweep_element;
 use std::time::Instant;
@@ -42,6 +42,6 @@ pub fn sweep(element: Option<Element>, progress: &mut Progress) -> Result<Stabil
 }
 
 fn shipped() -> Result<Vec<Element>> {
-    let all: Vec<Element> = SHIPPED.iter().map(Shipped::load).collect::<Result<_>>()?;
+    let all: Vec<Element> = SHIPPED.iter().map(Element::shipped).collect::<Result<_>>()?;
     Ok(all.into_iter().filter(|element| element.dimension() > 1 && element.nodes() <= NODES).collect())
 }

@@ -1,0 +1,8 @@
+//! What every layer of springfit needs: errors, files, kinds of numbers, symbolic expressions.
+
+#![forbid(unsafe_code)]
+
+pub mod error;
+pub mod file;
+pub mod scalar;
+pub mod symbolic;

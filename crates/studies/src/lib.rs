@@ -1,0 +1,10 @@
+//! Scene files, and the studies made from them.
+
+#![forbid(unsafe_code)]
+
+pub mod study;
+
+// The layers below, by the same names as everywhere.
+use springfit_bodies::{dynamics, mesh, model, solve, whole};
+use springfit_foundation::{error, file, scalar, symbolic};
+use springfit_kernels::{element, fit, material, springs, stiffness};
