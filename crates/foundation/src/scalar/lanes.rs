@@ -11,24 +11,72 @@ pub struct Lanes<S: Simd> {
     values: S::f64s,
 }
 
-impl<S: Simd> Lanes<S> {
-    pub const COUNT: usize = S::F64_LANES;
+/// Several numbers of `f64` that are computed together.
+pub trait Packed: Real {
+    /// How many.
+    const COUNT: usize;
+
+    /// `[COUNT]`.
+    fn as_slice(&self) -> &[f64];
+
+    /// `[COUNT]`.
+    fn as_mut_slice(&mut self) -> &mut [f64];
+}
+
+impl<S: Simd> Packed for Lanes<S> {
+    const COUNT: usize = S::F64_LANES;
 
     #[inline(always)]
-    pub fn splat(simd: S, value: f64) -> Lanes<S> {
-        Lanes { simd, values: simd.splat_f64s(value) }
-    }
-
-    /// `[lanes]`.
-    #[inline(always)]
-    pub fn as_slice(&self) -> &[f64] {
+    fn as_slice(&self) -> &[f64] {
         bytemuck::cast_slice(std::slice::from_ref(&self.values))
     }
 
-    /// `[lanes]`.
     #[inline(always)]
-    pub fn as_mut_slice(&mut self) -> &mut [f64] {
+    fn as_mut_slice(&mut self) -> &mut [f64] {
         bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.values))
+    }
+}
+
+/// A single number: what is left where the machine has no registers for more.
+impl Packed for f64 {
+    const COUNT: usize = 1;
+
+    #[inline(always)]
+    fn as_slice(&self) -> &[f64] {
+        std::slice::from_ref(self)
+    }
+
+    #[inline(always)]
+    fn as_mut_slice(&mut self) -> &mut [f64] {
+        std::slice::from_mut(self)
+    }
+}
+
+/// Work that is written once for every width of registers.
+pub trait PackedWork {
+    type Output;
+
+    /// `zero` selects the kind of number.
+    fn run<T: Packed>(self, zero: T) -> Self::Output;
+}
+
+/// Does the work with the widest registers of this machine.
+pub fn widest<W: PackedWork>(work: W) -> W::Output {
+    match pulp::Arch::new() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        pulp::Arch::V4(simd) => work.run(Lanes::splat(simd, 0.0)),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        pulp::Arch::V3(simd) => work.run(Lanes::splat(simd, 0.0)),
+        #[cfg(target_arch = "aarch64")]
+        pulp::Arch::Neon(simd) => work.run(Lanes::splat(simd, 0.0)),
+        _ => work.run(0.0),
+    }
+}
+
+impl<S: Simd> Lanes<S> {
+    #[inline(always)]
+    pub fn splat(simd: S, value: f64) -> Lanes<S> {
+        Lanes { simd, values: simd.splat_f64s(value) }
     }
 }
 
@@ -52,6 +100,13 @@ operator!(Div, div, div_f64s);
 
 impl<S: Simd> Scalar for Lanes<S> {
     type Constant = f64;
+
+    const UNROLLED: bool = true;
+
+    #[inline(never)]
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.simd.vectorize(Work(work))
+    }
 
     #[inline(always)]
     fn exact(value: f64) -> f64 {
@@ -103,11 +158,6 @@ impl<S: Simd> Real for Lanes<S> {
     }
 
     #[inline(always)]
-    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
-        self.simd.vectorize(Work(work))
-    }
-
-    #[inline(always)]
     fn rounded(&self) -> f64 {
         self.as_slice()[0]
     }
@@ -119,7 +169,16 @@ impl<S: Simd> Real for Lanes<S> {
     }
 }
 
-pub(super) struct Work<F>(pub F);
+/// Does the work with instructions that round `a b + c` once, where the machine has them.
+pub(super) fn with_fused_products<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return Simd::vectorize(simd, Work(work));
+    }
+    work()
+}
+
+struct Work<F>(F);
 
 impl<R, F: FnOnce() -> R> WithSimd for Work<F> {
     type Output = R;

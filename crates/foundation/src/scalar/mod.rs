@@ -7,7 +7,7 @@ mod lanes;
 mod sum;
 mod twofold;
 
-pub use lanes::Lanes;
+pub use lanes::{Lanes, Packed, PackedWork, widest};
 pub use sum::Sum;
 pub use twofold::Twofold;
 
@@ -24,6 +24,15 @@ pub trait Scalar:
 {
     /// A number that is the same for all elements: entries of a tabulation, moduli.
     type Constant: Clone + Zero + One;
+
+    /// Whether a kernel is worth a copy for each of the common numbers of nodes and springs, in which its loops unroll.
+    const UNROLLED: bool = false;
+
+    /// Does the work in a function of its own, compiled for the machine's instructions. It is never inlined into its caller, so that
+    /// the compiler optimises each kernel once and by itself.
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        outlined(work)
+    }
 
     /// `value` exactly, where the type can.
     fn exact(value: f64) -> Self::Constant;
@@ -74,6 +83,11 @@ pub trait Scalar:
     }
 }
 
+#[inline(never)]
+fn outlined<R>(work: impl FnOnce() -> R) -> R {
+    work()
+}
+
 // Vectors of a known dimension. Loops instead of closures: what is not inlined into the function that the processor's
 // instructions were chosen for does not use them.
 
@@ -85,9 +99,6 @@ pub fn zeros<T: Scalar, const D: usize>(zero: &T) -> [T; D] {
 /// What the solvers need besides: roots and choices, lane by lane.
 pub trait Real: Scalar<Constant = f64> {
     fn sqrt(self) -> Self;
-
-    /// Does the work in a function of its own that is compiled for the machine's instructions.
-    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R;
 
     /// `yes` where `self > 0`, otherwise `no`; also where `self` is not a number.
     fn choose(&self, yes: &Self, no: &Self) -> Self;
@@ -120,11 +131,6 @@ impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> f64 {
         f64::sqrt(self)
-    }
-
-    #[inline(always)]
-    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
-        work()
     }
 
     #[inline(always)]

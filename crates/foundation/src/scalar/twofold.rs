@@ -1,6 +1,6 @@
 //! Numbers of twice the digits of `f64`, the reference that rounding is measured against, and `f32`, the other way.
 
-use super::lanes::Work;
+use super::lanes::with_fused_products;
 use super::{Real, Scalar};
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -101,6 +101,12 @@ impl Scalar for Twofold {
         10.0 * 2f64.powi(-106)
     }
 
+    /// For the machine's products that are rounded once with their sum.
+    #[inline(never)]
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        with_fused_products(work)
+    }
+
     fn given() -> f64 {
         f64::EPSILON / 2.0
     }
@@ -137,11 +143,6 @@ impl Real for Twofold {
         }
         let rest = self - &Twofold::from(root).times(root);
         fast_two_sum(root, rest.hi / (2.0 * root))
-    }
-
-    /// For the machine's products that are rounded once with their sum.
-    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
-        pulp::Arch::new().dispatch(Work(work))
     }
 
     fn rounded(&self) -> f64 {
@@ -188,10 +189,6 @@ impl Scalar for f32 {
 impl Real for f32 {
     fn sqrt(self) -> f32 {
         f32::sqrt(self)
-    }
-
-    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
-        work()
     }
 
     fn rounded(&self) -> f64 {

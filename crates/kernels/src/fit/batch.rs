@@ -1,18 +1,17 @@
 //! Fits of many cells, one cell per lane of the machine's registers.
 
 use super::careful::Careful;
+use super::closed::Closed;
 use super::constrained::solve_nonnegative;
 use super::least_squares::{normal_equations, off_diagonal_equations};
 use super::method::{Method, Verdict};
-use super::nodal::{Nodal, is_shorter};
 use super::normal::{Normal, Rank};
-use super::{Certificate, Fit, Objective, Weight};
+use super::{Certificate, Fit};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Lanes, Real, Scalar};
+use crate::scalar::{Packed, PackedWork, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, Placement, gather};
-use pulp::{Simd, WithSimd};
 
 /// The cells of one block and where their constants go.
 pub struct Batch<'a> {
@@ -53,22 +52,21 @@ impl Batch<'_> {
     /// # Errors
     /// The first cell that has no stiffness, from 0.
     pub fn run(self) -> Result<Tally, (usize, Fault)> {
-        pulp::Arch::new().dispatch(self)
+        widest(self)
     }
 }
 
-impl WithSimd for Batch<'_> {
+impl PackedWork for Batch<'_> {
     type Output = Result<Tally, (usize, Fault)>;
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+    fn run<T: Packed>(self, zero: T) -> Self::Output {
         let (n, m) = (self.element.nodes(), self.springs.len());
-        let mut room = Room::new(simd, &self);
+        let mut room = Room::new(zero, &self);
         let mut tally = Tally::default();
         let cells = self.connectivity.len() / n;
         let (mut cell, mut alone) = (0, 0);
         while cell < cells {
-            let count = if cell < alone { 1 } else { Lanes::<S>::COUNT.min(cells - cell) };
+            let count = if cell < alone { 1 } else { T::COUNT.min(cells - cell) };
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             let constants = &mut self.constants[cell * m..(cell + count) * m];
             if room.fit(nodes, constants, &mut tally) {
@@ -86,36 +84,25 @@ impl WithSimd for Batch<'_> {
 }
 
 /// What the cells of one register's width need.
-struct Room<'a, S: Simd> {
+struct Room<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
     points: &'a [f64],
     moduli: Moduli,
     fit: Fit,
-    /// Of the objectives with a closed form.
-    weight: Weight,
+    /// Of the objectives that it serves.
+    closed: Closed<T>,
     /// Of the others.
-    method: Option<Method<Lanes<S>>>,
-    x: Vec<Lanes<S>>,
+    method: Option<Method<T>>,
+    x: Vec<T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
-    measured: Vec<Lanes<S>>,
+    measured: Vec<T>,
     placement: Placement,
-    geometry: Geometry<Lanes<S>>,
-    /// Whether `M = 2I`: each constant is half of its right-hand side.
-    decoupled: bool,
-    /// Whether the constants are found by way of the nodes.
-    by_nodes: bool,
-    nodal: Nodal<Lanes<S>>,
-    normal: Normal<Lanes<S>>,
-    tied: Normal<Lanes<S>>,
-    /// The equations of a single cell whose constants are bounded.
-    single: Normal,
+    geometry: Geometry<T>,
 }
 
-impl<'a, S: Simd> Room<'a, S> {
-    #[inline(always)]
-    fn new(simd: S, batch: &Batch<'a>) -> Room<'a, S> {
-        let zero = Lanes::splat(simd, 0.0);
+impl<'a, T: Packed> Room<'a, T> {
+    fn new(zero: T, batch: &Batch<'a>) -> Room<'a, T> {
         let Batch { element, springs, points, moduli, fit, .. } = *batch;
         Room {
             element,
@@ -123,47 +110,26 @@ impl<'a, S: Simd> Room<'a, S> {
             points,
             moduli,
             fit,
-            weight: fit.objective.weight().unwrap_or(Weight::None),
+            closed: Closed::of(springs, &fit),
             method: Method::of_kind(&zero, springs, &fit),
-            x: vec![zero; element.nodes() * element.dimension()],
-            measured: vec![zero; springs.functions.len() * element.nodes() * element.dimension()],
+            x: vec![zero.clone(); element.nodes() * element.dimension()],
+            measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
             placement: Placement::new(&element.tabulation),
             geometry: Geometry::of_kind(&zero, &element.tabulation),
-            decoupled: fit.objective == Objective::Frobenius(Weight::OffDiagonal)
-                && !fit.tied
-                && springs.content.is_none()
-                && springs.functions.is_empty()
-                && springs.parallel.is_empty(),
-            by_nodes: fit.objective == Objective::Frobenius(Weight::None) && !fit.tied && is_shorter(springs),
-            nodal: Nodal::default(),
-            normal: Normal::default(),
-            tied: Normal::default(),
-            single: Normal::default(),
         }
     }
 
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
     /// Jacobian of one is not safely positive or its equations are not regular.
-    #[inline(always)]
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
-        if self.weight == Weight::OffDiagonal && !self.springs.functions.is_empty() {
+        if self.closed.is_foreign_to(self.springs) || !self.gather(nodes) {
             return false;
         }
-        if !self.gather(nodes) {
-            return false;
-        }
-        if !self.geometry.update(&self.element.tabulation, &self.x) {
-            return false;
-        }
-        if !self.measure(nodes.len() / self.element.nodes()) {
-            return false;
-        }
-        if let Some(mut method) = self.method.take() {
-            let zero = self.x[0].zero();
-            zero.vectorize(
-                #[inline(always)]
-                || method.solve(self.springs, &self.x, &self.geometry, &self.moduli, &self.measured),
-            );
+        let Some(mut method) = self.method.take() else { return self.fit_closed(constants) };
+        let regular =
+            self.geometry.update(&self.element.tabulation, &self.x) && self.measure(nodes.len() / self.element.nodes());
+        if regular {
+            method.solve(self.springs, &self.x, &self.geometry, &self.moduli, &self.measured);
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.lane(lane));
@@ -175,77 +141,40 @@ impl<'a, S: Simd> Room<'a, S> {
                 }
                 tally.add(verdict);
             }
-            self.method = Some(method);
-            return true;
         }
-        if self.by_nodes {
-            if !self.nodal.solve(self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal) {
-                return false;
-            }
-            self.write(constants);
-            if self.fit.nonnegative && constants.iter().any(|k| *k < 0.0) {
-                let (springs, geometry) = (self.springs, &self.geometry);
-                normal_equations(self.weight, springs, &self.x, geometry, &self.moduli, &mut self.normal);
-                let equations = std::mem::take(&mut self.normal);
-                self.bound(&equations, constants);
-                self.normal = equations;
-            }
-            return true;
-        }
-        normal_equations(self.weight, self.springs, &self.x, &self.geometry, &self.moduli, &mut self.normal);
-        if self.decoupled {
-            self.normal.rhs.iter_mut().for_each(|b| *b = b.scaled(&0.5));
-            self.write(constants);
-            if self.fit.nonnegative {
-                constants.iter_mut().for_each(|k| *k = k.max(0.0));
-            }
-            return true;
-        }
-        let equations = if self.fit.tied {
-            self.normal.tied(&self.springs.groups, self.springs.names.len(), &mut self.tied);
-            &mut self.tied
-        } else {
-            &mut self.normal
-        };
-        // The bounded optimum is found from the equations themselves, which the elimination overwrites.
-        let kept = self.fit.nonnegative.then(|| equations.clone());
-        if !equations.solve_regular() {
-            return false;
-        }
-        self.write(constants);
-        if let Some(kept) = kept {
-            self.bound(&kept, constants);
-        }
-        true
+        self.method = Some(method);
+        regular
     }
 
-    /// The bounded optimum of the cells, one per lane of the equations, that have a constant below zero.
-    #[inline(always)]
-    fn bound(&mut self, equations: &Normal<Lanes<S>>, constants: &mut [f64]) {
-        for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
+    /// [`Room::fit`] by the closed form.
+    fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
+        let Room { element, springs, moduli, fit, .. } = *self;
+        if !self.closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
+            return false;
+        }
+        let m = springs.len();
+        for s in 0..m {
+            let k = self.closed.constant(springs, s).as_slice();
+            for (cell, k) in (0..constants.len() / m).zip(k) {
+                constants[cell * m + s] = *k;
+            }
+        }
+        if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
+            return true;
+        }
+        let Some(equations) = self.closed.equations(springs, &self.x, &self.geometry, &moduli) else {
+            constants.iter_mut().for_each(|k| *k = k.max(0.0));
+            return true;
+        };
+        for (lane, constants) in constants.chunks_exact_mut(m).enumerate() {
             if constants.iter().all(|k| *k >= 0.0) {
                 continue;
             }
-            self.single.gram.clear();
-            self.single.gram.extend(equations.gram.iter().map(|entry| entry.as_slice()[lane]));
-            self.single.rhs.clear();
-            self.single.rhs.extend(equations.rhs.iter().map(|entry| entry.as_slice()[lane]));
-            let (k, _) = solve_nonnegative(&self.single);
-            spread(&self.fit, self.springs, constants, &k);
+            let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
+            let (k, _) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
+            spread(&fit, springs, constants, &k);
         }
-    }
-
-    /// The solution of the equations as the constants of the cells, one per lane.
-    #[inline(always)]
-    fn write(&self, constants: &mut [f64]) {
-        let m = self.springs.len();
-        let cells = constants.len() / m;
-        for s in 0..m {
-            let k = if self.fit.tied { &self.tied.rhs[self.springs.groups[s]] } else { &self.normal.rhs[s] };
-            for cell in 0..cells {
-                constants[cell * m + s] = k.as_slice()[cell];
-            }
-        }
+        true
     }
 
     /// A single cell; in twice the digits if it is delicate, or its shape is.
@@ -260,7 +189,7 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         let Room { element, springs, moduli, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
-        if is_delicate || quality <= Lanes::<S>::delicate() {
+        if is_delicate || quality <= T::delicate() {
             let careful = Careful { element, springs, moduli, fit };
             let d = element.dimension();
             let mut given = x.clone();
@@ -278,7 +207,7 @@ impl<'a, S: Simd> Room<'a, S> {
         }
         let mut normal = Normal::default();
         if self.springs.functions.is_empty() {
-            normal_equations(self.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
+            normal_equations(self.closed.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
         } else {
             normal = off_diagonal_equations(self.springs, &x, &geometry, self.moduli);
         }
@@ -305,7 +234,7 @@ impl<'a, S: Simd> Room<'a, S> {
             let x = self.lane(lane);
             rows.fill(0.0);
             regular &= self.springs.function_gradients(&x, &mut rows);
-            let last = if lane == 0 { Lanes::<S>::COUNT } else { lane + 1 };
+            let last = if lane == 0 { T::COUNT } else { lane + 1 };
             self.measured
                 .iter_mut()
                 .zip(&rows)
@@ -316,7 +245,6 @@ impl<'a, S: Simd> Room<'a, S> {
 
     /// The coordinates of the cells' nodes from the first of each, as [`Placement`] has them, one cell per lane; lanes without a cell
     /// repeat the first. False if a cell of a surface or curve has no tangents.
-    #[inline(always)]
     fn gather(&mut self, nodes: &[usize]) -> bool {
         if self.element.space() > self.element.dimension() {
             return self.lay_out(nodes);
@@ -333,7 +261,7 @@ impl<'a, S: Simd> Room<'a, S> {
     fn lay_out(&mut self, nodes: &[usize]) -> bool {
         let n = self.element.nodes();
         let mut x = vec![0.0; self.x.len()];
-        for lane in 0..Lanes::<S>::COUNT {
+        for lane in 0..T::COUNT {
             let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
             if self.placement.place(&self.element.tabulation, self.points, cell, &mut x).is_err() {
                 return false;
@@ -343,12 +271,11 @@ impl<'a, S: Simd> Room<'a, S> {
         true
     }
 
-    #[inline(always)]
     fn gather_in<const D: usize>(&mut self, nodes: &[usize]) {
         let n = self.x.len() / D;
         let points = self.points.as_chunks::<D>().0;
         let x = &mut self.x.as_chunks_mut::<D>().0[..n];
-        for lane in 0..Lanes::<S>::COUNT {
+        for lane in 0..T::COUNT {
             let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
             let first = &points[cell[0]];
             for (x, &node) in x.iter_mut().zip(cell) {

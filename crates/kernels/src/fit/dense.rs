@@ -52,10 +52,10 @@ pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], inverse: &[T], m: u
 macro_rules! known_order {
     ($n:ident => $body:expr) => {
         match $n {
-            3 => known_order!(@ $n, 3, $body),
-            5 => known_order!(@ $n, 5, $body),
-            6 => known_order!(@ $n, 6, $body),
-            7 => known_order!(@ $n, 7, $body),
+            3 if T::UNROLLED => known_order!(@ $n, 3, $body),
+            5 if T::UNROLLED => known_order!(@ $n, 5, $body),
+            6 if T::UNROLLED => known_order!(@ $n, 6, $body),
+            7 if T::UNROLLED => known_order!(@ $n, 7, $body),
             _ => $body,
         }
     };

@@ -64,8 +64,16 @@ impl<T: Real> Divergence<T> {
     }
 
     /// Solves for the element in `reduced`, which must be seen through the weight `relative`, in every lane.
-    #[inline(always)]
     pub fn solve(&mut self, reduced: &Reduced<T>) {
+        let any = self.reached.clone();
+        any.vectorize(
+            #[inline(always)]
+            || self.minimise(reduced),
+        );
+    }
+
+    #[inline(always)]
+    fn minimise(&mut self, reduced: &Reduced<T>) {
         let (p, m, c) = (reduced.order, reduced.unknowns.len(), self.kappa.len());
         let h = reduced.rows();
         let one = self.reached.one();

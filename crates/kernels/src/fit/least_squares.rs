@@ -42,7 +42,6 @@ pub fn constants_in<T: Scalar>(
 }
 
 /// Fills in the lower triangle of `M`, and `b`, of the element with nodes at `x`, `[nodes × dimension]`.
-#[inline(always)]
 pub fn normal_equations<T: Scalar>(
     weight: Weight,
     springs: &Springs,
@@ -51,20 +50,20 @@ pub fn normal_equations<T: Scalar>(
     moduli: &Moduli<T::Constant>,
     normal: &mut Normal<T>,
 ) {
-    // As in the geometry: small sizes known at compile time.
-    match (springs.dimension, springs.nodes) {
-        (2, 3) => equations::<T, 2>(3, weight, springs, x, geometry, moduli, normal),
-        (2, 4) => equations::<T, 2>(4, weight, springs, x, geometry, moduli, normal),
-        (3, 4) => equations::<T, 3>(4, weight, springs, x, geometry, moduli, normal),
-        (3, 8) => equations::<T, 3>(8, weight, springs, x, geometry, moduli, normal),
-        (2, n) => equations::<T, 2>(n, weight, springs, x, geometry, moduli, normal),
-        (1, n) => equations::<T, 1>(n, weight, springs, x, geometry, moduli, normal),
-        (_, n) => equations::<T, 3>(n, weight, springs, x, geometry, moduli, normal),
-    }
+    let n = springs.nodes;
+    x[0].vectorize(
+        #[inline(always)]
+        || match springs.dimension {
+            1 => equations::<T, 1>(n, weight, springs, x, geometry, moduli, normal),
+            2 => equations::<T, 2>(n, weight, springs, x, geometry, moduli, normal),
+            _ => equations::<T, 3>(n, weight, springs, x, geometry, moduli, normal),
+        },
+    );
 }
 
+/// [`normal_equations`] in D dimensions; a number of nodes that is known to the compiler unrolls the loops.
 #[inline(always)]
-fn equations<T: Scalar, const D: usize>(
+pub(super) fn equations<T: Scalar, const D: usize>(
     n: usize,
     weight: Weight,
     springs: &Springs,
@@ -260,8 +259,15 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
 
     /// The last row of `M` and entry of `b`: the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V the
     /// content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
-    #[inline(always)]
     pub fn content(&self, weight: Weight, row: &mut [T], rhs: &mut [T]) {
+        self.lambda.vectorize(
+            #[inline(always)]
+            || self.add_content(weight, row, rhs),
+        );
+    }
+
+    #[inline(always)]
+    fn add_content(&self, weight: Weight, row: &mut [T], rhs: &mut [T]) {
         let last = self.springs.len() - 1;
         let zero = self.lambda.zero();
         let two = zero.one() + &zero.one();

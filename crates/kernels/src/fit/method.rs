@@ -100,7 +100,6 @@ impl<T: Real> Method<T> {
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] needs it.
-    #[inline(always)]
     pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli, measured: &[T]) {
         self.reduced.set(self.weight, springs, x, geometry, moduli, measured);
         match &mut self.solver {
@@ -113,10 +112,15 @@ impl<T: Real> Method<T> {
                 normal.rhs.resize(c, zero);
                 let (p, h) = (self.reduced.order, self.reduced.rows());
                 row_products(h, &self.reduced.stiffness[..p * p], p, false, &mut products[..m * p]);
-                for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
-                    let row = s * p..(s + 1) * p;
-                    normal.rhs[unknown] = normal.rhs[unknown].clone() + &inner(&h[row.clone()], &products[row]);
-                }
+                x[0].vectorize(
+                    #[inline(always)]
+                    || {
+                        for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
+                            let row = s * p..(s + 1) * p;
+                            normal.rhs[unknown] = normal.rhs[unknown].clone() + &inner(&h[row.clone()], &products[row]);
+                        }
+                    },
+                );
             }
             Solver::Spectral(solver) => solver.solve(&self.reduced),
             Solver::Divergence(solver) => solver.solve(&self.reduced),

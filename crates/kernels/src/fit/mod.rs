@@ -2,6 +2,7 @@
 
 mod batch;
 mod careful;
+mod closed;
 mod closed_form;
 mod congruence;
 mod constrained;

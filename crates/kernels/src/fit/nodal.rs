@@ -41,7 +41,6 @@ pub fn is_shorter(springs: &Springs) -> bool {
 impl<T: Scalar> Nodal<T> {
     /// Writes the constants of the element with nodes at `x`, `[nodes × dimension]`, into `normal.rhs`; false if a pivot
     /// vanishes.
-    #[inline(always)]
     pub fn solve(
         &mut self,
         springs: &Springs,
@@ -50,10 +49,13 @@ impl<T: Scalar> Nodal<T> {
         moduli: &Moduli<T::Constant>,
         normal: &mut Normal<T>,
     ) -> bool {
-        match springs.dimension {
-            2 => self.solve_in::<2>(springs, x, geometry, moduli, normal),
-            _ => self.solve_in::<3>(springs, x, geometry, moduli, normal),
-        }
+        x[0].vectorize(
+            #[inline(always)]
+            || match springs.dimension {
+                2 => self.solve_in::<2>(springs, x, geometry, moduli, normal),
+                _ => self.solve_in::<3>(springs, x, geometry, moduli, normal),
+            },
+        )
     }
 
     #[inline(always)]

@@ -53,25 +53,29 @@ impl<T> Normal<T> {
 
 impl<T: Scalar> Normal<T> {
     /// The equations of one constant per group: `M_IJ = Σ_{s∈I, t∈J} M_st`, `b_I = Σ_{s∈I} b_s`.
-    #[inline(always)]
     pub fn tied(&self, groups: &[usize], count: usize, tied: &mut Normal<T>) {
         let zero = self.rhs[0].zero();
         tied.gram.resize(count * count, zero.clone());
-        tie(
-            &self.gram,
-            &self.gram,
-            groups,
-            count,
-            count,
-            &mut tied.gram,
-            #[inline(always)]
-            |entry, _| entry.clone(),
-        );
         tied.rhs.clear();
-        tied.rhs.resize(count, zero);
-        for (s, &i) in groups.iter().enumerate() {
-            tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
-        }
+        tied.rhs.resize(count, zero.clone());
+        zero.vectorize(
+            #[inline(always)]
+            || {
+                tie(
+                    &self.gram,
+                    &self.gram,
+                    groups,
+                    count,
+                    count,
+                    &mut tied.gram,
+                    #[inline(always)]
+                    |entry, _| entry.clone(),
+                );
+                for (s, &i) in groups.iter().enumerate() {
+                    tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
+                }
+            },
+        );
     }
 
     /// The equations of these springs, or of one constant per group if they are `tied`.
@@ -88,22 +92,23 @@ impl<T: Scalar> Normal<T> {
     /// lane; the diagonal is kept, the lower triangle not.
     ///
     /// No scaling is needed: each pivot and its diagonal entry scale alike.
-    #[inline(always)]
     pub fn solve_regular(&mut self) -> bool {
         self.solve_to(T::given())
     }
 
     /// The same where what is given errs by `rounding`.
-    #[inline(always)]
     pub fn solve_to(&mut self, rounding: f64) -> bool {
-        // A size known at compile time unrolls the loops of the small systems, where they are most of the work.
-        match self.size() {
-            0 => true,
-            3 => self.factorize(3, rounding),
-            6 => self.factorize(6, rounding),
-            28 => self.factorize(28, rounding),
-            m => self.factorize(m, rounding),
-        }
+        let Some(any) = self.rhs.first().cloned() else { return true };
+        // A size that is known to the compiler unrolls the loops of the small systems, where they are most of the work.
+        any.vectorize(
+            #[inline(always)]
+            || match self.size() {
+                3 if T::UNROLLED => self.factorize(3, rounding),
+                6 if T::UNROLLED => self.factorize(6, rounding),
+                28 if T::UNROLLED => self.factorize(28, rounding),
+                m => self.factorize(m, rounding),
+            },
+        )
     }
 
     #[inline(always)]

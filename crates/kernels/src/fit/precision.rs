@@ -74,10 +74,7 @@ pub(super) fn solved<T: Real>(
 ) -> Option<Method<T>> {
     let mut method = Method::of_kind(&x[0], springs, fit)?;
     let measured: Vec<T> = measured.iter().map(|g| x[0].constant(g)).collect();
-    x[0].vectorize(
-        #[inline(always)]
-        || method.solve(springs, x, geometry, moduli, &measured),
-    );
+    method.solve(springs, x, geometry, moduli, &measured);
     Some(method)
 }
 

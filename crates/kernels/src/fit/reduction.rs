@@ -64,7 +64,6 @@ impl<T: Real> Reduced<T> {
 
     /// Fills in the element with nodes at `x`, `[nodes × dimension]`; `measured` are the gradients of the springs that
     /// measure a function, `[springs × nodes·dimension]`.
-    #[inline(always)]
     pub fn set(
         &mut self,
         weight: Weight,
@@ -74,11 +73,14 @@ impl<T: Real> Reduced<T> {
         moduli: &Moduli,
         measured: &[T],
     ) {
-        match springs.dimension {
-            1 => self.set_in::<1>(weight, springs, x, geometry, moduli, measured),
-            2 => self.set_in::<2>(weight, springs, x, geometry, moduli, measured),
-            _ => self.set_in::<3>(weight, springs, x, geometry, moduli, measured),
-        }
+        x[0].vectorize(
+            #[inline(always)]
+            || match springs.dimension {
+                1 => self.set_in::<1>(weight, springs, x, geometry, moduli, measured),
+                2 => self.set_in::<2>(weight, springs, x, geometry, moduli, measured),
+                _ => self.set_in::<3>(weight, springs, x, geometry, moduli, measured),
+            },
+        );
     }
 
     #[inline(always)]
@@ -340,19 +342,23 @@ impl<T: Real> Reduced<T> {
 
     /// The Gram matrix of the springs' matrices, `Σ_{s∈I, t∈J} (h_s·h_t)²`, lower triangle of order `[unknowns]`;
     /// `products` takes the `h_s·h_t`, `[springs × springs]`.
-    #[inline(always)]
     pub fn gram(&self, products: &mut [T], out: &mut [T]) {
         let (h, count) = (self.rows(), self.scales.len());
         row_products(h, h, self.order, true, products);
-        tie(
-            products,
-            products,
-            &self.unknowns,
-            count,
-            count,
-            out,
+        self.size.vectorize(
             #[inline(always)]
-            |a, b| a.clone() * b,
+            || {
+                tie(
+                    products,
+                    products,
+                    &self.unknowns,
+                    count,
+                    count,
+                    out,
+                    #[inline(always)]
+                    |a, b| a.clone() * b,
+                )
+            },
         );
     }
 

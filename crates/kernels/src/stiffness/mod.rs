@@ -54,22 +54,21 @@ impl<T: Scalar> Geometry<T> {
 
     /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m. Returns false where a Jacobian is not
     /// safely positive, see [`Scalar::delicate`]; what is wrong then, [`Geometry::set`] can tell.
-    #[inline(always)]
     pub fn update(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
-        // A number of nodes known at compile time unrolls the loops, which for few nodes are all overhead.
-        match (self.dimension, self.nodes) {
-            (2, 3) => self.update_in::<2>(3, table, x),
-            (2, 4) => self.update_in::<2>(4, table, x),
-            (3, 4) => self.update_in::<3>(4, table, x),
-            (3, 8) => self.update_in::<3>(8, table, x),
-            (2, n) => self.update_in::<2>(n, table, x),
-            (3, n) => self.update_in::<3>(n, table, x),
-            (_, n) => self.update_in::<1>(n, table, x),
-        }
+        let n = self.nodes;
+        x[0].vectorize(
+            #[inline(always)]
+            || match table.dimension {
+                1 => self.update_in::<1>(n, table, x),
+                2 => self.update_in::<2>(n, table, x),
+                _ => self.update_in::<3>(n, table, x),
+            },
+        )
     }
 
+    /// [`Geometry::update`] in D dimensions; a number of nodes that is known to the compiler unrolls the loops.
     #[inline(always)]
-    fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
+    pub(crate) fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let x = &x.as_chunks::<D>().0[..n];
         let mut positive = true;
         let flat = T::exact(T::delicate().powi(2));

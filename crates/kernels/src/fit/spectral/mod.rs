@@ -98,12 +98,23 @@ impl<T: Real> Spectral<T> {
     }
 
     /// Solves for the element in `reduced`, in every lane.
-    #[inline(always)]
     pub fn solve(&mut self, reduced: &Reduced<T>) {
+        let any = self.value.clone();
+        any.vectorize(
+            #[inline(always)]
+            || self.follow_path(reduced),
+        );
+    }
+
+    #[inline(always)]
+    fn follow_path(&mut self, reduced: &Reduced<T>) {
         let (p, c) = (reduced.order, self.kappa.len());
         let zero = self.value.zero();
         let one = zero.one();
-        self.start(reduced);
+        zero.vectorize(
+            #[inline(always)]
+            || self.start(reduced),
+        );
         let floor = one.constant(&at_half::<T>(EXACT));
         let complexity = (2 * p + if self.nonnegative { c } else { 0 }) as f64;
         let mut mu = zero.clone();
@@ -137,7 +148,10 @@ impl<T: Real> Spectral<T> {
                 self.kappa[i] = inside.choose(&kappa[i], &self.kappa[i]);
             }
             self.value = inside.choose(&t, &self.value);
-            self.derivatives(reduced, &kappa);
+            zero.vectorize(
+                #[inline(always)]
+                || self.derivatives(reduced, &kappa),
+            );
             if first {
                 mu = one.clone() / &self.gradient[c].negated();
                 first = false;
@@ -182,7 +196,10 @@ impl<T: Real> Spectral<T> {
             alpha = inside.choose(&whole, &alpha.clone().scaled(&0.5));
         }
         self.measure_curvature();
-        self.bound = self.bound(reduced, &mu);
+        self.bound = zero.vectorize(
+            #[inline(always)]
+            || self.bound(reduced, &mu),
+        );
         if T::epsilon() >= T::given() {
             reduced.residual(&self.kappa, &mut self.eigenvalues);
             mirror(&mut self.eigenvalues, reduced.order);
