@@ -2,24 +2,40 @@
 
 use proptest::prelude::*;
 use springfit::mesh::vtk::{Array, Grid, write};
-use springfit::mesh::{Format, MeshSource, SourceBlock, gmsh, vtk};
+use springfit::mesh::{Field, Format, Mesh, MeshSource, SourceBlock, gmsh, vtk};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 const GMSH_BARS: [&str; 4] = ["bar_41_ascii.msh", "bar_41_binary.msh", "bar_22_ascii.msh", "bar_22_binary.msh"];
-const VTK_BARS: [&str; 11] = [
+/// Written by meshio and VTK.
+const VTK_BARS: [&str; 22] = [
     "bar_ascii.vtu",
+    "bar_vtk_ascii.vtu",
     "bar_base64.vtu",
+    "bar_wide_big_endian.vtu",
     "bar_zlib.vtu",
     "bar_blocks.vtu",
+    "bar_zlib_blocks_big_endian.vtu",
     "bar_appended.vtu",
+    "bar_appended_big_endian.vtu",
     "bar_appended_zlib.vtu",
+    "bar_appended_zlib_blocks_big_endian.vtu",
+    "bar_appended_raw.vtu",
+    "bar_appended_raw_narrow.vtu",
+    "bar_appended_raw_big_endian.vtu",
+    "bar_appended_raw_zlib.vtu",
+    "bar_appended_raw_zlib_blocks.vtu",
+    "bar_appended_raw_zlib_blocks_big_endian.vtu",
     "bar_ascii.vtk",
     "bar_binary.vtk",
     "bar_42_ascii.vtk",
     "bar_42_binary.vtk",
     "bar_metadata.vtk",
 ];
+/// Two triangles with arrays of every type of numbers, written by VTK.
+const TYPES: [&str; 3] = ["types_ascii.vtu", "types_inline_big_endian.vtu", "types_raw_zlib.vtu"];
+/// The bar three times, each a piece, and grids without points, written by VTK.
+const PIECES: [&str; 3] = ["pieces_raw_zlib.vtu", "empty_inline_zlib.vtu", "empty_raw_zlib.vtu"];
 const PARAMETRIC_CUBES: [&str; 2] = ["cube_parametric_22.msh", "cube_parametric_41.msh"];
 
 fn folder() -> PathBuf {
@@ -27,7 +43,7 @@ fn folder() -> PathBuf {
 }
 
 fn all_files() -> impl Iterator<Item = &'static str> {
-    GMSH_BARS.into_iter().chain(VTK_BARS).chain(PARAMETRIC_CUBES)
+    GMSH_BARS.into_iter().chain(VTK_BARS).chain(TYPES).chain(PIECES).chain(PARAMETRIC_CUBES)
 }
 
 fn bytes_of(file: &str) -> Vec<u8> {
@@ -37,7 +53,8 @@ fn bytes_of(file: &str) -> Vec<u8> {
 fn parse(file: &str, bytes: &[u8]) -> springfit::error::Result<MeshSource> {
     match file.rsplit('.').next().unwrap() {
         "msh" => gmsh::parse(bytes),
-        ending => vtk::parse(bytes, ending),
+        "vtu" => vtk::parse_xml(bytes),
+        _ => vtk::parse_legacy(bytes),
     }
 }
 
@@ -106,7 +123,7 @@ fn gmsh_groups_come_from_physical_names() {
 
 #[test]
 fn vtk_groups_come_from_arrays_of_whole_numbers() {
-    let mesh = vtk::parse(&bytes_of("bar_zlib.vtu"), "vtu").unwrap();
+    let mesh = vtk::parse_xml(&bytes_of("bar_zlib.vtu")).unwrap();
     let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.cell_type, b.groups.join("+"))).collect();
     let expected = [(3, 9), (5, 2), (9, 1), (9, 2), (10, 3), (12, 3)];
     assert_eq!(blocks, expected.map(|(cell_type, tag)| (cell_type, format!("gmsh:physical={tag}"))));
@@ -282,7 +299,7 @@ fn counts_beyond_the_file_are_errors() {
     for section in [format!("POINTS {huge} double"), format!("CELLS {huge} {huge}"), format!("CELL_TYPES {huge}")] {
         for (encoding, data) in [("ASCII", "1 1\n"), ("BINARY", "\0\0\0\u{1}\0\0\0\u{1}")] {
             let head = format!("# vtk DataFile Version 3.0\n\n{encoding}\nDATASET UNSTRUCTURED_GRID\n");
-            let error = vtk::parse(format!("{head}{section}\n{data}").as_bytes(), "vtk").unwrap_err().to_string();
+            let error = vtk::parse_legacy(format!("{head}{section}\n{data}").as_bytes()).unwrap_err().to_string();
             assert!(error.contains(&format!(": expected {huge} ")), "{error}");
         }
     }
@@ -308,24 +325,27 @@ fn files_without_end_are_refused_unread() {
 
 #[test]
 fn tags_and_data_without_bound_are_refused() {
-    let error = |text: &str| vtk::parse(text.as_bytes(), "vtu").unwrap_err().to_string();
+    let error = |text: &str| vtk::parse_xml(text.as_bytes()).unwrap_err().to_string();
     let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
     let deep = text.replace("<Points>", &"<Points>".repeat(100_000));
-    assert_eq!(error(&deep), "Points: expected at most 32 tags inside one another, found 33");
-    let many = text.replace("<Piece ", &("<Piece/>".repeat(4096) + "<Piece "));
-    assert_eq!(error(&many), "expected at most 4096 pieces, found more");
+    assert_eq!(error(&deep), "line 6: Points: expected at most 32 tags inside one another, found 33");
+    let none = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>";
+    let many = text.replace("<Piece ", &(none.repeat(4096) + "<Piece "));
+    assert_eq!(error(&many), "line 5: expected at most 4096 pieces, found more");
     // 2000 arrays that share 300000 bytes, 4JMEAA in little-endian base64.
     let array = "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/>";
     let (arrays, data) = (array.repeat(2000), "A".repeat(400_000));
     let shared = format!(
-        "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><PointData>{arrays}</PointData>\
-         <AppendedData encoding=\"base64\">_4JMEAAAA{data}</AppendedData></VTKFile>"
+        "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>\
+         <Piece NumberOfPoints=\"0\" NumberOfCells=\"300000\"><Cells>{}</Cells><CellData>{arrays}</CellData></Piece>\
+         </UnstructuredGrid><AppendedData encoding=\"base64\">_4JMEAAAA{data}</AppendedData></VTKFile>",
+        ["types", "offsets"].map(|name| array.replace("Name=\"a\"", &format!("Name=\"{name}\""))).concat()
     );
     let most = (1 << 24) + 100 * shared.len();
     let found = (most / 300_000 + 1) * 300_000;
     let length = shared.len();
-    let expected = format!("a: expected at most {most} bytes of data up to here in a file of {length}, found {found}");
-    assert_eq!(error(&shared), expected);
+    let expected = format!("expected at most {most} bytes of data up to here in a file of {length}, found {found}");
+    assert_eq!(error(&shared), format!("line 1: CellData.a: {expected}"));
 }
 
 /// One tetrahedron.
@@ -383,7 +403,7 @@ fn pixels_become_quadrangles_and_names_lose_their_escapes() {
          LOOKUP_TABLE default\n4 -5\nVECTORS v float\n1 2 3 4 5 6\nFIELD more 2\nnote 1 1 string\na b\n\
          both 2 2 int\n1 2 3 4\nPOINT_DATA 4\nSCALARS id int\n1 2 3 4\n"
     );
-    let mesh = vtk::parse(text.as_bytes(), "vtk").unwrap();
+    let mesh = vtk::parse_legacy(text.as_bytes()).unwrap();
     let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.cell_type, &b.connectivity[..], b.groups.join("+"))).collect();
     let expected = [(9, &[0, 1, 3, 2][..], "my part=4".to_string()), (5, &[0, 1, 2][..], "my part=-5".to_string())];
     assert_eq!(blocks, expected);
@@ -399,13 +419,13 @@ fn an_array_with_many_values_names_no_groups() {
         let data = format!("CELL_DATA {count}\nSCALARS a int\n{}", numbers(most));
         format!("{LEGACY}CELLS {count} {}\n{cells}CELL_TYPES {count}\n{types}{data}", 2 * count)
     };
-    assert_eq!(vtk::parse(text(1000).as_bytes(), "vtk").unwrap().blocks.len(), 1);
-    assert_eq!(vtk::parse(text(999).as_bytes(), "vtk").unwrap().blocks.len(), 1000);
+    assert_eq!(vtk::parse_legacy(text(1000).as_bytes()).unwrap().blocks.len(), 1);
+    assert_eq!(vtk::parse_legacy(text(999).as_bytes()).unwrap().blocks.len(), 1000);
 }
 
 #[test]
 fn vtk_errors_say_what_was_expected_and_found() {
-    let legacy = |text: &str| vtk::parse(format!("{LEGACY}{text}").as_bytes(), "vtk").unwrap_err().to_string();
+    let legacy = |text: &str| vtk::parse_legacy(format!("{LEGACY}{text}").as_bytes()).unwrap_err().to_string();
     assert_eq!(legacy("CELLS 1 4\n3 0 1 4\nCELL_TYPES 1\n5\n"), "cell 0: expected point indices below 4, found 4");
     let count = "cell 0: expected 4 nodes for VTK cell type 10, found 3";
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n"), count);
@@ -416,21 +436,218 @@ fn vtk_errors_say_what_was_expected_and_found() {
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\n"), "the file ends before CELL_TYPES");
     let within = "the file ends within a line: expected a line end after its last number";
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5"), within);
-    let raw = vtk::parse(&bytes_of("bar_appended_raw.vtu"), "vtu").unwrap_err().to_string();
-    assert!(raw.starts_with("AppendedData: expected encoding base64, found raw"), "{raw}");
+}
+
+/// The error for a file in which the first of some bytes have been replaced by others.
+fn xml_error(file: &str, from: &str, to: &str) -> String {
+    let bytes = bytes_of(file);
+    let at = bytes.windows(from.len()).position(|window| window == from.as_bytes()).expect(from);
+    let damaged = [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat();
+    vtk::parse_xml(&damaged).unwrap_err().to_string()
+}
+
+#[test]
+fn errors_of_the_structure_name_the_line() {
+    let error = |from, to| xml_error("bar_ascii.vtu", from, to);
+    assert_eq!(error("</VTKFile>", ""), "the file ends before </VTKFile>");
+    let kind = "line 2: VTKFile: expected type UnstructuredGrid, found";
+    assert_eq!(error("\"UnstructuredGrid\"", "\"PolyData\""), format!("{kind} PolyData"));
+    assert_eq!(error("\"UnstructuredGrid\"", "\"Poly\nData\""), format!("{kind} Poly\u{fffd}Data"));
+    assert_eq!(error("<VTKFile", "<svg"), "line 2: expected <VTKFile>, found <svg>");
+    assert_eq!(error("</Points>", "</Cells>"), "line 70: expected </Points>, found </Cells>");
+    assert_eq!(error("<Piece", "<Part"), "line 245: expected </Part>, found </Piece>");
+    let order = "line 2: VTKFile: expected byte_order LittleEndian or BigEndian, found Little";
+    assert_eq!(error("LittleEndian", "Little"), order);
+    let count = "line 5: Piece.NumberOfPoints: expected a whole number, found \"-20\"";
+    assert_eq!(error("NumberOfPoints=\"20\"", "NumberOfPoints=\"-20\""), count);
+    let none = "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid/></VTKFile>";
+    let error = vtk::parse_xml(none.as_bytes()).unwrap_err().to_string();
+    assert_eq!(error, "UnstructuredGrid: expected at least one <Piece>, found none");
+}
+
+#[test]
+fn other_compressors_headers_and_encodings_are_refused() {
+    for other in ["vtkLZ4DataCompressor", "vtkLZMADataCompressor"] {
+        let expected = format!("line 2: VTKFile: expected compressor vtkZLibDataCompressor or none, found {other}");
+        assert_eq!(xml_error("bar_zlib.vtu", "vtkZLibDataCompressor", other), expected);
+    }
+    let header = "line 2: VTKFile: expected header_type UInt32 or UInt64, found UInt16";
+    assert_eq!(xml_error("bar_blocks.vtu", "UInt32", "UInt16"), header);
+    let encoding = xml_error("bar_appended.vtu", "encoding=\"base64\"", "encoding=\"hex\"");
+    assert!(encoding.ends_with(": AppendedData: expected encoding base64 or raw, found hex"), "{encoding}");
+}
+
+#[test]
+fn errors_of_an_array_name_it() {
+    let error = |from, to| xml_error("bar_ascii.vtu", from, to);
+    let twice = "line 206: CellData.gmsh:physical: expected 32 numbers, found 16";
+    assert_eq!(error("Name=\"gmsh:physical\"", "Name=\"gmsh:physical\" NumberOfComponents=\"2\""), twice);
+    assert_eq!(
+        error("NumberOfPoints=\"20\"", "NumberOfPoints=\"21\""),
+        "line 7: Points: expected 63 numbers, found 60"
+    );
+    assert_eq!(error("Name=\"offsets\"", "Name=\"ends\""), "Cells: expected an array \"offsets\", found none");
+    let kind = "expected one of Int8 to Int64, UInt8 to UInt64, Float32, Float64, found Int";
+    assert_eq!(error("type=\"Int64\"", "type=\"Int\""), format!("line 160: Cells.types.type: {kind}"));
+    let real = "line 160: Cells.types: expected a type of whole numbers, found Float64";
+    assert_eq!(error("type=\"Int64\"", "type=\"Float64\""), real);
+    assert_eq!(
+        error("format=\"ascii\"", "format=\"text\""),
+        "line 7: Points.format: expected ascii, binary or appended, found text"
+    );
+    let number = "line 8: Points: expected a number, found \"0.z00000000000e+00\"";
+    assert_eq!(error("\n0.", "\n0.z"), number);
+}
+
+#[test]
+fn stored_arrays_that_do_not_fit_are_refused() {
+    let bytes = xml_error("bar_base64.vtu", "NumberOfPoints=\"20\"", "NumberOfPoints=\"19\"");
+    assert!(bytes.ends_with("Points: expected 57 numbers of 8 bytes, found 480 bytes"), "{bytes}");
+    let blocks = xml_error("bar_zlib.vtu", "NumberOfPoints=\"20\"", "NumberOfPoints=\"19\"");
+    assert!(blocks.ends_with("Points: expected 57 numbers of 8 bytes, found 480 bytes"), "{blocks}");
+    let offset = xml_error("bar_appended_raw.vtu", "offset=\"168\"", "offset=\"99168\"");
+    assert!(offset.contains("CellData.gmsh:physical: expected an offset of at most "), "{offset}");
+    let missing = xml_error("bar_appended_raw.vtu", "<AppendedData", "<Appended");
+    assert!(missing.contains("expected </Appended>"), "{missing}");
+    let mark = xml_error("bar_appended.vtu", "\n   _", "\n   ");
+    assert!(mark.ends_with("expected <AppendedData> with an underscore before the data, found none"), "{mark}");
+    // headers in base64: the bytes of an array; the number, size and last size of its blocks, and their compressed sizes
+    let array = |attributes: &str, text: &str| {
+        let text = format!(
+            "<VTKFile type=\"UnstructuredGrid\" {attributes}><UnstructuredGrid>\
+             <Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points>\
+             <DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">{text}</DataArray>\
+             </Points></Piece></UnstructuredGrid></VTKFile>"
+        );
+        match vtk::parse_xml(text.as_bytes()) {
+            Ok(mesh) => format!("{:?}", mesh.points),
+            Err(error) => error.to_string().replace("line 1: Points: ", ""),
+        }
+    };
+    assert_eq!(array("", "DAAAAAAAgD8AAABAAABAQA=="), "[[1.0, 2.0, 3.0]]");
+    assert_eq!(array("", "DAAAAAAAgD8AAABAAABAQA==AAAA"), "expected 24 characters of base64, found 28");
+    assert_eq!(array("", "DAAAAAAAgD8AAABAAABA"), "expected 12 bytes of data by the header, found 11");
+    assert_eq!(array("", "DAAAAAAAgD8AAABA"), "expected 12 bytes of data by the header, found 8");
+    assert_eq!(array("", "/////wAAgD8AAABAAABAQA=="), "expected 4294967295 bytes of data by the header, found 14");
+    assert!(array("", "DAAAAAAAgD8AA-BAAABAQA==").starts_with("expected base64, found: "));
+    assert_eq!(array("", ""), "expected 8 characters of base64, found 0");
+    let zlib = "compressor=\"vtkZLibDataCompressor\"";
+    let data = "eJxjYGiwZ2BgcAAiBwAJQwGA";
+    assert_eq!(array(zlib, &format!("AQAAAAwAAAAAAAAAEgAAAA=={data}")), "[[1.0, 2.0, 3.0]]");
+    assert_eq!(array(zlib, &format!("AQAAAAwAAAAMAAAAEgAAAA=={data}")), "[[1.0, 2.0, 3.0]]");
+    let plausible = "expected blocks that compress to 18 bytes in all, found 1 of";
+    assert_eq!(
+        array(zlib, &format!("AQAAAAwAAAANAAAAEgAAAA=={data}")),
+        format!("{plausible} 12 bytes, the last of 13")
+    );
+    assert_eq!(array(zlib, &format!("AQAAAAAAAAAAAAAAEgAAAA=={data}")), format!("{plausible} 0 bytes, the last of 0"));
+    let large = format!("{plausible} 4294967295 bytes, the last of 0");
+    assert_eq!(array(zlib, &format!("AQAAAP////8AAAAAEgAAAA=={data}")), large);
+    let sizes = array(zlib, &format!("/////wwAAAAMAAAAEgAAAA=={data}"));
+    assert_eq!(sizes, "expected the sizes of 4294967295 compressed blocks, found 48 bytes");
+    let short = array(zlib, &format!("AQAAAAwAAAAMAAAAEwAAAA=={}", &data[..20]));
+    assert_eq!(short, "expected 19 bytes of compressed data, found 20 with their coding");
+    let eleven = array(zlib, "AQAAAAwAAAAAAAAAEQAAAA==eJxjYGiwZ2BgcAAiAAfDAUA=");
+    assert_eq!(eleven, "expected 12 bytes of data in compressed block 0, found 11");
+    let thirteen = array(zlib, "AQAAAAwAAAAAAAAAEwAAAA==eJxjYGiwZ2BgcAAiBwYACsMBgA==");
+    assert_eq!(thirteen, "expected the end of compressed block 0 after 12 bytes of data, found none");
+    let size = array(zlib, &format!("AQAAAA0AAAAAAAAAEgAAAA=={data}"));
+    assert_eq!(size, "expected 3 numbers of 4 bytes, found 13 bytes");
+    let other = array(zlib, &format!("AQAAAAwAAAAMAAAAEgAAAA=={}", data.replace("YGiw", "YGix")));
+    assert!(other.starts_with("compressed block 0 is damaged: "), "{other}");
+}
+
+#[test]
+fn numbers_of_every_type_are_read() {
+    let meshes = TYPES.map(|file| vtk::parse_xml(&bytes_of(file)).unwrap());
+    assert_eq!(meshes[0], meshes[1]);
+    assert_eq!(meshes[0], meshes[2]);
+    assert_eq!(meshes[0].points, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.125]]);
+    let groups: Vec<_> = meshes[0].blocks.iter().map(|b| b.groups.join(" ")).collect();
+    let least =
+        "int8=-128 uint8=0 int16=-32768 uint16=0 int32=-2147483648 uint32=0 int64=-9223372036854775808 uint64=0";
+    let most = "int8=127 uint8=255 int16=32767 uint16=65535 int32=2147483647 uint32=4294967295 \
+                int64=9223372036854775807 uint64=18446744073709551615";
+    assert_eq!(groups, [least, most]);
+}
+
+#[test]
+fn vectors_of_points_are_read_from_every_encoding() {
+    for file in TYPES {
+        let path = folder().join(file);
+        let mesh = Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap();
+        for name in ["float32", "float64"] {
+            let field = Field::read_named(&path, &mesh, 1.0, Some(name)).unwrap();
+            let expected: Vec<_> = (0..12).map(|i| Some(f64::from(i) / 8.0 - 0.75)).collect();
+            assert_eq!(field.displacements, expected, "{file} {name}");
+        }
+        let field = Field::read(&path, &mesh, 1.0).unwrap();
+        let along: Vec<_> = field.displacements.iter().step_by(3).copied().collect();
+        assert_eq!(along, [0.0, 1.0, 2.0, 3.0].map(Some), "{file}");
+        let plane = Field::read_named(&path, &mesh, 1.0, Some("whole")).unwrap_err();
+        assert!(plane.problem().contains("not real"), "{plane}");
+    }
+}
+
+#[test]
+fn pieces_of_vtk_are_read() {
+    let [pieces, inline, raw] = PIECES.map(|file| vtk::parse_xml(&bytes_of(file)).unwrap());
+    let one = vtk::parse_xml(&bytes_of("bar_base64.vtu")).unwrap();
+    assert_eq!(pieces.points, one.points.repeat(3));
+    let moved = |nodes: &[usize], i: usize| nodes.iter().map(|node| node + 20 * i).collect::<Vec<_>>();
+    for (thrice, once) in pieces.blocks.iter().zip(&one.blocks) {
+        assert_eq!(thrice.connectivity, [0, 1, 2].map(|i| moved(&once.connectivity, i)).concat());
+    }
+    for empty in [inline, raw] {
+        assert!(empty.points.is_empty() && empty.blocks.is_empty());
+    }
+}
+
+#[test]
+fn raw_data_may_look_like_tags() {
+    let labels = b"</AppendedData>";
+    let array = |kind: &str, name: &str, offset: usize| {
+        format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"appended\" offset=\"{offset}\"/>")
+    };
+    let points = array("Float32", "Points", 0).replace("/>", " NumberOfComponents=\"3\"/>");
+    let cells =
+        [array("UInt8", "types", 16), array("UInt8", "offsets", 35), array("UInt8", "connectivity", 54)].concat();
+    let head = format!(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"15\">\
+         <Points>{points}</Points><Cells>{cells}</Cells><CellData>{}</CellData></Piece></UnstructuredGrid>\
+         <AppendedData encoding=\"raw\">\n  _",
+        array("UInt8", "a", 73)
+    );
+    let bytes_with_length = |bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), bytes].concat();
+    let ends: Vec<u8> = (1..=15).collect();
+    let data: [&[u8]; 5] = [&[0; 12], &[1; 15], &ends, &[0; 15], labels];
+    let file = [head.as_bytes(), &data.map(bytes_with_length).concat(), b"\n</AppendedData></VTKFile>"].concat();
+    let mesh = vtk::parse_xml(&file).unwrap();
+    let count: usize = mesh.blocks.iter().map(|block| block.connectivity.len()).sum();
+    assert_eq!(count, 15);
+    assert_eq!(mesh.blocks[0].groups, [format!("a={}", labels[0])]);
+    for length in 0..file.len() {
+        assert!(vtk::parse_xml(&file[..length]).is_err(), "cut to {length} bytes");
+    }
+}
+
+#[test]
+fn names_are_read_with_their_entities() {
     let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
-    let xml = |from: &str, to: &str| vtk::parse(text.replace(from, to).as_bytes(), "vtu").unwrap_err().to_string();
-    assert_eq!(xml("</VTKFile>", ""), "the file ends before </VTKFile>");
-    assert_eq!(
-        xml("type=\"UnstructuredGrid\"", "type=\"PolyData\""),
-        "VTKFile: expected type UnstructuredGrid, found PolyData"
-    );
-    assert_eq!(
-        xml("type=\"UnstructuredGrid\"", "type=\"Poly\nData\""),
-        "VTKFile: expected type UnstructuredGrid, found Poly\u{fffd}Data"
-    );
-    let array = "the file is damaged: its cell data array \"gmsh:physical\" cannot be decoded";
-    assert_eq!(xml("Name=\"gmsh:physical\"", "Name=\"gmsh:physical\" NumberOfComponents=\"2\""), array);
+    let named = text.replace("gmsh:physical", "&lt;&#963;&#x3C3;&gt; &amp; &quot;&apos; &no; &");
+    let mesh = vtk::parse_xml(named.as_bytes()).unwrap();
+    assert!(mesh.blocks[0].groups[0].starts_with("<σσ> & \"' &no; &="), "{:?}", mesh.blocks[0].groups);
+}
+
+#[test]
+fn notes_inside_an_array_are_passed_over() {
+    let text = String::from_utf8(bytes_of("bar_ascii.vtu")).unwrap();
+    let note = "<InformationKey name=\"a\"><Value index=\"0\">7</Value></InformationKey>";
+    let before = text.replace("format=\"ascii\">", &format!("format=\"ascii\">\n{note}{note}"));
+    let after = text.replace("</DataArray>", &format!("{note}</DataArray>"));
+    let mesh = vtk::parse_xml(text.as_bytes()).unwrap();
+    assert_eq!(vtk::parse_xml(before.as_bytes()).unwrap(), mesh);
+    assert_eq!(vtk::parse_xml(after.as_bytes()).unwrap(), mesh);
 }
 
 #[test]
@@ -440,7 +657,7 @@ fn pieces_follow_one_another() {
     let end = text.find("</Piece>").unwrap() + "</Piece>".len();
     let piece = &text[start..end];
     let twice = format!("{}{piece}{}{}", &text[..start], piece.replace("gmsh:physical", "part"), &text[end..]);
-    let (one, two) = (vtk::parse(text.as_bytes(), "vtu").unwrap(), vtk::parse(twice.as_bytes(), "vtu").unwrap());
+    let (one, two) = (vtk::parse_xml(text.as_bytes()).unwrap(), vtk::parse_xml(twice.as_bytes()).unwrap());
     assert_eq!(two.points, [&one.points[..], &one.points[..]].concat());
     assert_eq!(two.blocks.len(), 2 * one.blocks.len());
     for (first, second) in one.blocks.iter().zip(&two.blocks[one.blocks.len()..]) {
@@ -455,7 +672,7 @@ fn field_data_are_passed_over() {
     let field = "<FieldData><Array type=\"String\" Name=\"a\" format=\"ascii\">65 0</Array>\
                  <DataArray type=\"Int32\" Name=\"b\" NumberOfTuples=\"1\" format=\"ascii\">7</DataArray></FieldData>";
     let with_field = text.replace("<UnstructuredGrid>", &format!("<UnstructuredGrid>{field}"));
-    assert_eq!(vtk::parse(with_field.as_bytes(), "vtu").unwrap(), vtk::parse(text.as_bytes(), "vtu").unwrap());
+    assert_eq!(vtk::parse_xml(with_field.as_bytes()).unwrap(), vtk::parse_xml(text.as_bytes()).unwrap());
 }
 
 fn two_cells() -> Grid {
@@ -481,8 +698,8 @@ fn a_written_grid_reads_back() {
     let blocks: Vec<_> = mesh.blocks.iter().map(|b| (b.cell_type, &b.connectivity[..], b.groups.len())).collect();
     assert_eq!(blocks, [(10, &[0, 1, 2, 3][..], 0), (3, &[3, 1][..], 0)]);
     let bytes = fs::read(&path).unwrap();
-    for length in 0..bytes.len() {
-        assert!(vtk::parse(&bytes[..length], "vtu").is_err(), "cut to {length} bytes");
+    for length in 0..bytes.trim_ascii_end().len() {
+        assert!(vtk::parse_xml(&bytes[..length]).is_err(), "cut to {length} bytes");
     }
 }
 

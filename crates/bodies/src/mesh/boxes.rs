@@ -1,6 +1,7 @@
 //! Rectangles and bricks filled with one element.
 
-use super::{CellBlock, CellIndex, Group, Mesh, Quality, sorted};
+use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::quality::Quality;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, HashMap};

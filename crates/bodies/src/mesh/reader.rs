@@ -55,7 +55,12 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
-        Reader { bytes, at: 0, encoding: Encoding::Text, section: String::new(), progress: None }
+        Reader::starting_at(bytes, 0)
+    }
+
+    /// Reads text from the byte `at` on; errors have the line in all of `bytes`.
+    pub fn starting_at(bytes: &'a [u8], at: usize) -> Self {
+        Reader { bytes, at, encoding: Encoding::Text, section: String::new(), progress: None }
     }
 
     /// Names the section that the next errors are about.

@@ -1,6 +1,6 @@
 //! Parts of a mesh, by group name or by a condition on the coordinates.
 
-use super::{Mesh, sorted};
+use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
 use crate::error::{Error, Result};
 use crate::symbolic::Predicate;
 use std::collections::HashMap;
@@ -11,19 +11,6 @@ pub enum Selection {
     /// Points whose coordinates x, y (, z) in m satisfy the condition; sides on the boundary and cells of such points.
     Where(Predicate),
     Everything,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct CellIndex {
-    pub block: usize,
-    pub cell: usize,
-}
-
-/// A side of a cell, by its number in the element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SideIndex {
-    pub cell: CellIndex,
-    pub side: usize,
 }
 
 impl Selection {
@@ -73,7 +60,9 @@ impl Selection {
                 listed.dedup();
                 listed.iter().filter_map(|key| met.get(key)).map(|(_, index)| *index).collect()
             }
-            _ => order.iter().map(|key| met[key]).filter(|(count, _)| *count == 1).map(|(_, index)| index).collect(),
+            Selection::Where(_) | Selection::Everything => {
+                order.iter().map(|key| met[key]).filter(|(count, _)| *count == 1).map(|(_, index)| index).collect()
+            }
         })
     }
 
@@ -98,7 +87,7 @@ impl Selection {
     }
 }
 
-fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a super::Group> {
+fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group> {
     mesh.groups.get(name).ok_or_else(|| {
         let known: Vec<_> = mesh.groups.keys().map(|g| format!("\"{g}\"")).collect();
         let expected = match known.as_slice() {

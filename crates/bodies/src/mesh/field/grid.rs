@@ -1,20 +1,19 @@
 //! Displacements as an array of the points of a grid.
 
-use super::{Reading, listed};
+use super::reading::{Reading, listed};
 use crate::error::{Error, Result};
 use crate::mesh::reader::quoted;
-use crate::mesh::vtk::{Piece, PointArray, pieces};
+use crate::mesh::vtk::{Piece, PointArray};
 
 /// In small letters.
 const NAMES: [&str; 4] = ["displacement", "displacements", "u", "disp"];
 
-/// Reads the array called `array` of a `.vtu` or `.vtk`, or the one that can only be meant.
+/// Reads the array called `array` of the points, or the one that can only be meant.
 ///
 /// # Errors
-/// The grid cannot be read, it has no such array or several, or it has values that are not finite, points that are not
+/// The grid has no such array or several, or it has values that are not finite, points that are not
 /// in the mesh or one point with two displacements.
-pub(super) fn read(bytes: &[u8], ending: &str, array: Option<&str>, reading: &mut Reading) -> Result<()> {
-    let mut pieces = pieces(bytes, ending)?;
+pub(super) fn read(mut pieces: Vec<Piece>, array: Option<&str>, reading: &mut Reading) -> Result<()> {
     pieces.retain(|piece| !piece.points.is_empty());
     let name = name_of_array(&pieces, array)?;
     let mut first = 0;

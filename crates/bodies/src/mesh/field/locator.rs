@@ -1,6 +1,6 @@
 //! The points of a mesh by their positions.
 
-use crate::mesh::Mesh;
+use crate::mesh::mesh::Mesh;
 
 /// How far from its point a position may be, in parts of the mesh's largest extent.
 const TOLERANCE: f64 = 1e-6;

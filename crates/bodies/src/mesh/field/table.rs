@@ -1,6 +1,6 @@
 //! Tables of displacements: a header with the names of the columns, then a row for each point.
 
-use super::{AXES, Reading, listed};
+use super::reading::{AXES, Reading, listed};
 use crate::error::{Error, Result};
 use crate::mesh::reader::quoted;
 use csv::{ReaderBuilder, StringRecord};

@@ -1,6 +1,7 @@
 //! The nodes of a Gmsh mesh and the places of their tags.
 
 use crate::error::{Error, Result};
+use crate::mesh::reader::Reader;
 use std::collections::HashMap;
 
 pub(super) struct Nodes {
@@ -50,8 +51,16 @@ impl Nodes {
         Ok(Nodes { points, places })
     }
 
-    /// The index into `points` of the node with this tag.
-    pub fn place(&self, tag: u64) -> Option<usize> {
+    /// The index into `points` of the node with this tag, which the element that `reader` has just read names.
+    ///
+    /// # Errors
+    /// There is no such node.
+    pub fn of_element(&self, reader: &Reader, element: u64, tag: u64) -> Result<usize> {
+        let unknown = || reader.fault(format!("element {element} names node {tag}, which $Nodes lacks"));
+        self.place(tag).ok_or_else(unknown)
+    }
+
+    fn place(&self, tag: u64) -> Option<usize> {
         match &self.places {
             Places::Dense { first, places } => {
                 let i = usize::try_from(tag.checked_sub(*first)?).ok()?;

@@ -2,7 +2,6 @@
 
 use super::nodes::Nodes;
 use super::types::shape;
-use super::unknown_node;
 use crate::error::Result;
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::{Encoding, Reader};
@@ -109,7 +108,7 @@ impl Cells {
         self.next.clear();
         for _ in 0..node_count {
             let tag = node_tag(reader)?;
-            self.next.push(nodes.place(tag).ok_or_else(|| unknown_node(reader, element, tag))?);
+            self.next.push(nodes.of_element(reader, element, tag)?);
         }
         reader.count_one();
         let (last_type, groups) = &mut self.key;

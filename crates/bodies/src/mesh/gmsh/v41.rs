@@ -2,7 +2,6 @@
 
 use super::nodes::Nodes;
 use super::types::shape;
-use super::unknown_node;
 use crate::error::Result;
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::Reader;
@@ -111,7 +110,7 @@ pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>
             let element: u64 = reader.number()?;
             for _ in 0..node_count {
                 let tag: u64 = reader.number()?;
-                list.push(nodes.place(tag).ok_or_else(|| unknown_node(reader, element, tag))?);
+                list.push(nodes.of_element(reader, element, tag)?);
             }
             reader.count_one();
             found += 1;

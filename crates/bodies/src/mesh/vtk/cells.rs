@@ -34,6 +34,11 @@ pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
     Some((dimension, Some(nodes)))
 }
 
+/// Whether VTK has a cell type of this number.
+pub(super) fn is_known(cell_type: u8) -> bool {
+    matches!(cell_type, 1..=16 | 21..=37 | 41 | 42 | 51..=56 | 60..=81)
+}
+
 /// Turns a pixel or a voxel, whose nodes run along the axes, into the quadrangle or hexahedron they are, and a polygon of
 /// three or four nodes into the triangle or quadrangle it is.
 pub(super) fn without_raster(cell_type: u8, nodes: &mut [usize]) -> u8 {

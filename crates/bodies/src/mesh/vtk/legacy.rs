@@ -1,9 +1,10 @@
 //! Legacy `.vtk` files with an unstructured grid, file versions 1 to 5.
 
-use super::legacy_type::Type;
-use super::piece::{Labels, Piece, PointArray};
+use super::piece::{self, Labels, Piece, PointArray};
+use super::scalar_type::ScalarType;
 use crate::error::{Error, Result};
 use crate::mesh::reader::{Encoding, Reader, quoted};
+use crate::mesh::source::MeshSource;
 
 /// What the arrays being read belong to.
 #[derive(Clone, Copy, PartialEq)]
@@ -13,12 +14,20 @@ enum Place {
     Cells(u64),
 }
 
-/// Reads the grid.
+/// Reads the unstructured grid of a `.vtk`, text or binary. Cells form blocks as in [`parse_xml`](super::parse_xml).
+///
+/// # Errors
+/// The file is of another kind, damaged or cut short, or has cells without a fixed shape such as polygons.
+pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
+    piece::mesh(vec![piece(bytes)?])
+}
+
+/// The grid as it is in the file: cells unchecked, points perhaps not finite.
 ///
 /// # Errors
 /// The file is of another kind, damaged or cut short. The format has no end mark: a file cut just before a section of
 /// cell or point data is a whole file without that data.
-pub(super) fn parse(bytes: &[u8]) -> Result<Piece> {
+pub(in crate::mesh) fn piece(bytes: &[u8]) -> Result<Piece> {
     let mut reader = Reader::new(bytes);
     header(&mut reader)?;
     let mut file = File { reader, piece: Piece::default(), seen: Vec::new(), place: Place::File };
@@ -121,7 +130,8 @@ impl File<'_> {
 
     fn points(&mut self) -> Result<()> {
         let count: u64 = self.reader.text_number()?;
-        let coordinates = Type::read(&mut self.reader)?.reals(&mut self.reader, count.saturating_mul(3))?;
+        let scalar = self.scalar_type()?;
+        let coordinates = scalar.reals(&mut self.reader, count.saturating_mul(3))?;
         self.piece.points = coordinates.as_chunks().0.to_vec();
         Ok(())
     }
@@ -160,13 +170,15 @@ impl File<'_> {
     }
 
     fn indices(&mut self, count: u64) -> Result<Vec<u64>> {
-        let Some(values) = Type::read(&mut self.reader)?.whole_numbers(&mut self.reader, count)? else {
-            return Err(self.reader.expected("a type of whole numbers", "another"));
-        };
-        values
-            .into_iter()
-            .map(|i| u64::try_from(i).map_err(|_| self.reader.expected("indices", &i.to_string())))
-            .collect()
+        let indices = self.scalar_type()?.whole_numbers(&mut self.reader, count, "indices")?;
+        indices.ok_or_else(|| self.reader.expected("a type of whole numbers", "another"))
+    }
+
+    /// Reads the name of a type that the numbers follow.
+    fn scalar_type(&mut self) -> Result<ScalarType> {
+        let scalar = ScalarType::read(&mut self.reader)?;
+        self.reader.start_data()?;
+        Ok(scalar)
     }
 
     fn cell_types(&mut self) -> Result<()> {
@@ -238,7 +250,8 @@ impl File<'_> {
                 let count: u64 = self.reader.text_number()?;
                 let colors = if section == "LOOKUP_TABLE" { 4 } else { tuples };
                 let in_binary = self.reader.encoding != Encoding::Text;
-                let bytes_or_reals = if in_binary { Type::UnsignedChar } else { Type::Float };
+                let bytes_or_reals = if in_binary { ScalarType::UInt8 } else { ScalarType::Float32 };
+                self.reader.start_data()?;
                 bytes_or_reals.skip(&mut self.reader, count.saturating_mul(colors))
             }
             _ => self.array(name, components, tuples),
@@ -246,40 +259,45 @@ impl File<'_> {
     }
 
     fn scalars(&mut self, name: String, tuples: u64) -> Result<()> {
-        let kind = Type::read(&mut self.reader)?;
+        let scalar = ScalarType::read(&mut self.reader)?;
         let components =
             if self.reader.rest_of_line().trim_ascii().is_empty() { 1 } else { self.reader.text_number()? };
         if self.reader.next_is("LOOKUP_TABLE") {
             self.reader.word();
             self.word("the name of a lookup table")?;
         }
-        self.values(kind, name, components, tuples)
+        self.values(scalar, name, components, tuples)
     }
 
     fn array(&mut self, name: String, components: u64, tuples: u64) -> Result<()> {
-        let kind = Type::read(&mut self.reader)?;
-        self.values(kind, name, components, tuples)
+        let scalar = ScalarType::read(&mut self.reader)?;
+        self.values(scalar, name, components, tuples)
     }
 
     /// Reads the values of an array, and keeps them if they can name groups of cells or displace points.
-    fn values(&mut self, kind: Type, name: String, components: u64, tuples: u64) -> Result<()> {
+    fn values(&mut self, scalar: ScalarType, name: String, components: u64, tuples: u64) -> Result<()> {
         let count = components.saturating_mul(tuples);
+        if scalar == ScalarType::Text {
+            self.reader.line();
+        } else {
+            self.reader.start_data()?;
+        }
         match self.place {
             Place::Cells(cells) if cells == tuples && components == 1 => {
-                if let Some(values) = kind.whole_numbers(&mut self.reader, count)? {
+                if let Some(values) = scalar.whole_numbers(&mut self.reader, count, "a whole number")? {
                     self.piece.labels.push(Labels { name, values });
                 }
             }
             Place::Points(points) if points == tuples => {
                 let mut vectors = None;
-                if kind.is_real() && PointArray::is_vector(components) {
-                    vectors = Some(kind.reals(&mut self.reader, count)?);
+                if scalar.is_real() && PointArray::is_vector(components) {
+                    vectors = Some(scalar.reals(&mut self.reader, count)?);
                 } else {
-                    kind.skip(&mut self.reader, count)?;
+                    scalar.skip(&mut self.reader, count)?;
                 }
                 self.piece.point_arrays.push(PointArray { name, components, vectors });
             }
-            _ => kind.skip(&mut self.reader, count)?,
+            _ => scalar.skip(&mut self.reader, count)?,
         }
         Ok(())
     }

@@ -1,15 +1,11 @@
 //! Writes pictures for ParaView.
 
-use super::cells::shape;
+use super::cells::{is_known, shape};
+use super::storage::base64;
+use super::xml_tag::escaped;
 use crate::error::{Error, Result};
 use crate::file::write_whole;
-use num_traits::FromPrimitive;
 use std::path::Path;
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
-    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
-};
-use vtkio::xml::{Compressor, VTKFile};
 
 /// Points, cells and arrays of a picture in ParaView.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -62,6 +58,9 @@ impl Grid {
         if let Some(node) = self.connectivity.iter().find(|&&node| node >= self.points.len()) {
             return Err(Error::expected("cells", format!("point indices below {}", self.points.len()), node));
         }
+        if let Some(unknown) = self.cell_types.iter().find(|&&cell_type| !is_known(cell_type)) {
+            return Err(Error::expected("cells", "a VTK cell type", unknown));
+        }
         let mut start = 0;
         for (&cell_type, &end) in self.cell_types.iter().zip(&self.ends) {
             if let Some(count) = shape(cell_type).and_then(|(_, count)| count).filter(|&count| count != end - start) {
@@ -104,42 +103,59 @@ pub fn write(path: &Path, grid: &Grid) -> Result<()> {
 
 fn encoded(grid: &Grid) -> Result<Vec<u8>> {
     grid.check()?;
-    let cell_type =
-        |&number| CellType::from_u8(number).ok_or_else(|| Error::expected("cells", "a VTK cell type", number));
-    let piece = UnstructuredGridPiece {
-        points: IOBuffer::F64(grid.points.as_flattened().to_vec()),
-        cells: Cells {
-            cell_verts: VertexNumbers::XML {
-                connectivity: grid.connectivity.iter().map(|&node| node as u64).collect(),
-                offsets: grid.ends.iter().map(|&end| end as u64).collect(),
-            },
-            types: grid.cell_types.iter().map(cell_type).collect::<Result<_>>()?,
-        },
-        data: Attributes { point: attributes(&grid.point_data), cell: attributes(&grid.cell_data) },
-    };
-    let vtk = Vtk {
-        version: Version::Auto,
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::inline(piece),
-        file_path: None,
-    };
-    let failed = |error: &dyn std::error::Error| Error::new(format!("the grid cannot be encoded: {error}"));
-    // the encoder's compressed blocks are wrong for arrays that fill the last block
-    let file = vtk.try_into_xml_format(Compressor::None, 0).map_err(|error| failed(&error))?;
-    let mut bytes = Vec::new();
-    VTKFile::write(&file, &mut bytes).map_err(|error| failed(&error))?;
-    Ok(bytes)
+    let mut file = Text(String::new());
+    file.line("<?xml version=\"1.0\"?>");
+    file.line("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
+    file.line("<UnstructuredGrid>");
+    let (points, cells) = (grid.points.len(), grid.cell_types.len());
+    file.line(&format!("<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"));
+    for (section, arrays) in [("PointData", &grid.point_data), ("CellData", &grid.cell_data)] {
+        file.line(&format!("<{section}>"));
+        for Array { name, components, values } in arrays {
+            file.array("Float64", name, *components, values.iter().copied().map(f64::to_le_bytes));
+        }
+        file.line(&format!("</{section}>"));
+    }
+    file.line("<Points>");
+    file.array("Float64", "Points", 3, grid.points.as_flattened().iter().copied().map(f64::to_le_bytes));
+    file.line("</Points>");
+    file.line("<Cells>");
+    for (name, values) in [("connectivity", &grid.connectivity), ("offsets", &grid.ends)] {
+        file.array("Int64", name, 1, values.iter().map(|&value| (value as u64).to_le_bytes()));
+    }
+    file.array("UInt8", "types", 1, grid.cell_types.iter().map(|&cell_type| [cell_type]));
+    for end in ["Cells", "Piece", "UnstructuredGrid", "VTKFile"] {
+        file.line(&format!("</{end}>"));
+    }
+    Ok(file.0.into_bytes())
 }
 
-fn attributes(arrays: &[Array]) -> Vec<Attribute> {
-    let attribute = |array: &Array| {
-        Attribute::DataArray(DataArray {
-            name: array.name.clone(),
-            // 1 or 3, as checked
-            elem: ElementType::Generic(array.components as u32),
-            data: IOBuffer::F64(array.values.clone()),
-        })
-    };
-    arrays.iter().map(attribute).collect()
+/// The file so far.
+struct Text(String);
+
+impl Text {
+    fn line(&mut self, line: &str) {
+        self.0.push_str(line);
+        self.0.push('\n');
+    }
+
+    /// Appends an array in base64, uncompressed: the number of its bytes, and the bytes of its values.
+    fn array<const SIZE: usize>(
+        &mut self,
+        scalar: &str,
+        name: &str,
+        components: usize,
+        values: impl ExactSizeIterator<Item = [u8; SIZE]>,
+    ) {
+        let size = values.len() * SIZE;
+        let mut bytes = Vec::with_capacity(8 + size);
+        bytes.extend((size as u64).to_le_bytes());
+        bytes.extend(values.flatten());
+        let name = escaped(name);
+        // meshio makes a matrix of an array that says that it has one component
+        let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+        self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"));
+        self.line(&base64(&bytes));
+        self.line("</DataArray>");
+    }
 }

@@ -1,117 +1,175 @@
 //! XML `.vtu` files.
 
-use super::piece::{Labels, Piece, PointArray};
-use super::xml_arrays::{PieceArrays, checked_arrays};
+use super::document::{ArrayTag, Content, Document, PieceTag, Section};
+use super::piece::{self, Labels, Piece, PointArray};
+use super::storage::Stored;
 use crate::error::{Error, Result};
-use std::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
-use std::sync::Once;
-use vtkio::Vtk;
-use vtkio::model::{Attribute, DataSet, IOBuffer, UnstructuredGridPiece, VertexNumbers};
+use crate::mesh::reader::{Encoding, Reader};
+use crate::mesh::source::MeshSource;
+use std::borrow::Cow;
 
-/// Reads the pieces.
+/// All binary arrays together may take up so many times the bytes of the file, as an array of one number alone may a
+/// thousand times its own, and so many bytes in any case.
+const MOST_GROWTH: u64 = 100;
+const ALWAYS_ALLOWED: u64 = 1 << 24;
+
+/// Reads the unstructured grid of a `.vtu`: its arrays as text, in base64 or appended in base64 or raw, in either byte
+/// order, plain or compressed by zlib.
+///
+/// Cells of one type form one block where they agree in every array of whole numbers that has one number per cell and
+/// at most 1000 different numbers; each such array gives the group `array=number`. Pixels and voxels become the
+/// quadrangles and hexahedra they are.
 ///
 /// # Errors
-/// The file is of another kind, damaged, cut short or encoded in a way that is not supported.
-pub(super) fn parse(bytes: &[u8]) -> Result<Vec<Piece>> {
-    let (bytes, arrays) = checked_arrays(bytes)?;
-    let decoded = without_panic(|| Vtk::parse_xml(&*bytes));
-    let vtk = match decoded {
-        Some(Ok(vtk)) => vtk,
-        Some(Err(error)) => return Err(damaged(&error.to_string())),
-        None => return Err(damaged("its data do not fit its header")),
-    };
-    let DataSet::UnstructuredGrid { pieces, .. } = vtk.data else {
-        return Err(Error::new("expected an unstructured grid, found another kind of data set"));
-    };
-    if pieces.len() != arrays.len() {
-        return Err(Error::expected("pieces", arrays.len(), pieces.len()));
+/// The file is of another kind, damaged, cut short or compressed otherwise than by zlib, or has cells without a fixed
+/// shape such as polygons.
+pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
+    piece::mesh(pieces(bytes)?)
+}
+
+/// The pieces as they are in the file: cells unchecked, points perhaps not finite.
+///
+/// # Errors
+/// The file is of another kind, damaged, cut short or compressed otherwise than by zlib.
+pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
+    let document = Document::read(bytes)?;
+    if document.pieces.is_empty() {
+        return Err(Error::expected("UnstructuredGrid", "at least one <Piece>", "none"));
     }
-    let pieces = pieces.into_iter().zip(&arrays).map(|(piece, arrays)| {
-        let piece = piece.into_loaded_piece_data(None).map_err(|error| damaged(&error.to_string()))?;
-        convert(piece, arrays)
-    });
-    pieces.collect()
+    let mut arrays = Arrays { document: &document, size: 0 };
+    document.pieces.iter().map(|tag| arrays.piece(tag)).collect()
 }
 
-fn damaged(problem: &str) -> Error {
-    Error::new(format!("the file is damaged: {}", problem.replace(['\n', '\r'], " ")))
+/// The arrays of a file, decoded one after the other.
+struct Arrays<'a> {
+    document: &'a Document<'a>,
+    /// Bytes of those in binary so far.
+    size: u64,
 }
 
-fn convert(piece: UnstructuredGridPiece, arrays: &PieceArrays) -> Result<Piece> {
-    check_present(&piece.data.point, &arrays.of_points, "point")?;
-    check_present(&piece.data.cell, &arrays.of_cells, "cell")?;
-    let coordinates: Option<Vec<f64>> = piece.points.cast_into();
-    let coordinates = coordinates.ok_or_else(|| damaged("its points are not numbers"))?;
-    let VertexNumbers::XML { connectivity, offsets } = piece.cells.cell_verts else {
-        return Err(damaged("its cells have no offsets"));
-    };
-    let types: Vec<u8> = piece.cells.types.iter().map(|&cell_type| cell_type as u8).collect();
-    let mut labels = Vec::new();
-    for attribute in piece.data.cell {
-        let Attribute::DataArray(array) = attribute else { continue };
-        if let Some(values) = whole_numbers(&array.data).filter(|values| values.len() == types.len()) {
-            labels.push(Labels { name: array.name, values });
+impl Arrays<'_> {
+    fn piece(&mut self, tag: &PieceTag) -> Result<Piece> {
+        let mut piece = Piece::default();
+        if let Some(array) = needed(tag, Section::Points, None, tag.points)? {
+            let count = tag.points.saturating_mul(3);
+            let coordinates = self.values(array, count, |reader| array.scalar.reals(reader, count))?;
+            piece.points = coordinates.as_chunks().0.to_vec();
         }
-    }
-    let mut point_arrays = Vec::new();
-    for attribute in piece.data.point {
-        let Attribute::DataArray(array) = attribute else { continue };
-        let components = array.num_comp() as u64;
-        let is_real = matches!(array.data, IOBuffer::F32(_) | IOBuffer::F64(_));
-        let vectors = if is_real && PointArray::is_vector(components) { array.data.cast_into() } else { None };
-        point_arrays.push(PointArray { name: array.name, components, vectors });
-    }
-    let points = coordinates.as_chunks().0.to_vec();
-    Ok(Piece { points, types, ends: offsets, connectivity, labels, point_arrays })
-}
-
-/// The decoder leaves out an array that it cannot decode, so the names in the file are compared.
-fn check_present(decoded: &[Attribute], names: &[String], what: &str) -> Result<()> {
-    if decoded.len() == names.len() {
-        return Ok(());
-    }
-    let is_decoded = |name: &&String| {
-        decoded.iter().any(|attribute| matches!(attribute, Attribute::DataArray(array) if array.name == **name))
-    };
-    let missing = names.iter().find(|name| !is_decoded(name)).map_or("", String::as_str);
-    Err(damaged(&format!("its {what} data array \"{missing}\" cannot be decoded")))
-}
-
-fn whole_numbers(buffer: &IOBuffer) -> Option<Vec<i128>> {
-    fn widened<T: Copy + Into<i128>>(values: &[T]) -> Option<Vec<i128>> {
-        Some(values.iter().map(|&value| value.into()).collect())
-    }
-    match buffer {
-        IOBuffer::I8(v) => widened(v),
-        IOBuffer::U8(v) => widened(v),
-        IOBuffer::I16(v) => widened(v),
-        IOBuffer::U16(v) => widened(v),
-        IOBuffer::I32(v) => widened(v),
-        IOBuffer::U32(v) => widened(v),
-        IOBuffer::I64(v) => widened(v),
-        IOBuffer::U64(v) => widened(v),
-        IOBuffer::Bit(_) | IOBuffer::F32(_) | IOBuffer::F64(_) => None,
-    }
-}
-
-thread_local! {
-    static DECODING: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Runs the decoder, which panics on some damaged files; `None` if it does, and then without a message of its own.
-fn without_panic<T>(decode: impl FnOnce() -> T) -> Option<T> {
-    static QUIET: Once = Once::new();
-    QUIET.call_once(|| {
-        let report = take_hook();
-        set_hook(Box::new(move |panic| {
-            if !DECODING.get() {
-                report(panic);
+        piece.types = self.whole_numbers(tag, "types", tag.cells, "a cell type")?;
+        piece.ends = self.whole_numbers(tag, "offsets", tag.cells, "an offset from 0")?;
+        let nodes = piece.ends.last().copied().unwrap_or(0);
+        piece.connectivity = self.whole_numbers(tag, "connectivity", nodes, "an index from 0")?;
+        for array in &tag.arrays {
+            match array.section {
+                Section::Points | Section::Cells => {}
+                Section::PointData => piece.point_arrays.push(self.point_array(array, tag.points)?),
+                Section::CellData => piece.labels.extend(self.labels(array, tag.cells)?),
             }
-        }));
-    });
-    DECODING.set(true);
-    let decoded = catch_unwind(AssertUnwindSafe(decode)).ok();
-    DECODING.set(false);
-    decoded
+        }
+        Ok(piece)
+    }
+
+    /// The array of the cells with this name.
+    fn whole_numbers<T: TryFrom<i128>>(
+        &mut self,
+        tag: &PieceTag,
+        name: &str,
+        count: u64,
+        expected: &str,
+    ) -> Result<Vec<T>> {
+        let Some(array) = needed(tag, Section::Cells, Some(name), count)? else { return Ok(Vec::new()) };
+        let values = self.values(array, count, |reader| array.scalar.whole_numbers(reader, count, expected))?;
+        values.ok_or_else(|| {
+            let found = format!("{:?}", array.scalar);
+            Error::expected(array.key(), "a type of whole numbers", found).on_line(self.document.line(array))
+        })
+    }
+
+    fn point_array(&mut self, array: &ArrayTag, points: u64) -> Result<PointArray> {
+        let count = points.saturating_mul(array.components);
+        let is_vector = array.scalar.is_real() && PointArray::is_vector(array.components);
+        let vectors = match array.scalar.size() {
+            None => None,
+            Some(_) => self.values(array, count, |reader| match is_vector {
+                true => array.scalar.reals(reader, count).map(Some),
+                false => array.scalar.skip(reader, count).map(|()| None),
+            })?,
+        };
+        Ok(PointArray { name: array.name.clone(), components: array.components, vectors })
+    }
+
+    /// The numbers of the cells, if there is one for each.
+    fn labels(&mut self, array: &ArrayTag, cells: u64) -> Result<Option<Labels>> {
+        if array.scalar.size().is_none() {
+            return Ok(None);
+        }
+        let count = cells.saturating_mul(array.components);
+        let values = self.values(array, count, |reader| match array.components {
+            1 => array.scalar.whole_numbers(reader, count, "a whole number"),
+            _ => array.scalar.skip(reader, count).map(|()| None),
+        })?;
+        Ok(values.map(|values| Labels { name: array.name.clone(), values }))
+    }
+
+    /// Reads an array of exactly `count` numbers.
+    fn values<T>(&mut self, array: &ArrayTag, count: u64, read: impl FnOnce(&mut Reader) -> Result<T>) -> Result<T> {
+        let document = self.document;
+        let placed = |error: Error| {
+            let error = if error.key().is_some() { error } else { error.under(array.key()) };
+            error.on_line(document.line(array))
+        };
+        let decoded;
+        let mut reader = match document.content(array).map_err(placed)? {
+            Content::Text(bytes, start) => {
+                let words = bytes[start..].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+                if words as u64 != count {
+                    return Err(placed(Error::new(format!("expected {count} numbers, found {words}"))));
+                }
+                Reader::starting_at(bytes, start)
+            }
+            Content::Binary { stored, alone } => {
+                decoded = self.decoded(array, count, stored, alone).map_err(placed)?;
+                let mut reader = Reader::new(&decoded);
+                reader.encoding = Encoding::Binary { big_endian: document.storage.big_endian };
+                reader
+            }
+        };
+        reader.enter(array.key());
+        read(&mut reader).map_err(placed)
+    }
+
+    /// The bytes of an array in binary.
+    fn decoded<'s>(&mut self, array: &ArrayTag, count: u64, stored: Stored<'s>, alone: bool) -> Result<Cow<'s, [u8]>> {
+        if alone && stored.bytes.is_empty() && count == 0 {
+            return Ok(Cow::Borrowed(&[]));
+        }
+        let data = self.document.storage.open(stored)?;
+        if alone && data.stored_size != stored.bytes.len() {
+            let expected = format!("{} characters of base64", data.stored_size);
+            return Err(Error::new(format!("expected {expected}, found {}", stored.bytes.len())));
+        }
+        let most = ALWAYS_ALLOWED.saturating_add(MOST_GROWTH.saturating_mul(self.document.size() as u64));
+        self.size = self.size.saturating_add(data.size as u64);
+        if self.size > most {
+            let expected = format!("at most {most} bytes of data up to here in a file of {}", self.document.size());
+            return Err(Error::new(format!("expected {expected}, found {}", self.size)));
+        }
+        let Some(each) = array.scalar.size() else { return Err(Error::new("expected numbers, found bits or texts")) };
+        if data.size as u64 != count.saturating_mul(each) {
+            let expected = format!("{count} numbers of {each} bytes");
+            return Err(Error::new(format!("expected {expected}, found {} bytes", data.size)));
+        }
+        data.decode()
+    }
+}
+
+/// The one array of a section, or that with this name; none will do if it would be empty.
+fn needed<'a>(tag: &'a PieceTag, section: Section, name: Option<&str>, count: u64) -> Result<Option<&'a ArrayTag>> {
+    let is_meant = |array: &&ArrayTag| array.section == section && name.is_none_or(|name| array.name == name);
+    let found = tag.arrays.iter().find(is_meant);
+    if found.is_none() && count > 0 {
+        let expected = name.map_or("an array".to_string(), |name| format!("an array \"{name}\""));
+        return Err(Error::expected(format!("{section:?}"), expected, "none"));
+    }
+    Ok(found)
 }

@@ -1,14 +1,17 @@
-//! The tags of an XML file.
+//! The tags of an XML file, and the text between them.
 
 use std::ops::Range;
 
-/// A tag, its place in the file and what stands in it.
+/// The longest entity that is replaced, `&#x10FFFF;`, without its ampersand.
+const LONGEST_ENTITY: usize = 9;
+
+/// A tag, its place in the file and its content.
 pub(super) struct Tag<'a> {
     pub start: usize,
     pub end: usize,
     /// With a slash before it for an end tag.
     pub name: &'a [u8],
-    attributes: &'a str,
+    attributes: &'a [u8],
     /// Whether the element ends with its start tag.
     pub empty: bool,
 }
@@ -46,7 +49,7 @@ pub(super) fn next_tag(bytes: &[u8], mut at: usize) -> Option<Tag<'_>> {
         let content = content.strip_suffix(b"/").unwrap_or(content);
         let name = content.iter().position(u8::is_ascii_whitespace).unwrap_or(content.len());
         let (name, attributes) = content.split_at(name);
-        return Some(Tag { start, end, name, attributes: std::str::from_utf8(attributes).unwrap_or_default(), empty });
+        return Some(Tag { start, end, name, attributes, empty });
     }
 }
 
@@ -56,18 +59,77 @@ pub(super) fn text_after(bytes: &[u8], start: usize) -> Range<usize> {
     start..start + rest.iter().position(|&b| b == b'<').unwrap_or(rest.len())
 }
 
-impl<'a> Tag<'a> {
-    pub fn attribute(&self, name: &str) -> Option<&'a str> {
+impl Tag<'_> {
+    /// The value of an attribute, with the characters that its entities denote.
+    pub fn attribute(&self, name: &str) -> Option<String> {
         let mut rest = self.attributes;
         loop {
-            let (key, after) = rest.split_once('=')?;
-            let after = after.trim_start();
-            let quote = after.chars().next().filter(|c| "\"'".contains(*c))?;
-            let (value, after) = after[1..].split_once(quote)?;
-            if key.trim() == name {
-                return Some(value);
+            let equals = rest.iter().position(|&b| b == b'=')?;
+            let (key, after) = (rest[..equals].trim_ascii(), rest[equals + 1..].trim_ascii_start());
+            let (&quote, after) = after.split_first().filter(|(quote, _)| b"\"'".contains(quote))?;
+            let end = after.iter().position(|&b| b == quote)?;
+            if key == name.as_bytes() {
+                return Some(unescaped(&String::from_utf8_lossy(&after[..end])));
             }
-            rest = after;
+            rest = &after[end + 1..];
         }
     }
+}
+
+fn unescaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('&') {
+        plain.push_str(before);
+        let end = after.bytes().take(LONGEST_ENTITY).position(|b| b == b';');
+        match end.and_then(|end| Some((character(&after[..end])?, end))) {
+            Some((character, end)) => {
+                plain.push(character);
+                rest = &after[end + 1..];
+            }
+            None => {
+                plain.push('&');
+                rest = after;
+            }
+        }
+    }
+    plain.push_str(rest);
+    plain
+}
+
+fn character(entity: &str) -> Option<char> {
+    match entity {
+        "lt" => Some('<'),
+        "gt" => Some('>'),
+        "amp" => Some('&'),
+        "quot" => Some('"'),
+        "apos" => Some('\''),
+        _ => {
+            let number = entity.strip_prefix('#')?;
+            let code = match number.strip_prefix('x') {
+                Some(number) => u32::from_str_radix(number, 16),
+                None => number.parse(),
+            };
+            char::from_u32(code.ok()?)
+        }
+    }
+}
+
+/// A text as the value of an attribute. XML has no way to write most control characters: they become U+FFFD.
+pub(super) fn escaped(text: &str) -> String {
+    let mut value = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '<' => value.push_str("&lt;"),
+            '>' => value.push_str("&gt;"),
+            '&' => value.push_str("&amp;"),
+            '"' => value.push_str("&quot;"),
+            '\t' => value.push_str("&#9;"),
+            '\n' => value.push_str("&#10;"),
+            '\r' => value.push_str("&#13;"),
+            control if control.is_control() => value.push('\u{fffd}'),
+            other => value.push(other),
+        }
+    }
+    value
 }

@@ -176,7 +176,7 @@ fn round_trip(element: &Arc<Element>, entry: &FormatEntry, in_gmsh: bool) -> Pro
     let source = if in_gmsh {
         gmsh::parse(gmsh_text(&points, entry.cell_type, &places).as_bytes())
     } else {
-        vtk::parse(vtk_text(&points, entry.cell_type, &places).as_bytes(), "vtk")
+        vtk::parse_legacy(vtk_text(&points, entry.cell_type, &places).as_bytes())
     };
     let read = source.and_then(|source: MeshSource| Mesh::resolve(&source, std::slice::from_ref(element), 1.0));
     match read {

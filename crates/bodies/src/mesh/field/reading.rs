@@ -1,0 +1,84 @@
+//! What has been read of the displacements so far, and the points that they belong to.
+
+use super::locator::Locator;
+use crate::error::{Error, Result};
+use crate::mesh::mesh::Mesh;
+
+/// Names of the directions in columns.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// What has been read of a field so far.
+pub(super) struct Reading<'a> {
+    pub mesh: &'a Mesh,
+    scale: f64,
+    pub locator: Locator,
+    pub displacements: Vec<Option<f64>>,
+    /// The place in the file that named each point.
+    places: Vec<Option<usize>>,
+}
+
+impl Reading<'_> {
+    pub fn new(mesh: &Mesh, scale: f64) -> Reading<'_> {
+        let places = vec![None; mesh.point_count()];
+        Reading { mesh, scale, locator: Locator::new(mesh), displacements: vec![None; mesh.points.len()], places }
+    }
+
+    /// A length of the file in m; `None` for what is not measured.
+    pub fn length(&self, value: f64) -> Result<Option<f64>> {
+        let length = value * self.scale;
+        if length.is_infinite() {
+            return Err(Error::new(format!(
+                "expected a finite length, found {value:?} times the scale {:?}",
+                self.scale
+            )));
+        }
+        Ok((!length.is_nan()).then_some(length))
+    }
+
+    /// The point of the mesh at a position in m; where several are, the one of them whose number is `preferred`.
+    ///
+    /// # Errors
+    /// None is there, or several of which none is preferred.
+    pub fn point_at(&self, position: &[f64], preferred: Option<usize>) -> Result<usize> {
+        let found = self.locator.at(position);
+        match (&found[..], preferred) {
+            (&[point], _) => Ok(point),
+            (&[], _) => {
+                let (point, distance) = self.locator.nearest(position);
+                let hint = format!("is the scale {:?} m per unit of the file right?", self.scale);
+                let nearest = format!("{distance:?} m from the nearest, point {}", point);
+                let found = format!("{} m, {nearest}; {hint}", listed(position));
+                Err(Error::expected("position", "that of a point of the mesh", found))
+            }
+            (_, Some(point)) if found.contains(&point) => Ok(point),
+            (&[first, second, ..], _) => {
+                let found = format!("points {} and {}, both at {} m", first, second, listed(position));
+                Err(Error::expected("position", "that of one point of the mesh", found))
+            }
+        }
+    }
+
+    /// Notes that this place of the file names the point, and returns the place that did so before.
+    pub fn claim(&mut self, point: usize, place: usize) -> Option<usize> {
+        let before = self.places[point];
+        self.places[point] = before.or(Some(place));
+        before
+    }
+
+    /// `[points · dimension]`, m.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn displacements(self) -> Result<Vec<Option<f64>>> {
+        if self.displacements.iter().all(Option::is_none) {
+            return Err(Error::new("the file measures no displacement of any point"));
+        }
+        Ok(self.displacements)
+    }
+}
+
+/// Coordinates in parentheses.
+pub(super) fn listed(position: &[f64]) -> String {
+    let numbers: Vec<_> = position.iter().map(|x| format!("{x:?}")).collect();
+    format!("({})", numbers.join(", "))
+}

@@ -1,0 +1,191 @@
+//! The sections of an MSH file.
+
+use super::nodes::Nodes;
+use super::{types, v22, v41};
+use crate::error::{Error, Result};
+use crate::mesh::grouping::Gather;
+use crate::mesh::reader::{Encoding, Reader, quoted};
+use crate::mesh::source::{Format, MeshSource, SourceBlock};
+use std::collections::{HashMap, HashSet};
+
+/// Reads a Gmsh mesh. Points keep the file's order; cells of one type in the same physical groups form one block.
+///
+/// A physical group without a name is called `dimension:tag`.
+///
+/// # Errors
+/// The file is not an MSH file of version 4.1 or 2.2, is damaged, cut short or partitioned, or has an element type that
+/// Gmsh does not document.
+pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
+    let mut reader = Reader::new(bytes);
+    let mut file = File::default();
+    loop {
+        let word = reader.peek();
+        if word.is_empty() {
+            return file.into_source();
+        }
+        reader.enter("");
+        let Some(name) = word.strip_prefix(b"$") else {
+            return Err(reader.expected("a section such as $MeshFormat", &quoted(word)));
+        };
+        let name = String::from_utf8_lossy(name);
+        reader.enter(format!("${}", &*name));
+        reader.word();
+        file.read_section(&mut reader, &name)?;
+    }
+}
+
+enum Version {
+    V22,
+    V41,
+}
+
+/// The sections read so far.
+#[derive(Default)]
+struct File {
+    version: Option<Version>,
+    /// Names of physical groups by dimension and tag.
+    names: HashMap<(usize, u32), String>,
+    entities: v41::Entities,
+    nodes: Option<Nodes>,
+    cells: Option<Cells>,
+}
+
+enum Cells {
+    OfEntities(Gather<v41::Key>),
+    OfGroups(Gather<v22::Key>),
+}
+
+impl File {
+    fn read_section(&mut self, reader: &mut Reader, name: &str) -> Result<()> {
+        match (name, &self.version) {
+            ("MeshFormat", None) => self.version = Some(format(reader)?),
+            ("PhysicalNames", Some(_)) => self.names = physical_names(reader)?,
+            ("Entities", Some(Version::V41)) => self.entities = v41::entities(reader)?,
+            ("Nodes", Some(version)) if self.nodes.is_none() => {
+                self.nodes = Some(match version {
+                    Version::V22 => v22::nodes(reader, false)?,
+                    Version::V41 => v41::nodes(reader)?,
+                });
+            }
+            ("ParametricNodes", Some(Version::V22)) if self.nodes.is_none() => {
+                self.nodes = Some(v22::nodes(reader, true)?);
+            }
+            ("Elements", Some(version)) if self.cells.is_none() => {
+                let nodes = self.nodes.as_ref().ok_or_else(|| reader.fault("expected $Nodes before it".into()))?;
+                self.cells = Some(match version {
+                    Version::V22 => Cells::OfGroups(v22::elements(reader, nodes)?),
+                    Version::V41 => Cells::OfEntities(v41::elements(reader, nodes)?),
+                });
+            }
+            ("MeshFormat" | "Nodes" | "Elements", Some(_)) | ("ParametricNodes", Some(Version::V22)) => {
+                return Err(reader.fault("stands in the file a second time".into()));
+            }
+            ("PhysicalNames" | "Entities" | "Nodes" | "ParametricNodes" | "Elements", None) => {
+                return Err(reader.fault("expected $MeshFormat before it".into()));
+            }
+            ("PartitionedEntities", _) => {
+                return Err(reader.fault("partitioned meshes are not supported".into()));
+            }
+            _ => return skip(reader, name),
+        }
+        let end = format!("$End{name}");
+        if reader.peek() != end.as_bytes() {
+            return Err(reader.unexpected(&end));
+        }
+        reader.word();
+        Ok(())
+    }
+
+    fn into_source(self) -> Result<MeshSource> {
+        let missing = |section| Error::new(format!("the file ends before {section}"));
+        self.version.ok_or_else(|| missing("$MeshFormat"))?;
+        let nodes = self.nodes.ok_or_else(|| missing("$Nodes"))?;
+        let cells = match self.cells.ok_or_else(|| missing("$Elements"))? {
+            Cells::OfGroups(cells) => cells,
+            Cells::OfEntities(cells) => {
+                let mut gather = Gather::new();
+                for ((cell_type, dimension, entity), list) in cells.into_lists() {
+                    let groups = self.entities.get(&(dimension, entity)).cloned().unwrap_or_default();
+                    gather.append(&(cell_type, groups), list);
+                }
+                gather
+            }
+        };
+        let mut blocks = Vec::new();
+        for ((cell_type, tags), connectivity) in cells.into_lists() {
+            let Some((dimension, nodes_per_cell)) = types::find(cell_type) else { continue };
+            let name = |tag| self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{dimension}:{tag}"));
+            let mut known = HashSet::new();
+            let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
+            blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups });
+        }
+        Ok(MeshSource { format: Format::Gmsh, points: nodes.points, blocks })
+    }
+}
+
+/// Reads the version and finds out the encoding of the sections to come.
+fn format(reader: &mut Reader) -> Result<Version> {
+    let version = match reader.peek() {
+        b"4.1" => Version::V41,
+        b"2.2" | b"2.1" | b"2.0" | b"2" => Version::V22,
+        _ => return Err(reader.unexpected("version 4.1 or 2.2")),
+    };
+    reader.word();
+    let binary: u32 = reader.text_number()?;
+    let size: u32 = reader.text_number()?;
+    match binary {
+        0 => return Ok(version),
+        1 => {}
+        other => return Err(reader.expected("file type 0 or 1", &other.to_string())),
+    }
+    if size != 8 {
+        return Err(reader.expected("data size 8", &size.to_string()));
+    }
+    reader.encoding = Encoding::Binary { big_endian: false };
+    reader.start_data()?;
+    let one: i32 = reader.number()?;
+    match one {
+        1 => {}
+        _ if one.swap_bytes() == 1 => reader.encoding = Encoding::Binary { big_endian: true },
+        _ => return Err(reader.expected("the number 1 in binary", &one.to_string())),
+    }
+    Ok(version)
+}
+
+/// Reads the names of the physical groups, which are text in binary files too.
+fn physical_names(reader: &mut Reader) -> Result<HashMap<(usize, u32), String>> {
+    let count: u64 = reader.text_number()?;
+    reader.announce("names", count);
+    let mut names = HashMap::new();
+    for _ in 0..count {
+        let dimension: u32 = reader.text_number()?;
+        let tag: i32 = reader.text_number()?;
+        if !reader.peek().starts_with(b"\"") {
+            return Err(reader.unexpected("a name in quotes"));
+        }
+        let line = reader.rest_of_line();
+        if line.len() == reader.rest().len() {
+            return Err(reader.ends());
+        }
+        let name = line.trim_ascii().strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
+        let name = name.ok_or_else(|| reader.expected("a name in quotes", &quoted(line)))?;
+        let name = String::from_utf8_lossy(name).into_owned();
+        reader.line();
+        reader.count_one();
+        names.insert((dimension as usize, tag.unsigned_abs()), name);
+    }
+    Ok(names)
+}
+
+/// Moves past the end of a section whose content does not matter here.
+fn skip(reader: &mut Reader, name: &str) -> Result<()> {
+    let end = format!("$End{name}");
+    loop {
+        if reader.rest().is_empty() {
+            return Err(reader.ends());
+        }
+        if reader.line().trim_ascii() == end.as_bytes() {
+            return Ok(());
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Points, cells and groups of a mesh.
+
+use super::quality::Quality;
+use crate::element::Element;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Cells of proved elements. Every point belongs to a cell, and every cell has a positive volume.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// Of the space: 2 or 3. The cells of a surface or curve have fewer.
+    pub dimension: usize,
+    /// `[points × dimension]`, m.
+    pub points: Vec<f64>,
+    /// One block per element type.
+    pub blocks: Vec<CellBlock>,
+    pub groups: BTreeMap<String, Group>,
+    /// Cells that were numbered the other way round and have been turned.
+    pub reversed: usize,
+    /// Points of the file that belong to no cell and were left out.
+    pub unused_points: usize,
+    pub quality: Quality,
+}
+
+/// Cells of one element type.
+#[derive(Debug, Clone)]
+pub struct CellBlock {
+    pub element: Arc<Element>,
+    /// `[cells × nodes]`.
+    pub connectivity: Vec<usize>,
+}
+
+/// Points, sides and cells that carry one name.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Group {
+    /// Sorted.
+    pub points: Vec<usize>,
+    /// Each side by its points, sorted.
+    pub sides: Vec<Vec<usize>>,
+    pub cells: Vec<CellIndex>,
+}
+
+/// A cell of a mesh, by its block and its number in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CellIndex {
+    pub block: usize,
+    pub cell: usize,
+}
+
+/// A side of a cell, by its number in the element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SideIndex {
+    pub cell: CellIndex,
+    pub side: usize,
+}
+
+impl CellBlock {
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
+        self.connectivity.chunks_exact(self.element.nodes())
+    }
+}
+
+impl Mesh {
+    pub fn point_count(&self) -> usize {
+        self.points.len() / self.dimension
+    }
+
+    pub fn cell_count(&self) -> usize {
+        self.blocks.iter().map(|b| b.cells().len()).sum()
+    }
+
+    /// Of the cells: 3 for solids, 2 for surfaces, 1 for curves.
+    pub fn cell_dimension(&self) -> usize {
+        self.blocks.first().map_or(self.dimension, |b| b.element.dimension())
+    }
+
+    /// The coordinates of one point, m.
+    pub fn point(&self, index: usize) -> &[f64] {
+        &self.points[index * self.dimension..(index + 1) * self.dimension]
+    }
+
+    /// Leaves out the points that belong to no cell.
+    pub(super) fn drop_unused_points(&mut self) {
+        let total = self.points.len() / self.dimension;
+        let mut new = vec![usize::MAX; total];
+        self.blocks.iter().flat_map(|b| &b.connectivity).for_each(|&p| new[p] = 0);
+        let mut used = 0;
+        for (old, new) in new.iter_mut().enumerate() {
+            if *new == 0 {
+                *new = used;
+                self.points.copy_within(old * self.dimension..(old + 1) * self.dimension, used * self.dimension);
+                used += 1;
+            }
+        }
+        self.points.truncate(used * self.dimension);
+        self.unused_points = total - used;
+        self.blocks.iter_mut().flat_map(|b| &mut b.connectivity).for_each(|p| *p = new[*p]);
+        for group in self.groups.values_mut() {
+            let renumber = |points: &mut Vec<usize>| {
+                points.retain(|&p| new[p] != usize::MAX);
+                points.iter_mut().for_each(|p| *p = new[*p]);
+                points.sort_unstable();
+            };
+            renumber(&mut group.points);
+            group.points.dedup();
+            group.sides.iter_mut().for_each(renumber);
+        }
+    }
+}
+
+/// The points of a side, ascending.
+pub(super) fn sorted(points: &[usize]) -> Vec<usize> {
+    let mut points = points.to_vec();
+    points.sort_unstable();
+    points
+}

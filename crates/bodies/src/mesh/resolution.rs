@@ -1,0 +1,185 @@
+//! The elements of the cells of a file.
+
+use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
+use super::quality::{Below, Gate, Quality};
+use super::source::{Format, MeshSource, SourceBlock};
+use crate::element::{Element, FormatEntry, SHIPPED};
+use crate::error::{Error, Result};
+use crate::stiffness::{Fault, Geometry, Placement};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+impl Mesh {
+    /// Gives each cell of a file its element: one of `own` if it serves the cell type, else a shipped one.
+    /// Coordinates are multiplied by `scale`. Cells of poor quality are told.
+    ///
+    /// # Errors
+    /// No element serves a cell type, or a cell is tangled or flat.
+    pub fn resolve(source: &MeshSource, own: &[Arc<Element>], scale: f64) -> Result<Mesh> {
+        Mesh::resolve_within(source, own, scale, None)
+    }
+
+    /// The same with a gate of one's own for the cells; then points that do not fit together are looked for as well.
+    ///
+    /// # Errors
+    /// As there, unless the gate skips such cells; the gate refuses a cell, or none is left.
+    pub fn resolve_within(source: &MeshSource, own: &[Arc<Element>], scale: f64, gate: Option<Gate>) -> Result<Mesh> {
+        let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
+        if dimension == 0 {
+            return Err(Error::expected("cells", "lines, surface or solid cells", "none"));
+        }
+        let space = if dimension < 3 && in_one_plane(source) { 2 } else { 3 };
+        let lengths = || source.points.iter().flatten().map(|x| (x * scale).abs());
+        let largest = lengths().fold(0.0, f64::max);
+        if !(1e-30..=1e30).contains(&largest) {
+            let expected = "coordinates of which the largest is between 1e-30 and 1e30 m";
+            return Err(Error::expected("points", expected, format!("{largest:?} m")));
+        }
+        let mut mesh = Mesh {
+            dimension: space,
+            points: source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect(),
+            blocks: Vec::new(),
+            groups: BTreeMap::new(),
+            reversed: 0,
+            unused_points: 0,
+            quality: Quality::default(),
+        };
+        let mut served: BTreeMap<u32, usize> = BTreeMap::new();
+        for block in source.blocks.iter().filter(|b| b.dimension == dimension) {
+            let index = match served.get(&block.cell_type) {
+                Some(&index) => index,
+                None => {
+                    let mut element = element_for(source.format, block, own)?;
+                    if element.dimension() < space {
+                        element = Arc::new(Element::clone(&element).in_space(space));
+                    }
+                    mesh.blocks.push(CellBlock { element, connectivity: Vec::new() });
+                    served.insert(block.cell_type, mesh.blocks.len() - 1);
+                    mesh.blocks.len() - 1
+                }
+            };
+            mesh.add_cells(index, block, source.format);
+        }
+        for block in source.blocks.iter().filter(|b| b.dimension < dimension && b.nodes_per_cell > 0) {
+            for name in &block.groups {
+                let group = mesh.groups.entry(name.clone()).or_default();
+                group.points.extend(&block.connectivity);
+                if block.dimension + 1 == dimension {
+                    group.sides.extend(block.connectivity.chunks_exact(block.nodes_per_cell).map(sorted));
+                }
+            }
+        }
+        mesh.drop_unused_points();
+        let faulty = mesh.orient(gate.is_some_and(|gate| gate.below == Below::Skip))?;
+        if !faulty.is_empty() {
+            mesh.quality.skipped = faulty.len();
+            mesh.remove(&faulty)?;
+        }
+        mesh.pass(gate.unwrap_or_default())?;
+        if gate.is_some() {
+            mesh.find_misfits();
+        }
+        Ok(mesh)
+    }
+
+    fn add_cells(&mut self, index: usize, block: &SourceBlock, format: Format) {
+        let CellBlock { element, connectivity } = &mut self.blocks[index];
+        let first = connectivity.len() / element.nodes();
+        let order = entry(element, format).and_then(|e| e.order.clone());
+        for nodes in block.connectivity.chunks_exact(block.nodes_per_cell) {
+            match &order {
+                Some(order) => connectivity.extend(order.iter().map(|&place| nodes[place])),
+                None => connectivity.extend(nodes),
+            }
+        }
+        let last = connectivity.len() / element.nodes();
+        for name in &block.groups {
+            let group = self.groups.entry(name.clone()).or_default();
+            group.points.extend(&block.connectivity);
+            group.cells.extend((first..last).map(|cell| CellIndex { block: index, cell }));
+        }
+    }
+
+    /// Turns reversed cells and makes sure that every cell has a volume; returns those that have none if they are to be left out.
+    pub(super) fn orient(&mut self, skip: bool) -> Result<Vec<CellIndex>> {
+        let d = self.dimension;
+        let mut faulty = Vec::new();
+        for (index, block) in self.blocks.iter_mut().enumerate() {
+            let element = block.element.clone();
+            let table = &element.tabulation;
+            let mut geometry = Geometry::new(table);
+            let mut placement = Placement::new(table);
+            let mut x = vec![0.0; element.nodes() * element.dimension()];
+            let mut set = |points: &[f64], nodes: &[usize]| {
+                placement.place(table, points, nodes, &mut x).and_then(|()| geometry.set(table, &x))
+            };
+            for (cell, nodes) in block.connectivity.chunks_exact_mut(element.nodes()).enumerate() {
+                let twice = |(i, node): (usize, &usize)| nodes[..i].contains(node);
+                let fault = match (set(&self.points, nodes), &element.reflection) {
+                    _ if nodes.iter().enumerate().any(twice) => Some(Fault::Collapsed),
+                    (Ok(()), _) => continue,
+                    (Err(Fault::Reversed), Some(reflection)) => {
+                        let turned: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();
+                        nodes.copy_from_slice(&turned);
+                        self.reversed += 1;
+                        set(&self.points, nodes).err()
+                    }
+                    (Err(fault), _) => Some(fault),
+                };
+                if fault.is_some() && skip {
+                    faulty.push(CellIndex { block: index, cell });
+                } else if let Some(fault) = fault {
+                    let first = &self.points[nodes[0] * d..][..d];
+                    let key = format!("{} cell {} at {first:?} m", element.name, cell + 1);
+                    return Err(Error::at(key, fault.to_string()));
+                }
+            }
+        }
+        Ok(faulty)
+    }
+}
+
+fn entry(element: &Element, format: Format) -> Option<&FormatEntry> {
+    match format {
+        Format::Gmsh => element.formats.gmsh.as_ref(),
+        Format::Vtk => element.formats.vtk.as_ref(),
+    }
+}
+
+fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Result<Arc<Element>> {
+    let number = block.cell_type;
+    let serves = |element: &&Arc<Element>| entry(element, format).is_some_and(|e| e.cell_type == number);
+    let shipped_number = |s: &crate::element::ElementFile| match format {
+        Format::Gmsh => s.gmsh,
+        Format::Vtk => s.vtk,
+    };
+    let element = match own.iter().find(serves) {
+        Some(element) => element.clone(),
+        None => match SHIPPED.iter().find(|s| shipped_number(s) == Some(i64::from(number))) {
+            Some(shipped) => Arc::new(Element::shipped(shipped)?),
+            None => {
+                let cells = block.connectivity.len() / block.nodes_per_cell.max(1);
+                let known: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
+                let expected = format!("cells of {} or of an element file you name", known.join(", "));
+                let found = format!("{cells} cells of {format:?} type {number} with {} nodes", block.nodes_per_cell);
+                return Err(Error::expected("cells", expected, found));
+            }
+        },
+    };
+    if element.nodes() != block.nodes_per_cell || element.dimension() != block.dimension {
+        let expected =
+            format!("{} nodes in {} dimensions as in {}", element.nodes(), element.dimension(), element.name);
+        let found = format!("{} nodes in {}", block.nodes_per_cell, block.dimension);
+        return Err(Error::expected("cells", expected, found));
+    }
+    Ok(element)
+}
+
+/// Whether all points that are used have the same z.
+fn in_one_plane(source: &MeshSource) -> bool {
+    let used = || source.blocks.iter().flat_map(|b| &b.connectivity).map(|&p| source.points[p]);
+    let range = |k: usize| used().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));
+    let (lo, hi) = range(2);
+    let extent = (0..2).map(|k| range(k).1 - range(k).0).fold(0.0, f64::max);
+    hi - lo <= 1e-9 * extent
+}

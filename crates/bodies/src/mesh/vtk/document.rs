@@ -1,0 +1,289 @@
+//! The structure of a `.vtu`: its pieces, their arrays and where these are stored.
+
+use super::scalar_type::ScalarType;
+use super::storage::{Storage, Stored};
+use super::xml_tag::{Tag, next_tag, text_after};
+use crate::error::{Error, Result};
+use std::ops::Range;
+
+/// A grid has six tags inside one another.
+const DEEPEST_TAGS: usize = 32;
+/// A piece takes up more memory than its tag does.
+const MOST_PIECES: usize = 4096;
+const ARRAY_PATH: [&[u8]; 3] = [b"VTKFile", b"UnstructuredGrid", b"Piece"];
+const APPENDED_END: &[u8] = b"</AppendedData";
+
+/// A `.vtu` whose tags have been read.
+pub(super) struct Document<'a> {
+    bytes: &'a [u8],
+    pub storage: Storage,
+    pub pieces: Vec<PieceTag>,
+    appended: Option<Stored<'a>>,
+}
+
+pub(super) struct PieceTag {
+    pub points: u64,
+    pub cells: u64,
+    pub arrays: Vec<ArrayTag>,
+}
+
+/// What an array belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Section {
+    Points,
+    Cells,
+    PointData,
+    CellData,
+}
+
+pub(super) struct ArrayTag {
+    pub section: Section,
+    pub name: String,
+    pub scalar: ScalarType,
+    pub components: u64,
+    place: Place,
+    /// Where its tag starts in the file.
+    start: usize,
+}
+
+enum Place {
+    Text(Range<usize>),
+    Base64(Range<usize>),
+    /// So many bytes after the first of the appended data.
+    Appended(usize),
+}
+
+/// The values of an array in the file.
+pub(super) enum Content<'a> {
+    /// The file up to the end of the text, and where this starts.
+    Text(&'a [u8], usize),
+    /// `alone` if the bytes are those of this array and no others.
+    Binary { stored: Stored<'a>, alone: bool },
+}
+
+impl ArrayTag {
+    /// What errors call the array.
+    pub fn key(&self) -> String {
+        self.section.key(&self.name)
+    }
+}
+
+impl<'a> Document<'a> {
+    /// Reads all tags.
+    ///
+    /// # Errors
+    /// The file is of another kind, cut short, stored in a way that is not supported, or its tags do not match.
+    pub fn read(bytes: &'a [u8]) -> Result<Document<'a>> {
+        let mut document = Document { bytes, storage: Storage::default(), pieces: Vec::new(), appended: None };
+        let mut open: Vec<&[u8]> = Vec::new();
+        let mut at = 0;
+        loop {
+            let Some(tag) = next_tag(bytes, at) else {
+                let problem = match open.first() {
+                    Some(_) => "the file ends before </VTKFile>",
+                    None => "expected <VTKFile>, found none",
+                };
+                return Err(Error::new(problem));
+            };
+            at = tag.end;
+            let placed = |error: Error| error.on_line(line_of(bytes, tag.start));
+            if let Some(name) = tag.name.strip_prefix(b"/") {
+                let expected = open.pop().map_or("<VTKFile>".to_string(), |name| format!("</{}>", shown(name)));
+                let found = format!("</{}>", shown(name));
+                if expected != found {
+                    return Err(placed(Error::new(format!("expected {expected}, found {found}"))));
+                }
+                document.continue_text(&open, at);
+            } else {
+                at = document.add(&open, &tag).map_err(placed)?;
+                if !tag.empty {
+                    open.push(tag.name);
+                }
+                if open.len() > DEEPEST_TAGS {
+                    let expected = format!("at most {DEEPEST_TAGS} tags inside one another");
+                    return Err(placed(Error::expected(shown(tag.name), expected, open.len())));
+                }
+            }
+            if open.is_empty() {
+                return Ok(document);
+            }
+        }
+    }
+
+    /// Adds what a start tag says, and returns where the next tag is searched for.
+    fn add(&mut self, open: &[&[u8]], tag: &Tag) -> Result<usize> {
+        match (open, tag.name) {
+            ([], b"VTKFile") => self.root(tag)?,
+            ([], other) => return Err(Error::new(format!("expected <VTKFile>, found <{}>", shown(other)))),
+            ([b"VTKFile"], b"AppendedData") => return self.appended_data(tag),
+            ([b"VTKFile", b"UnstructuredGrid"], b"Piece") if self.pieces.len() == MOST_PIECES => {
+                return Err(Error::new(format!("expected at most {MOST_PIECES} pieces, found more")));
+            }
+            ([b"VTKFile", b"UnstructuredGrid"], b"Piece") => {
+                let count = |name| number(tag, name).map_err(|error| error.under("Piece"));
+                let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
+                self.pieces.push(PieceTag { points, cells, arrays: Vec::new() });
+            }
+            ([path @ .., section], b"DataArray") if path == ARRAY_PATH => {
+                if let (Some(section), Some(piece)) = (Section::called(section), self.pieces.last_mut()) {
+                    piece.arrays.push(array(section, tag, self.bytes)?);
+                }
+            }
+            // field data, and what other programs may add
+            _ => {}
+        }
+        Ok(tag.end)
+    }
+
+    fn root(&mut self, tag: &Tag) -> Result<()> {
+        let one_of = |name: &str, known: [&str; 2]| match tag.attribute(name) {
+            None => Ok(false),
+            Some(value) if value == known[0] => Ok(false),
+            Some(value) if value == known[1] => Ok(true),
+            Some(other) => Err(Error::expected("VTKFile", format!("{name} {} or {}", known[0], known[1]), other)),
+        };
+        let kind = tag.attribute("type").unwrap_or_default();
+        if kind != "UnstructuredGrid" {
+            return Err(Error::expected("VTKFile", "type UnstructuredGrid", kind));
+        }
+        let compressed = match tag.attribute("compressor") {
+            None => false,
+            Some(name) if name == "vtkZLibDataCompressor" => true,
+            Some(other) => return Err(Error::expected("VTKFile", "compressor vtkZLibDataCompressor or none", other)),
+        };
+        let wide = one_of("header_type", ["UInt32", "UInt64"])?;
+        self.storage = Storage { compressed, wide, big_endian: one_of("byte_order", ["LittleEndian", "BigEndian"])? };
+        Ok(())
+    }
+
+    /// The data begin after an underscore. Raw data may look like tags; they end where the last end tag is.
+    fn appended_data(&mut self, tag: &Tag) -> Result<usize> {
+        let encoding = tag.attribute("encoding").unwrap_or_default();
+        let in_base64 = match encoding.as_str() {
+            "base64" => true,
+            "raw" => false,
+            _ => return Err(Error::expected("AppendedData", "encoding base64 or raw", encoding)),
+        };
+        let end = if in_base64 || tag.empty {
+            text_after(self.bytes, tag.end).end
+        } else {
+            let end = self.bytes[tag.end..].windows(APPENDED_END.len()).rposition(|window| window == APPENDED_END);
+            tag.end + end.ok_or_else(|| Error::new("the file ends before </AppendedData>"))?
+        };
+        let data = self.bytes[tag.end..end].trim_ascii_start().strip_prefix(b"_");
+        self.appended = data.map(|bytes| Stored { bytes, in_base64 });
+        Ok(end)
+    }
+
+    /// Notes inside an array may stand before its text: this then follows their end tag.
+    fn continue_text(&mut self, open: &[&[u8]], at: usize) {
+        let [path @ .., section, b"DataArray"] = open else { return };
+        if path != ARRAY_PATH || Section::called(section).is_none() {
+            return;
+        }
+        let array = self.pieces.last_mut().and_then(|piece| piece.arrays.last_mut());
+        if let Some(Place::Text(text) | Place::Base64(text)) = array.map(|array| &mut array.place)
+            && self.bytes[text.clone()].trim_ascii().is_empty()
+        {
+            *text = text_after(self.bytes, at);
+        }
+    }
+
+    /// Where the values of an array are.
+    ///
+    /// # Errors
+    /// They are not in the file.
+    pub fn content(&self, array: &ArrayTag) -> Result<Content<'a>> {
+        let in_base64 = true;
+        match &array.place {
+            Place::Text(text) => Ok(Content::Text(&self.bytes[..text.end], text.start)),
+            Place::Base64(text) => {
+                let stored = Stored { bytes: self.bytes[text.clone()].trim_ascii(), in_base64 };
+                Ok(Content::Binary { stored, alone: true })
+            }
+            Place::Appended(offset) => {
+                let Some(appended) = self.appended else {
+                    return Err(Error::new("expected <AppendedData> with an underscore before the data, found none"));
+                };
+                let Some(bytes) = appended.bytes.get(*offset..) else {
+                    let expected = format!("an offset of at most {}", appended.bytes.len());
+                    return Err(Error::new(format!("expected {expected}, found {offset}")));
+                };
+                Ok(Content::Binary { stored: Stored { bytes, ..appended }, alone: false })
+            }
+        }
+    }
+
+    /// Bytes of the file.
+    pub fn size(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// The line of the array's tag, from 1.
+    pub fn line(&self, array: &ArrayTag) -> usize {
+        line_of(self.bytes, array.start)
+    }
+}
+
+impl Section {
+    fn called(name: &[u8]) -> Option<Section> {
+        match name {
+            b"Points" => Some(Section::Points),
+            b"Cells" => Some(Section::Cells),
+            b"PointData" => Some(Section::PointData),
+            b"CellData" => Some(Section::CellData),
+            _ => None,
+        }
+    }
+
+    /// What errors call its array of this name.
+    fn key(self, name: &str) -> String {
+        match self {
+            Section::Points => "Points".to_string(),
+            Section::Cells | Section::PointData | Section::CellData => format!("{self:?}.{name}"),
+        }
+    }
+}
+
+fn array(section: Section, tag: &Tag, bytes: &[u8]) -> Result<ArrayTag> {
+    let name = tag.attribute("Name").unwrap_or_default();
+    let scalar = tag.attribute("type").unwrap_or_default();
+    let scalar = ScalarType::of_xml(&scalar)
+        .ok_or_else(|| Error::expected("type", "one of Int8 to Int64, UInt8 to UInt64, Float32, Float64", scalar));
+    let components = match tag.attribute("NumberOfComponents") {
+        Some(_) => number(tag, "NumberOfComponents"),
+        None => Ok(1),
+    };
+    let text = if tag.empty { tag.end..tag.end } else { text_after(bytes, tag.end) };
+    let format = tag.attribute("format").unwrap_or_default();
+    let place = match format.to_ascii_lowercase().as_str() {
+        "ascii" => Ok(Place::Text(text)),
+        "binary" => Ok(Place::Base64(text)),
+        "appended" => {
+            number(tag, "offset").map(|offset| Place::Appended(usize::try_from(offset).unwrap_or(usize::MAX)))
+        }
+        _ => Err(Error::expected("format", "ascii, binary or appended", format)),
+    };
+    let placed = |error: Error| error.under(section.key(&name));
+    let (scalar, components) = (scalar.map_err(placed)?, components.map_err(placed)?);
+    if section == Section::Points && components != 3 {
+        return Err(Error::expected("Points", "3 components", components));
+    }
+    let place = place.map_err(placed)?;
+    Ok(ArrayTag { section, name, scalar, components, place, start: tag.start })
+}
+
+/// An attribute that is a whole number.
+fn number(tag: &Tag, name: &str) -> Result<u64> {
+    let value = tag.attribute(name).unwrap_or_default();
+    value.trim().parse().map_err(|_| Error::expected(name, "a whole number", format!("\"{value}\"")))
+}
+
+fn line_of(bytes: &[u8], at: usize) -> usize {
+    1 + bytes[..at].iter().filter(|&&b| b == b'\n').count()
+}
+
+/// The start of a name, on one line.
+fn shown(name: &[u8]) -> String {
+    String::from_utf8_lossy(&name[..name.len().min(40)]).into_owned()
+}

@@ -1,0 +1,198 @@
+//! Arrays as a `.vtu` stores them: in base64 or raw, as bytes after their number or as blocks of zlib after a header.
+
+use crate::error::{Error, Result};
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::general_purpose::{GeneralPurpose, PAD};
+use flate2::{Decompress, FlushDecompress, Status};
+use std::borrow::Cow;
+
+const BASE64: GeneralPurpose = GeneralPurpose::new(&STANDARD, PAD.with_decode_allow_trailing_bits(true));
+
+/// No data compress by zlib to less than this part.
+const MOST_COMPRESSION: usize = 1100;
+
+/// How all arrays of a file are stored.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Storage {
+    pub compressed: bool,
+    /// Whether the numbers of a header have eight bytes each, not four.
+    pub wide: bool,
+    pub big_endian: bool,
+}
+
+/// The bytes of a file from the first of one array on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stored<'a> {
+    pub bytes: &'a [u8],
+    pub in_base64: bool,
+}
+
+/// A stored array whose header fits it.
+pub(super) struct Data<'a> {
+    stored: Stored<'a>,
+    /// Bytes of the array once decoded.
+    pub size: usize,
+    /// Bytes that the stored array has.
+    pub stored_size: usize,
+    layout: Layout,
+}
+
+enum Layout {
+    /// The data follow their number, which takes up so many bytes, in the same run of base64.
+    Plain {
+        header: usize,
+    },
+    Blocks {
+        start: usize,
+        block: usize,
+        compressed: Vec<usize>,
+    },
+}
+
+impl<'a> Stored<'a> {
+    /// How many bytes hold so many once decoded.
+    fn length(self, count: usize) -> usize {
+        if self.in_base64 { count.div_ceil(3).saturating_mul(4) } else { count }
+    }
+
+    /// The `count` bytes that are stored from `start` on as one run.
+    fn run(self, start: usize, count: usize) -> Result<Cow<'a, [u8]>> {
+        let rest = self.bytes.get(start..).unwrap_or_default();
+        let length = self.length(count);
+        let Some(run) = rest.get(..length) else {
+            let unit = if self.in_base64 { "characters of base64" } else { "bytes" };
+            return Err(Error::new(format!("expected {length} {unit}, found {}", rest.len())));
+        };
+        if !self.in_base64 {
+            return Ok(Cow::Borrowed(run));
+        }
+        let mut bytes = BASE64.decode(run).map_err(|error| Error::new(format!("expected base64, found: {error}")))?;
+        if bytes.len() < count {
+            return Err(Error::new(format!("expected base64 of {count} bytes, found {}", bytes.len())));
+        }
+        bytes.truncate(count);
+        Ok(Cow::Owned(bytes))
+    }
+}
+
+impl Storage {
+    fn width(self) -> usize {
+        if self.wide { 8 } else { 4 }
+    }
+
+    /// The numbers of a header.
+    fn numbers(self, header: &[u8]) -> impl Iterator<Item = usize> {
+        header.chunks_exact(self.width()).map(move |bytes| {
+            let fold = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
+            let number = if self.big_endian { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
+            usize::try_from(number).unwrap_or(usize::MAX)
+        })
+    }
+
+    /// Reads the header of an array.
+    ///
+    /// # Errors
+    /// It claims more data than the stored bytes can hold.
+    pub fn open(self, stored: Stored<'_>) -> Result<Data<'_>> {
+        let width = self.width();
+        let first = stored.run(0, width)?;
+        let first = self.numbers(&first).next().unwrap_or(0);
+        if self.compressed {
+            return self.open_blocks(stored, first);
+        }
+        let stored_size = stored.length(first.saturating_add(width));
+        if stored_size > stored.bytes.len() {
+            let room = if stored.in_base64 { stored.bytes.len() / 4 * 3 } else { stored.bytes.len() };
+            let found = room.saturating_sub(width);
+            return Err(Error::new(format!("expected {first} bytes of data by the header, found {found}")));
+        }
+        Ok(Data { stored, size: first, stored_size, layout: Layout::Plain { header: width } })
+    }
+
+    /// A header has the number of blocks, their size, the size of the last one, or 0 if it is as large as the others,
+    /// and the sizes of all once compressed.
+    fn open_blocks(self, stored: Stored<'_>, count: usize) -> Result<Data<'_>> {
+        let length = count.saturating_add(3).saturating_mul(self.width());
+        if stored.length(length) > stored.bytes.len() {
+            let found = stored.bytes.len();
+            return Err(Error::new(format!("expected the sizes of {count} compressed blocks, found {found} bytes")));
+        }
+        let header = stored.run(0, length)?;
+        let mut numbers = self.numbers(&header).skip(1);
+        let (block, last) = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
+        let compressed: Vec<usize> = numbers.collect();
+        let start = stored.length(length);
+        let total = compressed.iter().fold(0, |total: usize, &size| total.saturating_add(size));
+        let stored_size = start.saturating_add(stored.length(total));
+        if stored_size > stored.bytes.len() {
+            let found = stored.bytes.len() - start;
+            return Err(Error::new(format!(
+                "expected {total} bytes of compressed data, found {found} with their coding"
+            )));
+        }
+        let size = match count.checked_sub(1) {
+            None => 0,
+            Some(whole) => block.saturating_mul(whole).saturating_add(if last == 0 { block } else { last }),
+        };
+        if count > 0 && (block == 0 || last > block || size / MOST_COMPRESSION > total) {
+            let expected = format!("blocks that compress to {total} bytes in all");
+            return Err(Error::new(format!("expected {expected}, found {count} of {block} bytes, the last of {last}")));
+        }
+        Ok(Data { stored, size, stored_size, layout: Layout::Blocks { start, block, compressed } })
+    }
+}
+
+impl<'a> Data<'a> {
+    /// Decodes the array: `size` bytes.
+    ///
+    /// # Errors
+    /// The data are not in base64, a block is not in zlib's format or of another size.
+    pub fn decode(self) -> Result<Cow<'a, [u8]>> {
+        let Data { stored, size, layout, .. } = self;
+        match layout {
+            Layout::Plain { header } => Ok(match stored.run(0, header + size)? {
+                Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[header..]),
+                Cow::Owned(mut bytes) => {
+                    bytes.drain(..header);
+                    Cow::Owned(bytes)
+                }
+            }),
+            Layout::Blocks { start, block, compressed } => {
+                let bytes = stored.run(start, compressed.iter().sum())?;
+                inflated(&bytes, &compressed, block, size).map(Cow::Owned)
+            }
+        }
+    }
+}
+
+/// Bytes as one run of base64.
+pub(super) fn base64(bytes: &[u8]) -> String {
+    BASE64.encode(bytes)
+}
+
+fn inflated(bytes: &[u8], compressed: &[usize], block: usize, size: usize) -> Result<Vec<u8>> {
+    let mut data = vec![0; size];
+    let mut rest = bytes;
+    let mut zlib = Decompress::new(true);
+    for (i, (output, &length)) in data.chunks_mut(block.max(1)).zip(compressed).enumerate() {
+        let (input, after) = rest.split_at(length);
+        rest = after;
+        zlib.reset(true);
+        let status = zlib.decompress(input, output, FlushDecompress::Finish);
+        let found = zlib.total_out();
+        match status {
+            Ok(Status::StreamEnd) if found == output.len() as u64 => {}
+            Ok(Status::StreamEnd) => {
+                let expected = format!("{} bytes of data in compressed block {i}", output.len());
+                return Err(Error::new(format!("expected {expected}, found {found}")));
+            }
+            Ok(Status::Ok | Status::BufError) => {
+                let expected = format!("the end of compressed block {i} after {} bytes of data", output.len());
+                return Err(Error::new(format!("expected {expected}, found none")));
+            }
+            Err(error) => return Err(Error::new(format!("compressed block {i} is damaged: {error}"))),
+        }
+    }
+    Ok(data)
+}
