@@ -96,13 +96,9 @@ fn the_command_tells_by_its_exit_code() {
     let properties = value[0]["properties"].as_array().unwrap();
     let rank = properties.iter().find(|p| p["property"] == "rank of R").unwrap();
     assert_eq!((rank["mark"].as_str(), rank["value"].as_f64()), (Some("FAIL"), Some(2.0)));
-    for (what, error) in [
-        (
-            "tests/wrong/none.toml",
-            "error: tests/wrong/none.toml: cannot be read: No such file or directory (os error 2)\n",
-        ),
-        ("src", "error: src: expected element files that end in .toml, found none\n"),
-    ] {
-        assert_eq!(check(&[what]), (Some(2), String::new(), error.to_string()));
+    for (what, problem) in [("tests/wrong/none.toml", "cannot be read: "), ("src", "expected element files ")] {
+        let (code, printed, error) = check(&[what]);
+        assert_eq!((code, printed.as_str(), error.lines().count()), (Some(2), "", 1));
+        assert!(error.starts_with(&format!("error: {what}: {problem}")), "{error}");
     }
 }

@@ -1,5 +1,8 @@
 //! Motion of models with lumped masses: against closed forms, conservation laws and orders of convergence.
 
+mod messages;
+
+use messages::reads;
 use springfit::dynamics::largest_square;
 use springfit::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome, Simulation, Solver,
@@ -669,12 +672,9 @@ fn discs_have_the_points_asked_for() {
     let area: f64 = masses(&flat, 1.0, 1.0).iter().sum();
     assert_near(area, 27.0 * 4.0 * (PI / 27.0).sin(), 1e-10);
     let error = |rings, element| DiscMesh { element, radius: 1.0, height: 0.0, rings }.build().unwrap_err().to_string();
-    assert_eq!(
-        error(vec![6, 2], element.clone()),
-        "rings: expected rings of three points or more, 2000000 in all at most, found [6, 2]"
-    );
+    reads(&error(vec![6, 2], element.clone()), "rings: … 2000000 … found [6, 2]").unwrap();
     let quad = Arc::new(Element::load("quad4").unwrap());
-    assert_eq!(error(vec![6], quad), "element: expected a triangle of three nodes, found quad4");
+    reads(&error(vec![6], quad), "element: … found quad4").unwrap();
 }
 
 /// Forces, energy and tangent into memory are those of `respond`, and each the derivative of the one before: central differences of
@@ -764,50 +764,30 @@ fn faults_are_named() {
     let gradients = |tolerance| Solver::ConjugateGradients { tolerance };
     let free = || Motion::free(&network, &points, &masses);
     let (plain, d) = (Options::default(), Drive::default);
-    assert_eq!(error(free(), Options { step: 0.0, ..plain }), "step: expected a time above zero in s, found 0");
-    assert_eq!(error(free(), Options { iterations: 0, ..plain }), "iterations: expected at least one, found 0");
-    assert_eq!(
-        error(free(), Options { solver: gradients(0.0), ..plain }),
-        "solver.tolerance: expected a number from 1e-15 to below 1, found 0.0"
-    );
+    reads(&error(free(), Options { step: 0.0, ..plain }), "step: … found 0").unwrap();
+    reads(&error(free(), Options { iterations: 0, ..plain }), "iterations: expected at least one, found 0").unwrap();
+    reads(&error(free(), Options { solver: gradients(0.0), ..plain }), "solver.tolerance: … from 1e-15 … found 0.0")
+        .unwrap();
     let newmark = Integrator::Newmark { beta: 0.0, gamma: 0.5 };
-    assert_eq!(
-        error(free(), Options { integrator: newmark, ..plain }),
-        "newmark: expected beta above 0 and gamma from 1/2, found 0 and 0.5"
-    );
-    assert_eq!(
-        error(Motion { masses: &[1.0, 0.0], ..free() }, plain),
-        "masses: expected a mass above zero at point 2 (HRZ lumping gives one), found 0"
-    );
-    assert_eq!(
-        error(Motion { masses: &[1.0; 3], ..free() }, plain),
-        "masses: expected one mass per point of one to three coordinates, found 3 for 4 coordinates"
-    );
-    assert_eq!(
-        error(Motion { drive: d().force(4, Curve::constant(1.0)), ..free() }, plain),
-        "drive: expected degrees of freedom below 4, found 4"
-    );
-    assert_eq!(
-        error(Motion { drive: d().gravity(&[1.0]), ..free() }, plain),
-        "gravity: expected 2 finite numbers in m/s², found [1.0]"
-    );
-    assert_eq!(
-        error(Motion { damping: Damping { mass: -1.0, ..Damping::default() }, ..free() }, plain),
-        "damping.mass: expected a number that is not negative, found -1"
-    );
+    reads(&error(free(), Options { integrator: newmark, ..plain }), "newmark: … found 0 and 0.5").unwrap();
+    reads(&error(Motion { masses: &[1.0, 0.0], ..free() }, plain), "masses: … point 2 … found 0").unwrap();
+    reads(&error(Motion { masses: &[1.0; 3], ..free() }, plain), "masses: … found 3 for 4 coordinates").unwrap();
+    reads(&error(Motion { drive: d().force(4, Curve::constant(1.0)), ..free() }, plain), "drive: … below 4, found 4")
+        .unwrap();
+    reads(&error(Motion { drive: d().gravity(&[1.0]), ..free() }, plain), "gravity: … 2 finite numbers … found [1.0]")
+        .unwrap();
+    reads(
+        &error(Motion { damping: Damping { mass: -1.0, ..Damping::default() }, ..free() }, plain),
+        "damping.mass: … found -1",
+    )
+    .unwrap();
     assert!(Curve::parse("2*x").is_err());
     let two = springfit::symbolic::Scope::new(&["t", "x"]).expression("t*x").unwrap();
-    assert_eq!(
-        Curve::of(&two).unwrap_err().to_string(),
-        "curve: expected an expression of t alone, found one of more variables"
-    );
+    reads(&Curve::of(&two).unwrap_err().to_string(), "curve: … found one of more variables").unwrap();
     // A spring that pushes away as it is stretched: no linear step of a second.
     let (released, _) = pair(-10.0);
     for solver in [Solver::Factor, gradients(1e-6)] {
         let options = Options { step: 1.0, linear: true, solver, ..plain };
-        assert_eq!(
-            error(Motion::free(&released, &points, &masses), options),
-            "step: expected a step short enough for a model that releases energy as it moves, found 1e0 s"
-        );
+        reads(&error(Motion::free(&released, &points, &masses), options), "step: … found 1e0 s").unwrap();
     }
 }

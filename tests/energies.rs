@@ -1,5 +1,8 @@
 //! Every shipped energy: stress and tangent against differences, linear elasticity at rest, closed forms.
 
+mod messages;
+
+use messages::reads;
 mod shapes;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -167,28 +170,19 @@ fn principal_stresses_are_the_closed_forms() {
 fn wrong_files_are_told() {
     let file = |energy: &str, rest: &str| format!("name = \"own\"\ntitle = \"Own\"\nenergy = \"{energy}\"\n{rest}");
     for (text, error) in [
-        (
-            file("mu*(I5 - 3)", ""),
-            "energy: expected one of I1, I2, J, I4, l1, l2, l3, young, poisson, lambda, mu, kappa, found the name \"I5\" in \"mu*(I5 - 3)\"",
-        ),
-        (file("mu*(I1 - 3)", ""), "energy: expected no stress at rest, found"),
+        (file("mu*(I5 - 3)", ""), "energy: … found the name \"I5\" in \"mu*(I5 - 3)\""),
+        (file("mu*(I1 - 3)", ""), "energy: expected no stress at rest, found … Pa"),
         (file("mu*0", ""), "energy: has no finite, positive stiffness at rest"),
-        (file("mu/2*(I4 - 1)^2", ""), "fibre: expected the direction of the fibres that I4 belongs to, found none"),
+        (file("mu/2*(I4 - 1)^2", ""), "fibre: … found none"),
         (file("mu/2*(I4 - 1)^2", "fibre = [0, 0, 0]"), "fibre: expected a direction, found [0.0, 0.0, 0.0]"),
-        (
-            file("mu/2*(I4 - 1)^2 + (l1 - 1)^2", "fibre = [0, 0, 1]"),
-            "energy: expected either I4 or principal stretches, found both",
-        ),
-        (
-            file("mu*a", "parameters = { I1 = 2 }"),
-            "parameters.I1: expected a new name of letters, digits and _, found \"I1\"",
-        ),
-        (file("mu*a", "let = { a = 3 }"), "let.a: expected an expression in quotes, found integer"),
-        (file("mu*a", "colour = 1"), "colour: unknown field"),
+        (file("mu/2*(I4 - 1)^2 + (l1 - 1)^2", "fibre = [0, 0, 1]"), "energy: … found both"),
+        (file("mu*a", "parameters = { I1 = 2 }"), "parameters.I1: … found \"I1\""),
+        (file("mu*a", "let = { a = 3 }"), "let.a: … found integer"),
+        (file("mu*a", "colour = 1"), "…colour: unknown field…"),
     ] {
         let found = Energy::parse(&text, solid(1.0, 0.3)).unwrap_err().to_string();
-        assert!(found.contains(error), "{found}\n{error}");
+        reads(&found, error).unwrap();
     }
     let unknown = Energy::load("rubber", solid(1.0, 0.3)).unwrap_err().to_string();
-    assert!(unknown.starts_with("energy: expected one of corotational, fibre, fung,"), "{unknown}");
+    reads(&unknown, "energy: … corotational, fibre, fung, … found \"rubber\"").unwrap();
 }

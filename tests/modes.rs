@@ -1,5 +1,8 @@
 //! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
 
+mod messages;
+
+use messages::reads;
 use nalgebra::DMatrix;
 use springfit::element::Element;
 use springfit::material::Material;
@@ -235,15 +238,12 @@ fn modes_of_a_mesh_are_those_of_dense_matrices() {
 fn faults_are_named() {
     let row = [f64::INFINITY, 1.0, 1.0];
     let model = Model::chain(&[1.0, 1.0], &row);
-    assert_eq!(model.error(3), "modes: expected at most 2, the free degrees of freedom, found 3");
+    reads(&model.error(3), "modes: … at most 2, … found 3").unwrap();
     assert_eq!(model.modes(0), Modes { squares: Vec::new(), shapes: Vec::new() });
     let massless = Model { masses: vec![0.0, 1.0, 0.0], ..Model::chain(&[1.0, 1.0], &row) };
-    assert_eq!(massless.error(1), "masses: expected a mass above zero at point 3, found 0");
+    reads(&massless.error(1), "masses: … point 3, found 0").unwrap();
     let negative = Model { masses: vec![0.0, -2.5, 1.0], ..Model::chain(&[1.0, 1.0], &row) };
-    assert_eq!(negative.error(1), "masses: expected a mass above zero at point 2, found -2.5");
+    reads(&negative.error(1), "masses: … point 2, found -2.5").unwrap();
     let indefinite = Model::chain(&[1.0, -0.2], &row);
-    assert_eq!(
-        indefinite.error(1),
-        "stiffness: expected a positive definite matrix, found motions that meet no resistance"
-    );
+    reads(&indefinite.error(1), "stiffness: … found motions that meet no resistance").unwrap();
 }

@@ -1,5 +1,8 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
+mod messages;
+
+use messages::reads;
 use springfit::mesh::MeshSource;
 use springfit::report;
 use springfit::study::{MotionEnding, Outcome, Scene, run, stages};
@@ -314,30 +317,14 @@ fn wrong_keys_are_told() {
     let force = "group = \"zmax\"\nforce = [\"0.01*sin(60*t)\", 0, \"0.1*t\"]";
     let pull = "displacement = [\"free\", \"1e-4*(1 - cos(80*t))\", \"free\"]";
     let cases = [
-        (
-            "step = 0.001",
-            "step = -0.001",
-            "motion.step: expected a time above zero in s, from 1e-30 to 1e30, found -0.001",
-        ),
-        ("step = 0.001", "step = nan", "motion.step: expected a time above zero in s, from 1e-30 to 1e30, found NaN"),
-        ("step = 0.001", "step = 0.06", "motion.duration: expected at least one step of 0.06 s, found 0.05 s"),
-        ("step = 0.001", "step = 1e-12", "motion.step: expected at most 1e9 steps in all, found 5e10"),
-        (
-            "duration = 0.05",
-            "duration = 0",
-            "motion.duration: expected a time above zero in s, from 1e-30 to 1e30, found 0.0",
-        ),
-        (
-            "duration = 0.05",
-            "duration = inf",
-            "motion.duration: expected a time above zero in s, from 1e-30 to 1e30, found inf",
-        ),
+        ("step = 0.001", "step = -0.001", "motion.step: … found -0.001"),
+        ("step = 0.001", "step = nan", "motion.step: … found NaN"),
+        ("step = 0.001", "step = 0.06", "motion.duration: … 0.06 s, found 0.05 s"),
+        ("step = 0.001", "step = 1e-12", "motion.step: … at most 1e9 … found 5e10"),
+        ("duration = 0.05", "duration = 0", "motion.duration: … found 0.0"),
+        ("duration = 0.05", "duration = inf", "motion.duration: … found inf"),
         ("duration = 0.05\n", "", ":13: motion: missing field \"duration\""),
-        (
-            "\"newmark\"",
-            "\"verlet\"",
-            "motion.integrator: expected one of implicit-euler, bdf2, newmark, symplectic-euler, found \"verlet\"",
-        ),
+        ("\"newmark\"", "\"verlet\"", "motion.integrator: … found \"verlet\""),
         (
             "linear = true",
             "lineal = true",
@@ -345,134 +332,71 @@ fn wrong_keys_are_told() {
              \"iterations\", \"tolerance\", \"linear\", \"account\", \"solver\", \"remainder\", \"mass\", \"gravity\", \"damping\", \
              \"every\", \"watch\", \"finite_elements\", \"pull\", \"force\"",
         ),
-        (
-            "linear = true",
-            "linear = true\niterations = 3",
-            "motion.iterations: belongs to Newton's method, found with linear = true",
-        ),
-        (
-            "linear = true",
-            "solver = \"lu\"",
-            "motion.solver: expected \"factor\" or \"conjugate-gradients\", found \"lu\"",
-        ),
+        ("linear = true", "linear = true\niterations = 3", "motion.iterations: … found with linear = true"),
+        ("linear = true", "solver = \"lu\"", "motion.solver: … found \"lu\""),
         (
             "integrator = \"newmark\"\nlinear = true",
             "integrator = \"symplectic-euler\"\nsolver = \"factor\"",
-            "motion.solver: belongs to implicit steps, found with integrator = \"symplectic-euler\"",
+            "motion.solver: … found with integrator = \"symplectic-euler\"",
         ),
-        (
-            "linear = true",
-            "linear = true\nremainder = 0.1",
-            "motion.remainder: belongs to solver = \"conjugate-gradients\"",
-        ),
+        ("linear = true", "linear = true\nremainder = 0.1", "motion.remainder: … solver = \"conjugate-gradients\""),
         (
             "linear = true",
             "solver = \"conjugate-gradients\"\nremainder = 1",
-            "motion.remainder: expected a share from 1e-15 to below 1, found 1.0",
+            "motion.remainder: … from 1e-15 … found 1.0",
         ),
         (
             "linear = true",
             "solver = \"conjugate-gradients\"\nremainder = 1e-170",
-            "motion.remainder: expected a share from 1e-15 to below 1, found 1e-170",
+            "motion.remainder: … from 1e-15 … found 1e-170",
         ),
-        (
-            "watch =",
-            "gravity = [0, 0, 1e300]\nwatch =",
-            "motion.gravity: expected finite numbers of m/s², at most 1e30, found 1e300",
-        ),
-        (
-            "duration = 0.05\nstep = 0.001",
-            "duration = 1e300\nstep = 1e299",
-            "motion.duration: expected a time above zero in s, from 1e-30 to 1e30, found 1e300",
-        ),
-        (
-            "\"0.1*t\"",
-            "\"sqrt(0.0499 - t)\"",
-            "motion.force[0].force[2]: expected finite values at all times of the motion, found NaN at 0.05 s",
-        ),
-        (
-            "\"1e-4*(1 - cos(80*t))\"",
-            "\"sqrt(0.05 - t)\"",
-            "motion.pull[0].displacement[1]: expected finite values at all times of the motion, found NaN at 0.0505 s, \
-             half a step after the end",
-        ),
+        ("watch =", "gravity = [0, 0, 1e300]\nwatch =", "motion.gravity: … found 1e300"),
+        ("duration = 0.05\nstep = 0.001", "duration = 1e300\nstep = 1e299", "motion.duration: … found 1e300"),
+        ("\"0.1*t\"", "\"sqrt(0.0499 - t)\"", "motion.force[0].force[2]: … found NaN at 0.05 s"),
+        ("\"1e-4*(1 - cos(80*t))\"", "\"sqrt(0.05 - t)\"", "motion.pull[0].displacement[1]: … found NaN at 0.0505 s…"),
         ("linear = true", "iterations = 0", "motion.iterations: expected a number above 0, found 0"),
-        ("linear = true", "tolerance = 2", "motion.tolerance: expected a share above 0 and below 1, found 2"),
-        ("every = 0.01", "every = 0.0005", "motion.every: expected at least one step of 0.001 s, found 0.0005 s"),
-        ("every = 0.01", "every = -1", "motion.every: expected a time above zero in s, from 1e-30 to 1e30, found -1.0"),
-        ("density = 1000\n", "", "material.density: expected a number of kg/m³, for [motion] moves masses, found none"),
-        (
-            "watch = { group = \"zmax\" }",
-            "watch = { where = \"z > 1\" }",
-            "motion.watch: the selected part has no points",
-        ),
-        ("watch = { group = \"zmax\" }", "watch = {}", "motion.watch: expected \"group\" or \"where\", found neither"),
-        (
-            "watch = { group = \"zmax\" }",
-            "watch = { group = \"top\" }",
-            "motion.watch.group: expected a group of the mesh: \"body\", \"xmax\", \"xmin\", \"ymax\", \"ymin\", \
-             \"zmax\", \"zmin\", found \"top\"",
-        ),
-        ("watch =", "mass = \"nodal\"\nwatch =", "motion.mass: expected \"row-sum\" or \"hrz\", found \"nodal\""),
-        (
-            "watch =",
-            "gravity = [0, -9.81]\nwatch =",
-            "motion.gravity: expected 3 entries for a mesh of dimension 3, found 2",
-        ),
+        ("linear = true", "tolerance = 2", "motion.tolerance: … found 2"),
+        ("every = 0.01", "every = 0.0005", "motion.every: … 0.001 s, found 0.0005 s"),
+        ("every = 0.01", "every = -1", "motion.every: … found -1.0"),
+        ("density = 1000\n", "", "material.density: … found none"),
+        ("watch = { group = \"zmax\" }", "watch = { where = \"z > 1\" }", "motion.watch: … no points"),
+        ("watch = { group = \"zmax\" }", "watch = {}", "motion.watch: … found neither"),
+        ("watch = { group = \"zmax\" }", "watch = { group = \"top\" }", "motion.watch.group: … found \"top\""),
+        ("watch =", "mass = \"nodal\"\nwatch =", "motion.mass: … found \"nodal\""),
+        ("watch =", "gravity = [0, -9.81]\nwatch =", "motion.gravity: … 3 entries … found 2"),
         (
             "watch =",
             "damping = { ratio = 0.1 }\nwatch =",
-            "motion.damping.ratio: is that of springs, which finite elements have not: expected \"rayleigh\", or \
-             finite_elements = false",
+            "motion.damping.ratio: … \"rayleigh\"… finite_elements = false",
         ),
-        (
-            "watch =",
-            "damping = {}\nwatch =",
-            "motion.damping: expected either \"rayleigh\" or \"ratio\", found neither",
-        ),
-        (
-            "watch =",
-            "damping = { rayleigh = [0.1, -1] }\nwatch =",
-            "motion.damping.rayleigh: expected two numbers that are not negative, in 1/s and s, at most 1e30, found -1.0",
-        ),
+        ("watch =", "damping = {}\nwatch =", "motion.damping: … found neither"),
+        ("watch =", "damping = { rayleigh = [0.1, -1] }\nwatch =", "motion.damping.rayleigh: … found -1.0"),
         (
             pull,
             "displacement = [\"free\", \"0.1*s\", \"free\"]",
-            "motion.pull[0].displacement[1]: expected one of t, x, y, z, found the name \"s\" in \"0.1*s\"",
+            "motion.pull[0].displacement[1]: … found the name \"s\" in \"0.1*s\"",
         ),
         (
             pull,
             "displacement = [\"free\", \"1/(t - 0.02)\", \"free\"]",
-            "motion.pull[0].displacement[1]: expected finite values at all times of the motion, found inf at 0.02 s",
+            "motion.pull[0].displacement[1]: … found inf at 0.02 s",
         ),
-        (
-            pull,
-            "displacement = [\"free\", 0]",
-            "motion.pull[0].displacement: expected 3 entries for a mesh of dimension 3, found 2",
-        ),
+        (pull, "displacement = [\"free\", 0]", "motion.pull[0].displacement: … 3 entries … found 2"),
         (
             "where = \"x < 1e-9 && z > 0.0199\"",
             "group = \"zmin\"",
-            "motion.pull[0].displacement[1]: moves point 1 at [0.0, 0.0, 0.0] m along y, which [[fix]] holds",
+            "motion.pull[0].displacement[1]: … point 1 at [0.0, 0.0, 0.0] m along y… [[fix]] …",
         ),
-        ("where = \"x < 1e-9 && z > 0.0199\"", "where = \"x > 1\"", "motion.pull[0]: the selected part has no points"),
-        ("where = \"x < 1e-9 && z > 0.0199\"", "", "motion.pull[0]: expected \"group\" or \"where\", found neither"),
+        ("where = \"x < 1e-9 && z > 0.0199\"", "where = \"x > 1\"", "motion.pull[0]: … no points"),
+        ("where = \"x < 1e-9 && z > 0.0199\"", "", "motion.pull[0]: … found neither"),
         (
             force,
             "group = \"zmax\"\nforce = [\"0.01*x\", 0, 0]",
-            "motion.force[0].force[0]: expected one of t, found the name \"x\" in \"0.01*x\"",
+            "motion.force[0].force[0]: … found the name \"x\" in \"0.01*x\"",
         ),
-        (force, "group = \"zmin\"\nforce = [1, 0, 0]", "motion.force[0].force: acts on nothing that can move"),
-        (
-            force,
-            "group = \"zmax\"\nforce = [\"ln(t)\", 0, 0]",
-            "motion.force[0].force[0]: expected finite values at all times of the motion, found -inf at 0 s",
-        ),
-        (
-            "[motion]",
-            "[output]\nfrequencies = 200\n[motion]",
-            "output.frequencies: expected at most 144, the motions that deform, found 200",
-        ),
+        (force, "group = \"zmin\"\nforce = [1, 0, 0]", "motion.force[0].force: … nothing …"),
+        (force, "group = \"zmax\"\nforce = [\"ln(t)\", 0, 0]", "motion.force[0].force[0]: … found -inf at 0 s"),
+        ("[motion]", "[output]\nfrequencies = 200\n[motion]", "output.frequencies: … at most 144, … found 200"),
         (
             "[motion]",
             "[output]\nfrequencies = -1\n[motion]",
@@ -486,7 +410,7 @@ fn wrong_keys_are_told() {
         let line = String::from_utf8_lossy(&seen.stderr).into_owned();
         let expected = format!("error: scene.toml{}{message}\n", if message.starts_with(':') { "" } else { ": " });
         let clean = fs::read_dir(folder.path()).unwrap().count() == 1 && seen.stdout.is_empty();
-        if line != expected || seen.status.code() != Some(2) || !clean {
+        if reads(&line, &expected).is_err() || seen.status.code() != Some(2) || !clean {
             wrong.push(format!("expected {expected}found    {line} {:?} {clean}", seen.status));
         }
     };
@@ -494,16 +418,13 @@ fn wrong_keys_are_told() {
         expect(&edited(BLOCK, from, to), message);
     }
     let twice = format!("{BLOCK}[[motion.pull]]\ngroup = \"zmax\"\ndisplacement = [0, 0, 0]\n");
-    expect(
-        &twice,
-        "motion.pull[1].displacement[1]: moves point 49 at [0.0, 0.0, 0.02] m along y, which motion.pull[0] moves",
-    );
+    expect(&twice, "motion.pull[1].displacement[1]: … point 49 at [0.0, 0.0, 0.02] m along y… motion.pull[0] …");
     let many = edited(BLOCK, "duration = 0.05", "duration = 5000");
     let many = edited(&many, "every = 0.01", "every = 0.001");
-    expect(&many, "motion.every: expected at most 1000000 states in all, found 5000000");
+    expect(&many, "motion.every: … at most 1000000 … found 5000000");
     let many = edited(&many, "every = 0.001", "every = 0.006");
     let many = edited(&many, "cells = [3, 3, 3]", "cells = [10, 10, 10]");
-    expect(&many, "motion.every: expected at most 125219 states, which fill 4e9 bytes, found 833335");
+    expect(&many, "motion.every: … at most 125219 … found 833335");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

@@ -2,6 +2,9 @@
 //!
 //! Figures with few digits were computed apart from this program, from the same formulas; all else is derived where it stands.
 
+mod messages;
+
+use messages::reads;
 mod shapes;
 
 use nalgebra::{DMatrix, DVector};
@@ -420,27 +423,16 @@ fn methods_refuse_what_they_have_no_formula_for() {
         let springs = Springs::select(&element, groups).unwrap();
         published::fit(method, &element, &springs, &element.positions, &cell, material).unwrap_err().to_string()
     };
-    assert_eq!(
-        fit(Method::Baudet, "tet4", None, solid(0.3)),
-        "baudet: expected an element of the cell quadrilateral, hexahedron, found tet4, a tetrahedron"
-    );
-    assert_eq!(
-        fit(Method::Lloyd, "tri6", None, stress(0.3)),
-        "tri6: expected 3 nodes at the corners of the cell, found 6 nodes"
-    );
+    reads(&fit(Method::Baudet, "tet4", None, solid(0.3)), "baudet: … found tet4, a tetrahedron").unwrap();
+    reads(&fit(Method::Lloyd, "tri6", None, stress(0.3)), "tri6: … 3 nodes … found 6 nodes").unwrap();
     let edges = ["edge".to_string()];
-    assert_eq!(
-        fit(Method::Baudet, "hex8", Some(&edges), solid(0.3)),
-        "springs: expected a spring between the nodes 0 and 6, a diagonal, for baudet, found none"
-    );
+    reads(&fit(Method::Baudet, "hex8", Some(&edges), solid(0.3)), "springs: … 0 and 6, a diagonal, … found none")
+        .unwrap();
     assert!(fit(Method::Lloyd, "quad4", Some(&edges), stress(0.3)).starts_with("springs: expected a spring"));
     assert!(fit(Method::MacielUniform, "tri3", Some(&["bulk".to_string()]), stress(0.3)).contains("an edge"));
-    assert_eq!(
-        fit(Method::LloydPreserving, "tri3", None, stress(0.3)),
-        "poisson: expected a ratio of at least 0.3333 for lloyd-preserving, found 0.3"
-    );
+    reads(&fit(Method::LloydPreserving, "tri3", None, stress(0.3)), "poisson: … at least 0.3333 … found 0.3").unwrap();
     assert!(fit(Method::LloydPreserving, "tet4", None, solid(0.2)).contains("at least 0.2500"));
-    assert_eq!(fit(Method::Lloyd, "tri3", None, solid(0.3)), "material: is not one of a body of 2 dimensions");
+    reads(&fit(Method::Lloyd, "tri3", None, solid(0.3)), "material: … 2 dimensions").unwrap();
     let (triangle, square) = (Element::load("tri3").unwrap(), Element::load("quad4").unwrap());
     let springs = Springs::select(&square, None).unwrap();
     let other = published::fit(Method::Lloyd, &triangle, &springs, &TRIANGLE, &[0, 1, 2], stress(0.3));

@@ -161,8 +161,8 @@ fn what_cannot_be_searched_is_told() {
         let fit = Fit { solver, ..Fit::new(FROBENIUS) };
         fit_element(&body.element, &body.springs, &body.x, body.moduli, &fit).unwrap_err().to_string()
     };
-    let expected = "topology: does not go with \"nelder-mead\", which cannot switch springs off";
-    assert_eq!(told(Search::NelderMead, 0.0), expected);
+    let message = told(Search::NelderMead, 0.0);
+    assert!(message.starts_with("topology: ") && message.contains("\"nelder-mead\""), "{message}");
     for sparsity in [-0.1, 1.1, f64::NAN, f64::INFINITY] {
         let expected = format!("sparsity: expected a share from 0 to 1, found {sparsity}");
         assert_eq!(told(Search::ParticleSwarm, sparsity), expected);

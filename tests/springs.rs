@@ -268,11 +268,9 @@ fn measures_without_a_gradient_are_told() {
             for solver in [Solver::Native, searched].into_iter().filter(|s| objective != NORMS[1] || *s != searched) {
                 let fit = Fit { solver, ..Fit::new(objective) };
                 let fits = fit_cells(&element, &springs, &x, &cells, material.moduli(), &fit, &mut |_| {});
-                assert_eq!(
-                    fits.unwrap_err().to_string(),
-                    "tri3_coupled cell 1: what one of its springs measures has no finite gradient other than zero",
-                    "{measure} {objective:?}"
-                );
+                let error = fits.unwrap_err();
+                assert_eq!(error.key(), Some("tri3_coupled cell 1"), "{measure} {objective:?}");
+                assert!(error.problem().contains("no finite gradient"), "{measure} {objective:?}: {error}");
             }
         }
     }

@@ -1,25 +1,61 @@
-//! What is wrong with an input: where it stands, what was expected there and what was found.
+//! What is wrong with an input: the kind of fault, its place, what was expected there and what was found.
 
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// A fault of an input. It prints as one line: `file:line: key: what is wrong`.
+/// The kind of fault that an [`Error`] reports, for programs that react to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A file, a folder or a stream cannot be read or written.
+    Io,
+    /// A text is not TOML or not an expression, or a file is not one of its format: it is malformed, damaged or cut short.
+    Syntax,
+    /// A value, a key, a name or an array is wrong.
+    Invalid,
+    /// The input is well formed, but the program has no such feature.
+    Unsupported,
+    /// The input is larger than a stated bound.
+    Limit,
+    /// The input is valid, but the problem that it states has no answer.
+    Infeasible,
+}
+
+/// A fault of an input: its kind, its place and the problem.
 ///
-/// An optimum that could not be reached, or a network that cannot stand, is not an `Error` but a status of the result.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// It prints as one line, `file:line: key: problem`, without the parts that it does not have; a line without a file is
+/// `line 3: key: problem`. Lines count from 1. The key is the path of a value in its file (`fit[0].higher`), the name of
+/// an argument, or a part of a mesh (`$Nodes`, `node 4`). The wording of the problem may change between versions; programs
+/// use [`kind`](Error::kind), [`file`](Error::file), [`line`](Error::line) and [`key`](Error::key).
+///
+/// An optimum that the solver does not reach and a network that is not stable are not errors but a status of the result.
+///
+/// Two errors are equal if their kind, place and problem are equal; the source is not compared.
+#[derive(Debug, Clone)]
 pub struct Error {
+    kind: ErrorKind,
     file: Option<PathBuf>,
     line: Option<usize>,
     key: Option<String>,
     problem: String,
+    source: Option<Arc<io::Error>>,
 }
 
 impl Error {
-    /// A fault without a key, in words.
+    /// A fault without a key, in words; [`ErrorKind::Invalid`] unless [`of_kind`](Error::of_kind) changes it.
     pub fn new(problem: impl Into<String>) -> Self {
-        Error { file: None, line: None, key: None, problem: on_one_line(problem.into()) }
+        let problem = on_one_line(problem.into());
+        Error { kind: ErrorKind::Invalid, file: None, line: None, key: None, problem, source: None }
+    }
+
+    /// A failure of the system to do something with a file or a stream: `cannot be read: …`. The failure is the source.
+    pub fn io(problem: impl fmt::Display, source: io::Error) -> Self {
+        let error = Error::new(format!("{problem}: {source}")).of_kind(ErrorKind::Io);
+        Error { source: Some(Arc::new(source)), ..error }
     }
 
     /// A fault at `key`, in words.
@@ -30,6 +66,24 @@ impl Error {
     /// A fault at `key`: `expected …, found …`.
     pub fn expected(key: impl Into<String>, expected: impl fmt::Display, found: impl fmt::Display) -> Self {
         Error::at(key, format!("expected {expected}, found {found}"))
+    }
+
+    /// The same fault as one of another kind.
+    pub fn of_kind(mut self, kind: ErrorKind) -> Self {
+        self.kind = kind;
+        self
+    }
+
+    /// The same fault at another key.
+    pub fn at_key(mut self, key: impl Into<String>) -> Self {
+        self.key = Some(on_one_line(key.into()));
+        self
+    }
+
+    /// The same fault with more words after the problem.
+    pub fn followed_by(mut self, words: impl fmt::Display) -> Self {
+        self.problem = on_one_line(format!("{}{words}", self.problem));
+        self
     }
 
     /// Names the file, unless a deeper layer has named one already.
@@ -67,14 +121,26 @@ impl Error {
         self
     }
 
+    pub fn kind(&self) -> ErrorKind {
+        self.kind
+    }
+
+    /// The file that has the fault, or that cannot be read or written.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
+    /// The line of the file, from 1.
+    pub fn line(&self) -> Option<usize> {
+        self.line
+    }
+
+    /// The path of the value in its file, the name of an argument, or a part of a mesh.
     pub fn key(&self) -> Option<&str> {
         self.key.as_deref()
     }
 
+    /// What is wrong, in words on one line.
     pub fn problem(&self) -> &str {
         &self.problem
     }
@@ -100,4 +166,18 @@ impl fmt::Display for Error {
     }
 }
 
-impl std::error::Error for Error {}
+impl PartialEq for Error {
+    fn eq(&self, other: &Error) -> bool {
+        let Error { kind, file, line, key, problem, source: _ } = self;
+        (kind, file, line, key, problem) == (&other.kind, &other.file, &other.line, &other.key, &other.problem)
+    }
+}
+
+impl Eq for Error {}
+
+impl std::error::Error for Error {
+    /// The failure of the system, where there was one.
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.source.as_deref().map(|source| source as _)
+    }
+}

@@ -1,6 +1,6 @@
 //! Files on disk: read with an error that names them, written whole or not at all.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use std::fs;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -16,11 +16,11 @@ const LONGEST_TOML: usize = 1_000_000;
 /// # Errors
 /// The file is missing or unreadable, or larger than 4 GB.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
-    let (length, bytes) =
-        content(path, LARGEST_FILE).map_err(|e| Error::new(format!("cannot be read: {e}")).in_file(path))?;
+    let (length, bytes) = content(path, LARGEST_FILE).map_err(|e| Error::io("cannot be read", e).in_file(path))?;
     let found = length.max(bytes.len() as u64);
     if found > LARGEST_FILE {
-        return Err(Error::new(format!("expected a file of at most 4 GB, found {found} bytes")).in_file(path));
+        let error = Error::new(format!("expected a file of at most 4 GB, found {found} bytes"));
+        return Err(error.of_kind(ErrorKind::Limit).in_file(path));
     }
     Ok(bytes)
 }
@@ -42,7 +42,8 @@ fn content(path: &Path, most: u64) -> std::io::Result<(u64, Vec<u8>)> {
 /// # Errors
 /// The file is missing, unreadable or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    String::from_utf8(read(path)?).map_err(|_| Error::new("expected UTF-8 text, found other bytes").in_file(path))
+    let not_text = || Error::new("expected UTF-8 text, found other bytes").of_kind(ErrorKind::Syntax).in_file(path);
+    String::from_utf8(read(path)?).map_err(|_| not_text())
 }
 
 /// The path's ending without its dot, in small letters; empty if it has none.
@@ -57,7 +58,7 @@ pub fn ending(path: &Path) -> String {
 /// The folder is missing or read-only, or the disk is full.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
     if path.file_name().is_none() || path.is_dir() {
-        return Err(Error::new("expected the name of a file to write, found a folder").in_file(path));
+        return Err(unwritable("expected the name of a file to write, found a folder", path));
     }
     refuse_protected(path)?;
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
@@ -74,17 +75,22 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
         });
         written.inspect_err(|_| drop(fs::remove_file(&partial)))
     };
-    written.map_err(|e| Error::new(format!("cannot be written: {e}")).in_file(path))
+    written.map_err(|e| Error::io("cannot be written", e).in_file(path))
+}
+
+/// A file or folder that cannot be written, as is known before the system is asked to.
+fn unwritable(problem: &str, path: &Path) -> Error {
+    Error::new(problem).of_kind(ErrorKind::Io).in_file(path)
 }
 
 /// Files that are read-only and links that lead nowhere are not replaced.
 fn refuse_protected(path: &Path) -> Result<()> {
     let problem = match (fs::metadata(path), fs::symlink_metadata(path)) {
-        (Ok(old), _) if old.is_file() && old.permissions().readonly() => "the file is read-only",
-        (Err(_), Ok(_)) => "it is a link to what is not there",
+        (Ok(old), _) if old.is_file() && old.permissions().readonly() => "cannot be written: the file is read-only",
+        (Err(_), Ok(_)) => "cannot be written: it is a link to what is not there",
         _ => return Ok(()),
     };
-    Err(Error::new(format!("cannot be written: {problem}")).in_file(path))
+    Err(unwritable(problem, path))
 }
 
 /// A name of its own in each process and thread, short whatever the file is called.
@@ -99,14 +105,19 @@ fn partial_beside(path: &Path) -> PathBuf {
 /// # Errors
 /// Something that is no folder stands in the way, or the folder is read-only.
 pub fn check_folder(path: &Path) -> Result<()> {
+    probe(path, path)
+}
+
+/// The same of the folder `path`, with errors that name the file `name`.
+fn probe(path: &Path, name: &Path) -> Result<()> {
     let exists = |p: &&Path| !p.as_os_str().is_empty() && p.exists();
     let place = path.ancestors().find(exists).unwrap_or(Path::new("."));
     if !place.is_dir() {
-        return Err(Error::new("the folder cannot be created: a file stands in the way").in_file(path));
+        return Err(unwritable("the folder cannot be created: a file stands in the way", name));
     }
-    let probe = partial_beside(&place.join("probe"));
-    let tried = fs::File::create(&probe).and_then(|_| fs::remove_file(&probe));
-    tried.map_err(|e| Error::new(format!("nothing can be written there: {e}")).in_file(path))
+    let partial = partial_beside(&place.join("probe"));
+    let tried = fs::File::create(&partial).and_then(|_| fs::remove_file(&partial));
+    tried.map_err(|e| Error::io("nothing can be written there", e).in_file(name))
 }
 
 /// Whether [`write_whole`] could write that file.
@@ -116,12 +127,12 @@ pub fn check_folder(path: &Path) -> Result<()> {
 pub fn check_file(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match path.is_dir() {
-        true => Err(Error::new("expected the name of a file to write, found a folder").in_file(path)),
-        false if !folder.is_dir() => Err(Error::new("cannot be written: its folder does not exist").in_file(path)),
+        true => Err(unwritable("expected the name of a file to write, found a folder", path)),
+        false if !folder.is_dir() => Err(unwritable("cannot be written: its folder does not exist", path)),
         false if path.exists() && !path.is_file() => Ok(()),
         false => {
             refuse_protected(path)?;
-            check_folder(folder).map_err(|e| Error::new(e.problem()).in_file(path))
+            probe(folder, path)
         }
     }
 }
@@ -131,7 +142,7 @@ pub fn check_file(path: &Path) -> Result<()> {
 /// # Errors
 /// The folder cannot be read.
 pub fn files_in(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
-    let failed = |e: std::io::Error| Error::new(format!("cannot be read: {e}")).in_file(folder);
+    let failed = |e: std::io::Error| Error::io("cannot be read", e).in_file(folder);
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
@@ -148,7 +159,7 @@ pub fn files_in(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
 /// # Errors
 /// A file stands in the way, or the folder above is read-only.
 pub fn create_folder(path: &Path) -> Result<()> {
-    fs::create_dir_all(path).map_err(|e| Error::new(format!("the folder cannot be created: {e}")).in_file(path))
+    fs::create_dir_all(path).map_err(|e| Error::io("the folder cannot be created", e).in_file(path))
 }
 
 /// Reads TOML into a structure; what is wrong is named by key and line.
@@ -158,12 +169,15 @@ pub fn create_folder(path: &Path) -> Result<()> {
 pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
     if text.len() > LONGEST_TOML {
         let problem = format!("expected at most {LONGEST_TOML} bytes of TOML, found {}", text.len());
-        return Err(Error::new(problem));
+        return Err(Error::new(problem).of_kind(ErrorKind::Limit));
     }
     let line = |span: Option<std::ops::Range<usize>>| span.map(|s| text[..s.start].matches('\n').count() + 1);
     let place = |error: Error, at: Option<usize>| at.into_iter().fold(error, Error::on_line);
-    let deserializer = toml::Deserializer::parse(text)
-        .map_err(|e| place(Error::new(format!("expected TOML: {}", one_line(e.message()))), line(e.span())))?;
+    let not_toml = |e: toml::de::Error| {
+        let error = Error::new(format!("expected TOML: {}", one_line(e.message()))).of_kind(ErrorKind::Syntax);
+        place(error, line(e.span()))
+    };
+    let deserializer = toml::Deserializer::parse(text).map_err(not_toml)?;
     serde_path_to_error::deserialize(deserializer).map_err(|e| {
         let key = e.path().to_string();
         let problem = one_line(e.inner().message());

@@ -1,7 +1,7 @@
 //! The equations of an implicit step with Cholesky's factor.
 
 use super::equations::{End, Equations, Solved};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::prelude::MatMut;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -49,7 +49,9 @@ impl Factored {
     /// # Errors
     /// The factor does not fit into memory.
     pub fn new(places: &[(usize, usize)], held: &[bool]) -> Result<Factored> {
-        let large = |e: &dyn std::fmt::Debug| Error::new(format!("the equations cannot be built: {e:?}"));
+        let large = |e: &dyn std::fmt::Debug| {
+            Error::new(format!("the equations cannot be built: {e:?}")).of_kind(ErrorKind::Limit)
+        };
         let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
         let analyse = |order: &[usize], ordering| -> Result<_> {
             let n = order.len();

@@ -3,7 +3,7 @@
 use super::blocks::{Block, Pattern, places};
 use super::equations::{End, Equations, Solved};
 use super::incomplete::Incomplete;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// How far definiteness is followed, whatever is asked of solutions.
 const DEFINITE: f64 = 1e-10;
@@ -47,7 +47,8 @@ impl<const D: usize> Gradients<D> {
         let pattern = Pattern::new(&pairs, &place, rows);
         let count = rows + pattern.columns.len();
         if u32::try_from((count + 1) * D * D).is_err() {
-            return Err(Error::new("the equations cannot be built: more than 2³² entries".to_string()));
+            let problem = "the equations cannot be built: more than 2³² entries";
+            return Err(Error::new(problem).of_kind(ErrorKind::Limit));
         }
         let slot = |&(row, column): &(usize, usize)| {
             let (a, b) = (place[row / D], place[column / D]);

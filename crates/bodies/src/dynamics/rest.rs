@@ -1,6 +1,6 @@
 //! A model linearised where it rests.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Elastic, Entries};
 use faer::sparse::{SparseColMat, Triplet};
 
@@ -22,7 +22,7 @@ impl Rest {
     /// # Errors
     /// The model has no response at rest, or K₀ does not fit into memory.
     pub fn new(model: &dyn Elastic, points: &[f64]) -> Result<Rest> {
-        let none = || Error::expected("model", "a response at rest", "none");
+        let none = || Error::expected("model", "a response at rest", "none").of_kind(ErrorKind::Infeasible);
         let response = model.respond(points).ok_or_else(none)?;
         if !(response.energy.is_finite() && response.force.iter().all(|f| f.is_finite())) {
             return Err(none());
@@ -31,8 +31,9 @@ impl Rest {
         let values = entries.iter().map(|e| e.val).collect();
         let mirrored = entries.iter().filter(|e| e.row != e.col).map(|e| Triplet::new(e.col, e.row, e.val));
         let both: Entries = entries.iter().copied().chain(mirrored).collect();
-        let matrix = SparseColMat::try_new_from_triplets(points.len(), points.len(), &both)
-            .map_err(|e| Error::new(format!("the stiffness matrix cannot be built: {e:?}")))?;
+        let matrix = SparseColMat::try_new_from_triplets(points.len(), points.len(), &both).map_err(|e| {
+            Error::new(format!("the stiffness matrix cannot be built: {e:?}")).of_kind(ErrorKind::Limit)
+        })?;
         Ok(Rest { energy: response.energy, force: response.force, entries, values, matrix })
     }
 

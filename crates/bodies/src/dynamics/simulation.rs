@@ -7,7 +7,7 @@ use super::limit::longest_step;
 use super::motion::{Motion, Options};
 use super::resistance::Resistance;
 use super::settle::{Outcome, Step, Target, Trial};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::displaced;
 use crate::solve::generator;
 
@@ -84,15 +84,18 @@ impl<'a> Simulation<'a> {
             motion,
             options,
         };
+        let unstable = |expected: String| {
+            Error::expected("step", expected, format!("{:e} s", options.step)).of_kind(ErrorKind::Infeasible)
+        };
         if !is_implicit {
             let longest = simulation.longest_step();
             if options.step > longest {
                 let expected = format!("at most {longest:.6e} s, beyond which symplectic Euler is unstable");
-                return Err(Error::expected("step", expected, format!("{:e} s", options.step)));
+                return Err(unstable(expected));
             }
         } else if options.linear && !simulation.is_definite(options.integrator.coefficients(options.step, true)) {
             let expected = "a step short enough for a model that releases energy as it moves";
-            return Err(Error::expected("step", expected, format!("{:e} s", options.step)));
+            return Err(unstable(expected.into()));
         }
         simulation.start(&zero(), &zero())?;
         Ok(simulation)
@@ -125,7 +128,8 @@ impl<'a> Simulation<'a> {
             self.state.velocity[*dof] = (4.0 * curve.at(h / 2.0) - 3.0 * curve.at(0.0) - curve.at(h)) / h;
         }
         if !self.refresh() {
-            return Err(Error::expected("displacement", "a shape where the model has a response", "none"));
+            let error = Error::expected("displacement", "a shape where the model has a response", "none");
+            return Err(error.of_kind(ErrorKind::Infeasible));
         }
         if self.options.integrator.needs_acceleration() {
             for (dof, a) in self.acceleration.iter_mut().enumerate().filter(|(dof, _)| !self.resistance.held[*dof]) {

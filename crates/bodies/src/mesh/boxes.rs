@@ -3,7 +3,7 @@
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::quality::Quality;
 use crate::element::{Cell, Element};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -95,11 +95,9 @@ impl BoxMesh {
         }
         let total = self.cells.iter().try_fold(1usize, |a, &n| a.checked_mul(n)).unwrap_or(usize::MAX);
         if total == 0 || total > MOST_CELLS {
-            return Err(Error::expected(
-                "cells",
-                format!("1 to {MOST_CELLS} cells in all"),
-                format!("{:?}", self.cells),
-            ));
+            let expected = format!("1 to {MOST_CELLS} cells in all");
+            let error = Error::expected("cells", expected, format!("{:?}", self.cells));
+            return Err(if total == 0 { error } else { error.of_kind(ErrorKind::Limit) });
         }
         Ok(())
     }

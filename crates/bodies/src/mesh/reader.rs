@@ -1,6 +1,6 @@
 //! Words, lines and numbers one after the other from the bytes of a mesh file, in text or in binary.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
@@ -194,6 +194,7 @@ impl<'a> Reader<'a> {
     /// A fault before this place.
     pub fn fault(&self, problem: String) -> Error {
         let error = if self.section.is_empty() { Error::new(problem) } else { Error::at(&self.section, problem) };
+        let error = error.of_kind(ErrorKind::Syntax);
         match self.encoding {
             Encoding::Text => error.on_line(self.line_number()),
             Encoding::Binary { .. } => error,
@@ -203,12 +204,13 @@ impl<'a> Reader<'a> {
     /// The file is cut short.
     pub fn ends(&self) -> Error {
         let section = if self.section.is_empty() { "its header" } else { &self.section };
-        Error::new(match &self.progress {
+        let problem = match &self.progress {
             Some(p) if p.found < p.expected => {
                 format!("the file ends inside {section}: expected {} {}, found {}", p.expected, p.what, p.found)
             }
             _ => format!("the file ends inside {section}"),
-        })
+        };
+        Error::new(problem).of_kind(ErrorKind::Syntax)
     }
 
     fn line_number(&self) -> usize {

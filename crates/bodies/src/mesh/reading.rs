@@ -2,7 +2,7 @@
 
 use super::source::MeshSource;
 use super::{gmsh, vtk};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use std::path::Path;
 
 /// Each ending, in small letters, and the reader of such files.
@@ -25,7 +25,7 @@ impl MeshSource {
     /// Those of [`MeshSource::read`].
     pub fn parse(bytes: &[u8], ending: &str) -> Result<MeshSource> {
         let Some((_, parse)) = FORMATS.iter().find(|(known, _)| *known == ending) else {
-            return Err(Error::new(format!("expected a mesh ending in {}", listed_endings())));
+            return Err(Error::new(format!("expected a mesh ending in {}", listed_endings())).of_kind(ErrorKind::Unsupported));
         };
         let source = parse(bytes)?;
         check(&source)?;

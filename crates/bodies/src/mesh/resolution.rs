@@ -4,7 +4,7 @@ use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
 use super::quality::{Below, Gate, Quality};
 use super::source::{Format, MeshSource, SourceBlock};
 use crate::element::{Element, FormatEntry, SHIPPED};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::{Fault, Geometry, Placement};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -162,7 +162,7 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
                 let known: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
                 let expected = format!("cells of {} or of an element file you name", known.join(", "));
                 let found = format!("{cells} cells of {format:?} type {number} with {} nodes", block.nodes_per_cell);
-                return Err(Error::expected("cells", expected, found));
+                return Err(Error::expected("cells", expected, found).of_kind(ErrorKind::Unsupported));
             }
         },
     };

@@ -1,6 +1,6 @@
 //! Linear statics: `K u = f` with some displacements prescribed.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Entries, Support};
 use crate::springs::norm;
 use faer::Side;
@@ -58,8 +58,8 @@ impl System {
                 places.push(Pair::new(place[row], place[column]));
             }
         });
-        let (symbolic, order) = SymbolicSparseColMat::try_new_from_indices(free.len(), free.len(), &places)
-            .map_err(|e| Error::new(format!("the stiffness matrix cannot be built: {e:?}")))?;
+        let (symbolic, order) =
+            SymbolicSparseColMat::try_new_from_indices(free.len(), free.len(), &places).map_err(too_large)?;
         let cholesky = OnceLock::new();
         System::of(Arc::new(Pattern { free, place, symbolic, order, cholesky }), entries, support)
     }
@@ -80,8 +80,8 @@ impl System {
             Some(u) => reaction[pattern.place[row]] += value * u,
             None => values.push(value),
         });
-        let matrix = SparseColMat::new_from_argsort(pattern.symbolic.clone(), &pattern.order, &values)
-            .map_err(|e| Error::new(format!("the stiffness matrix cannot be built: {e:?}")))?;
+        let matrix =
+            SparseColMat::new_from_argsort(pattern.symbolic.clone(), &pattern.order, &values).map_err(too_large)?;
         Ok(System { matrix, reaction, prescribed: support.prescribed.clone(), pattern })
     }
 
@@ -170,6 +170,11 @@ impl System {
     fn residual(&self, rhs: &[f64], u: &[f64]) -> Vec<f64> {
         rhs.iter().zip(self.apply(u)).map(|(f, ku)| f - ku).collect()
     }
+}
+
+/// The matrix does not fit into memory.
+fn too_large(cause: impl std::fmt::Debug) -> Error {
+    Error::new(format!("the stiffness matrix cannot be built: {cause:?}")).of_kind(ErrorKind::Limit)
 }
 
 impl Factor {

@@ -1,7 +1,7 @@
 //! Natural vibrations of a model whose mass is lumped at its points.
 
 use super::linear::{Factor, System};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -47,7 +47,8 @@ impl Modes {
 /// no mass, or a mode's ω² stays uncertain by more than 1e-6.
 pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
     if !factor.is_positive_definite() {
-        return Err(Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance"));
+        let error = Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance");
+        return Err(error.of_kind(ErrorKind::Infeasible));
     }
     let n = system.size();
     if count > n {
@@ -75,7 +76,8 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
         if !(error <= TOLERANCE) {
             let mode = modes.squares.len() + 1;
             let found = format!("a relative error up to {error:.1e} in mode {mode} of {count}");
-            return Err(Error::expected("modes", format!("squared frequencies to {TOLERANCE:.0e}"), found));
+            let error = Error::expected("modes", format!("squared frequencies to {TOLERANCE:.0e}"), found);
+            return Err(error.of_kind(ErrorKind::Infeasible));
         }
         let mut shape = vec![0.0; masses.len() * dimension];
         system.free().iter().zip(&phi).for_each(|(&dof, &x)| shape[dof] = x);
@@ -117,7 +119,8 @@ fn largest_eigenpairs(n: usize, count: usize, apply: impl Fn(&mut DMatrix<f64>))
             projected.row_mut(j).tr_copy_from(&column);
         }
         if projected.iter().any(|x: &f64| !x.is_finite()) {
-            return Err(Error::at("stiffness", "its inverse is beyond the range of numbers"));
+            let error = Error::at("stiffness", "its inverse is beyond the range of numbers");
+            return Err(error.of_kind(ErrorKind::Infeasible));
         }
         let eigen = projected.clone().symmetric_eigen();
         let mut order: Vec<usize> = (0..m).collect();

@@ -5,7 +5,7 @@ use super::gradients::SpringGradients;
 use super::linearized::{LeastSquares, Linearized, Tangent};
 use super::object::Object;
 use super::target::Target;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Entries, displaced};
 use crate::solve::System;
 use std::sync::Arc;
@@ -36,7 +36,8 @@ impl<'a> Balance<'a> {
         let mut all = Vec::new();
         for group in groups {
             let system = System::new(body, &targets[group[0]].support)?;
-            let factor = system.cholesky().ok_or_else(|| Error::new("the finite elements do not stand"))?;
+            let singular = || Error::new("the finite elements do not stand").of_kind(ErrorKind::Infeasible);
+            let factor = system.cholesky().ok_or_else(singular)?;
             let (system, factor) = (Arc::new(system), Arc::new(factor));
             if object.newton.is_none() {
                 let loads = group.iter().map(|&l| (l, Arc::new(object.pulls(&targets[l].displacement)))).collect();

@@ -136,7 +136,7 @@ pub fn fit_whole(
     }
     let problem = Displacements::new(object, wanted.trained.iter().collect(), wanted.frequencies.as_ref())?;
     let judge = Displacements::new(object, wanted.validation.loads().iter().collect(), None)
-        .map_err(|e| Error::at("validate", e.problem()))?;
+        .map_err(|e| e.at_key("validate"))?;
     let start = vec![0.0; m];
     let network = object.network(&start);
     let mut found = WholeFit {

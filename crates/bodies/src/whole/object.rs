@@ -2,7 +2,7 @@
 
 use super::gradients::SpringGradients;
 use super::unknowns::Unknowns;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
 use crate::model::Network;
 use crate::solve::Newton;
@@ -36,13 +36,14 @@ impl<'a> Object<'a> {
     /// The network has no springs or none above zero, at small displacements one pulls at rest, or a law has no factor.
     pub fn new(network: &Network, points: &'a [f64], unknowns: Unknowns, newton: Option<Newton>) -> Result<Object<'a>> {
         if network.is_empty() {
-            return Err(Error::expected("springs", "a network with springs", "none"));
+            return Err(Error::expected("springs", "a network with springs", "none").of_kind(ErrorKind::Infeasible));
         }
         let mut network = network.clone();
         raise(network.lengths.iter_mut().map(|s| &mut s.constant).collect());
         raise(network.others.iter_mut().filter(|s| s.law.is_none()).map(|s| &mut s.constant).collect());
         if network.lengths.iter().any(|s| !(s.constant > 0.0)) {
-            return Err(Error::expected("springs", "a network with a constant above zero", "none"));
+            let error = Error::expected("springs", "a network with a constant above zero", "none");
+            return Err(error.of_kind(ErrorKind::Infeasible));
         }
         if let Some(law) = network.others.iter().filter_map(|s| s.law.as_ref()).find(|law| !law.outer().contains(&true))
         {

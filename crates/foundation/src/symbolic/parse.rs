@@ -5,7 +5,7 @@
 
 use super::predicate::{Comparison, Predicate};
 use super::{Expr, Function};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use evalexpr::{Node, Operator};
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -73,17 +73,18 @@ impl Scope {
     }
 
     fn parse(&self, text: &str) -> Result<Parsed> {
-        let lexed = lex(text).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))?;
+        let in_text = |e: Error| e.followed_by(format!(" in \"{}\"", shortened(text)));
+        let lexed = lex(text).map_err(in_text)?;
         let tree = evalexpr::build_operator_tree(&lexed.rewritten)
-            .map_err(|e| Error::new(format!("\"{}\" is not an expression: {e}", shortened(text))))?;
-        self.walk(&tree, &lexed).map_err(|e| Error::new(format!("{} in \"{}\"", e.problem(), shortened(text))))
+            .map_err(|e| malformed(format!("\"{}\" is not an expression: {e}", shortened(text))))?;
+        self.walk(&tree, &lexed).map_err(in_text)
     }
 
     fn walk(&self, node: &Node, lexed: &Lexed) -> Result<Parsed> {
         let children = node.children();
         let child = |i: usize| match children.get(i) {
             Some(c) => self.walk(c, lexed),
-            None => Err(Error::new("expected one more operand")),
+            None => Err(malformed("expected one more operand")),
         };
         let real = |i: usize| child(i)?.real();
         let condition = |i: usize| child(i)?.condition();
@@ -103,7 +104,7 @@ impl Scope {
             }
             Operator::Exp => {
                 if matches!(children.first().map(Node::operator), Some(Operator::Exp)) {
-                    return Err(Error::new("expected parentheses in a power of a power"));
+                    return Err(malformed("expected parentheses in a power of a power"));
                 }
                 match (real(0)?, real(1)?) {
                     (base, Expr::Number(n)) => Expr::power(base, n),
@@ -135,10 +136,10 @@ impl Scope {
             }
             Operator::Or => return Ok(Parsed::Condition(Predicate::Or(condition(0)?.into(), condition(1)?.into()))),
             Operator::Not => return Ok(Parsed::Condition(Predicate::Not(condition(0)?.into()))),
-            other => return Err(Error::new(format!("the operator {other} is not known here"))),
+            other => return Err(malformed(format!("the operator {other} is not known here"))),
         };
         if parsed.largest_constant() > MOST_BITS {
-            return Err(Error::new("expected numbers of at most 1000 digits"));
+            return Err(excessive("expected numbers of at most 1000 digits"));
         }
         Ok(Parsed::Real(parsed))
     }
@@ -204,6 +205,14 @@ fn unknown_function(name: &str) -> String {
     format!("expected an operator, or a function of sqrt, ramp, {}, found \"{name}(\"", names.join(", "))
 }
 
+fn malformed(problem: impl Into<String>) -> Error {
+    Error::new(problem).of_kind(ErrorKind::Syntax)
+}
+
+fn excessive(problem: impl Into<String>) -> Error {
+    Error::new(problem).of_kind(ErrorKind::Limit)
+}
+
 fn shortened(text: &str) -> String {
     if text.chars().count() <= 60 { text.to_string() } else { text.chars().take(57).chain("...".chars()).collect() }
 }
@@ -223,14 +232,14 @@ impl Lexed {
         if self.parts.get() <= MOST_PARTS {
             return Ok(());
         }
-        Err(Error::new(format!("expected at most {MOST_PARTS} terms and factors in all")))
+        Err(excessive(format!("expected at most {MOST_PARTS} terms and factors in all")))
     }
 }
 
 /// Splits into numbers, names, operators and parentheses, and makes sure that operands and operators alternate.
 fn lex(text: &str) -> Result<Lexed> {
     if text.len() > LONGEST_TEXT {
-        return Err(Error::new(format!("expected at most {LONGEST_TEXT} characters, found {}", text.len())));
+        return Err(excessive(format!("expected at most {LONGEST_TEXT} characters, found {}", text.len())));
     }
     let chars: Vec<char> = text.chars().collect();
     let mut lexed =
@@ -239,7 +248,7 @@ fn lex(text: &str) -> Result<Lexed> {
     let (mut at, mut open, mut operand_next, mut sign_allowed) = (0, 0usize, true, true);
     let fault = |at: usize, expected: &str| {
         let found = chars.get(at).map_or("the end".to_string(), |c| format!("'{c}'"));
-        Err(Error::new(format!("column {}: expected {expected}, found {found}", at + 1)))
+        Err(malformed(format!("column {}: expected {expected}, found {found}", at + 1)))
     };
     while at < chars.len() {
         let c = chars[at];
@@ -253,7 +262,8 @@ fn lex(text: &str) -> Result<Lexed> {
                 '(' => {
                     open += 1;
                     if open > DEEPEST_NESTING {
-                        return fault(at, &format!("at most {DEEPEST_NESTING} open parentheses"));
+                        let deep = fault(at, &format!("at most {DEEPEST_NESTING} open parentheses"));
+                        return deep.map_err(|e: Error| e.of_kind(ErrorKind::Limit));
                     }
                     (at, sign_allowed) = (at + 1, true);
                 }
@@ -314,7 +324,7 @@ fn lex(text: &str) -> Result<Lexed> {
         return fault(chars.len(), "')'");
     }
     if operators > MOST_OPERATORS {
-        return Err(Error::new(format!("expected at most {MOST_OPERATORS} operators, found {operators}")));
+        return Err(excessive(format!("expected at most {MOST_OPERATORS} operators, found {operators}")));
     }
     Ok(lexed)
 }

@@ -6,7 +6,7 @@ use super::constant::Constant;
 use super::definition::{Definition, FormatEntry, Rule};
 use super::quadrature::{MOST_POINTS, Quadrature};
 use super::{ShapeFunctions, Tabulation};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -30,7 +30,7 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
     }
     let mut scope = Scope::default();
     for (k, name) in definition.coordinates.iter().enumerate() {
-        scope.define(name, "0").map_err(|e| Error::at(format!("coordinates[{k}]"), e.problem()))?;
+        scope.define(name, "0").map_err(|e| e.at_key(format!("coordinates[{k}]")))?;
     }
     if definition.nodes.len() <= d || definition.nodes.len() > MOST_NODES {
         let expected = format!("{} to {MOST_NODES} nodes", d + 1);
@@ -48,7 +48,7 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
 pub fn moderate(definition: &Definition, shapes: &[Expr]) -> Result<()> {
     let check = |what: &str, most: usize, parts: usize| {
         let expected = format!("{what} of at most {most} numbers, names and operations in all");
-        if parts <= most { Ok(()) } else { Err(Error::expected("nodes", expected, parts)) }
+        if parts <= most { Ok(()) } else { Err(Error::expected("nodes", expected, parts).of_kind(ErrorKind::Limit)) }
     };
     check("shape functions", MOST_PARTS, shapes.iter().map(Expr::parts).sum())?;
     let parts: usize = shapes.iter().map(Expr::most_parts_of_derivative).sum();
@@ -62,7 +62,8 @@ pub fn tabulable(functions: &ShapeFunctions, points: usize) -> Result<()> {
         return Ok(());
     }
     let expected = format!("a rule at whose points the shape functions take at most {MOST_STEPS} steps to evaluate");
-    Err(Error::expected("quadrature", expected, format!("{steps} at {points} points")))
+    let found = format!("{steps} at {points} points");
+    Err(Error::expected("quadrature", expected, found).of_kind(ErrorKind::Limit))
 }
 
 /// Kronecker property, partition of unity, linear completeness.

@@ -4,7 +4,7 @@ use super::Weight;
 use super::least_squares::normal_equations;
 use super::normal::Normal;
 use crate::element::{Element, permutations};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::scalar::Scalar;
 use crate::springs::Springs;
@@ -59,7 +59,9 @@ impl ClosedForm {
     /// A node or shape function is not rational, the element's own quadrature is not exact on such a shape, or a spring
     /// measures something that needs roots.
     pub fn new(element: &Element, springs: &Springs, sides: bool) -> Result<ClosedForm> {
-        let refuse = |why: &str| Error::new(format!("{} has no closed form: {why}", element.name));
+        let refuse = |why: &str| {
+            Error::new(format!("{} has no closed form: {why}", element.name)).of_kind(ErrorKind::Unsupported)
+        };
         if !springs.functions.is_empty() {
             return Err(refuse("its angles, areas, couplings or measures need roots"));
         }
@@ -130,7 +132,7 @@ impl ClosedForm {
         };
         let solved = if weight == Weight::None { self.plain.each_ref().map(solve) } else { units().map(weighted) };
         let [Some(lambda), Some(mu)] = solved else {
-            return Err(Error::new("this weight does not determine the springs"));
+            return Err(Error::new("this weight does not determine the springs").of_kind(ErrorKind::Infeasible));
         };
         // ‖R − K‖² = ‖R‖² − 2 bᵀk + kᵀ M k
         let k = [&lambda, &mu].map(|k| group.iter().map(|i| k[*i].clone()).collect::<Vec<_>>());

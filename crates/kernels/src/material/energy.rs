@@ -100,7 +100,7 @@ impl Energy {
             if !value.is_finite() {
                 return Err(Error::expected(key, "a finite number", value));
             }
-            check.define(name, "0").map_err(|e| Error::at(key, e.problem()))?;
+            check.define(name, "0").map_err(|e| e.at_key(key))?;
         }
         let mut scope = Scope::new(&names);
         for (name, value) in &definition.definitions {

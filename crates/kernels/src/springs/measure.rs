@@ -1,7 +1,7 @@
 //! What a spring measures, c(x), with its first and second derivatives: all that its force and its tangent need.
 
 use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Jet, Scope};
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ impl Measure {
             (SpringKind::Coupling, 4, _) => format!("{} + {}", formula.distance(0, 1), formula.distance(2, 3)),
             _ => {
                 let problem = format!("no {} of {nodes} nodes in {dimension} dimensions is known", kind.name());
-                return Err(Error::new(problem));
+                return Err(Error::new(problem).of_kind(ErrorKind::Unsupported));
             }
         };
         formula.scope.expression(&text)

@@ -11,7 +11,7 @@ pub use measure::{Measure, Response, linear};
 pub use vector::{distance, dot, norm, unit};
 
 use crate::element::{Element, SpringKind};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
 use crate::symbolic::{Expr, Jet};
 use std::sync::Arc;
@@ -78,7 +78,7 @@ impl Springs {
             if embedded && (bent || group.kind == SpringKind::Measure) {
                 let problem =
                     "cannot be used on a surface or curve in space: its measure is known in the cell's plane only";
-                return Err(Error::at(format!("springs.{}", group.name), problem));
+                return Err(Error::at(format!("springs.{}", group.name), problem).of_kind(ErrorKind::Unsupported));
             }
             if group.is_content() {
                 springs.content = Some(group.kind);
@@ -99,7 +99,7 @@ impl Springs {
                     _ => {
                         let known = |d: usize| {
                             let known = Measure::of_kind(group.kind, nodes.len(), d).map(Arc::new);
-                            known.map_err(|e| Error::at(format!("springs.{}", group.name), e.problem()))
+                            known.map_err(|e| e.at_key(format!("springs.{}", group.name)))
                         };
                         (known(springs.dimension)?, embedded.then(|| known(springs.space)).transpose()?)
                     }

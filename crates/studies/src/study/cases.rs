@@ -3,7 +3,7 @@
 use super::metrics::{DisplacementError, displacement_error};
 use super::outcome::MeasuredLoad;
 use super::scene::{MeasuredEntry, Scene};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Material;
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
@@ -114,7 +114,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
                 "{} rigid {motions} left to the body of {} points at {place:?} m under load \"{}\"",
                 body.motions, body.points, load.name
             );
-            return Err(Error::expected("fix", expected, found).in_file(&scene.path));
+            return Err(Error::expected("fix", expected, found).of_kind(ErrorKind::Infeasible).in_file(&scene.path));
         }
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
         let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;

@@ -3,7 +3,7 @@
 use super::cases::Case;
 use super::outcome::{FitOutcome, LoadOutcome};
 use super::run::Progress;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::mesh::Mesh;
 use crate::model::{Support, finite_elements};
@@ -49,7 +49,8 @@ impl LinearBody {
                     let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
                     let bending = "; surfaces and curves resist no bending, so hold their points across them";
                     let embedded = mesh.cell_dimension() < mesh.dimension;
-                    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" }))
+                    let problem = format!("{why}{}", if embedded { bending } else { "" });
+                    Error::at("mesh", problem).of_kind(ErrorKind::Infeasible)
                 })?;
                 body.systems.push((system, factor));
                 body.system_of.push(body.systems.len() - 1);

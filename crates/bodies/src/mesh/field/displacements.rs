@@ -2,7 +2,7 @@
 
 use super::reading::Reading;
 use super::{grid, table};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::file::{ending, read, read_text};
 use crate::mesh::mesh::Mesh;
 use crate::mesh::vtk;
@@ -54,7 +54,7 @@ impl Field {
             "csv" => table::read(&read_text(path)?, array, &mut reading),
             "vtu" => vtk::xml_pieces(&read(path)?).and_then(|pieces| grid::read(pieces, array, &mut reading)),
             "vtk" => vtk::legacy_piece(&read(path)?).and_then(|piece| grid::read(vec![piece], array, &mut reading)),
-            _ => Err(Error::new("expected displacements ending in .csv, .vtu or .vtk")),
+            _ => Err(Error::new("expected displacements ending in .csv, .vtu or .vtk").of_kind(ErrorKind::Unsupported)),
         };
         let displacements = done.and_then(|()| reading.displacements()).map_err(|e| e.in_file(path))?;
         Ok(Field { displacements })

@@ -1,7 +1,7 @@
 //! Tables of displacements: a header with the names of the columns, then a row for each point.
 
 use super::reading::{AXES, Reading, listed};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::reader::quoted;
 use csv::{ReaderBuilder, StringRecord};
 
@@ -40,7 +40,8 @@ pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Re
     let mut row = StringRecord::new();
     loop {
         let start = rows.position().byte() as usize;
-        if !rows.read_record(&mut row).map_err(|e| Error::new(format!("expected a table: {e}")))? {
+        let not_table = |e: csv::Error| Error::new(format!("expected a table: {e}")).of_kind(ErrorKind::Syntax);
+        if !rows.read_record(&mut row).map_err(not_table)? {
             break;
         }
         if row.iter().all(|cell| cell.trim().is_empty()) {
@@ -60,7 +61,7 @@ pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Re
         }
     }
     if columns.is_none() {
-        Err(Error::new("expected a header with the names of the columns, found none"))
+        Err(Error::new("expected a header with the names of the columns, found none").of_kind(ErrorKind::Syntax))
     } else {
         Ok(())
     }
@@ -134,7 +135,7 @@ impl Columns {
     fn point(&self, row: &StringRecord, reading: &Reading) -> Result<usize> {
         if row.len() != self.names.len() {
             let expected = format!("{} cells as in the header", self.names.len());
-            return Err(Error::new(format!("expected {expected}, found {}", row.len())));
+            return Err(Error::new(format!("expected {expected}, found {}", row.len())).of_kind(ErrorKind::Syntax));
         }
         let count = reading.mesh.point_count();
         let numbered = |&column: &usize| {

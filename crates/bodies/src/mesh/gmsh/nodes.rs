@@ -1,7 +1,7 @@
 //! The nodes of a Gmsh mesh and the places of their tags.
 
-use crate::error::{Error, Result};
 use crate::mesh::reader::Reader;
+use crate::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
 
 pub(super) struct Nodes {
@@ -26,7 +26,7 @@ impl Nodes {
     /// # Errors
     /// A tag occurs twice.
     pub fn new(tags: &[u64], points: Vec<[f64; 3]>) -> Result<Nodes> {
-        let twice = |tag: u64| Error::at("$Nodes", format!("node {tag} occurs twice"));
+        let twice = |tag: u64| Error::at("$Nodes", format!("node {tag} occurs twice")).of_kind(ErrorKind::Syntax);
         let first = tags.iter().copied().min().unwrap_or(0);
         let span = tags.iter().copied().max().unwrap_or(0) - first;
         let dense = usize::try_from(span).ok().filter(|&span| span / 4 <= tags.len());

@@ -2,7 +2,7 @@
 
 use super::nodes::Nodes;
 use super::{types, v22, v41};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::{Encoding, Reader, quoted};
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
@@ -84,7 +84,8 @@ impl File {
                 return Err(reader.fault("expected $MeshFormat before it".into()));
             }
             ("PartitionedEntities", _) => {
-                return Err(reader.fault("partitioned meshes are not supported".into()));
+                let error = reader.fault("partitioned meshes are not supported".into());
+                return Err(error.of_kind(ErrorKind::Unsupported));
             }
             _ => return skip(reader, name),
         }
@@ -97,7 +98,7 @@ impl File {
     }
 
     fn into_source(self) -> Result<MeshSource> {
-        let missing = |section| Error::new(format!("the file ends before {section}"));
+        let missing = |section| Error::new(format!("the file ends before {section}")).of_kind(ErrorKind::Syntax);
         self.version.ok_or_else(|| missing("$MeshFormat"))?;
         let nodes = self.nodes.ok_or_else(|| missing("$Nodes"))?;
         let cells = match self.cells.ok_or_else(|| missing("$Elements"))? {
@@ -128,7 +129,7 @@ fn format(reader: &mut Reader) -> Result<Version> {
     let version = match reader.peek() {
         b"4.1" => Version::V41,
         b"2.2" | b"2.1" | b"2.0" | b"2" => Version::V22,
-        _ => return Err(reader.unexpected("version 4.1 or 2.2")),
+        _ => return Err(unknown_version(reader)),
     };
     reader.word();
     let binary: u32 = reader.text_number()?;
@@ -139,7 +140,7 @@ fn format(reader: &mut Reader) -> Result<Version> {
         other => return Err(reader.expected("file type 0 or 1", &other.to_string())),
     }
     if size != 8 {
-        return Err(reader.expected("data size 8", &size.to_string()));
+        return Err(reader.expected("data size 8", &size.to_string()).of_kind(ErrorKind::Unsupported));
     }
     reader.encoding = Encoding::Binary { big_endian: false };
     reader.start_data()?;
@@ -150,6 +151,13 @@ fn format(reader: &mut Reader) -> Result<Version> {
         _ => return Err(reader.expected("the number 1 in binary", &one.to_string())),
     }
     Ok(version)
+}
+
+/// A file that ends here, or has no number here, has no version at all.
+fn unknown_version(reader: &mut Reader) -> Error {
+    let is_number = reader.peek().first().is_some_and(u8::is_ascii_digit);
+    let error = reader.unexpected("version 4.1 or 2.2");
+    if is_number { error.of_kind(ErrorKind::Unsupported) } else { error }
 }
 
 /// Reads the names of the physical groups, which are text in binary files too.

@@ -1,6 +1,6 @@
 //! Gmsh's element types.
 
-use crate::error::Result;
+use crate::error::{ErrorKind, Result};
 use crate::mesh::reader::Reader;
 
 /// Number, dimension and nodes of each type with a fixed number of nodes.
@@ -40,5 +40,6 @@ pub(super) fn find(number: u32) -> Option<(usize, usize)> {
 
 /// Dimension and nodes of the type whose number `reader` has just read.
 pub(super) fn shape(reader: &Reader, number: u32) -> Result<(usize, usize)> {
-    find(number).ok_or_else(|| reader.fault(format!("element type {number} is unknown")))
+    let unknown = || reader.fault(format!("element type {number} is unknown")).of_kind(ErrorKind::Unsupported);
+    find(number).ok_or_else(unknown)
 }

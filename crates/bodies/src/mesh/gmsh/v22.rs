@@ -2,7 +2,7 @@
 
 use super::nodes::Nodes;
 use super::types::shape;
-use crate::error::Result;
+use crate::error::{ErrorKind, Result};
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::{Encoding, Reader};
 
@@ -117,7 +117,7 @@ impl Cells {
             groups.push(physical);
             if groups.len() > MOST_GROUPS {
                 let expected = format!("element {element} in at most {MOST_GROUPS} physical groups");
-                return Err(reader.expected(&expected, "more"));
+                return Err(reader.expected(&expected, "more").of_kind(ErrorKind::Limit));
             }
             return Ok(());
         }

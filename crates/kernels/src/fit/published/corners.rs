@@ -2,7 +2,7 @@
 
 use super::method::Joint;
 use crate::element::{Cell, Element};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// The corners of a cell as nodes of an element that has no others.
 #[derive(Debug)]
@@ -22,7 +22,8 @@ impl Corners {
         let nodes: Option<Vec<usize>> = (0..corners.len()).map(|corner| element.corner_node(corner)).collect();
         let Some(nodes) = nodes.filter(|_| element.nodes() == corners.len()) else {
             let expected = format!("{} nodes at the corners of the cell", corners.len());
-            return Err(Error::expected(&element.name, expected, format!("{} nodes", element.nodes())));
+            let error = Error::expected(&element.name, expected, format!("{} nodes", element.nodes()));
+            return Err(error.of_kind(ErrorKind::Unsupported));
         };
         let edges = edges(cell);
         let together = |pair: &[usize; 2]| cell.sides().iter().any(|s| pair.iter().all(|i| s.corners.contains(i)));

@@ -2,7 +2,7 @@
 
 use super::shape::Shape;
 use crate::element::{Cell, Element};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// A published way to choose spring constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -197,6 +197,7 @@ impl Method {
             let cells: Vec<String> = self.covers().iter().map(|cover| word(cover.cell)).collect();
             let found = format!("{}, a {}", element.name, word(element.cell));
             Error::expected(self.name(), format!("an element of the cell {}", cells.join(", ")), found)
+                .of_kind(ErrorKind::Unsupported)
         })
     }
 }

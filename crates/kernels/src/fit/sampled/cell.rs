@@ -3,7 +3,7 @@
 use super::shapes::{Part, Shapes};
 use super::{SampledFit, Weights};
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::dense::inner;
 use crate::fit::normal::Normal;
 use crate::material::{Energy, State};
@@ -234,7 +234,8 @@ impl<'a> Cell<'a> {
             }
             self.measure(&x, sample);
             if sample.gradients.iter().chain(&sample.measures).any(|g| !g.is_finite()) {
-                return Err(Error::new("what a spring measures has no finite gradient at a sampled shape"));
+                let problem = "what a spring measures has no finite gradient at a sampled shape";
+                return Err(Error::new(problem).of_kind(ErrorKind::Infeasible));
             }
             std::iter::once(&mut sample.force[..])
                 .chain(sample.gradients.chunks_exact_mut(seen))
@@ -245,7 +246,8 @@ impl<'a> Cell<'a> {
             };
             return Ok(());
         }
-        Err(Error::new("the sampled shapes are turned inside out: expected a smaller stretch"))
+        let problem = "the sampled shapes are turned inside out: expected a smaller stretch";
+        Err(Error::new(problem).of_kind(ErrorKind::Infeasible))
     }
 
     /// Numbers in which forces are seen.

@@ -5,7 +5,7 @@
 
 use super::cell::{Cell, Sums};
 use super::shapes::{Numbers, Part};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::Normal;
 
@@ -42,7 +42,8 @@ pub fn search(cell: &Cell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search>
     // A start may lie where the law has no value.
     found.retain(|(_, sums, _)| sums.square.is_finite());
     if found.is_empty() {
-        return Err(Error::expected("force", "a law with finite values at the sampled shapes", "no start with them"));
+        let expected = "a law with finite values at the sampled shapes";
+        return Err(Error::expected("force", expected, "no start with them").of_kind(ErrorKind::Infeasible));
     }
     let least = found.iter().map(|(_, sums, _)| sums.square).fold(f64::INFINITY, f64::min);
     let limit = (least.sqrt() * (1.0 + SAME)).powi(2) + PROMISE * found[0].1.size;

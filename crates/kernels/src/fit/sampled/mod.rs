@@ -17,7 +17,7 @@ use super::normal::Rank;
 use super::norms::{Norm, solve_norm};
 use super::{CellFits, each_cell};
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, State};
 use crate::springs::{Force, Law, Springs};
 use cell::{Cell, REST_RANGE, Sample};
@@ -110,7 +110,8 @@ pub fn fit_sampled(
     }
     fit.check(element.dimension())?;
     if element.space() > element.dimension() {
-        return Err(Error::new("the sampled fit is known for cells that fill their space"));
+        let problem = "the sampled fit is known for cells that fill their space";
+        return Err(Error::new(problem).of_kind(ErrorKind::Unsupported));
     }
     let n = element.nodes();
     let cells = connectivity.len() / n;
@@ -252,7 +253,7 @@ impl Cell<'_> {
         let finite = constants.iter().chain(&parameters).all(|k| k.is_finite());
         if !(finite && found.trained.is_finite()) {
             let expected = "a law with finite values at the sampled shapes and a finite slope at rest";
-            return Err(Error::expected("force", expected, "one without"));
+            return Err(Error::expected("force", expected, "one without").of_kind(ErrorKind::Infeasible));
         }
         Ok(CellFit { constants, parameters, held_out, ..found })
     }
@@ -280,7 +281,7 @@ impl Cell<'_> {
             self.sample(Part::Trained, i, &mut sample)?;
             if shapes.saturating_mul(sample.force.len()).saturating_mul(count) > MOST_NUMBERS {
                 let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (sample.force.len() * count));
-                return Err(Error::expected("shapes", expected, shapes));
+                return Err(Error::expected("shapes", expected, shapes).of_kind(ErrorKind::Limit));
             }
             self.equations(&sample, &vec![0.0; count], &mut rows, &mut rhs);
         }

@@ -1,6 +1,6 @@
 //! Deformed shapes of a cell: families of homogeneous and bent ones at random amplitudes and directions, or shapes of a list.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -114,7 +114,7 @@ impl Sampling {
     pub fn check(&self, dimension: usize) -> Result<()> {
         for (key, count) in [("shapes", self.shapes.max(1)), ("held_out", self.held_out)] {
             if count > MOST {
-                return Err(Error::expected(key, format!("at most {MOST} shapes"), count));
+                return Err(Error::expected(key, format!("at most {MOST} shapes"), count).of_kind(ErrorKind::Limit));
             }
         }
         if self.shapes == 0 {

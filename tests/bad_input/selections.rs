@@ -1,0 +1,116 @@
+//! Supports and loads of scenes, and the parts of the mesh that they select.
+
+use super::inputs::{BRICK, PLATE, TETRAHEDRON, UNIT_NODES, edited, msh};
+use super::refusals::Refusals;
+
+#[test]
+fn supports() {
+    let zmin = "group = \"zmin\"";
+    let mut refusals = Refusals::default();
+    refusals.expect_of_edits(
+        BRICK,
+        &[
+            ("[[fix]]\ngroup = \"zmin\"\n", "", "scene.toml: fix", "6 rigid motions"),
+            (zmin, "group = \"zmin\"\naxes = [\"z\"]", "scene.toml: fix", "3 rigid motions"),
+            (zmin, "group = \"zmin\"\naxes = [\"z\", \"z\"]", "scene.toml: fix", "3 rigid motions"),
+            (zmin, "where = \"x + y + z == 0\"", "scene.toml: fix", "3 rigid motions"),
+            (zmin, "where = \"x + y == 0\"", "scene.toml: fix", "1 rigid motion"),
+            (zmin, "where = \"z > 5\"", "scene.toml: fix[0]", "no points"),
+            (zmin, "group = \"bottom\"", "scene.toml: fix[0].group", "found \"bottom\""),
+            (zmin, "group = \"zmin\"\nwhere = \"z == 0\"", "scene.toml: fix[0]", "found both"),
+            (zmin, "", "scene.toml: fix[0]", "found neither"),
+            (zmin, "group = \"zmin\"\naxes = [\"w\"]", "scene.toml: fix[0].axes", "found [\"w\"]"),
+            (zmin, "group = \"zmin\"\naxes = []", "scene.toml: fix[0].axes", "found []"),
+            (zmin, "where = \"z\"", "scene.toml: fix[0].where", "expected a condition"),
+            (zmin, "where = \"z <\"", "scene.toml: fix[0].where", "column 4"),
+            (zmin, "where = \"r < 1\"", "scene.toml: fix[0].where", "\"r\" in \"r < 1\""),
+            (zmin, "where = \"z < 1/0\"", "scene.toml: fix[0].where", "division by zero"),
+        ],
+    );
+    refusals.expect_of_edits(
+        PLATE,
+        &[
+            ("group = \"ymin\"", "group = \"ymin\"\naxes = [\"z\"]", "scene.toml: fix[0].axes", "found \"z\""),
+            ("group = \"ymin\"", "where = \"z < 1\"", "scene.toml: fix[0].where", "\"z\" in \"z < 1\""),
+        ],
+    );
+    let apart = [&UNIT_NODES[..], &["5 5 5", "6 5 5", "5 6 5", "5 5 6"]].concat();
+    refusals.expect_of_files(
+        TETRAHEDRON,
+        &msh(&apart, &["4 2 0 1 1 2 3 4", "4 2 0 1 5 6 7 8"]),
+        "scene.toml: fix",
+        "4 points at [5.0, 5.0, 5.0] m",
+    );
+    refusals.finish();
+}
+
+#[test]
+fn chains_of_operators() {
+    let mut refusals = Refusals::default();
+    for chain in ["!", "0+", "0-", "1*", "1/"] {
+        let condition = format!("{}z < 1", chain.repeat(9_990 / chain.len()));
+        let found = 9_990 / chain.len() + 1;
+        refusals.expect_of_scene(
+            &edited(BRICK, "group = \"zmin\"", &format!("where = \"{condition}\"")),
+            "scene.toml: fix[0].where",
+            &format!("1000 operators, found {found}"),
+        );
+    }
+    refusals.finish();
+}
+
+#[test]
+fn loads() {
+    let (zmax, traction) = ("group = \"zmax\"", "traction = [0, 0, 1]");
+    let load = "group = \"zmax\"\ntraction = [0, 0, 1]";
+    let mut refusals = Refusals::default();
+    refusals.expect_of_edits(
+        BRICK,
+        &[
+            ("\"zmax\"", "\"top\"", "scene.toml: load[0].group", "found \"top\""),
+            (zmax, "where = \"z > 5\"", "scene.toml: load[0]", "no sides"),
+            (zmax, "where = \"x == y && y == z\"", "scene.toml: load[0]", "no sides"),
+            (zmax, "group = \"body\"", "scene.toml: load[0]", "no sides"),
+            (load, "where = \"z > 5\"\nforce = [0, 0, 1]", "scene.toml: load[0]", "no points"),
+            (load, "group = \"zmax\"\nbody = [0, 0, 1]", "scene.toml: load[0]", "no cells"),
+            (load, "where = \"z > 5\"\ndisplacement = [0, 0, 1]", "scene.toml: load[0]", "no points"),
+            ("[0, 0, 1]", "[0, 1]", "scene.toml: load[0].traction", "3 entries for a mesh of dimension 3, found 2"),
+            ("[0, 0, 1]", "[]", "scene.toml: load[0].traction", "found 0"),
+            (traction, "displacement = [0, 0, 0, 1]", "scene.toml: load[0].displacement", "found 4"),
+            ("[0, 0, 1]", "[0, 0, nan]", "scene.toml: load[0].traction", "found NaN"),
+            (traction, "displacement = [0, 0, \"held\"]", "scene.toml:12: load[0].displacement[2]", "\"held\""),
+            (traction, "traction = [0, 0, 1]\nforce = [0, 0, 1]", "scene.toml: load[0]", "found 2"),
+            (traction, "", "scene.toml: load[0]", "found 0"),
+            (zmax, "group = \"zmax\"\nwhere = \"z > 0\"", "scene.toml: load[0]", "found both"),
+            ("group = \"zmax\"\n", "", "scene.toml: load[0]", "found neither"),
+            (
+                "[[load]]",
+                "[[load]]\nname = \"load 2\"\ngroup = \"zmax\"\nforce = [0, 0, 1]\n[[load]]",
+                "scene.toml: load[1].name",
+                "found \"load 2\" again",
+            ),
+        ],
+    );
+    refusals.expect_of_edits(PLATE, &[("[0, 1]\n", "[0, 1, 0]\n", "scene.toml: load[0].traction", "found 3")]);
+    refusals.finish();
+}
+
+#[test]
+fn loads_that_vary_and_measurements() {
+    let load = "traction = [0, 0, 1]";
+    let mut refusals = Refusals::default();
+    refusals.expect_of_edits(
+        BRICK,
+        &[
+            (load, "traction = [0, 0, \"x*\"]", "scene.toml: load[0].traction[2]", "column 3"),
+            (load, "traction = [0, 0, \"w\"]", "scene.toml: load[0].traction[2]", "name \"w\" in \"w\""),
+            (load, "traction = [0, 0, \"1/(z - 1)\"]", "scene.toml: load[0]", "not finite"),
+            (load, "traction = [0, 0, 1]\nmeasured = { file = \"u.csv\" }", "u.csv", "cannot be read"),
+        ],
+    );
+    refusals.expect_of_edits(
+        PLATE,
+        &[("traction = [0, 1]", "traction = [0, \"z\"]", "scene.toml: load[0].traction[1]", "found z")],
+    );
+    refusals.finish();
+}

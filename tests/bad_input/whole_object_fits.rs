@@ -1,0 +1,86 @@
+//! Fits of a whole object under loads.
+
+use super::inputs::{BRICK, edited};
+use super::refusals::Refusals;
+
+const FIT: &str = "objective = \"modal\"";
+const WHOLE: &str = "objective = \"whole\"";
+
+/// The options that follow `objective = "whole"`, the key below `fit[0]`, and words of the problem.
+const OPTIONS: [(&str, &str, &str); 25] = [
+    ("loads = []", "loads", "found none"),
+    ("loads = [\"push\"]", "loads", "(load 1), found \"push\""),
+    ("validate = [\"push\"]", "validate", "(load 1), found \"push\""),
+    ("validate = []", "validate", "found none"),
+    ("loads = [\"load 1\"]\nvalidate = [\"load 1\"]", "validate", "found \"load 1\""),
+    ("loads = [\"load 1\"]\nvalidate = [\"leave-one-out\"]", "validate", "found 1"),
+    ("validate = [\"made\"]\nregularization = 1e-3", "regularization", "found both"),
+    ("regularization = -1", "regularization", "found -1"),
+    ("start = \"rest\"", "start", "found \"rest\""),
+    ("start = [\"offdiag\", \"offdiag\"]", "start", "each once"),
+    ("start = 3", "start", "an objective"),
+    ("range = 0.5", "range", "found 0.5"),
+    ("iterations = 0", "iterations", "found 0"),
+    ("solver = \"native\"", "solver", "found \"native\""),
+    ("residual = \"energy\"", "residual", "found \"energy\""),
+    ("unknowns = \"cell\"", "unknowns", "found \"cell\""),
+    ("frequencies = 3", "frequencies", "density"),
+    ("tied = true", "tied", "\"whole\""),
+    ("topology = true", "topology", "\"whole\""),
+    ("sparsity = 0.1", "sparsity", "\"whole\""),
+    ("nonnegative = true", "nonnegative", "\"whole\""),
+    ("loads = [\"load 1\", \"load 1\"]", "loads", "found \"load 1\" again"),
+    ("start = \"equal\"\nhigher = 0.1", "higher", "\"equal\""),
+    ("residual = \"forces\"\nfrequencies = 2", "frequencies", "residual = \"forces\""),
+    ("range = 10\nregularization = 1", "range", "\"validate\""),
+];
+
+#[test]
+fn options_of_whole_object_fits() {
+    let mut refusals = Refusals::default();
+    for (options, key, words) in OPTIONS {
+        let scene = edited(BRICK, FIT, &format!("{WHOLE}\n{options}"));
+        refusals.expect_of_scene(&scene, &format!("scene.toml: fit[0].{key}"), words);
+    }
+    refusals.expect_of_edits(
+        BRICK,
+        &[
+            (FIT, &format!("{FIT}\nfrequencies = 3"), "scene.toml: fit[0].frequencies", "found with \"modal\""),
+            (FIT, &format!("{FIT}\nloads = [\"load 1\"]"), "scene.toml: fit[0].loads", "found with \"modal\""),
+        ],
+    );
+    refusals.finish();
+}
+
+#[test]
+fn whole_objects() {
+    let mut refusals = Refusals::default();
+    let whole = edited(BRICK, FIT, WHOLE);
+    refusals.expect_of_scene(
+        &edited(&whole, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\""),
+        "scene.toml: fit[0].loads",
+        "found \"made\"",
+    );
+    let free = edited(&whole, "[[fix]]\ngroup = \"zmin\"\n", "");
+    let held = "[[load]]\nwhere = \"z < 0.1\"\ndisplacement = [0, 0, 0]";
+    let by_load = edited(&free, "[[load]]\ngroup = \"zmax\"\ntraction = [0, 0, 1]", held);
+    refusals.expect_of_scene(&by_load, "scene.toml: fit[0].loads", "6 rigid motions");
+    let still = edited(&whole, "traction = [0, 0, 1]", "traction = [0, 0, 0]");
+    refusals.expect_of_scene(
+        &edited(&still, WHOLE, "objective = \"whole\"\nloads = [\"load 1\"]"),
+        "scene.toml: fit[0].loads",
+        "found \"load 1\"",
+    );
+    refusals.expect_of_scene(
+        &edited(&whole, "traction = [0, 0, 1]", "traction = [0, 0, 1]\nname = \"made\""),
+        "scene.toml: load[0].name",
+        "found \"made\"",
+    );
+    let counted = edited(&whole, "poisson = 0.3", "poisson = 0.3\ndensity = 1000");
+    refusals.expect_of_scene(
+        &edited(&counted, WHOLE, "objective = \"whole\"\nfrequencies = 13"),
+        "scene.toml: fit[0].frequencies",
+        "at most 12, the free degrees of freedom, found 13",
+    );
+    refusals.finish();
+}
