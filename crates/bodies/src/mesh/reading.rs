@@ -5,9 +5,10 @@ use super::{gmsh, vtk};
 use crate::error::{Error, ErrorKind, Result};
 use std::path::Path;
 
+type Parse = fn(&[u8]) -> Result<MeshSource>;
+
 /// Each ending, in small letters, and the reader of such files.
-const FORMATS: [(&str, fn(&[u8]) -> Result<MeshSource>); 3] =
-    [("msh", gmsh::parse), ("vtu", vtk::parse_xml), ("vtk", vtk::parse_legacy)];
+const FORMATS: [(&str, Parse); 3] = [("msh", gmsh::parse), ("vtu", vtk::parse_xml), ("vtk", vtk::parse_legacy)];
 
 impl MeshSource {
     /// Reads a mesh file of the format that belongs to its ending: `.msh`, `.vtu` or `.vtk`.

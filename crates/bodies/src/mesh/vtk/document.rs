@@ -27,7 +27,7 @@ pub(super) struct PieceTag {
     pub arrays: Vec<ArrayTag>,
 }
 
-/// What an array belongs to.
+/// The part of a piece that an array belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Section {
     Points,
@@ -62,7 +62,7 @@ pub(super) enum Content<'a> {
 }
 
 impl ArrayTag {
-    /// What errors call the array.
+    /// The key of the array in errors.
     pub fn key(&self) -> String {
         self.section.key(&self.name)
     }
@@ -110,7 +110,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Adds what a start tag says, and returns where the next tag is searched for.
+    /// Adds the content of a start tag, and returns where the search for the next tag begins.
     fn add(&mut self, open: &[&[u8]], tag: &Tag) -> Result<usize> {
         match (open, tag.name) {
             ([], b"VTKFile") => self.root(tag)?,
@@ -175,7 +175,7 @@ impl<'a> Document<'a> {
         Ok(end)
     }
 
-    /// Notes inside an array may stand before its text: this then follows their end tag.
+    /// An element inside an array may precede its text, which then follows the end tag of that element.
     fn continue_text(&mut self, open: &[&[u8]], at: usize) {
         let [path @ .., section, b"DataArray"] = open else { return };
         if path != ARRAY_PATH || Section::called(section).is_none() {
@@ -236,7 +236,7 @@ impl Section {
         }
     }
 
-    /// What errors call its array of this name.
+    /// The key in errors of its array of this name.
     fn key(self, name: &str) -> String {
         match self {
             Section::Points => "Points".to_string(),

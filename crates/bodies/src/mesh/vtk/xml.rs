@@ -8,9 +8,10 @@ use crate::mesh::reader::{Encoding, Reader};
 use crate::mesh::source::MeshSource;
 use std::borrow::Cow;
 
-/// All binary arrays together may take up so many times the bytes of the file, as an array of one number alone may a
-/// thousand times its own, and so many bytes in any case.
+/// All arrays in binary together, stored and decoded, may have at most so many bytes for each byte of the file. An array of
+/// equal numbers may have a thousand, but few files consist of such arrays.
 const MOST_GROWTH: u64 = 100;
+/// So many bytes are allowed in any file.
 const ALWAYS_ALLOWED: u64 = 1 << 24;
 
 /// Reads the unstructured grid of a `.vtu`: its arrays as text, in base64 or appended in base64 or raw, in either byte
@@ -43,7 +44,7 @@ pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
 /// The arrays of a file, decoded one after the other.
 struct Arrays<'a> {
     document: &'a Document<'a>,
-    /// Bytes of those in binary so far.
+    /// Bytes of those in binary so far, stored and decoded.
     size: u64,
 }
 
@@ -149,9 +150,11 @@ impl Arrays<'_> {
             return Err(Error::new(format!("expected {expected}, found {}", stored.bytes.len())));
         }
         let most = ALWAYS_ALLOWED.saturating_add(MOST_GROWTH.saturating_mul(self.document.size() as u64));
-        self.size = self.size.saturating_add(data.size as u64);
+        self.size = self.size.saturating_add(data.size as u64).saturating_add(data.stored_size as u64);
         if self.size > most {
-            let expected = format!("at most {most} bytes of data up to here in a file of {}", self.document.size());
+            let length = self.document.size();
+            let expected =
+                format!("at most {most} bytes of data, stored and decoded, up to here in a file of {length}");
             return Err(Error::new(format!("expected {expected}, found {}", self.size)));
         }
         let Some(each) = array.scalar.size() else { return Err(Error::new("expected numbers, found bits or texts")) };
@@ -163,7 +166,7 @@ impl Arrays<'_> {
     }
 }
 
-/// The one array of a section, or that with this name; none will do if it would be empty.
+/// The first array of a section, or that with this name. It may be missing if it has no numbers.
 fn needed<'a>(tag: &'a PieceTag, section: Section, name: Option<&str>, count: u64) -> Result<Option<&'a ArrayTag>> {
     let is_meant = |array: &&ArrayTag| array.section == section && name.is_none_or(|name| array.name == name);
     let found = tag.arrays.iter().find(is_meant);
