@@ -1,12 +1,11 @@
 //! What a change of units, place, direction or numbering does to constants: exactly what it must, or rounding.
 
-mod shapes;
 
 use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
 use num_traits::Signed;
 use proptest::prelude::*;
-use shapes::{Random, distorted, elements, materials};
+use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, permutations};
 use springfit::fit::{
     Fit, Objective, Weight, condition, constants_in, constants_of_kind, distance_from_optimum, fit_cells, fit_element,

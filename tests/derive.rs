@@ -1,10 +1,9 @@
 //! Closed forms: against the numerical fits of every element, the matrix of the paper, and published formulas.
 
-mod shapes;
 
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
-use shapes::elements;
+use crate::shapes::elements;
 use springfit::element::Element;
 use springfit::fit::{ClosedForm, Fit, Objective, Weight, fit_element};
 use springfit::material::Moduli;

@@ -1,8 +1,7 @@
 //! Motion of models with lumped masses: against closed forms, conservation laws and orders of convergence.
 
-mod messages;
 
-use messages::reads;
+use crate::messages::reads;
 use springfit::dynamics::largest_square;
 use springfit::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome, Simulation, Solver,

@@ -1,9 +1,8 @@
 //! What every element file must give, at random distorted shapes.
 
-mod shapes;
 
 use nalgebra::{DMatrix, DVector};
-use shapes::{Random, distorted, elements, materials, rigid_motions};
+use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::Element;
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{Support, finite_elements};

@@ -1,12 +1,10 @@
 //! Every shipped energy: stress and tangent against differences, linear elasticity at rest, closed forms.
 
-mod messages;
 
-use messages::reads;
-mod shapes;
+use crate::messages::reads;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use shapes::Random;
+use crate::shapes::Random;
 use springfit::material::{Energy, Material, SHIPPED, State};
 
 fn solid(young: f64, poisson: f64) -> Material {

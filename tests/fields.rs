@@ -1,8 +1,7 @@
 //! Reads displacements of a mesh's points from tables and grids: whole, in part, cut short and wrong.
 
-mod messages;
 
-use messages::reads;
+use crate::messages::reads;
 use proptest::prelude::*;
 use springfit::error::ErrorKind;
 use springfit::mesh::vtk::{Array, Grid, write};

@@ -1,10 +1,9 @@
 //! The constants of every fit at random shapes of every element, against matrices formed here entry by entry.
 
-mod shapes;
 
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
-use shapes::{Random, distorted, elements, materials, rigid_motions};
+use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::Element;
 use springfit::fit::{CellFits, Fit, Objective, Weight, constants_in, fit_cells, fit_element};
 use springfit::material::{Material, Moduli};

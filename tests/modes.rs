@@ -1,8 +1,7 @@
 //! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
 
-mod messages;
 
-use messages::reads;
+use crate::messages::reads;
 use nalgebra::DMatrix;
 use springfit::element::Element;
 use springfit::material::Material;

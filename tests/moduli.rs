@@ -1,8 +1,7 @@
 //! Moduli that networks have as materials, against published and derived figures.
 
-mod shapes;
 
-use shapes::{elements, materials};
+use crate::shapes::{elements, materials};
 use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight};
 use springfit::material::{Material, Plane};

@@ -1,8 +1,7 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
-mod messages;
 
-use messages::reads;
+use crate::messages::reads;
 use springfit::mesh::MeshSource;
 use springfit::report;
 use springfit::study::{MotionEnding, Outcome, Scene, run, stages};

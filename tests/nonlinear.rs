@@ -1,9 +1,8 @@
 //! Large deformation: forces and tangents of elements, Newton's method on both models.
 
-mod shapes;
 
 use nalgebra::Matrix3;
-use shapes::{Random, distorted, elements};
+use crate::shapes::{Random, distorted, elements};
 use springfit::element::{Element, SpringKind};
 use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
 use springfit::material::{Energy, Material, Plane, SHIPPED, State};
@@ -70,7 +69,7 @@ fn the_tangent_at_rest_is_the_linear_stiffness() {
         let x = distorted(element, &mut Random(2));
         let mut geometry = Geometry::new(&element.tabulation);
         geometry.set(&element.tabulation, &x).unwrap();
-        for material in shapes::materials(d).into_iter().filter(|_| d > 1) {
+        for material in crate::shapes::materials(d).into_iter().filter(|_| d > 1) {
             for name in ["neo-hookean", "corotational", "mooney-rivlin"] {
                 let energy = Energy::load(name, material).unwrap();
                 let now = geometry.respond(&energy, material.state(), &x).unwrap();

@@ -1,8 +1,7 @@
 //! The experiments of the paper, run again by one command, and the published methods and gauges that they need of scenes.
 
-mod messages;
 
-use messages::reads;
+use crate::messages::reads;
 use springfit::error::Error;
 use springfit::report;
 use springfit::study::{Index, Paper, PaperRow, Scene, compare_scene, run, run_paper};

@@ -2,13 +2,11 @@
 //!
 //! Figures with few digits were computed apart from this program, from the same formulas; all else is derived where it stands.
 
-mod messages;
 
-use messages::reads;
-mod shapes;
+use crate::messages::reads;
 
 use nalgebra::{DMatrix, DVector};
-use shapes::{Random, distorted, elements, materials, rigid_motions};
+use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::{Cell, Element, SpringKind};
 use springfit::fit::published::{self, Method, Ratio, Shape, Unmet, unmet};
 use springfit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_element};

@@ -1,12 +1,10 @@
 //! The sampled fit: its limit for small shapes, its optimality, what it does for a body pulled by a third of its length.
 
-mod messages;
 
-use messages::reads;
-mod shapes;
+use crate::messages::reads;
 
 use nalgebra::{DMatrix, DVector};
-use shapes::{Random, distorted};
+use crate::shapes::{Random, distorted};
 use springfit::element::Element;
 use springfit::fit::{
     CellFits, Family, Fit, Norm, Objective, SampledFit, SampledFits, Sampling, Source, Weight, Weights, fit_cells,

@@ -1,8 +1,7 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
-mod shapes;
 
-use shapes::{Random, distorted, elements, materials};
+use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, SpringKind};
 use springfit::fit::{CellFits, Fit, Objective, Search, Solver, Weight, element_errors, fit_cells};
 use springfit::material::{Material, Plane};

@@ -1,8 +1,7 @@
 //! What is promised in stiff and extreme cases, and the gate for poor cells.
 
-mod messages;
 
-use messages::reads;
+use crate::messages::reads;
 use springfit::element::Element;
 use springfit::report;
 use springfit::study::{Family, Scene, StabilityRow, Verdict, sweep, sweep_scene};

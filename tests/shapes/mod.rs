@@ -1,5 +1,4 @@
 //! Random shapes and materials of every shipped element.
-#![allow(dead_code)] // not every test needs all of it
 
 use nalgebra::{DMatrix, DVector};
 use springfit::element::{Element, SHIPPED};

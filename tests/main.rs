@@ -1,0 +1,34 @@
+//! All tests of the library and of the program, in one binary: each file states truths about one subject.
+
+mod bad_input;
+mod cases;
+mod catalogue;
+mod check;
+mod corpora;
+mod covariance;
+mod crash;
+mod derive;
+mod dynamics;
+mod elements;
+mod energies;
+mod errors;
+mod fields;
+mod fits;
+mod fraction;
+mod golden;
+mod large;
+mod layering;
+mod mesh_files;
+mod messages;
+mod modes;
+mod moduli;
+mod motion;
+mod nonlinear;
+mod paper;
+mod published;
+mod sampled;
+mod searches;
+mod shapes;
+mod springs;
+mod stability;
+mod whole;
