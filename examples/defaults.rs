@@ -21,16 +21,15 @@ struct Row {
 fn main() -> Result<()> {
     let mut rows: BTreeMap<(String, usize), (String, Row)> = BTreeMap::new();
     for path in scenes(Path::new("scenes"))? {
-        let mut scene = Scene::load(&path)?;
-        if scene.loads.is_empty() {
+        let scene = Scene::load(&path)?;
+        if scene.loads().is_empty() {
             continue;
         }
         let mesh = scene.build_mesh()?;
         let element = mesh.blocks[0].element.clone();
         let lengths: Vec<String> = names(&element, |kind| kind == SpringKind::Length);
         let all: Vec<String> = names(&element, |_| true);
-        scene.fits = candidates(&lengths, &all);
-        let outcome = run(&scene, &mut |_, _, _| {})?;
+        let outcome = run(&scene.with_fits(candidates(&lengths, &all)), &mut |_| {})?;
         for (order, fit) in outcome.fits.iter().enumerate() {
             let (_, row) = rows.entry((element.name.clone(), order)).or_insert((fit.fit.name.clone(), Row::default()));
             row.errors.extend(fit.loads.iter().map(|l| l.error.map_or(f64::INFINITY, |e| e.rms)));

@@ -17,8 +17,7 @@ use springfit::model::Support;
 use springfit::report::Comparison;
 use springfit::springs::Springs;
 use springfit::study::{
-    Controls, FitEntry, Index, Recipe, Reference, Scene, ShapesEntry, WholeBody, fit_mesh, load_elements, run_with,
-    stages,
+    Controls, Event, FitEntry, Index, Reference, Scene, WholeBody, fit_mesh, load_elements, run_with, stages,
 };
 use springfit::{model, report, study};
 use std::io::{IsTerminal, Write};
@@ -68,16 +67,16 @@ fn run_scene(arguments: &RunArguments) -> Result<()> {
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
     springfit::check_folder(&folder)?;
     let controls = Arc::new(Controls { checkpoint: arguments.checkpoint.clone(), ..Controls::default() });
-    if scene.fits.iter().any(|fit| matches!(fit.recipe, Recipe::Whole(_))) {
+    if scene.fits().iter().any(|fit| fit.recipe.whole().is_some()) {
         end_early(&controls);
     } else if arguments.checkpoint.is_some() {
         return Err(Error::at("--checkpoint", "goes with fits whose objective is \"whole\", found none in the scene"));
     }
     let mut bar = Bar::new();
-    let outcome = run_with(&scene, &controls, &mut |stage, done, total| bar.show(stage, done, total))?;
+    let outcome = run_with(&scene, &controls, &mut |event| bar.show(event))?;
     bar.clear();
     // Files first: who reads the table may have gone away.
-    let paths = report::write_outputs(&outcome, &scene.output, &folder);
+    let paths = report::write_outputs(&outcome, scene.output(), &folder);
     print(&format!("{}\n{}", report::summary(&outcome), report::table(&outcome)))?;
     notes(&outcome);
     written(&paths?)
@@ -114,24 +113,22 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     // Of the fits that serve every element alike, the one with the least error among those that always stand.
     let chosen = arguments.objective.clone();
     let nonnegative = arguments.nonnegative || chosen.is_none();
-    let shapes =
-        ShapesEntry { count: arguments.shapes, stretch: arguments.stretch.map(Into::into), ..ShapesEntry::default() };
-    let entry = FitEntry {
-        objective: chosen.unwrap_or("offdiag".into()),
-        weight: arguments.weight.clone(),
-        higher: arguments.higher,
-        balance: arguments.balance,
-        springs: arguments.springs.clone(),
-        tied: arguments.tied,
-        nonnegative,
-        force: arguments.force.clone().map(Into::into),
-        shapes: Some(shapes).filter(|s| *s != ShapesEntry::default()),
-        law: arguments.law.clone(),
-        ..FitEntry::default()
-    };
-    let named = entry.check(Path::new("")).map_err(|e| e.placed(Error::of_option))?.remove(0);
-    let sampled = matches!(named.recipe, Recipe::Forces(_));
-    let whole = matches!(named.recipe, Recipe::Whole(_));
+    let mut shapes = toml::Table::new();
+    shapes.extend(arguments.shapes.map(|count| ("count".into(), (count as i64).into())));
+    shapes.extend(arguments.stretch.map(|stretch| ("stretch".into(), stretch.into())));
+    let entry = FitEntry::new(chosen.unwrap_or("offdiag".into()))
+        .with_springs(arguments.springs.clone())
+        .with("weight", arguments.weight.clone())
+        .with("higher", arguments.higher)
+        .with("balance", arguments.balance)
+        .with("tied", arguments.tied.then_some(true))
+        .with("nonnegative", nonnegative.then_some(true))
+        .with("force", arguments.force.clone())
+        .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
+        .with("law", arguments.law.clone());
+    let named = entry.fits(Path::new("")).map_err(|e| e.placed(Error::of_option))?.remove(0);
+    let whole = named.recipe.whole().is_some();
+    let sampled = !whole && named.recipe.sampled().is_some();
     if whole == arguments.fix.is_empty() {
         let problem = "goes with the objective \"whole\", and that with it: a group of the mesh that is held";
         return Err(Error::at("--fix", problem));
@@ -170,7 +167,7 @@ fn fit(arguments: &FitArguments) -> Result<()> {
     let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
     let reference = Reference { large: None, whole: body.as_ref() };
     let mut bar = Bar::new();
-    let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    let mut progress = |event: Event| bar.show(event);
     let outcome = fit_mesh(&mesh, material, &reference, &named, &mut progress);
     let outcome = outcome.map_err(|e| if sampled || whole { e.placed(Error::of_option) } else { e })?;
     bar.clear();
@@ -203,7 +200,7 @@ fn check(arguments: &CheckArguments) -> Result<ExitCode> {
     let mut bar = Bar::new();
     let mut inspections = Vec::new();
     for (done, file) in files.iter().enumerate() {
-        bar.show("check", done, files.len());
+        bar.show(Event::stage("check", done, files.len()));
         let loaded = Element::load(file);
         // A file that is not there is no fault of an element.
         if let (Err(error), false) = (&loaded, Path::new(file).is_file()) {
@@ -236,7 +233,7 @@ fn derive(arguments: &DeriveArguments) -> Result<()> {
     };
     let springs = Springs::select(&element, arguments.springs.as_deref()).map_err(Error::of_option)?;
     let mut bar = Bar::new();
-    bar.show("closed form", 0, 1);
+    bar.show(Event::stage("closed form", 0, 1));
     let form = ClosedForm::new(&element, &springs, arguments.sides)?;
     let fits = [Weight::None, Weight::OffDiagonal].map(|weight| form.fit(weight));
     bar.clear();
@@ -251,7 +248,7 @@ fn compare(arguments: &CompareArguments) -> Result<()> {
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("compare-{stem}")));
     springfit::check_folder(&folder)?;
     let mut bar = Bar::new();
-    let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    let mut progress = |event: Event| bar.show(event);
     if arguments.law.is_some() && is_scene(path) {
         return Err(Error::at("--law", "goes with an element; a scene names it in its material"));
     }
@@ -296,7 +293,7 @@ fn paper(arguments: &PaperArguments) -> Result<()> {
         None => study::write_experiments(&folder.join("scenes"))?,
     };
     let mut bar = Bar::new();
-    let paper = study::run_paper(&index, &arguments.table, &path, &mut |stage, d, t| bar.show(stage, d, t));
+    let paper = study::run_paper(&index, &arguments.table, &path, &mut |event| bar.show(event));
     bar.clear();
     let paper = paper.map_err(|e| e.placed(Error::of_option))?;
     let written = report::write_paper(&paper, &folder);
@@ -314,7 +311,7 @@ fn stability(arguments: &StabilityArguments) -> Result<ExitCode> {
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     springfit::check_folder(&folder)?;
     let mut bar = Bar::new();
-    let mut progress = |stage: &str, done, total| bar.show(stage, done, total);
+    let mut progress = |event: Event| bar.show(event);
     let outcome = match what {
         Some(path) if is_scene(Path::new(path)) => study::sweep_scene(&Scene::load(Path::new(path))?, &mut progress)?,
         _ => study::sweep(what.map(Element::load).transpose()?, &mut progress)?,
@@ -367,12 +364,14 @@ impl Bar {
         Bar { start: Instant::now(), bar: None }
     }
 
-    fn show(&mut self, stage: &str, done: usize, total: usize) {
-        if total == 0 {
-            self.clear();
-            tell(&format!("note: {stage}"));
-            return;
-        }
+    fn show(&mut self, event: Event) {
+        let (name, done, total) = match event {
+            Event::Stage { name, done, total } => (name, done, total),
+            Event::Note(note) => {
+                self.clear();
+                return tell(&format!("note: {note}"));
+            }
+        };
         if self.bar.is_none() && std::io::stderr().is_terminal() && self.start.elapsed() > Duration::from_secs(1) {
             let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}");
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
@@ -381,7 +380,7 @@ impl Bar {
         if let Some(bar) = &self.bar {
             bar.set_length(total as u64);
             bar.set_position(done as u64);
-            bar.set_message(stage.to_string());
+            bar.set_message(name.to_string());
         }
     }
 

@@ -1,11 +1,10 @@
 //! What a change of units, place, direction or numbering does to constants: exactly what it must, or rounding.
 
-
+use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
 use num_traits::Signed;
 use proptest::prelude::*;
-use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, permutations};
 use springfit::fit::{
     Fit, Objective, Weight, condition, constants_in, constants_of_kind, distance_from_optimum, fit_cells, fit_element,

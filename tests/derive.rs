@@ -1,9 +1,8 @@
 //! Closed forms: against the numerical fits of every element, the matrix of the paper, and published formulas.
 
-
+use crate::shapes::elements;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
-use crate::shapes::elements;
 use springfit::element::Element;
 use springfit::fit::{ClosedForm, Fit, Objective, Weight, fit_element};
 use springfit::material::Moduli;

@@ -1,6 +1,5 @@
 //! Motion of models with lumped masses: against closed forms, conservation laws and orders of convergence.
 
-
 use crate::messages::reads;
 use springfit::dynamics::largest_square;
 use springfit::dynamics::{

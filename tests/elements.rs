@@ -1,8 +1,7 @@
 //! What every element file must give, at random distorted shapes.
 
-
-use nalgebra::{DMatrix, DVector};
 use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
+use nalgebra::{DMatrix, DVector};
 use springfit::element::Element;
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{Support, finite_elements};

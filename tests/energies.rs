@@ -1,10 +1,9 @@
 //! Every shipped energy: stress and tangent against differences, linear elasticity at rest, closed forms.
 
-
 use crate::messages::reads;
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
 use crate::shapes::Random;
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use springfit::material::{Energy, Material, SHIPPED, State};
 
 fn solid(young: f64, poisson: f64) -> Material {

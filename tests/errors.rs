@@ -3,7 +3,7 @@
 use springfit::element::Element;
 use springfit::error::{Error, ErrorKind, Result};
 use springfit::mesh::{BoxMesh, Field, Mesh, MeshSource, gmsh};
-use springfit::study::{Scene, run};
+use springfit::study::{Event, Scene, run};
 use springfit::symbolic::Scope;
 use std::error::Error as _;
 use std::io;
@@ -25,7 +25,7 @@ fn expression(text: &str) -> Error {
     failed(Scope::new(&["x"]).expression(text))
 }
 
-fn quiet(_: &str, _: usize, _: usize) {}
+fn quiet(_: Event) {}
 
 fn scene(text: &str) -> Result<Scene> {
     Scene::parse(text, Path::new("scene.toml"))

@@ -1,6 +1,5 @@
 //! Reads displacements of a mesh's points from tables and grids: whole, in part, cut short and wrong.
 
-
 use crate::messages::reads;
 use proptest::prelude::*;
 use springfit::error::ErrorKind;

@@ -1,9 +1,8 @@
 //! The constants of every fit at random shapes of every element, against matrices formed here entry by entry.
 
-
+use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
-use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use springfit::element::Element;
 use springfit::fit::{CellFits, Fit, Objective, Weight, constants_in, fit_cells, fit_element};
 use springfit::material::{Material, Moduli};

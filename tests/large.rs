@@ -3,6 +3,7 @@
 use springfit::element::Element;
 use springfit::material::{Material, Plane};
 use springfit::report;
+use springfit::solve::Newton;
 use springfit::study::{Outcome, STRETCHES, Scene, compare_stretches, run, stages};
 use std::path::Path;
 use std::sync::Arc;
@@ -40,7 +41,7 @@ fn mean(errors: &[f64]) -> f64 {
 #[test]
 fn sampled_fits_beat_those_at_rest_on_the_cubes() {
     for (name, at_rest) in [("cube_tet_large", "divergence"), ("cube_hex_large", "modal")] {
-        let outcome = run(&scene(name), &mut |_, _, _| {}).unwrap();
+        let outcome = run(&scene(name), &mut |_| {}).unwrap();
         let at_rest = ["frobenius", "offdiag", at_rest].map(|fit| errors(&outcome, fit));
         let best = at_rest.iter().map(|e| mean(e)).fold(f64::INFINITY, f64::min);
         let best_of_load = |i: usize| at_rest.iter().map(|e| e[i]).fold(f64::INFINITY, f64::min);
@@ -65,15 +66,15 @@ fn shapes_come_from_loads_and_lists() {
     };
     let of_loads = fit("{ loads = [\"pull\"], perturbation = 0.05 }") + "[newton]\nsteps = 4";
     let (_folder, scene) = bar(&of_loads, &[]);
-    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
-    assert_eq!(outcome.fits[0].sampled.as_ref().unwrap().loads, ["pull"]);
+    let outcome = run(&scene, &mut |_| {}).unwrap();
+    assert_eq!(outcome.fits[0].kind.sampled().unwrap().loads, ["pull"]);
     assert!(report::notes(&outcome).iter().any(|note| note.contains("under pull: its errors there are not held out")));
     assert!(report::report(&outcome).contains("\"agreeing_starts\""));
     let pulled = errors(&outcome, "sampled")[0];
 
     let list = "# stretches along z\n1, 0, 0, 0, 1, 0, 0, 0, 1.1\n0.95 0 0 0 0.95 0 0 0 1.2\n0.9;0;0;0;0.9;0;0;0;1.3\n";
     let (_folder, scene) = bar(&fit("{ gradients = \"list.csv\" }"), &[("list.csv", list)]);
-    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
+    let outcome = run(&scene, &mut |_| {}).unwrap();
     let listed = errors(&outcome, "sampled")[0];
     assert!(pulled < 5.0 && listed < 10.0, "{pulled} {listed}");
 }
@@ -86,9 +87,9 @@ fn a_scene_without_a_law_leaves_large_deformation_out() {
     };
     let plain = left_out("cube_tet");
     assert!(plain.contains(&"hyperelastic energy, Newton's method".into()) && plain.contains(&"sampled shapes".into()));
-    let outcome = run(&scene("cube_tet"), &mut |_, _, _| {}).unwrap();
-    assert!(outcome.law.is_none() && outcome.followed.is_empty());
-    assert!(outcome.fits.iter().all(|f| f.sampled.is_none() && f.loads.iter().all(|l| l.followed.is_none())));
+    let outcome = run(&scene("cube_tet"), &mut |_| {}).unwrap();
+    assert!(outcome.law.is_none() && outcome.loads.iter().all(|load| load.followed.is_none()));
+    assert!(outcome.fits.iter().all(|f| f.kind.sampled().is_none() && f.loads.iter().all(|l| l.followed.is_none())));
     let large = left_out("cube_tet_large");
     assert!(
         !large.contains(&"hyperelastic energy, Newton's method".into()) && !large.contains(&"sampled shapes".into())
@@ -98,9 +99,10 @@ fn a_scene_without_a_law_leaves_large_deformation_out() {
 /// A load beyond what a model carries is no error: how far it came is told.
 #[test]
 fn a_load_that_is_not_reached_is_told() {
-    let (_folder, mut scene) = bar("[[fit]]\nobjective = \"frobenius\"\n[newton]\niterations = 1", &[]);
-    scene.newton.tolerance = 1e-14;
-    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
+    let (_folder, scene) = bar("[[fit]]\nobjective = \"frobenius\"\n[newton]\niterations = 1", &[]);
+    let newton = Newton { tolerance: 1e-14, ..scene.newton() };
+    let scene = scene.with_newton(newton);
+    let outcome = run(&scene, &mut |_| {}).unwrap();
     let notes = report::notes(&outcome);
     let told =
         |start: &str| notes.iter().any(|note| note.starts_with(start) && note.contains("no equilibrium found beyond"));
@@ -115,7 +117,7 @@ fn a_load_that_is_not_reached_is_told() {
 fn the_study_of_stretches_has_all_its_parts() {
     let element = Arc::new(Element::load("tri3").unwrap());
     let material = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
-    let study = compare_stretches(&element, material, "neo-hookean", 0.35, &mut |_, _, _| {}).unwrap();
+    let study = compare_stretches(&element, material, "neo-hookean", 0.35, &mut |_| {}).unwrap();
     let exact = study.fits.iter().find(|fit| fit.name == "sampled k c, volume").unwrap();
     assert_eq!(exact.errors.len(), STRETCHES.len());
     assert!(exact.errors.iter().chain(&exact.excess).all(|e| e.unwrap().abs() < 1e-5), "{exact:?}");
@@ -131,7 +133,7 @@ fn the_study_of_stretches_has_all_its_parts() {
         ("rubber", 0.3, "law: expected one of corotational"),
         ("neo-hookean", -1.0, "stretch: expected a stretch above 0 and at most 2, found -1"),
     ] {
-        let found = compare_stretches(&element, material, law, stretch, &mut |_, _, _| {}).unwrap_err();
+        let found = compare_stretches(&element, material, law, stretch, &mut |_| {}).unwrap_err();
         assert!(found.to_string().starts_with(error), "{found}");
     }
 }

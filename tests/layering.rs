@@ -4,8 +4,9 @@ use springfit::element::SHIPPED;
 use std::path::{Path, PathBuf};
 
 /// A module may import those before it; a folder counts as one.
-const LAYERS: [&str; 16] = [
+const LAYERS: [&str; 17] = [
     "error",
+    "named",
     "file",
     "scalar",
     "symbolic",

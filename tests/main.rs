@@ -26,6 +26,7 @@ mod motion;
 mod nonlinear;
 mod paper;
 mod published;
+mod report;
 mod sampled;
 mod searches;
 mod shapes;

@@ -1,6 +1,5 @@
 //! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
 
-
 use crate::messages::reads;
 use nalgebra::DMatrix;
 use springfit::element::Element;

@@ -1,10 +1,9 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
-
 use crate::messages::reads;
 use springfit::mesh::MeshSource;
 use springfit::report;
-use springfit::study::{MotionEnding, Outcome, Scene, run, stages};
+use springfit::study::{Event, MotionEnding, Outcome, Scene, run, stages};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,7 +52,7 @@ fn written(text: &str) -> (TempDir, PathBuf) {
 
 fn outcome(text: &str) -> Outcome {
     let (_folder, path) = written(text);
-    run(&Scene::load(&path).unwrap(), &mut |_, _, _| {}).unwrap()
+    run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap()
 }
 
 fn program(folder: &Path, arguments: &[&str]) -> Output {
@@ -159,7 +158,7 @@ fn a_disc_is_the_membrane_of_1607_springs() {
     let mesh = scene.build_mesh().unwrap();
     assert_eq!((mesh.point_count(), mesh.cell_count(), mesh.dimension), (558, 1050, 3));
     assert_eq!(mesh.groups["rim"].points.len(), 64);
-    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
+    let outcome = run(&scene, &mut |_| {}).unwrap();
     assert_eq!(outcome.fits[0].network.len(), 1607);
     let motion = outcome.motion.unwrap();
     for model in &motion.models {
@@ -245,7 +244,9 @@ fn a_scene_without_motion_does_none() {
     let scene = Scene::load(&path).unwrap();
     let left_out: Vec<String> = stages(&scene).into_iter().filter_map(|(what, why)| why.map(|_| what)).collect();
     assert!(left_out.contains(&"motion".into()) && left_out.contains(&"natural frequencies".into()));
-    let outcome = run(&scene, &mut |stage, _, _| assert!(!stage.contains("motion"))).unwrap();
+    let outcome =
+        run(&scene, &mut |event| assert!(!matches!(event, Event::Stage { name, .. } if name.contains("motion"))))
+            .unwrap();
     assert!(outcome.motion.is_none() && outcome.frequencies.is_empty());
     assert!(!report::table(&outcome).contains("otion"));
     let json: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();

@@ -1,8 +1,7 @@
 //! Large deformation: forces and tangents of elements, Newton's method on both models.
 
-
-use nalgebra::Matrix3;
 use crate::shapes::{Random, distorted, elements};
+use nalgebra::Matrix3;
 use springfit::element::{Element, SpringKind};
 use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
 use springfit::material::{Energy, Material, Plane, SHIPPED, State};

@@ -1,10 +1,9 @@
 //! The experiments of the paper, run again by one command, and the published methods and gauges that they need of scenes.
 
-
 use crate::messages::reads;
 use springfit::error::Error;
 use springfit::report;
-use springfit::study::{Index, Paper, PaperRow, Scene, compare_scene, run, run_paper};
+use springfit::study::{Event, GaugeResult, Index, Paper, PaperRow, Scene, compare_scene, run, run_paper};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -13,7 +12,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/paper")
 }
 
-fn quiet(_: &str, _: usize, _: usize) {}
+fn quiet(_: Event) {}
 
 /// A folder with a scene of this text.
 fn written(text: &str) -> (TempDir, PathBuf) {
@@ -43,10 +42,10 @@ fn every_printed_figure_has_a_fit() {
             let Some(file) = &row.scene else { continue };
             let scene = Scene::load(&root().join(file)).unwrap();
             if let Some(load) = &table.load {
-                assert!(scene.loads.iter().any(|l| l.name == *load), "{}: {load}", file.display());
+                assert!(scene.loads().iter().any(|l| l.name == *load), "{}: {load}", file.display());
             }
             for fit in row.printed.keys() {
-                assert!(scene.fits.iter().any(|f| f.name == *fit), "{}: {fit}", file.display());
+                assert!(scene.fits().iter().any(|f| f.name == *fit), "{}: {fit}", file.display());
                 figures += 1;
             }
         }
@@ -108,18 +107,18 @@ fn a_gauge_measures_the_material() {
     ] {
         let (_folder, path) = written(&text);
         let outcome = run(&Scene::load(&path).unwrap(), &mut quiet).unwrap();
-        let body = outcome.gauged[0].unwrap();
+        let body = outcome.loads[0].reading().unwrap();
         assert!((body.young / 2e4 - 1.0).abs() < 1e-10 && (body.poisson - 0.3).abs() < 1e-10, "{body:?}");
         // Neither pulls along the axis, the same force in the whole gauge.
-        assert!(outcome.gauged[1].is_none() && outcome.gauged[2].is_none());
+        assert!(outcome.loads[1..].iter().all(|load| load.gauge == Some(GaugeResult::NoReading)));
         // Baudet's squares have the material's moduli; a bar of his cubes one cell thick has mechanisms.
-        match outcome.fits[1].loads[0].gauged {
+        match outcome.fits[1].loads[0].gauge {
             Some(baudet) => {
                 assert!((baudet.young / 2e4 - 1.0).abs() < 1e-9 && (baudet.poisson - 0.3).abs() < 1e-9, "{baudet:?}");
             }
             None => assert_eq!(outcome.mesh.dimension, 3),
         }
-        let frobenius = outcome.fits[0].loads[0].gauged.unwrap();
+        let frobenius = outcome.fits[0].loads[0].gauge.unwrap();
         assert!((frobenius.young / 2e4 - 1.0).abs() > 0.05, "{frobenius:?}");
         assert!(
             report::table(&outcome).contains("Gauge of the finite elements under pull: E = 2.0000e4 Pa, nu = 0.300.")

@@ -2,11 +2,10 @@
 //!
 //! Figures with few digits were computed apart from this program, from the same formulas; all else is derived where it stands.
 
-
 use crate::messages::reads;
 
-use nalgebra::{DMatrix, DVector};
 use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
+use nalgebra::{DMatrix, DVector};
 use springfit::element::{Cell, Element, SpringKind};
 use springfit::fit::published::{self, Method, Ratio, Shape, Unmet, unmet};
 use springfit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_element};

@@ -1,10 +1,9 @@
 //! The sampled fit: its limit for small shapes, its optimality, what it does for a body pulled by a third of its length.
 
-
 use crate::messages::reads;
 
-use nalgebra::{DMatrix, DVector};
 use crate::shapes::{Random, distorted};
+use nalgebra::{DMatrix, DVector};
 use springfit::element::Element;
 use springfit::fit::{
     CellFits, Family, Fit, Norm, Objective, SampledFit, SampledFits, Sampling, Source, Weight, Weights, fit_cells,

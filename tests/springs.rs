@@ -1,6 +1,5 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
-
 use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, SpringKind};
 use springfit::fit::{CellFits, Fit, Objective, Search, Solver, Weight, element_errors, fit_cells};

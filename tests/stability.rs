@@ -1,6 +1,5 @@
 //! What is promised in stiff and extreme cases, and the gate for poor cells.
 
-
 use crate::messages::reads;
 use springfit::element::Element;
 use springfit::report;
@@ -11,7 +10,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 fn swept(name: &str) -> Vec<StabilityRow> {
-    sweep(Some(Element::load(name).unwrap()), &mut |_, _, _| {}).unwrap().rows
+    sweep(Some(Element::load(name).unwrap()), &mut |_| {}).unwrap().rows
 }
 
 fn program(folder: &Path, arguments: &[&str]) -> Output {
@@ -74,7 +73,7 @@ fn a_scene_gives_the_same_errors_in_all_units() {
                 poisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n[[fit]]\nobjective = \"frobenius\"\n[[fix]]\n\
                 group = \"zmin\"\n[[load]]\ngroup = \"zmax\"\ntraction = [10, 0, 10]\n";
     fs::write(&path, text).unwrap();
-    let outcome = sweep_scene(&Scene::load(&path).unwrap(), &mut |_, _, _| {}).unwrap();
+    let outcome = sweep_scene(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
     assert_eq!(outcome.lost().count(), 0, "{}", report::stability_text(&outcome));
     let same = outcome.rows.iter().filter(|row| matches!(row.family, Family::Young | Family::Size));
     assert_eq!(same.clone().count(), 22);

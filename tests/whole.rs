@@ -7,7 +7,7 @@ use springfit::model::{Network, Support, finite_elements, masses};
 use springfit::report;
 use springfit::solve::{Newton, System, lowest_modes};
 use springfit::springs::Springs;
-use springfit::study::{Controls, LoadOutcome, Outcome, Scene, run, run_with};
+use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
     Balance, Displacements, Frequencies, GaussNewton, LeastSquares, Method, NodalLoad, Object, Residual, Target,
     Unknowns, Validation, Wanted, WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads,
@@ -261,7 +261,7 @@ fn held_out_errors_fall() {
         ("cube_hex", ["bending x", "gravity x"], [1.21, 0.91], None),
     ];
     for (name, held_out, limit, with_volume) in limits {
-        let outcome = run(&load(&format!("{name}_whole")), &mut |_, _, _| {}).unwrap();
+        let outcome = run(&load(&format!("{name}_whole")), &mut |_| {}).unwrap();
         print!("{}", report::table(&outcome));
         let fit = |name: &str| outcome.fits.iter().find(|fit| fit.fit.name == name).unwrap();
         let error = |name: &str, load: &str| rms(&fit(name).loads, load);
@@ -275,7 +275,7 @@ fn held_out_errors_fall() {
         for (load, limit) in held_out.iter().zip(with_volume.into_iter().flatten()) {
             assert!(error("whole + volume", load) <= limit, "{name} {load}: {}", error("whole + volume", load));
         }
-        for fit in outcome.fits.iter().filter(|fit| fit.whole.is_some()) {
+        for fit in outcome.fits.iter().filter(|fit| fit.kind.whole().is_some()) {
             let range = fit.network.range();
             assert!(range > 1.0 && range < 1000.0, "{name} {}: {range}", fit.fit.name);
             assert_eq!(fit.network.negative(), 0);
@@ -325,7 +325,7 @@ traction = ["0.5 - y", "x - 0.5", 0]
 
 fn brick(keys: &str) -> Outcome {
     let (_folder, scene) = written(&BRICK.replace("KEYS", keys).replace("MEASURED", ""));
-    run(&scene, &mut |_, _, _| {}).unwrap()
+    run(&scene, &mut |_| {}).unwrap()
 }
 
 /// With loads made from the mesh all of the scene's are held out. Every way to share unknowns, to choose ρ and to go down does better
@@ -364,7 +364,7 @@ fn every_way_of_fitting_lowers_the_errors() {
 #[test]
 fn frequencies_are_fitted() {
     let outcome = brick("frequencies = 4");
-    let whole = outcome.fits[1].whole.as_ref().unwrap();
+    let whole = outcome.fits[1].kind.whole().unwrap();
     let worst = |i: usize| whole.frequencies[i].iter().fold(0.0f64, |a, e| a.max(e.abs()));
     assert_eq!(whole.frequencies[0].len(), 4);
     assert!(worst(1) < 0.2 * worst(0) && worst(1) < 0.05, "{} {}", worst(0), worst(1));
@@ -376,17 +376,17 @@ fn measured_displacements_are_fitted() {
     let text = BRICK.replace("KEYS", "loads = [\"tension\"]\nregularization = 1e-4");
     let (folder, scene) = written(&text.replace("MEASURED", "measured = { file = \"u.csv\", scale = 0.001 }"));
     let (_, plain) = written(&text.replace("MEASURED", ""));
-    let outcome = run(&plain, &mut |_, _, _| {}).unwrap();
+    let outcome = run(&plain, &mut |_| {}).unwrap();
     let table = |keep: &dyn Fn(usize) -> bool| {
         let mut table = String::from("point,ux,uy,uz\n");
-        for (p, u) in outcome.fem[0].chunks_exact(3).enumerate().filter(|(p, _)| keep(*p)) {
+        for (p, u) in outcome.loads[0].fem.chunks_exact(3).enumerate().filter(|(p, _)| keep(*p)) {
             table += &format!("{p},{:?},{:?},{:?}\n", 2e3 * u[0], 2e3 * u[1], 2e3 * u[2]);
         }
         table
     };
     for keep in [&(|_| true) as &dyn Fn(usize) -> bool, &|p| p % 3 == 0] {
         std::fs::write(folder.path().join("u.csv"), table(keep)).unwrap();
-        let found = run(&scene, &mut |_, _, _| {}).unwrap();
+        let found = run(&scene, &mut |_| {}).unwrap();
         assert!(rms(&found.fits[0].loads, "tension") > 25.0);
         assert!(rms(&found.fits[1].loads, "tension") < 1.0);
         // Twice as far under every load.
@@ -401,7 +401,7 @@ fn measured_displacements_are_fitted() {
             format!("errors under tension are those from what was measured at {points} points; finite elements:");
         assert!(report::notes(&found).iter().any(|n| n.starts_with(&note)), "{:?}", report::notes(&found));
         // The finite elements went half as far.
-        let fem = found.measured[0].error.unwrap();
+        let fem = found.loads[0].measured.unwrap().error.unwrap();
         assert!((fem.max - 50.0).abs() < 1e-6, "{}", fem.max);
     }
     let grid = report::displacement_grid(&outcome);
@@ -409,7 +409,7 @@ fn measured_displacements_are_fitted() {
     let entry = "measured = { file = \"u.vtu\", array = \"u fem tension (m)\" }";
     let (other, scene) = written(&text.replace("MEASURED", entry));
     std::fs::copy(folder.path().join("u.vtu"), other.path().join("u.vtu")).unwrap();
-    let found = run(&scene, &mut |_, _, _| {}).unwrap();
+    let found = run(&scene, &mut |_| {}).unwrap();
     assert!((rms(&found.fits[1].loads, "tension") - rms(&outcome.fits[1].loads, "tension")).abs() < 1e-6);
 }
 
@@ -474,9 +474,9 @@ traction = ["0.3 + 0.7*(0.5 - y)", "0.7*(x - 0.5)", 1]
 #[test]
 fn large_deformations_are_fitted() {
     let (_folder, scene) = written(SOFT);
-    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
+    let outcome = run(&scene, &mut |_| {}).unwrap();
     let error = |fit: usize, load: &str| rms(&outcome.fits[fit].loads, load);
-    let largest = outcome.fem[0].iter().fold(0.0f64, |a, u| a.max(u.abs()));
+    let largest = outcome.loads[0].fem.iter().fold(0.0f64, |a, u| a.max(u.abs()));
     assert!(largest > 0.2, "{largest}");
     let loads = ["pull", "shear", "push", "twist", "all"];
     for (start, whole) in [(0, 1), (2, 3)] {
@@ -494,24 +494,25 @@ fn ended_fits_go_on() {
     let path = folder.path().join("state.json");
     let controls = Controls { checkpoint: Some(path.clone()), ..Controls::default() };
     let mut stages = 0;
-    let stopped = run_with(&scene, &controls, &mut |name, done, _| {
-        if name == "whole" && done > 0 {
+    let stopped = run_with(&scene, &controls, &mut |event| match event {
+        Event::Stage { name: "whole", done, .. } if done > 0 => {
             stages = done;
             controls.cancelled.store(true, Ordering::Relaxed);
         }
+        Event::Stage { .. } | Event::Note(_) => {}
     });
     let stopped = stopped.unwrap();
-    assert!(stages > 0 && stopped.fits[1].whole.as_ref().unwrap().cancelled);
+    assert!(stages > 0 && stopped.fits[1].kind.whole().unwrap().cancelled);
     assert!(report::notes(&stopped).iter().any(|note| note.ends_with("ended before its time")));
     let whole = |outcome: &Outcome| rms(&outcome.fits[1].loads, "torsion");
     assert!(whole(&stopped) < rms(&stopped.fits[0].loads, "torsion"));
     let controls = Controls { checkpoint: Some(path.clone()), ..Controls::default() };
-    let resumed = run_with(&scene, &controls, &mut |_, _, _| {}).unwrap();
-    let straight = run(&scene, &mut |_, _, _| {}).unwrap();
+    let resumed = run_with(&scene, &controls, &mut |_| {}).unwrap();
+    let straight = run(&scene, &mut |_| {}).unwrap();
     assert!((whole(&resumed) / whole(&straight) - 1.0).abs() < 0.05, "{} {}", whole(&resumed), whole(&straight));
     // Once it is done there is nothing left to do.
-    let again = run_with(&scene, &controls, &mut |_, _, _| {}).unwrap();
-    assert_eq!(again.fits[1].whole.as_ref().unwrap().steps, 0);
+    let again = run_with(&scene, &controls, &mut |_| {}).unwrap();
+    assert_eq!(again.fits[1].kind.whole().unwrap().steps, 0);
     assert_eq!(again.fits[1].network.lengths, resumed.fits[1].network.lengths);
     // A checkpoint of other springs or loads is not taken, nor one that cannot be.
     let text = BRICK.replace("MEASURED", "");
@@ -520,7 +521,7 @@ fn ended_fits_go_on() {
         text.replace("KEYS", "").replace("group = \"zmin\"", "where = \"z < 0.1 && x < 0.6\""),
     ] {
         let (_other, scene) = written(&other);
-        let error = run_with(&scene, &controls, &mut |_, _, _| {}).unwrap_err().to_string();
+        let error = run_with(&scene, &controls, &mut |_| {}).unwrap_err().to_string();
         assert!(error.contains("state.json: fits.whole: "), "{error}");
     }
     let state = std::fs::read_to_string(&path).unwrap();
@@ -531,10 +532,10 @@ fn ended_fits_go_on() {
         state[..place].to_string() + "\"stage\":99}," + &state[state.rfind("\"limited\"").unwrap()..],
     )
     .unwrap();
-    let error = run_with(&scene, &controls, &mut |_, _, _| {}).unwrap_err().to_string();
+    let error = run_with(&scene, &controls, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("state.json: fits.whole.snapshot: "), "{error}");
     std::fs::write(&path, "{}}").unwrap();
-    let error = run_with(&scene, &controls, &mut |_, _, _| {}).unwrap_err().to_string();
+    let error = run_with(&scene, &controls, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("state.json: expected a checkpoint that springfit has written"), "{error}");
 }
 
@@ -547,18 +548,18 @@ fn fits_of_nothing_end() {
     for size in ["1e160", "1e140", "1e-140", "1e-160"] {
         let load = format!("traction = [0, 0, {size}]");
         let (_folder, scene) = written(&text.replace("KEYS", keys).replace("traction = [0, 0, 1]", &load));
-        let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
-        let fitted = &outcome.fits[1].whole.as_ref().unwrap().fitted[0];
+        let outcome = run(&scene, &mut |_| {}).unwrap();
+        let fitted = &outcome.fits[1].kind.whole().unwrap().fitted[0];
         assert!(fitted.after <= fitted.before && fitted.before < 1.0, "{size}: {fitted:?}");
     }
     let held = "group = \"zmax\"\ntraction = [0, 0, 1]";
     let all =
         text.replace("KEYS", "loads = [\"tension\"]").replace(held, "where = \"x > -1\"\ndisplacement = [1, 0, 0]");
-    let error = run(&written(&all).1, &mut |_, _, _| {}).unwrap_err().to_string();
+    let error = run(&written(&all).1, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("fit[1].loads: "), "{error}");
     let (_folder, scene) = written(&text.replace("KEYS", "springs = [\"edge\"]"));
-    let outcome = run(&scene, &mut |_, _, _| {}).unwrap();
-    assert!(!outcome.fits[1].whole.as_ref().unwrap().stands);
+    let outcome = run(&scene, &mut |_| {}).unwrap();
+    assert!(!outcome.fits[1].kind.whole().unwrap().stands);
     assert!(outcome.fits[0].loads.iter().all(|load| load.error.is_some()));
     assert!(report::notes(&outcome).iter().any(|note| note.contains("it does not stand under each of them")));
 }

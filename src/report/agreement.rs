@@ -1,6 +1,6 @@
 //! Whether whole-object fits from several starts come to the same.
 
-use crate::study::{FitOutcome, Judge, Outcome, Recipe, Start, WholeRecipe};
+use crate::study::{FitOutcome, Outcome, Start, ValidationRecipe, WholeRecipe};
 
 /// Whole-object fits that differ in their start alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +22,8 @@ pub const SAME: f64 = 0.2;
 pub fn agreements(outcome: &Outcome) -> Vec<Agreement> {
     let mut families: Vec<(WholeRecipe, Vec<&FitOutcome>)> = Vec::new();
     for fit in &outcome.fits {
-        let Recipe::Whole(recipe) = &fit.fit.recipe else { continue };
-        let recipe = WholeRecipe { start: Start::Equal, ..WholeRecipe::clone(recipe) };
+        let Some(recipe) = fit.fit.recipe.whole() else { continue };
+        let recipe = WholeRecipe { start: Start::Equal, ..recipe.clone() };
         match families.iter_mut().find(|(known, fits)| *known == recipe && fits[0].fit.springs == fit.fit.springs) {
             Some((_, fits)) => fits.push(fit),
             None => families.push((recipe, vec![fit])),
@@ -34,8 +34,8 @@ pub fn agreements(outcome: &Outcome) -> Vec<Agreement> {
 
 fn agreement(recipe: &WholeRecipe, fits: &[&FitOutcome]) -> Option<Agreement> {
     let validated = match &recipe.validation {
-        Judge::Loads(named) => &named.names[..],
-        Judge::LeaveOneOut | Judge::Given => &[],
+        ValidationRecipe::Loads(loads) => &loads.names[..],
+        ValidationRecipe::LeaveOneOut | ValidationRecipe::None => &[],
     };
     let difference = |l: usize| {
         let errors = fits.iter().map(|fit| fit.loads[l].error.map_or(f64::INFINITY, |e| e.rms));

@@ -1,7 +1,8 @@
 //! What `check` found, as text and as JSON.
 
-use crate::study::{Inspection, Mark};
-use serde_json::json;
+use super::number::finite;
+use crate::study::{Inspection, Mark, Property};
+use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// One line per property.
@@ -15,19 +16,52 @@ pub fn check_text(inspection: &Inspection) -> String {
     text
 }
 
+/// A file in the JSON of `check`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InspectionRecord {
+    /// The file, or the name of a shipped element.
+    pub file: String,
+    pub title: String,
+    pub passes: bool,
+    pub properties: Vec<PropertyRecord>,
+}
+
+/// A property of a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PropertyRecord {
+    pub property: String,
+    /// `ok`, `FAIL` or `-`.
+    pub mark: String,
+    pub finding: String,
+    pub value: Option<f64>,
+}
+
+impl From<&Inspection> for InspectionRecord {
+    fn from(inspection: &Inspection) -> InspectionRecord {
+        InspectionRecord {
+            file: inspection.file.clone(),
+            title: inspection.title.clone(),
+            passes: inspection.passes(),
+            properties: inspection.properties.iter().map(PropertyRecord::from).collect(),
+        }
+    }
+}
+
+impl From<&Property> for PropertyRecord {
+    fn from(property: &Property) -> PropertyRecord {
+        PropertyRecord {
+            property: property.name.into(),
+            mark: word(property.mark).trim().into(),
+            finding: property.finding.clone(),
+            value: property.value.and_then(finite),
+        }
+    }
+}
+
 /// All files as one list.
 pub fn check_json(inspections: &[Inspection]) -> String {
-    let file = |inspection: &Inspection| {
-        let property = |p: &crate::study::Property| json!({ "property": p.name, "mark": word(p.mark).trim(), "finding": p.finding, "value": p.value });
-        json!({
-            "file": inspection.file,
-            "title": inspection.title,
-            "passes": inspection.passes(),
-            "properties": inspection.properties.iter().map(property).collect::<Vec<_>>(),
-        })
-    };
-    let all: Vec<_> = inspections.iter().map(file).collect();
-    serde_json::to_string_pretty(&all).expect("a value of finite numbers and text is JSON") + "\n"
+    let all: Vec<InspectionRecord> = inspections.iter().map(InspectionRecord::from).collect();
+    serde_json::to_string_pretty(&all).expect("keys are text") + "\n"
 }
 
 fn word(mark: Mark) -> &'static str {

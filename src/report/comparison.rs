@@ -1,17 +1,18 @@
 //! Tables, CSV and a work-precision plot of a comparison.
 
-use super::table::aligned;
+use super::columns::{Heading, aligned, texts};
+use super::rows::csv;
 use super::write_files;
 use crate::error::{Error, Result};
 use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Rows of text with a header: the columns of a table and of its CSV file.
+/// Rows of text under headings: those of a table and of its CSV file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     pub title: String,
-    pub header: Vec<String>,
+    pub columns: Vec<Heading>,
     pub rows: Vec<Vec<String>>,
     /// What the plot shows: a name per point, seconds per element, and the error.
     pub points: Vec<(String, f64, f64)>,
@@ -23,21 +24,21 @@ impl Comparison {
     /// Every method on random shapes of one element, with the moduli of its springs beside `young` that was asked for; the plot
     /// has the relative 2-norm error.
     pub fn of_element(title: String, outcomes: &[MethodOutcome], young: f64) -> Comparison {
-        let header = [
-            "objective",
-            "solver",
-            "median us",
-            "least us",
-            "largest us",
-            "Frobenius mean",
-            "Frobenius max",
-            "2-norm mean",
-            "2-norm max",
-            "gap",
-            "k < 0",
-            "E / asked",
-            "nu",
-            "Zener",
+        let columns = [
+            Heading::words("objective"),
+            Heading::words("solver"),
+            Heading::numbers("median us"),
+            Heading::numbers("least us"),
+            Heading::numbers("largest us"),
+            Heading::numbers("Frobenius mean"),
+            Heading::numbers("Frobenius max"),
+            Heading::numbers("2-norm mean"),
+            Heading::numbers("2-norm max"),
+            Heading::numbers("gap"),
+            Heading::numbers("k < 0"),
+            Heading::numbers("E / asked"),
+            Heading::numbers("nu"),
+            Heading::numbers("Zener"),
         ];
         let row = |o: &MethodOutcome| {
             let [least, median, largest] = o.seconds.map(|s| format!("{:.3}", 1e6 * s));
@@ -71,7 +72,7 @@ impl Comparison {
         };
         Comparison {
             title,
-            header: header.map(String::from).into(),
+            columns: columns.into(),
             rows: outcomes.iter().map(row).collect(),
             points: outcomes.iter().map(|o| (name(o), o.seconds[1], o.spectral.mean)).collect(),
             error: "mean |R-K|/|R|, 2-norm".into(),
@@ -82,13 +83,11 @@ impl Comparison {
     /// point.
     pub fn of_scene(outcome: &Outcome) -> Comparison {
         let elements = outcome.mesh.cell_count().max(1) as f64;
-        let mut header: Vec<String> = vec!["fit".into(), "us/element".into()];
-        if let Some(fit) = outcome.fits.first() {
-            for load in &fit.loads {
-                header.extend([format!("{} %e_rms", load.name), format!("{} %e_max", load.name)]);
-            }
+        let mut columns = vec![Heading::words("fit"), Heading::numbers("us/element")];
+        for load in &outcome.loads {
+            columns.extend(["rms", "max"].map(|error| Heading::numbers(format!("{} %e_{error}", load.name))));
         }
-        header.extend(["springs".into(), "k < 0".into(), "network".into()]);
+        columns.extend([Heading::numbers("springs"), Heading::numbers("k < 0"), Heading::words("network")]);
         let (mut rows, mut points) = (Vec::new(), Vec::new());
         for fit in &outcome.fits {
             let seconds = fit.seconds / elements;
@@ -99,7 +98,7 @@ impl Comparison {
             }
             row.push(fit.network.len().to_string());
             row.push(fit.network.negative().to_string());
-            row.push(super::json::status(fit).into());
+            row.push(fit.status().into());
             rows.push(row);
             let errors: Option<Vec<f64>> = fit.loads.iter().map(|l| l.error.map(|e| e.rms)).collect();
             if let Some(errors) = errors.filter(|errors| !errors.is_empty()) {
@@ -108,15 +107,15 @@ impl Comparison {
             }
         }
         let error = "%e_rms, geometric mean of the loads".into();
-        Comparison { title: outcome.scene.clone(), header, rows, points, error }
+        Comparison { title: outcome.scene.clone(), columns, rows, points, error }
     }
 
     pub fn table(&self) -> String {
-        format!("{}\n\n{}", self.title, aligned(&self.header, &self.rows))
+        format!("{}\n\n{}", self.title, aligned(&self.columns, &self.rows))
     }
 
     pub fn csv(&self) -> String {
-        csv(&self.header, &self.rows)
+        csv(&texts(&self.columns), &self.rows)
     }
 
     /// Writes `table.csv` and `plot.svg` into `folder`, and returns the paths.
@@ -148,17 +147,6 @@ impl Comparison {
             .map_err(|e| Error::new(format!("the plot cannot be drawn: {e}")))?;
         Ok(text)
     }
-}
-
-pub(super) fn csv(header: &[String], rows: &[Vec<String>]) -> String {
-    let line = |cells: &[String]| {
-        let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
-            true => format!("\"{}\"", cell.replace('"', "\"\"")),
-            false => cell.clone(),
-        };
-        cells.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
-    };
-    std::iter::once(line(header)).chain(rows.iter().map(|row| line(row))).collect()
 }
 
 /// Okabe and Ito (2008): told apart by all eyes and on paper. Each eight methods share a mark.

@@ -24,8 +24,8 @@ const SHOWN: f64 = 0.2;
 pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> {
     let mesh = &outcome.mesh;
     let d = mesh.dimension;
-    let place = outcome.fits.first()?.loads.iter().position(|l| l.name == load)?;
-    let fem = outcome.fem.get(place)?;
+    let place = outcome.load(load)?;
+    let fem = &outcome.loads[place].fem;
     let mut panels: Vec<(&str, &Vec<f64>, Option<DisplacementError>)> = Vec::new();
     for name in fits {
         let fit = outcome.fits.iter().find(|fit| fit.fit.name == **name);

@@ -1,16 +1,16 @@
 //! Natural frequencies side by side.
 
-use super::table::aligned;
+use super::columns::{Heading, aligned};
 use crate::study::{FrequencyOutcome, Outcome};
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 /// One row per model, a network's frequencies with their distance from those of the finite elements; empty where none were asked for.
 pub(super) fn frequency_table(outcome: &Outcome) -> String {
     let known = || outcome.frequencies.iter().filter_map(|model| model.found.as_ref().ok());
     let Some(count) = known().map(Vec::len).max() else { return String::new() };
     let finite = outcome.frequencies[0].found.as_ref().ok();
-    let mut header = vec!["frequencies".to_string()];
-    header.extend((1..=count).map(|i| format!("{i}\nHz (%)")));
+    let mut header = vec![Heading::words("frequencies")];
+    header.extend((1..=count).map(|i| Heading::numbers(format!("{i}\nHz (%)"))));
     let row = |(place, model): (usize, &FrequencyOutcome)| {
         let mut row = vec![model.name.clone()];
         match &model.found {
@@ -42,12 +42,26 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
     outcome.frequencies.iter().filter_map(note).collect()
 }
 
-/// Hz; null where a model has none.
-pub(super) fn frequency_json(model: &FrequencyOutcome) -> Value {
-    json!({
-        "name": model.name,
-        "frequencies": model.found.as_ref().ok(),
-        "rigid_motions": model.rigid,
-        "reason": model.found.as_ref().err(),
-    })
+/// The natural frequencies of a model in `report.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrequencyRecord {
+    /// Of the fit, or "finite elements".
+    pub name: String,
+    /// Hz, ascending.
+    pub frequencies: Option<Vec<f64>>,
+    /// Rigid motions that are left out.
+    pub rigid_motions: usize,
+    /// Why there are none.
+    pub reason: Option<String>,
+}
+
+impl From<&FrequencyOutcome> for FrequencyRecord {
+    fn from(model: &FrequencyOutcome) -> FrequencyRecord {
+        FrequencyRecord {
+            name: model.name.clone(),
+            frequencies: model.found.as_ref().ok().cloned(),
+            rigid_motions: model.rigid,
+            reason: model.found.as_ref().err().cloned(),
+        }
+    }
 }

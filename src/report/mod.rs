@@ -2,27 +2,38 @@
 
 mod agreement;
 mod check;
+mod columns;
 mod comparison;
 mod deformed;
 mod derivation;
+mod fit_record;
 mod frequencies;
 mod json;
+mod load_record;
 mod motion;
+mod motion_record;
 mod network;
+mod number;
 mod paper;
 mod pictures;
+mod rows;
 mod series;
 mod stability;
 mod stretches;
 mod surface;
 mod table;
 
-pub use check::{check_json, check_text};
+pub use check::{InspectionRecord, PropertyRecord, check_json, check_text};
+pub use columns::Heading;
 pub use comparison::Comparison;
 pub use deformed::deformed;
 pub use derivation::Derivation;
-pub use json::report;
+pub use fit_record::FitRecord;
+pub use frequencies::FrequencyRecord;
+pub use json::{AgreementRecord, QualityRecord, Report, VERSION, report};
+pub use load_record::{FollowedRecord, LoadRecord, MeasuredRecord, ReadingRecord};
 pub use motion::motion_csv;
+pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::{network_csv, network_json};
 pub use paper::{paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
@@ -72,7 +83,7 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         written.push(mesh);
         for (fit, stem) in outcome.fits.iter().zip(&stems) {
             let path = folder.join(format!("{stem}.vtu"));
-            vtk::write(&path, &network_grid(&outcome.mesh, outcome.masses.as_deref(), fit, &outcome.fem))?;
+            vtk::write(&path, &network_grid(&outcome.mesh, outcome.masses.as_deref(), fit, &outcome.loads))?;
             written.push(path);
         }
         for (model, stem) in moved().filter(|(model, _)| !model.states.is_empty()) {

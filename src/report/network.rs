@@ -1,10 +1,11 @@
 //! Networks for simulators.
 
+use super::rows::csv;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Law;
-use serde_json::json;
-use std::fmt::Write;
+use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// One spring per line: `kind,points,constant,rest`. Points count from 0. A length spring has N/m and m, a spring on
 /// an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
@@ -13,49 +14,89 @@ use std::fmt::Write;
 /// rest then.
 pub fn network_csv(network: &Network) -> String {
     let lawful = network.others.iter().any(|spring| spring.law.is_some());
-    let mut text = format!("kind,points,constant,rest{}\n", if lawful { ",law,parameters" } else { "" });
-    let mut line = |kind: &str, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
+    let row = |kind: &str, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
         let points: Vec<_> = points.iter().map(usize::to_string).collect();
-        write!(text, "{kind},{},{constant:e},{rest:e}", points.join(" ")).expect("a String grows");
+        let mut row = vec![kind.into(), points.join(" "), format!("{constant:e}"), format!("{rest:e}")];
         if lawful {
             let parameters = law.map_or(String::new(), |(law, values)| {
                 let named = law.parameters.iter().zip(values).map(|(name, value)| format!("{name}={value:e}"));
                 named.collect::<Vec<_>>().join(" ")
             });
-            write!(text, ",{},{parameters}", law.map_or("", |(law, _)| &law.text)).expect("a String grows");
+            row.extend([law.map_or(String::new(), |(law, _)| law.text.clone()), parameters]);
         }
-        text.push('\n');
+        row
     };
-    for spring in &network.lengths {
-        line("length", &spring.points, spring.constant, spring.rest, None);
-    }
-    for spring in &network.others {
-        let law = spring.law.as_deref().map(|law| (law, &spring.parameters[..]));
-        line(spring.kind.name(), &spring.points, spring.constant, spring.rest, law);
-    }
-    text
+    let lengths = network.lengths.iter().map(|s| row("length", &s.points, s.constant, s.rest, None));
+    let others = network.others.iter().map(|s| {
+        let law = s.law.as_deref().map(|law| (law, &s.parameters[..]));
+        row(s.kind.name(), &s.points, s.constant, s.rest, law)
+    });
+    let header = ["kind", "points", "constant", "rest", "law", "parameters"];
+    csv(&header[..if lawful { 6 } else { 4 }], &lengths.chain(others).collect::<Vec<_>>())
 }
 
+/// A network in JSON.
+#[derive(Debug, Serialize)]
+struct NetworkRecord<'a> {
+    /// By quantity.
+    units: BTreeMap<&'static str, &'static str>,
+    /// `[points][axes]`.
+    points: Vec<&'a [f64]>,
+    masses: Option<&'a [f64]>,
+    springs: Vec<SpringRecord<'a>>,
+}
+
+/// A spring; only one with a law of force has the last two keys.
+#[derive(Debug, Serialize)]
+struct SpringRecord<'a> {
+    kind: &'static str,
+    /// From 0.
+    points: &'a [usize],
+    constant: f64,
+    rest: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<&'a str>,
+    /// Of the law, by name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parameters: Option<BTreeMap<&'a str, f64>>,
+}
+
+const UNITS: [(&str, &str); 6] = [
+    ("length", "m"),
+    ("mass", "kg"),
+    ("length spring", "N/m"),
+    ("area spring", "N/m^3"),
+    ("volume spring", "N/m^5"),
+    ("angle spring", "N*m"),
+];
+
 /// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
-pub fn network_json(mesh: &Mesh, masses: Option<&[f64]>, network: &Network) -> String {
-    let lengths = network
-        .lengths
-        .iter()
-        .map(|s| json!({ "kind": "length", "points": s.points, "constant": s.constant, "rest": s.rest }));
+pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a Network) -> String {
+    let lengths = network.lengths.iter().map(|s| SpringRecord {
+        kind: "length",
+        points: &s.points,
+        constant: s.constant,
+        rest: s.rest,
+        law: None,
+        parameters: None,
+    });
     let others = network.others.iter().map(|s| {
-        let mut spring = json!({ "kind": s.kind.name(), "points": s.points, "constant": s.constant, "rest": s.rest });
-        if let Some(law) = &s.law {
-            let named = law.parameters.iter().zip(&s.parameters).map(|(name, value)| (name.clone(), json!(value)));
-            spring["law"] = json!(law.text);
-            spring["parameters"] = named.collect();
+        let parameters =
+            |law: &'a Law| law.parameters.iter().map(String::as_str).zip(s.parameters.iter().copied()).collect();
+        SpringRecord {
+            kind: s.kind.name(),
+            points: &s.points,
+            constant: s.constant,
+            rest: s.rest,
+            law: s.law.as_deref().map(|law| law.text.as_str()),
+            parameters: s.law.as_deref().map(parameters),
         }
-        spring
     });
-    let value = json!({
-        "units": { "length": "m", "mass": "kg", "length spring": "N/m", "area spring": "N/m^3", "volume spring": "N/m^5", "angle spring": "N*m" },
-        "points": mesh.points.chunks_exact(mesh.dimension).collect::<Vec<_>>(),
-        "masses": masses,
-        "springs": lengths.chain(others).collect::<Vec<_>>(),
-    });
-    serde_json::to_string(&value).expect("a value of finite numbers and text is JSON") + "\n"
+    let record = NetworkRecord {
+        units: UNITS.into_iter().collect(),
+        points: mesh.points.chunks_exact(mesh.dimension).collect(),
+        masses,
+        springs: lengths.chain(others).collect(),
+    };
+    serde_json::to_string(&record).expect("keys are text") + "\n"
 }

@@ -1,9 +1,10 @@
 //! The tables of a paper beside ours, and its figures.
 
-use super::comparison::{Comparison, csv};
+use super::columns::{Heading, aligned, texts};
+use super::comparison::Comparison;
 use super::deformed::deformed;
+use super::rows::csv;
 use super::surface::surface_figure;
-use super::table::aligned;
 use super::write_files;
 use crate::error::Result;
 use crate::study::{Column, Paper, PaperRow, PaperTable, file_stem, heading};
@@ -34,8 +35,15 @@ fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
         };
         let rule: Vec<String> =
             header.iter().enumerate().map(|(i, _)| if i < 2 { "---" } else { "---:" }.to_string()).collect();
-        write!(text, "\n## {}: {}\n\n{}{}", heading(&table.name), table.title, line(&header), line(&rule))
-            .expect("a String grows");
+        write!(
+            text,
+            "\n## {}: {}\n\n{}{}",
+            heading(&table.name),
+            table.title,
+            line(&texts(&header).into_iter().map(String::from).collect::<Vec<_>>()),
+            line(&rule)
+        )
+        .expect("a String grows");
         rows.iter().for_each(|row| text.push_str(&line(row)));
         for line in remarks(table) {
             write!(text, "\n{line}\n").expect("a String grows");
@@ -63,7 +71,7 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
         figures.push((table.title.clone(), file));
     }
     // A scene without loads has no shapes to show.
-    for scene in paper.scenes.iter().filter(|scene| !scene.outcome.fem.is_empty()) {
+    for scene in paper.scenes.iter().filter(|scene| !scene.outcome.loads.is_empty()) {
         let outcome = &scene.outcome;
         let precision = format!("{}.precision.svg", scene.stem);
         files.push((precision.clone(), Comparison::of_scene(outcome).plot()?));
@@ -107,14 +115,14 @@ fn joined<'a>(figures: impl Iterator<Item = (&'a Column, &'a Option<f64>)>) -> S
 }
 
 /// The rows as they are read: the object once, then a row for each fit, the printed figures beside the found ones.
-fn cells(table: &PaperTable) -> (Vec<String>, Vec<Vec<String>>) {
+fn cells(table: &PaperTable) -> (Vec<Heading>, Vec<Vec<String>>) {
     let columns: Vec<&str> = table.columns.iter().map(|column| column.name()).collect();
-    let mut header = vec!["object".to_string(), "fit".into()];
+    let mut header = ["object", "fit"].map(Heading::words).to_vec();
     let printed = table.rows.iter().any(|row| row.printed.is_some());
     if printed {
-        header.push(format!("printed {}", columns.join(" / ")));
+        header.push(Heading::numbers(format!("printed {}", columns.join(" / "))));
     }
-    header.push(format!("found {}", columns.join(" / ")));
+    header.push(Heading::numbers(format!("found {}", columns.join(" / "))));
     let mut rows = Vec::new();
     let mut object = "";
     for row in &table.rows {

@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use crate::mesh::vtk::{Array, Grid};
 use crate::model::{LengthSpring, MeasureSpring, Network};
-use crate::study::{FitOutcome, Outcome};
+use crate::study::{BodyLoad, FitOutcome, Outcome};
 
 const LINE: u8 = 3;
 const POINTS: u8 = 2;
@@ -12,9 +12,8 @@ const POINTS: u8 = 2;
 pub fn displacement_grid(outcome: &Outcome) -> Grid {
     let mesh = &outcome.mesh;
     let mut grid = cell_grid(mesh, &mesh.points);
-    let loads = outcome.fits.first().map_or(&[][..], |f| &f.loads);
-    for (load, u) in loads.iter().zip(&outcome.fem) {
-        grid.point_data.push(vectors(format!("u fem {} (m)", load.name), u, mesh.dimension));
+    for load in &outcome.loads {
+        grid.point_data.push(vectors(format!("u fem {} (m)", load.name), &load.fem, mesh.dimension));
     }
     for fit in &outcome.fits {
         for load in &fit.loads {
@@ -60,13 +59,13 @@ pub(super) fn spring_grid(mesh: &Mesh, network: &Network, x: &[f64]) -> Grid {
 }
 
 /// The springs with the displacements of both models.
-pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, fem: &[Vec<f64>]) -> Grid {
+pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, loads: &[BodyLoad]) -> Grid {
     let mut grid = spring_grid(mesh, &fit.network, &mesh.points);
     if let Some(masses) = masses {
         grid.point_data.push(scalar("mass (kg)", masses.to_vec()));
     }
-    for (load, u) in fit.loads.iter().zip(fem) {
-        grid.point_data.push(vectors(format!("u fem {} (m)", load.name), u, mesh.dimension));
+    for (load, body) in fit.loads.iter().zip(loads) {
+        grid.point_data.push(vectors(format!("u fem {} (m)", body.name), &body.fem, mesh.dimension));
         if let Some(u) = &load.displacement {
             grid.point_data.push(vectors(format!("u {} (m)", load.name), u, mesh.dimension));
         }

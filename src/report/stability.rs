@@ -1,7 +1,7 @@
 //! A sweep as a table, as CSV, and as maps of its errors.
 
-use super::comparison::csv;
-use super::table::aligned;
+use super::columns::{Heading, aligned};
+use super::rows::csv;
 use super::write_files;
 use crate::error::Result;
 use crate::study::{Family, StabilityOutcome, StabilityRow, Verdict};
@@ -21,23 +21,11 @@ const TOLD: &str = "#9db8d9";
 
 /// What came of each family and method, worst first to see, then what is lost and why cases were refused.
 pub fn stability_text(outcome: &StabilityOutcome) -> String {
-    let header: Vec<String> = [
-        "family",
-        "of",
-        "cases",
-        "accurate",
-        "input-\nlimited",
-        "dependent",
-        "refused",
-        "told",
-        "LOST",
-        "worst\nerror",
-        "worst error\nin f32",
-        "largest\ncondition",
-        "k < 0",
-    ]
-    .map(String::from)
-    .into();
+    let mut header = ["family", "of"].map(Heading::words).to_vec();
+    header.push(Heading::numbers("cases"));
+    header.extend(Verdict::NAMES.map(|name| Heading::numbers(name.replace('-', "-\n"))));
+    let figures = ["worst\nerror", "worst error\nin f32", "largest\ncondition", "k < 0"];
+    header.extend(figures.map(Heading::numbers));
     let mut text = format!("{}\n\n{}", outcome.title, aligned(&header, &families(outcome)));
     let reasons = reasons(outcome);
     if !reasons.is_empty() {
@@ -71,7 +59,7 @@ fn families(outcome: &StabilityOutcome) -> Vec<Vec<String>> {
         let condition = largest(&mut rows.iter().filter_map(|row| row.condition));
         let negative = rows.iter().filter_map(|row| row.negative).fold([0, 0], |[a, b], [n, m]| [a + n, b + m]);
         let mut cells = vec![family.name().to_string(), method.to_string(), rows.len().to_string()];
-        for name in ["accurate", "input-limited", "dependent", "refused", "told", "LOST"] {
+        for name in Verdict::NAMES {
             let count = count(name);
             cells.push(if count == 0 { "-".into() } else { count.to_string() });
         }
@@ -122,8 +110,7 @@ fn table(outcome: &StabilityOutcome) -> String {
         "softest",
         "step_s",
         "iterations",
-    ]
-    .map(String::from);
+    ];
     let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
     let row = |row: &StabilityRow| {
         let count = |of: usize| row.negative.map_or(String::new(), |negative| negative[of].to_string());

@@ -1,7 +1,8 @@
 //! Tables and figures of springs at large deformation.
 
-use super::comparison::{COLORS, csv};
-use super::table::aligned;
+use super::columns::{Heading, aligned, texts};
+use super::comparison::COLORS;
+use super::rows::csv;
 use super::write_files;
 use crate::error::{Error, Result};
 use crate::study::{STRETCHES, StretchedFit, Stretches};
@@ -50,9 +51,9 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
         }
     }
     let files = [
-        ("stretch.csv", csv(&header, &rows)),
-        ("samples.csv", csv(&sampled_header, &sampled_rows)),
-        ("force.csv", csv(&forces_header, &forces)),
+        ("stretch.csv", csv(&texts(&header), &rows)),
+        ("samples.csv", csv(&texts(&sampled_header), &sampled_rows)),
+        ("force.csv", csv(&texts(&forces_header), &forces)),
         ("stretch.svg", figure(&title(study), ["stretch, %", "%e_rms"], &against_stretch(|fit| &fit.errors))?),
         (
             "force.svg",
@@ -78,9 +79,9 @@ fn title(study: &Stretches) -> String {
     format!("{}: a box held at both ends and stretched, {}", study.element, study.law.to_lowercase())
 }
 
-fn of_fits(study: &Stretches, values: fn(&StretchedFit) -> &Vec<Option<f64>>) -> (Vec<String>, Vec<Vec<String>>) {
-    let mut header = vec!["fit".to_string(), "us/element".into()];
-    header.extend(STRETCHES.map(|s| format!("{} %", 100.0 * s)));
+fn of_fits(study: &Stretches, values: fn(&StretchedFit) -> &Vec<Option<f64>>) -> (Vec<Heading>, Vec<Vec<String>>) {
+    let mut header = vec![Heading::words("fit"), Heading::numbers("us/element")];
+    header.extend(STRETCHES.map(|s| Heading::numbers(format!("{} %", 100.0 * s))));
     let rows = study.fits.iter().map(|fit| {
         let mut row = vec![fit.name.clone(), format!("{:.1}", 1e6 * fit.seconds)];
         row.extend(values(fit).iter().map(|e| e.map_or("-".into(), |e| format!("{e:.3}"))));
@@ -89,8 +90,9 @@ fn of_fits(study: &Stretches, values: fn(&StretchedFit) -> &Vec<Option<f64>>) ->
     (header, rows.collect())
 }
 
-fn runs(study: &Stretches) -> (Vec<String>, Vec<Vec<String>>) {
-    let header = ["fit", "shapes", "ms", "fitted %", "held out %"].map(String::from).into();
+fn runs(study: &Stretches) -> (Vec<Heading>, Vec<Vec<String>>) {
+    let mut header = vec![Heading::words("fit")];
+    header.extend(["shapes", "ms", "fitted %", "held out %"].map(Heading::numbers));
     let rows = study.runs.iter().map(|run| {
         let percent = |share: f64| format!("{:.3}", 100.0 * share);
         let (shapes, seconds) = (run.shapes.to_string(), format!("{:.2}", 1e3 * run.seconds));

@@ -1,15 +1,13 @@
 //! The table on the terminal.
 
 use super::agreement::{Agreement, SAME, agreements};
+use super::columns::{Heading, aligned};
 use super::frequencies::{frequency_notes, frequency_table};
-use super::json::status;
 use super::motion::{motion_notes, motion_table};
 use crate::fit::Spread;
 use crate::mesh::Quality;
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, LoadOutcome, Outcome, Reading, Recipe, WholeOutcome};
-use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
+use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading};
 use std::fmt::Write;
 
 /// What was modelled, in a line or two.
@@ -63,40 +61,27 @@ fn quality(quality: &Quality) -> Vec<String> {
 
 /// One row per fit; then, where they were asked for, natural frequencies and motions, one row per model.
 pub fn table(outcome: &Outcome) -> String {
-    let loads: Vec<&str> = outcome.fits.first().map_or(vec![], |f| f.loads.iter().map(|l| l.name.as_str()).collect());
-    let mut header: Vec<String> =
-        ["fit", "springs", "k < 0", "|R-K|/|R| Frobenius\nmean / max", "2-norm\nmean / max", "fit\nus/element"]
-            .map(String::from)
-            .into();
-    let sampled = outcome.fits.iter().any(|fit| fit.sampled.is_some());
+    let mut header = vec![Heading::words("fit")];
+    header.extend(
+        ["springs", "k < 0", "|R-K|/|R| Frobenius\nmean / max", "2-norm\nmean / max", "fit\nus/element"]
+            .map(Heading::numbers),
+    );
+    let sampled = outcome.fits.iter().any(|fit| fit.kind.sampled().is_some());
     if sampled {
-        header.push("sampled forces %\nfitted / held out".into());
+        header.push(Heading::numbers("sampled forces %\nfitted / held out"));
     }
-    for (i, load) in loads.iter().enumerate() {
-        header.push(format!("{load}\n%e_rms / %e_max"));
-        if gauged(outcome, i) {
-            header.push(format!("{load}, gauge\nE Pa / nu"));
+    for load in &outcome.loads {
+        header.push(Heading::numbers(format!("{}\n%e_rms / %e_max", load.name)));
+        if load.reading().is_some() {
+            header.push(Heading::numbers(format!("{}, gauge\nE Pa / nu", load.name)));
         }
     }
-    if !loads.is_empty() {
-        header.push("network".into());
+    if !outcome.loads.is_empty() {
+        header.push(Heading::words("network"));
     }
     let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
     let under = [times(outcome), gauge(outcome), frequency_table(outcome), motion_table(outcome)];
     aligned(&header, &rows) + &under.concat()
-}
-
-/// Rows under a header: columns of words to the left, of numbers to the right.
-pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> String {
-    let mut table = Table::new();
-    table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
-    table.set_content_arrangement(ContentArrangement::Disabled).set_header(header).add_rows(rows);
-    for (column, name) in table.column_iter_mut().zip(header) {
-        let words = ["object", "objective", "solver", "fit", "network", "motion", "frequencies", "ended"];
-        let words = words.contains(&name.as_str());
-        column.set_cell_alignment(if words { CellAlignment::Left } else { CellAlignment::Right });
-    }
-    table.lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }
 
 fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
@@ -112,35 +97,29 @@ fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
     ];
     if sampled {
         let percent = |spread: &Spread| format!("{:.2}", 100.0 * spread.mean);
-        row.push(fit.sampled.as_ref().map_or("-".into(), |s| {
+        row.push(fit.kind.sampled().map_or("-".into(), |s| {
             format!("{} / {:>5}", percent(&s.trained), s.held_out.as_ref().map_or("-".into(), percent))
         }));
     }
-    for (i, load) in fit.loads.iter().enumerate() {
+    for (load, body) in fit.loads.iter().zip(&outcome.loads) {
         row.push(load.error.map_or("-".into(), |e| format!("{:.2} / {:5.2}", e.rms, e.max)));
-        if gauged(outcome, i) {
-            row.push(load.gauged.map_or("-".into(), |r| format!("{:.4e} / {:.3}", r.young, r.poisson)));
+        if body.reading().is_some() {
+            row.push(load.gauge.map_or("-".into(), |r| format!("{:.4e} / {:.3}", r.young, r.poisson)));
         }
     }
     if !fit.loads.is_empty() {
-        row.push(status(fit).into());
+        row.push(fit.status().into());
     }
     row
 }
 
-/// Whether the scene's gauge says something under the load of that number.
-fn gauged(outcome: &Outcome, load: usize) -> bool {
-    outcome.gauged.get(load).is_some_and(Option::is_some)
-}
-
-/// What the gauge says of the finite elements.
+/// The gauge's readings of the finite elements.
 fn gauge(outcome: &Outcome) -> String {
-    let loads = outcome.fits.first().map_or(&[][..], |fit| &fit.loads);
-    let line = |(load, reading): (&LoadOutcome, &Option<Reading>)| {
-        let Reading { young, poisson } = (*reading)?;
+    let line = |load: &BodyLoad| {
+        let Reading { young, poisson } = load.reading()?;
         Some(format!("Gauge of the finite elements under {}: E = {young:.4e} Pa, nu = {poisson:.3}.\n", load.name))
     };
-    loads.iter().zip(&outcome.gauged).filter_map(line).collect()
+    outcome.loads.iter().filter_map(line).collect()
 }
 
 fn times(outcome: &Outcome) -> String {
@@ -148,7 +127,7 @@ fn times(outcome: &Outcome) -> String {
     if loads.is_empty() {
         return String::new();
     }
-    let mean = |seconds: &dyn Fn(&crate::study::LoadOutcome) -> f64| {
+    let mean = |seconds: &dyn Fn(&LoadOutcome) -> f64| {
         1e3 * loads.iter().map(|l| seconds(l)).sum::<f64>() / loads.len() as f64
     };
     format!(
@@ -160,19 +139,19 @@ fn times(outcome: &Outcome) -> String {
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
-    let loads = outcome.fits.first().map_or(&[][..], |fit| &fit.loads);
-    let finite = loads.iter().zip(&outcome.followed).filter_map(|(load, followed)| trouble(&load.name, followed));
+    let finite = outcome.loads.iter().filter_map(|load| trouble(&load.name, load.followed.as_ref()?));
     let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
-    let measured = outcome.measured.iter().map(|load| {
-        let error = load.error.map_or("-".into(), |e| format!("%e_rms / %e_max {:.2} / {:.2}", e.rms, e.max));
-        format!(
+    let measured = outcome.loads.iter().filter_map(|load| {
+        let measured = load.measured?;
+        let error = measured.error.map_or("-".into(), |e| format!("%e_rms / %e_max {:.2} / {:.2}", e.rms, e.max));
+        Some(format!(
             "errors under {} are those from what was measured at {} points; finite elements: {error}",
-            load.name, load.points
-        )
+            load.name, measured.points
+        ))
     });
     let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
     let starts = agreements(outcome);
-    let silent = loads.iter().zip(&outcome.gauged).filter(|(_, reading)| reading.is_none()).map(|(load, _)| {
+    let silent = outcome.loads.iter().filter(|load| load.gauge == Some(GaugeResult::NoReading)).map(|load| {
         let why = "it needs a force along its axis that acts at one side of it alone";
         format!("the gauge says nothing under {}: {why}", load.name)
     });
@@ -204,39 +183,14 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             fit.deficient
         ));
     }
-    if let (Some(unmet), Recipe::Published(method)) = (&fit.unmet, &fit.fit.recipe) {
-        let all = outcome.mesh.cell_count();
-        let ratio = unmet.poisson.map(|assumed| {
-            format!("is made for Poisson's ratio {assumed:.4}, the material's is {}", outcome.material.poisson())
-        });
-        let shape = (unmet.cells > 0).then(|| {
-            let percent = 100.0 * unmet.deviation;
-            format!(
-                "{} of {all} elements do not have the shape it is made for (lengths off by up to {percent:.0} %)",
-                unmet.cells
-            )
-        });
-        let lacking: Vec<String> = ratio.into_iter().chain(shape).collect();
-        if !lacking.is_empty() {
-            notes.push(format!("{name}: {} {}", method.name(), lacking.join("; ")));
-        }
-    }
     if fit.reused > 0 {
         notes.push(format!("{name}: {} elements have the shape of another and took its constants over", fit.reused));
     }
     if fit.unreached > 0 {
         notes.push(format!("{name}: in {} elements the iteration stopped short of the optimum", fit.unreached));
     }
-    if let Some(gap) = fit.gap {
-        let mut note = format!("{name}: certified, no constants do better by more than {gap:.1e} of the error");
-        if fit.ambiguous > 0 {
-            note += &format!("; in {} elements others do as well: the least Frobenius error decides", fit.ambiguous);
-        }
-        notes.push(note);
-    }
-    if let Some(epsilon) = fit.energy_error {
-        notes.push(format!("{name}: the energy of every deformation is within {:.1} % of the body's", 100.0 * epsilon));
-    }
+    let own = fit.kind.notes(outcome.mesh.cell_count(), outcome.material);
+    notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
     if let Some(m) = &fit.moduli {
         let (young, thickness) = (outcome.material.young(), outcome.material.thickness());
         notes.push(format!(
@@ -246,23 +200,6 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             m.zener,
             outcome.material.poisson()
         ));
-    }
-    if let Some(sampled) = &fit.sampled {
-        if !sampled.loads.is_empty() {
-            notes.push(format!(
-                "{name}: fitted to the shapes of the finite elements under {}: its errors there are not held out",
-                sampled.loads.join(", ")
-            ));
-        }
-        if let Some(agreeing) = sampled.agreeing.filter(|share| *share < 1.0) {
-            notes.push(format!(
-                "{name}: in the worst element {:.0} % of the starts found the best parameters, the others worse ones",
-                100.0 * agreeing
-            ));
-        }
-    }
-    if let Some(whole) = &fit.whole {
-        notes.push(format!("{name}: {}", seen(whole)));
     }
     for load in &fit.loads {
         if let Some(trouble) = load.followed.and_then(|followed| trouble(&load.name, &followed)) {
@@ -302,37 +239,6 @@ fn agreed(agreement: &Agreement) -> String {
         false => "do not agree: one of them is not known".into(),
     };
     format!("{}: held-out errors {verdict} ({})", agreement.fits.join(", "), agreement.load)
-}
-
-/// What a whole-object fit has seen and done.
-fn seen(whole: &WholeOutcome) -> String {
-    let validated = match &whole.validated[..] {
-        [] => String::new(),
-        loads => format!(", rho chosen by {}", loads.join(", ")),
-    };
-    let done = match whole.regularization {
-        Some(rho) => {
-            let (change, range) = (whole.change, whole.range);
-            format!(
-                "rho {rho:.0e}, {} steps, constants changed by factors up to {change:.1}, range {range:.0}",
-                whole.steps
-            )
-        }
-        None if !whole.stands => "at the start it does not stand under each of them, so it is left as it was".into(),
-        None => format!("none of the rho tried did better than the start, {} steps", whole.steps),
-    };
-    let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
-    let [before, after] = [0, 1].map(|i| largest(&whole.frequencies[i]));
-    let done = match whole.frequencies[0].len() {
-        0 => done,
-        count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
-    };
-    let ended = match (whole.cancelled, whole.limited) {
-        (true, _) => "; ended before its time",
-        (_, true) => "; a smaller rho goes beyond the range that is allowed",
-        _ => "",
-    };
-    format!("fitted to {}, whose errors are not held out{validated}: {done}{ended}", whole.loads.join(", "))
 }
 
 fn points(outcome: &Outcome, points: &[usize]) -> String {

@@ -179,11 +179,23 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
     };
     let deserializer = toml::Deserializer::parse(text).map_err(not_toml)?;
     serde_path_to_error::deserialize(deserializer).map_err(|e| {
-        let key = e.path().to_string();
-        let problem = one_line(e.inner().message());
-        let error = if key == "." { Error::new(problem) } else { Error::at(key, problem) };
-        place(error, line(e.inner().span()))
+        let span = line(e.inner().span());
+        place(keyed(&e), span)
     })
+}
+
+/// As [`parse_toml`], of a table that has been read; an error has no line.
+///
+/// # Errors
+/// A key is unknown, missing or of the wrong type.
+pub fn parse_table<T: serde::de::DeserializeOwned>(table: toml::Table) -> Result<T> {
+    serde_path_to_error::deserialize(table).map_err(|e| keyed(&e))
+}
+
+fn keyed(error: &serde_path_to_error::Error<toml::de::Error>) -> Error {
+    let key = error.path().to_string();
+    let problem = one_line(error.inner().message());
+    if key == "." { Error::new(problem) } else { Error::at(key, problem) }
 }
 
 fn one_line(message: &str) -> String {

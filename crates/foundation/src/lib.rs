@@ -4,5 +4,6 @@
 
 pub mod error;
 pub mod file;
+mod named;
 pub mod scalar;
 pub mod symbolic;

@@ -18,6 +18,14 @@ pub enum Solver {
     ConjugateGradients { tolerance: f64 },
 }
 
+/// The share of the right-hand side that conjugate gradients leave, unless another is given.
+const TOLERANCE: f64 = 1e-8;
+
+crate::named!(Solver {
+    "factor" => Factor,
+    "conjugate-gradients" => ConjugateGradients { tolerance: TOLERANCE },
+});
+
 /// Conjugate gradients go on until so much of the right-hand side is left; below is rounding.
 pub const LEAST_TOLERANCE: f64 = 1e-15;
 

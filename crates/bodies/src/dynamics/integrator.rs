@@ -20,6 +20,13 @@ pub enum Integrator {
     SymplecticEuler,
 }
 
+crate::named!(Integrator {
+    "implicit-euler" => ImplicitEuler,
+    "bdf2" => Bdf2,
+    "newmark" => Newmark { beta: 0.25, gamma: 0.5 },
+    "symplectic-euler" => SymplecticEuler,
+});
+
 impl Integrator {
     /// The average acceleration, β = 1/4 and γ = 1/2: of a linear model it keeps the energy.
     pub fn newmark() -> Integrator {

@@ -26,7 +26,9 @@ impl MeshSource {
     /// Those of [`MeshSource::read`].
     pub fn parse(bytes: &[u8], ending: &str) -> Result<MeshSource> {
         let Some((_, parse)) = FORMATS.iter().find(|(known, _)| *known == ending) else {
-            return Err(Error::new(format!("expected a mesh ending in {}", listed_endings())).of_kind(ErrorKind::Unsupported));
+            return Err(
+                Error::new(format!("expected a mesh ending in {}", listed_endings())).of_kind(ErrorKind::Unsupported)
+            );
         };
         let source = parse(bytes)?;
         check(&source)?;

@@ -16,6 +16,8 @@ pub enum Lumping {
     Hrz,
 }
 
+crate::named!(Lumping { "row-sum" => RowSum, "hrz" => Hrz });
+
 /// Nodal masses, `[points]`, kg. `thickness` in m, 1 for a solid; `density` in kg/m³.
 pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping) -> Vec<f64> {
     if lumping == Lumping::RowSum {

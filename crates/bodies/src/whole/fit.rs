@@ -18,6 +18,11 @@ pub enum Method {
     },
 }
 
+/// Pairs that L-BFGS remembers.
+const MEMORY: usize = 10;
+
+crate::named!(Method { "gauss-newton" => GaussNewton { 0: GaussNewton::default() }, "l-bfgs" => Lbfgs { memory: MEMORY } });
+
 /// What is made small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Residual {
@@ -28,6 +33,8 @@ pub enum Residual {
     /// Of forces at the largest ρ, then of displacements.
     ForcesFirst,
 }
+
+crate::named!(Residual { "displacements" => Displacements, "forces" => Forces, "forces-first" => ForcesFirst });
 
 /// How a whole-object fit goes on.
 #[derive(Debug, Clone, PartialEq)]

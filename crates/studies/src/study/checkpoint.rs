@@ -1,6 +1,5 @@
 //! What ends a long fit early, and what it goes on from.
 
-use super::scene::NamedFit;
 use crate::error::{Error, Result};
 use crate::file;
 use crate::model::Network;
@@ -23,11 +22,11 @@ pub struct Controls {
 /// The states of the whole-object fits of a scene.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Checkpoint {
-    fits: BTreeMap<String, State>,
+    fits: BTreeMap<String, SavedFit>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-struct State {
+struct SavedFit {
     fingerprint: Fingerprint,
     snapshot: Snapshot,
 }
@@ -80,30 +79,26 @@ impl<'a> Saved<'a> {
     /// The file is no checkpoint, or its state is that of another fit of this name.
     pub fn open(
         controls: &'a Controls,
-        fit: &'a NamedFit,
+        name: &'a str,
         fingerprint: Fingerprint,
     ) -> Result<(Saved<'a>, Option<Snapshot>)> {
         let mut known = controls.read()?;
-        let snapshot = match known.fits.remove(&fit.name) {
+        let snapshot = match known.fits.remove(name) {
             Some(state) if state.fingerprint != fingerprint => {
                 let expected = "the state of this fit, or a file that does not exist yet";
                 let found = "that of a fit with other springs, loads or keys";
-                let error = Error::expected(format!("fits.{}", fit.name), expected, found);
+                let error = Error::expected(format!("fits.{name}"), expected, found);
                 return Err(controls.checkpoint.iter().fold(error, |e, path| e.in_file(path)));
             }
             state => state.map(|state| state.snapshot),
         };
-        Ok((Saved { controls, name: &fit.name, fingerprint, last: Instant::now() }, snapshot))
+        Ok((Saved { controls, name, fingerprint, last: Instant::now() }, snapshot))
     }
 
     /// Names the checkpoint in an error about the state that was read from it.
     pub fn blame(&self, error: Error) -> Error {
-        match (&self.controls.checkpoint, error.key()) {
-            (Some(path), Some("snapshot")) => {
-                Error::at(format!("fits.{}.snapshot", self.name), error.problem()).in_file(path)
-            }
-            _ => error,
-        }
+        let error = Error::at(format!("fits.{}.snapshot", self.name), error.problem());
+        self.controls.checkpoint.iter().fold(error, |error, path| error.in_file(path))
     }
 
     /// Writes the state beside those of other fits, if the last time is a while ago.
@@ -116,7 +111,7 @@ impl<'a> Saved<'a> {
         };
         self.last = Instant::now();
         let mut all = self.controls.read()?;
-        all.fits.insert(self.name.into(), State { fingerprint: self.fingerprint, snapshot: snapshot.clone() });
+        all.fits.insert(self.name.into(), SavedFit { fingerprint: self.fingerprint, snapshot: snapshot.clone() });
         let text = serde_json::to_string(&all).expect("a state of finite numbers is JSON");
         file::write_whole(path, text.as_bytes())
     }
@@ -127,9 +122,10 @@ impl<'a> Saved<'a> {
 pub(super) struct Fingerprint(u64);
 
 impl Fingerprint {
-    pub fn of(fit: &NamedFit, points: &[f64], network: &Network, wanted: &Wanted, newton: &str) -> Fingerprint {
+    /// `settings` is a text of all settings of the fit.
+    pub fn of(settings: &str, points: &[f64], network: &Network, wanted: &Wanted) -> Fingerprint {
         let mut all = Fingerprint(0xcbf2_9ce4_8422_2325);
-        all.text(&format!("{:?} {:?} {newton}", fit.recipe, fit.springs));
+        all.text(settings);
         all.numbers(points);
         for spring in &network.lengths {
             spring.points.iter().for_each(|p| all.word(*p as u64));

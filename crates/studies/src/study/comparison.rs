@@ -1,30 +1,28 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
-use super::cases::load_cases;
+use super::body::load_cases;
 use super::checkpoint::Controls;
+use super::fits::{NamedFit, Recipe, WholeBody};
 use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
-use super::random::Random;
-use super::run::{Progress, run};
-use super::scene::{NamedFit, Recipe, Scene};
+use super::progress::{Event, Progress};
+use super::run::run;
+use super::scene::{Output, Scene};
+use super::shapes::random_shapes;
 use super::stretches::sampled_fits;
-use super::whole::WholeBody;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
-use crate::fit::{CellFits, Fit, Objective, Search, Solver, Spread, Weight, element_errors, fit_cells};
+use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors};
 use crate::material::Material;
 use crate::mesh::CellBlock;
 use crate::springs::Springs;
-use crate::stiffness::Geometry;
 use std::sync::Arc;
 use std::time::Instant;
 
 /// How often a fit is timed, unless once takes longer than `PATIENCE` seconds.
 const RUNS: usize = 5;
 const PATIENCE: f64 = 0.5;
-/// How far the nodes of a random shape are moved, in units of the reference cell.
-const JITTER: f64 = 0.15;
 const SEED: u64 = 2010;
 /// The largest stretch of the shapes that are sampled for a scene.
 const SAMPLED: f64 = 0.35;
@@ -77,22 +75,6 @@ fn serves(method: Method, element: &Element, points: &[f64], cells: &[usize], ma
     Springs::select(element, None).and_then(fit).is_ok()
 }
 
-/// The constants of each cell by a recipe that looks at one cell at a time; `None` for any other.
-pub fn fit_each_cell(
-    recipe: &Recipe,
-    element: &Element,
-    springs: &Springs,
-    points: &[f64],
-    cells: &[usize],
-    material: Material,
-) -> Option<Result<CellFits>> {
-    match recipe {
-        Recipe::Published(method) => Some(published::fit(*method, element, springs, points, cells, material)),
-        Recipe::Stiffness(fit) => Some(fit_cells(element, springs, points, cells, material.moduli(), fit, &mut |_| {})),
-        _ => None,
-    }
-}
-
 /// Fits `shapes` random shapes of the element by each recipe, on one thread.
 ///
 /// # Errors
@@ -117,16 +99,11 @@ pub fn measure_recipes(
     let moduli = material.moduli();
     let mut outcomes = Vec::new();
     for (done, recipe) in recipes.iter().enumerate() {
-        let (name, solver) = match recipe {
-            Recipe::Stiffness(fit) => (fit.objective.title(), fit.solver.name()),
-            Recipe::Published(method) => (method.name().into(), "formula"),
-            _ => return Err(Error::expected("recipe", "a fit of single elements", recipe.name(None))),
-        };
-        progress(&format!("{name} by {solver}"), done, recipes.len());
-        let fit = |points: &[f64], cells: &[usize]| {
-            let of_cells = fit_each_cell(recipe, element, &springs, points, cells, material);
-            of_cells.expect("it is a fit of single elements")
-        };
+        let other = || Error::expected("recipe", "a fit of single elements", recipe.name(None));
+        let method = recipe.kind().cell_method().ok_or_else(other)?;
+        let (name, solver) = (method.name(), method.solver());
+        progress(Event::stage(&format!("{name} by {solver}"), done, recipes.len()));
+        let fit = |points: &[f64], cells: &[usize]| method.fit_cells(element, &springs, points, cells, material);
         let mut seconds = Vec::new();
         let fitted = loop {
             let start = Instant::now();
@@ -139,7 +116,7 @@ pub fn measure_recipes(
         seconds.sort_by(f64::total_cmp);
         let errors = element_errors(element, &points, &cells, moduli, &fitted)?;
         let negative = fitted.constants.iter().filter(|k| **k < 0.0).count();
-        let general = matches!(recipe, Recipe::Stiffness(fit) if fit.solver != Solver::Native);
+        let general = recipe.stiffness().is_some_and(|fit| fit.solver != Solver::Native);
         let lattice = || Lattice::of(&shared, &size, fit).ok()?.of_springs();
         outcomes.push(MethodOutcome {
             name,
@@ -152,7 +129,6 @@ pub fn measure_recipes(
             moduli: if general { None } else { lattice() },
         });
     }
-    progress("", recipes.len(), recipes.len());
     Ok(outcomes)
 }
 
@@ -161,9 +137,9 @@ pub fn measure_recipes(
 /// # Errors
 /// Those of [`run`], and a scene without loads.
 pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
-    if scene.loads.is_empty() {
+    if scene.loads().is_empty() {
         let problem = "expected at least one [[load]] to compare under, found none";
-        return Err(Error::at("load", problem).in_file(&scene.path));
+        return Err(Error::at("load", problem).in_file(scene.path()));
     }
     let mesh = scene.build_mesh()?;
     let higher_modes = mesh.blocks.iter().any(|block| block.element.has_higher_modes());
@@ -175,9 +151,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
     let whole = scene.law().is_none() && body.held("loads").is_ok();
-    let mut scene = scene.clone();
-    scene.fits = Vec::new();
-    (scene.motion, scene.output.frequencies) = (None, 0);
+    let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {
         let block = |b: &CellBlock| serves(*method, &b.element, &mesh.points, &b.connectivity, material);
@@ -200,38 +174,9 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
                 named.name += " + all";
                 named.springs = Some(groups.clone());
             }
-            scene.fits.push(named);
+            all_fits.push(named);
         }
     }
-    scene.entry_of = (0..scene.fits.len()).collect();
-    run(&scene, progress)
-}
-
-/// Node positions of `count` elements, `[count × nodes × dimension]`: the reference cell under random affine maps, each node
-/// moved by up to 7 % of its size; those that tangle are drawn again. A seed gives the same shapes always.
-///
-/// # Errors
-/// Nearly every shape tangles.
-pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f64>> {
-    let d = element.dimension();
-    let mut random = Random::new(seed);
-    let mut points = Vec::with_capacity(count * element.positions.len());
-    let mut geometry = Geometry::new(&element.tabulation);
-    for _ in 0..100 * count {
-        let map: Vec<f64> =
-            (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.4 * random.symmetric()).collect();
-        let mut shape = Vec::new();
-        for at in element.positions.chunks_exact(d) {
-            for k in 0..d {
-                shape.push((0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>() + JITTER * random.symmetric());
-            }
-        }
-        if geometry.set(&element.tabulation, &shape).is_ok() {
-            points.extend(shape);
-        }
-        if points.len() == count * element.positions.len() {
-            return Ok(points);
-        }
-    }
-    Err(Error::new(format!("{}: nearly every random shape tangles", element.name)))
+    let output = Output { frequencies: 0, ..scene.output().clone() };
+    run(&scene.clone().with_fits(all_fits).with_output(output).without_motion(), progress)
 }

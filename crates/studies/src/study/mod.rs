@@ -1,48 +1,54 @@
 //! Whole studies: a scene from its file to the errors and times of each fit.
 
-mod cases;
+mod body;
 mod check;
 mod checkpoint;
+mod choice;
 mod comparison;
-mod course;
-mod frequencies;
-mod gauge;
-mod large;
-mod linear;
+mod fits;
+mod fitting;
 mod metrics;
 mod moduli;
-mod motion;
 mod outcome;
+mod own_name;
 mod paper;
-mod raised;
+mod progress;
 mod random;
 mod run;
 mod scene;
+mod shapes;
 mod stability;
 mod stages;
 mod stretches;
-mod whole;
+mod time;
 
+pub use body::LargeBody;
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
-pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes, random_shapes};
-pub use frequencies::FrequencyOutcome;
-pub use gauge::Reading;
-pub use large::LargeBody;
+pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
+pub use fits::{
+    CellMethod, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe, KindRecord, LoadSelection, NamedFit,
+    PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord,
+    SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+};
+pub use fitting::fit_mesh;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
-pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record};
-pub use outcome::{FitOutcome, FittedLoad, Followed, LoadOutcome, MeasuredLoad, Outcome, SampledOutcome, WholeOutcome};
+pub use outcome::{
+    BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, Measured, ModelMotion, MotionEnding,
+    MotionOutcome, Outcome, Reading, Record,
+};
 pub use paper::{
     Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,
 };
-pub use run::{Progress, Reference, fit_mesh, run, run_with};
+pub use progress::{Event, Progress};
+pub use run::{run, run_with};
 pub use scene::{
-    BoxEntry, DampingRecipe, DiscEntry, FitEntry, ForceRecipe, Judge, LoadCase, MeshInput, MotionRecipe, NamedFit,
-    Output, Part, Pull, Push, Recipe, SampledRecipe, Scene, ShapesEntry, Start, WholeRecipe, integrator_name,
-    load_elements,
+    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, MeshInput, MotionRecipe, Output, Part,
+    PrescribedMotion, Scene, load_elements,
 };
+pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, sweep, sweep_scene};
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
-pub use whole::WholeBody;

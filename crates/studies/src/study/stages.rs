@@ -1,73 +1,55 @@
 //! What a scene asks for, before any of it is done.
 
-use super::scene::{Recipe, Scene};
+use super::scene::Scene;
 
 /// The stages of a scene in order: what will run, or why it is left out.
 pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     let run = |what: String| (what, None);
     let skip = |what: &str, why: &str| (what.to_string(), Some(why.to_string()));
-    let mut stages = vec![run(scene.mesh.title())];
+    let mut stages = vec![run(scene.mesh().title())];
     if let Some(law) = scene.law() {
         stages.push(run(format!("compile the energy {law}")));
     }
-    for fit in &scene.fits {
-        let shapes = fit.recipe.sampled().map_or(String::new(), |recipe| {
-            let sampling = &recipe.fit.sampling;
-            format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)
-        });
-        stages.push(run(match &fit.recipe {
-            Recipe::Whole(recipe) => format!(
-                "fit {}: start from {}{shapes}, assemble its network, fit it to displacements under {}{}",
-                fit.name,
-                recipe.start.title(),
-                recipe.loads.words().join(", "),
-                match recipe.validation.words().join(", ") {
-                    none if none.is_empty() => String::new(),
-                    words => format!(", rho chosen by {words}"),
-                }
-            ),
-            _ => format!("fit {}{shapes}, assemble its network, measure its matrix errors", fit.name),
-        }));
-    }
+    stages.extend(scene.fits().iter().map(|fit| run(fit.recipe.kind().stage(&fit.name))));
     if scene.law().is_none() {
         stages.push(skip("hyperelastic energy, Newton's method", "the material has no law"));
     }
-    if !scene.fits.iter().any(|fit| fit.recipe.sampled().is_some()) {
+    if !scene.fits().iter().any(|fit| fit.recipe.sampled().is_some()) {
         stages.push(skip("sampled shapes", "no [[fit]] has the objective \"sampled\""));
     }
-    if scene.loads.is_empty() {
+    if scene.loads().is_empty() {
         stages.push(skip("finite element solution", "the scene has no [[load]]"));
         stages.push(skip("network solutions, displacement errors, stability", "the scene has no [[load]]"));
     }
-    for load in &scene.loads {
+    for load in scene.loads() {
         let large = if scene.law().is_some() { " at large deformation" } else { "" };
-        let networks = scene.fits.len();
+        let networks = scene.fits().len();
         stages.push(run(format!("solve {}{large} with finite elements and with {networks} networks", load.name)));
     }
-    if !scene.loads.is_empty() && scene.law().is_none() {
+    if !scene.loads().is_empty() && scene.law().is_none() {
         stages.push(run("compare the energies of each network with the body's".into()));
     }
     match scene.density() {
         Some(_) => stages.push(run("masses".into())),
         None => stages.push(skip("masses", "the material has no density")),
     }
-    match &scene.motion {
+    match scene.motion() {
         Some(motion) => {
             let finite = if motion.finite_elements { "finite elements and " } else { "" };
-            stages.push(run(format!("move {finite}{} networks for {}", scene.fits.len(), motion.title())));
+            stages.push(run(format!("move {finite}{} networks for {}", scene.fits().len(), motion.title())));
         }
         None => stages.push(skip("motion", "the scene has no [motion]")),
     }
-    match scene.output.frequencies {
+    match scene.output().frequencies {
         0 => stages.push(skip("natural frequencies", "not asked for in [output]")),
         count => stages.push(run(format!("{count} natural frequencies of each model"))),
     }
-    for (wanted, what) in [
-        (scene.output.moduli, "moduli of each network as a material"),
-        (scene.output.vtu, "VTU files"),
-        (scene.output.csv, "CSV files"),
+    for (asked, what) in [
+        (scene.output().moduli, "moduli of each network as a material"),
+        (scene.output().vtu, "VTU files"),
+        (scene.output().csv, "CSV files"),
     ] {
-        stages.push(if wanted { run(what.into()) } else { skip(what, "not asked for in [output]") });
+        stages.push(if asked { run(what.into()) } else { skip(what, "not asked for in [output]") });
     }
     stages
 }

@@ -1,9 +1,10 @@
 //! Springs at large deformation: their error against the stretch, and that of a sampled fit against its shapes and run time.
 
-use super::large::LargeBody;
+use super::body::LargeBody;
+use super::fits::{ForceRecipe, NamedFit, Recipe, Reference, SampledRecipe};
+use super::fitting::fit_mesh;
 use super::metrics::displacement_error;
-use super::run::{Progress, Reference, fit_mesh};
-use super::scene::{ForceRecipe, NamedFit, Recipe, SampledRecipe};
+use super::progress::{Event, Progress};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
 use crate::fit::{Family, Fit, Objective, Sampling, Source, Weight, fit_sampled};
@@ -80,13 +81,13 @@ pub fn compare_stretches(
     let pulled = Pulled { mesh, material, large: LargeBody::at_rest(energy, material.state()) };
     let recipes = recipes(element, sampled);
     let total = recipes.len() + 1;
-    progress("finite elements", 0, total);
+    progress(Event::stage("finite elements", 0, total));
     let body = pulled.follow(&Body { mesh: &pulled.mesh, energy: &pulled.large.energy, state: material.state() })?;
     let mut fits = Vec::new();
     for (done, named) in recipes.iter().enumerate() {
-        progress(&named.name, done + 1, total);
+        progress(Event::stage(&named.name, done + 1, total));
         let reference = Reference { large: Some(&pulled.large), whole: None };
-        let fitted = fit_mesh(&pulled.mesh, material, &reference, named, &mut |_, _, _| {})?;
+        let fitted = fit_mesh(&pulled.mesh, material, &reference, named, &mut |_| {})?;
         let seconds = fitted.seconds / pulled.mesh.cell_count() as f64;
         let found = pulled.follow(&fitted.network)?;
         let both = || body.iter().zip(&found).map(|(fem, lem)| Some((fem.as_ref()?, lem.as_ref()?)));
@@ -99,13 +100,13 @@ pub fn compare_stretches(
     }
     let mut runs = Vec::new();
     for named in &recipes {
-        let Recipe::Forces(recipe) = &named.recipe else { continue };
+        let Some(recipe) = named.recipe.sampled() else { continue };
         for shapes in SHAPES {
             let unknowns = recipe.force.unknowns(element);
             if (shapes * element.positions.len() * unknowns * unknowns) as f64 > LONGEST {
                 continue;
             }
-            progress(&format!("{} at {shapes} shapes", named.name), total - 1, total);
+            progress(Event::stage(&format!("{} at {shapes} shapes", named.name), total - 1, total));
             runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), shapes)?);
         }
     }
@@ -130,7 +131,7 @@ fn recipes(element: &Element, sampled: f64) -> Vec<NamedFit> {
     let at_rest = |objective: Objective| {
         let fit = Fit { nonnegative: true, ..Fit::new(objective) };
         let name = format!("{} k>=0", objective.title());
-        NamedFit { name, recipe: Recipe::Stiffness(fit), springs: Some(every.clone()) }
+        NamedFit::named(name, Recipe::Stiffness(fit), Some(every.clone()))
     };
     objectives.into_iter().map(at_rest).chain(sampled_fits(element, Some(&every), sampled)).collect()
 }
@@ -160,11 +161,7 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
         if element.has_higher_modes() {
             recipe.fit.higher = Objective::DEFAULT_HIGHER;
         }
-        NamedFit {
-            name: name.into(),
-            recipe: Recipe::Forces(Box::new(recipe)),
-            springs: groups.map(<[String]>::to_vec),
-        }
+        NamedFit::named(name, Recipe::Sampled(Box::new(recipe)), groups.map(<[String]>::to_vec))
     };
     forces.into_iter().map(recipe).collect()
 }

@@ -1,7 +1,7 @@
 //! The nodes of a Gmsh mesh and the places of their tags.
 
-use crate::mesh::reader::Reader;
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::reader::Reader;
 use std::collections::HashMap;
 
 pub(super) struct Nodes {

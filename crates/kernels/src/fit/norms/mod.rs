@@ -45,6 +45,8 @@ pub enum Norm {
     Huber { share: f64 },
 }
 
+crate::named!(Norm { "2" => Two, "1" => One, "max" => Max, "huber" => Huber { share: 0.5 } });
+
 /// The `x` that minimises the norm of `rhs − rows x`, `rows` being row-major `[rhs.len() × unknowns]`; of many optima,
 /// one. `None` for numbers that are not finite, a negative share, or where the conic solver does not finish.
 ///

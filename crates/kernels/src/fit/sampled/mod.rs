@@ -39,6 +39,8 @@ pub enum Weights {
     Relative,
 }
 
+crate::named!(Weights { "none" => Alike, "relative" => Relative });
+
 /// A fit to forces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledFit {

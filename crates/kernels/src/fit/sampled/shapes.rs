@@ -35,31 +35,15 @@ pub enum Family {
     Gradients,
 }
 
-impl Family {
-    pub const ALL: [(&'static str, Family); 7] = [
-        ("uniaxial", Family::Uniaxial),
-        ("equibiaxial", Family::Equibiaxial),
-        ("simple-shear", Family::SimpleShear),
-        ("volumetric", Family::Volumetric),
-        ("torsion", Family::Torsion),
-        ("bending", Family::Bending),
-        ("gradients", Family::Gradients),
-    ];
-
-    pub fn name(&self) -> &'static str {
-        Family::ALL.iter().find(|(_, family)| family == self).map_or("", |(name, _)| name)
-    }
-
-    /// # Errors
-    /// There is no such family.
-    pub fn named(name: &str) -> Result<Family> {
-        let found = Family::ALL.iter().find(|(known, _)| *known == name).map(|(_, family)| *family);
-        found.ok_or_else(|| {
-            let names = Family::ALL.map(|(name, _)| name).join(", ");
-            Error::expected("families", format!("some of {names}"), format!("\"{name}\""))
-        })
-    }
-}
+crate::named!(Family {
+    "uniaxial" => Uniaxial,
+    "equibiaxial" => Equibiaxial,
+    "simple-shear" => SimpleShear,
+    "volumetric" => Volumetric,
+    "torsion" => Torsion,
+    "bending" => Bending,
+    "gradients" => Gradients,
+});
 
 /// Where the shapes come from.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! The element at distorted shapes with straight edges: stiffness, patch test, moduli, and its place in mesh files.
 
-use super::Property;
+use super::property::Property;
 use crate::element::{Element, FormatEntry, permutations};
 use crate::fit::{Fit, Objective, Weight};
 use crate::material::{Material, Moduli};
@@ -8,12 +8,13 @@ use crate::mesh::{Mesh, MeshSource, gmsh, vtk};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use crate::study::moduli::Lattice;
-use crate::study::random::Random;
+use crate::study::shapes::straight_shapes;
 use std::fmt::Write;
 use std::sync::Arc;
 
 /// How many shapes are tried.
 const SHAPES: usize = 5;
+const SEED: u64 = 7;
 /// The material that is asked for.
 pub const ASKED: (f64, f64) = (1.0, 0.3);
 
@@ -25,32 +26,9 @@ pub fn properties(element: &Arc<Element>) -> Vec<Property> {
     properties
 }
 
-/// The nodes under random maps with straight edges, far from tangled.
+/// The shapes that properties are tried at.
 pub fn shapes(element: &Element) -> Vec<Vec<f64>> {
-    let d = element.dimension();
-    let mut random = Random::new(7);
-    let mut geometry = Geometry::new(&element.tabulation);
-    let mut found = Vec::new();
-    for _ in 0..100 * SHAPES {
-        let linear: Vec<f64> =
-            (0..d * d).map(|i| f64::from(u8::from(i % (d + 1) == 0)) + 0.25 * random.symmetric()).collect();
-        let terms = element.cell.straight_terms();
-        let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random.symmetric()).collect();
-        let place = |at: &[f64], k: usize| {
-            let straight: f64 = (0..d).map(|l| linear[k * d + l] * at[l]).sum();
-            let product = |e: &[i32]| at.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();
-            straight + terms.iter().enumerate().map(|(i, e)| bent[k * terms.len() + i] * product(e)).sum::<f64>()
-        };
-        let x: Vec<f64> =
-            element.positions.chunks_exact(d).flat_map(|at| (0..d).map(|k| place(at, k)).collect::<Vec<_>>()).collect();
-        if geometry.set(&element.tabulation, &x).is_ok() {
-            found.push(x);
-        }
-        if found.len() == SHAPES {
-            break;
-        }
-    }
-    found
+    straight_shapes(element, SHAPES, SEED)
 }
 
 pub fn geometry(element: &Element, x: &[f64]) -> Geometry {

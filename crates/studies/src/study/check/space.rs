@@ -1,6 +1,6 @@
 //! What the shape functions span, their gradients, and the quadrature.
 
-use super::Property;
+use super::property::Property;
 use crate::element::{Element, Quadrature, Tabulation};
 use crate::material::Moduli;
 use crate::stiffness::Geometry;

@@ -1,6 +1,6 @@
 //! The springs of an element: mechanisms, the condition of their equations, the moduli they give.
 
-use super::Property;
+use super::property::Property;
 use super::shape::{ASKED, geometry, shapes};
 use crate::element::Element;
 use crate::fit::{Fit, Objective, Weight};

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::file;
-use crate::study::scene::FitEntry;
+use crate::study::fits::FitEntry;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -120,6 +120,11 @@ impl Index {
     /// As [`Index::load`], without the file.
     pub fn parse(text: &str) -> Result<Index> {
         let index: Index = file::parse_toml(text)?;
+        for (i, table) in index.table.iter().enumerate() {
+            for (j, fit) in table.fit.iter().enumerate() {
+                fit.check(text).map_err(|e| e.under(format!("table[{i}].fit[{j}]")))?;
+            }
+        }
         index.check()?;
         Ok(index)
     }

@@ -1,6 +1,6 @@
 //! What came out of a paper's experiments.
 
-use super::index::Column;
+use super::index::{Column, RowEntry};
 use crate::study::outcome::Outcome;
 
 /// The tables that were run, and the scenes behind them.
@@ -63,6 +63,11 @@ pub struct Surface {
 const SAME: f64 = 0.02;
 
 impl PaperRow {
+    pub(super) fn new(row: &RowEntry, fit: &str, found: Vec<Option<f64>>, published: bool, stands: bool) -> PaperRow {
+        let (object, fit, scene) = (row.object.clone(), fit.to_string(), row.stem());
+        PaperRow { object, scene, fit, printed: None, found, published, stands, why: None }
+    }
+
     /// Whether a figure is not the printed one, to two percent.
     pub fn differs(&self) -> bool {
         let far = |(printed, found): (&f64, &Option<f64>)| {

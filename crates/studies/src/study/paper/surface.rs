@@ -1,13 +1,13 @@
 //! The moduli of a box of one element over those that were asked for.
 
 use super::index::{Column, RowEntry, TableEntry};
-use super::material;
+use super::material::material;
 use super::outcome::{PaperRow, Surface};
 use crate::error::{Error, Result};
 use crate::springs::Springs;
-use crate::study::comparison::fit_each_cell;
+use crate::study::fits::NamedFit;
 use crate::study::moduli::Lattice;
-use crate::study::scene::{NamedFit, load_element};
+use crate::study::scene::load_element;
 use std::path::Path;
 
 /// Steps along each constant.
@@ -35,7 +35,8 @@ pub fn surface(
                 let material = material(element.dimension(), e, nu)?;
                 let of_cells = |points: &[f64], cells: &[usize]| {
                     let missing = || Error::expected("fit", "a fit of single elements", &fit.name);
-                    fit_each_cell(&fit.recipe, &element, &springs, points, cells, material).ok_or_else(missing)?
+                    let method = fit.recipe.kind().cell_method().ok_or_else(missing)?;
+                    method.fit_cells(&element, &springs, points, cells, material)
                 };
                 let lattice = Lattice::of(&element, &size, of_cells)?;
                 found.push(lattice.of_springs().map(|m| [m.young / material.thickness(), m.poisson]));

@@ -1,6 +1,6 @@
 //! The `[gauge]` of a scene: where the strain of a specimen is measured.
 
-use super::Part;
+use super::part::Part;
 use crate::error::{Error, Result};
 use serde::Deserialize;
 
@@ -27,7 +27,7 @@ impl GaugeEntry {
     /// # Errors
     /// The part is not said or said twice, the axis is none, or the cross-section is not positive.
     pub fn check(self) -> Result<Gauge> {
-        let part = Part::said(self.group, self.condition)?;
+        let part = Part::required(self.group, self.condition)?;
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);
         let axis =
             axis.ok_or_else(|| Error::expected("axis", "\"x\", \"y\" or \"z\"", format!("\"{}\"", self.axis)))?;

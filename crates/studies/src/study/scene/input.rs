@@ -1,6 +1,6 @@
 //! Where the mesh of a scene comes from.
 
-use super::{Scene, load_element, load_elements};
+use super::elements::{load_element, load_elements};
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
 use serde::Deserialize;
@@ -131,29 +131,29 @@ impl DiscEntry {
     }
 }
 
-impl Scene {
-    /// Reads or generates the mesh.
+impl MeshInput {
+    /// Reads or generates the mesh of the scene at `scene`.
     ///
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume.
-    pub fn build_mesh(&self) -> Result<Mesh> {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
-        if let Some(file) = &self.mesh.file {
-            let own = load_elements(&self.mesh.elements, folder).map_err(|e| e.placed(|e| self.at("mesh", e)))?;
+    pub fn build(&self, scene: &Path) -> Result<Mesh> {
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        let at = |key: &'static str| move |e: Error| e.placed(|e| e.under(key).in_file(scene));
+        if let Some(file) = &self.file {
+            let own = load_elements(&self.elements, folder).map_err(at("mesh"))?;
             let path = folder.join(file);
-            let gate = self.mesh.quality.as_ref().map(QualityEntry::gate).transpose()?;
+            let gate = self.quality.as_ref().map(QualityEntry::gate).transpose()?;
             let source = MeshSource::read(&path)?;
-            return Mesh::resolve_within(&source, &own, self.mesh.scale, gate).map_err(|e| e.in_file(&path));
+            return Mesh::resolve_within(&source, &own, self.scale, gate).map_err(|e| e.in_file(&path));
         }
-        if let Some(disc) = &self.mesh.disc {
-            return disc.build(self.mesh.scale, folder).map_err(|e| e.placed(|e| self.at("mesh.disc", e)));
+        if let Some(disc) = &self.disc {
+            return disc.build(self.scale, folder).map_err(at("mesh.disc"));
         }
-        let entry = self.mesh.generated.as_ref().expect("a scene has a file, a box or a disc");
-        let in_box = |e: Error| e.placed(|e| self.at("mesh.box", e));
-        let element = load_element(&entry.element, folder).map_err(in_box)?;
-        let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.mesh.scale).collect::<Vec<_>>();
+        let entry = self.generated.as_ref().expect("a scene has a file, a box or a disc");
+        let element = load_element(&entry.element, folder).map_err(at("mesh.box"))?;
+        let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
         let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
-        spec.build().map_err(in_box)
+        spec.build().map_err(at("mesh.box"))
     }
 }

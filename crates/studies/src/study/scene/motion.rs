@@ -1,10 +1,11 @@
 //! The keys of `[motion]`: how a scene moves in time.
 
-use super::Part;
+use super::part::Part;
 use super::value::Varying;
 use crate::dynamics::{Integrator, LEAST_TOLERANCE, Options, Solver};
 use crate::error::{Error, Result};
 use crate::model::Lumping;
+use crate::study::choice::choice;
 use crate::symbolic::{Expr, Scope, parse_rational};
 use serde::Deserialize;
 
@@ -26,8 +27,8 @@ pub struct MotionRecipe {
     pub watch: Option<Part>,
     /// Whether the finite elements move as well.
     pub finite_elements: bool,
-    pub pulls: Vec<Pull>,
-    pub forces: Vec<Push>,
+    pub pulls: Vec<PrescribedMotion>,
+    pub forces: Vec<AppliedForce>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,14 +41,14 @@ pub enum DampingRecipe {
 
 /// A part whose displacement over time is prescribed, m: expressions of t, x, y, z; `None` leaves a direction free.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pull {
+pub struct PrescribedMotion {
     pub part: Part,
     pub displacement: Vec<Option<Expr>>,
 }
 
 /// A force over time, N, on a part: expressions of t.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Push {
+pub struct AppliedForce {
     pub part: Part,
     pub force: Vec<Expr>,
     /// On each point as much, instead of in all.
@@ -115,8 +116,6 @@ struct ForceEntry {
     each: bool,
 }
 
-/// What conjugate gradients leave of the right-hand side.
-const REMAINDER: f64 = 1e-8;
 const MOST_STEPS: f64 = 1e9;
 /// Rows of a motion's table over time.
 const MOST_STATES: f64 = 1e6;
@@ -127,20 +126,10 @@ const SLACK: f64 = 1.0 - 1e-12;
 /// States that are written where the scene does not say.
 const STATES: f64 = 100.0;
 
-/// What an integrator is called in a scene.
-pub fn integrator_name(integrator: Integrator) -> &'static str {
-    match integrator {
-        Integrator::ImplicitEuler => "implicit-euler",
-        Integrator::Bdf2 => "bdf2",
-        Integrator::Newmark { .. } => "newmark",
-        Integrator::SymplecticEuler => "symplectic-euler",
-    }
-}
-
 impl MotionRecipe {
     /// In words.
     pub fn title(&self) -> String {
-        let (step, name) = (self.options.step, integrator_name(self.options.integrator));
+        let (step, name) = (self.options.step, self.options.integrator.name());
         format!("{:?} s in {} steps of {step:?} s by {name}", self.duration, self.steps)
     }
 
@@ -187,7 +176,7 @@ impl MotionEntry {
         }
         let finite_elements = self.finite_elements.unwrap_or(true);
         let damping = self.damping.map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
-        let part = |group, condition, key: String| Part::said(group, condition).map_err(|e| e.under(key));
+        let part = |group, condition, key: String| Part::required(group, condition).map_err(|e| e.under(key));
         let watch = self.watch.map(|w| part(w.group, w.condition, "watch".into())).transpose()?;
         let mut pulls = Vec::new();
         for (i, pull) in self.pull.into_iter().enumerate() {
@@ -199,7 +188,10 @@ impl MotionEntry {
                 if free { Ok(None) } else { read().map(Some) }
             };
             let displacement: Result<Vec<_>> = pull.displacement.into_iter().enumerate().map(component).collect();
-            pulls.push(Pull { part, displacement: displacement.map_err(|e| e.under(format!("pull[{i}]")))? });
+            pulls.push(PrescribedMotion {
+                part,
+                displacement: displacement.map_err(|e| e.under(format!("pull[{i}]")))?,
+            });
         }
         let mut forces = Vec::new();
         for (i, force) in self.force.into_iter().enumerate() {
@@ -207,9 +199,9 @@ impl MotionEntry {
             let component = |(k, value)| expression(value, &["t"]).map_err(|e| e.under(format!("force[{k}]")));
             let components: Result<Vec<_>> = force.force.into_iter().enumerate().map(component).collect();
             let components = components.map_err(|e| e.under(format!("force[{i}]")))?;
-            forces.push(Push { part, force: components, each: force.each });
+            forces.push(AppliedForce { part, force: components, each: force.each });
         }
-        let method = Method {
+        let method = StepEntry {
             integrator: self.integrator.as_deref(),
             iterations: self.iterations,
             tolerance: self.tolerance,
@@ -223,11 +215,7 @@ impl MotionEntry {
             duration,
             steps: steps as usize,
             every,
-            lumping: match self.mass.as_deref().unwrap_or("row-sum") {
-                "row-sum" => Lumping::RowSum,
-                "hrz" => Lumping::Hrz,
-                other => return Err(Error::expected("mass", "\"row-sum\" or \"hrz\"", format!("\"{other}\""))),
-            },
+            lumping: choice("mass", self.mass.as_deref(), Lumping::default(), Lumping::named)?,
             gravity,
             damping: damping.unwrap_or(DampingRecipe::Rayleigh([0.0; 2])),
             watch,
@@ -238,8 +226,8 @@ impl MotionEntry {
     }
 }
 
-/// What says how steps are made.
-struct Method<'a> {
+/// The keys of the method that makes steps.
+struct StepEntry<'a> {
     integrator: Option<&'a str>,
     iterations: Option<usize>,
     tolerance: Option<f64>,
@@ -248,18 +236,13 @@ struct Method<'a> {
     remainder: Option<f64>,
 }
 
-impl Method<'_> {
+impl StepEntry<'_> {
     fn check(&self) -> Result<Options> {
-        let all = [Integrator::ImplicitEuler, Integrator::Bdf2, Integrator::newmark(), Integrator::SymplecticEuler];
-        let name = self.integrator.unwrap_or("implicit-euler");
-        let integrator = all.into_iter().find(|i| integrator_name(*i) == name).ok_or_else(|| {
-            let names = all.map(integrator_name).join(", ");
-            Error::expected("integrator", format!("one of {names}"), format!("\"{name}\""))
-        })?;
+        let integrator = choice("integrator", self.integrator, Integrator::default(), Integrator::named)?;
         let foreign = match (integrator, self.linear) {
             (Integrator::SymplecticEuler, _) => Some("integrator = \"symplectic-euler\""),
             (_, true) => Some("linear = true"),
-            _ => None,
+            (_, false) => None,
         };
         let given = [("iterations", self.iterations.is_some()), ("tolerance", self.tolerance.is_some())];
         if let (Some(foreign), Some((key, _))) = (foreign, given.iter().find(|(_, given)| *given)) {
@@ -269,27 +252,20 @@ impl Method<'_> {
             let problem = "belongs to implicit steps, found with integrator = \"symplectic-euler\"";
             return Err(Error::at("solver", problem));
         }
-        let solver = match self.solver.unwrap_or("factor") {
-            "factor" if self.remainder.is_some() => {
+        let mut solver = choice("solver", self.solver, Solver::default(), Solver::named)?;
+        match (&mut solver, self.remainder) {
+            (Solver::Factor, Some(_)) => {
                 return Err(Error::at("remainder", "belongs to solver = \"conjugate-gradients\""));
             }
-            "factor" => Solver::Factor,
-            "conjugate-gradients" => {
-                let tolerance = self.remainder.unwrap_or(REMAINDER);
-                if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
-                    return Err(Error::expected(
-                        "remainder",
-                        "a share from 1e-15 to below 1",
-                        format!("{tolerance:?}"),
-                    ));
+            (Solver::ConjugateGradients { tolerance }, Some(remainder)) => {
+                if !(LEAST_TOLERANCE..1.0).contains(&remainder) {
+                    let found = format!("{remainder:?}");
+                    return Err(Error::expected("remainder", "a share from 1e-15 to below 1", found));
                 }
-                Solver::ConjugateGradients { tolerance }
+                *tolerance = remainder;
             }
-            other => {
-                let expected = "\"factor\" or \"conjugate-gradients\"";
-                return Err(Error::expected("solver", expected, format!("\"{other}\"")));
-            }
-        };
+            (Solver::Factor | Solver::ConjugateGradients { .. }, None) => {}
+        }
         let options = Options { integrator, solver, linear: self.linear, ..Options::default() };
         let iterations = self.iterations.unwrap_or(options.iterations);
         let tolerance = self.tolerance.unwrap_or(options.tolerance);

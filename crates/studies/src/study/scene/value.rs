@@ -14,7 +14,7 @@ pub enum Varying {
 
 /// One direction of a prescribed displacement: a number of metres, or `"free"`.
 #[derive(Debug, Clone, Copy)]
-pub struct Given(pub Option<f64>);
+pub struct PrescribedComponent(pub Option<f64>);
 
 /// A number of Pa, or a text with a unit.
 #[derive(Debug, Clone, Copy)]
@@ -49,12 +49,12 @@ impl<T> Visitor<'_> for NumberOrText<T> {
     }
 }
 
-impl<'de> Deserialize<'de> for Given {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Given, D::Error> {
+impl<'de> Deserialize<'de> for PrescribedComponent {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PrescribedComponent, D::Error> {
         deserializer.deserialize_any(NumberOrText {
             expected: "a finite number of metres or \"free\"",
-            number: |v| v.is_finite().then_some(Given(Some(v))),
-            text: |v| if v == "free" { Ok(Given(None)) } else { Err(None) },
+            number: |v| v.is_finite().then_some(PrescribedComponent(Some(v))),
+            text: |v| if v == "free" { Ok(PrescribedComponent(None)) } else { Err(None) },
         })
     }
 }

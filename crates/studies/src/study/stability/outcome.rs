@@ -70,22 +70,26 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// The names, in the order of the variants.
+    pub const NAMES: [&'static str; 6] = ["accurate", "input-limited", "dependent", "refused", "told", "LOST"];
+
     pub fn name(&self) -> &'static str {
-        match self {
-            Verdict::Accurate => "accurate",
-            Verdict::InputLimited => "input-limited",
-            Verdict::Dependent => "dependent",
-            Verdict::Refused(_) => "refused",
-            Verdict::Told(_) => "told",
-            Verdict::Lost => "LOST",
-        }
+        let place = match self {
+            Verdict::Accurate => 0,
+            Verdict::InputLimited => 1,
+            Verdict::Dependent => 2,
+            Verdict::Refused(_) => 3,
+            Verdict::Told(_) => 4,
+            Verdict::Lost => 5,
+        };
+        Verdict::NAMES[place]
     }
 
-    /// The reason or what is told; empty where the name says all.
+    /// The reason or the remark; empty where the name says all.
     pub fn words(&self) -> &str {
         match self {
             Verdict::Refused(words) | Verdict::Told(words) => words,
-            _ => "",
+            Verdict::Accurate | Verdict::InputLimited | Verdict::Dependent | Verdict::Lost => "",
         }
     }
 }

@@ -6,9 +6,11 @@ use crate::dynamics::largest_square;
 use crate::error::{Error, Result};
 use crate::model::{Lumping, lumped_masses};
 use crate::solve::Standing;
+use crate::study::fits::NamedFit;
 use crate::study::outcome::{FitOutcome, Outcome};
-use crate::study::run::{Progress, run};
-use crate::study::scene::{Recipe, Scene};
+use crate::study::progress::{Event, Progress};
+use crate::study::run::run;
+use crate::study::scene::{Output, Scene};
 use std::time::Instant;
 
 const RATIOS: [f64; 8] = [-0.9, -0.5, 0.0, 0.3, 0.45, 0.49, 0.499, 0.499999];
@@ -26,26 +28,23 @@ const DENSITY: f64 = 1000.0;
 /// The scene itself does not run, has a law, or no fit of single cells.
 pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOutcome> {
     let start = Instant::now();
-    let mut plain = scene.clone();
-    (plain.motion, plain.gauge, plain.output) = (None, None, Default::default());
-    if plain.law().is_some() {
+    if scene.law().is_some() {
         let expected = "a scene at small deformation, whose answers know no unit";
         return Err(scene.at("material.law", Error::new(format!("expected {expected}, found a law"))));
     }
-    let alone = |recipe: &Recipe| matches!(recipe, Recipe::Stiffness(_) | Recipe::Published(_));
-    let fits = scene.fits.iter().cloned().zip(scene.entry_of.iter().copied());
-    (plain.fits, plain.entry_of) = fits.filter(|(fit, _)| alone(&fit.recipe)).unzip();
-    if plain.fits.is_empty() {
+    let fits: Vec<NamedFit> =
+        scene.fits().iter().filter(|fit| fit.recipe.kind().cell_method().is_some()).cloned().collect();
+    if fits.is_empty() {
         return Err(scene.at("fit", Error::new("expected a fit of single cells, found none")));
     }
-    let base = run(&plain, &mut |_, _, _| {})?;
+    let plain = scene.clone().with_fits(fits).with_output(Output::default()).without_motion().without_gauge();
+    let base = run(&plain, &mut |_| {})?;
     let mut cases: Vec<(Family, String, Scene, bool)> = Vec::new();
     for factor in STIFFER {
         cases.push((Family::Young, format!("E times {factor:e}"), plain.of_material(factor, None), true));
     }
     for factor in LONGER.into_iter().filter(|_| !plain.is_in_metres()) {
-        let mut other = plain.clone();
-        other.mesh.scale *= factor;
+        let other = plain.clone().with_lengths_times(factor);
         cases.push((Family::Size, format!("lengths times {factor:e}"), other, true));
     }
     for nu in RATIOS {
@@ -54,9 +53,9 @@ pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOu
     let mut rows: Vec<StabilityRow> = Vec::new();
     let total = cases.len();
     for (done, (family, case, other, same)) in cases.iter().enumerate() {
-        progress(case, done, total);
+        progress(Event::stage(case, done, total));
         let subject = &base.scene;
-        match run(other, &mut |_, _, _| {}) {
+        match run(other, &mut |_| {}) {
             Ok(outcome) => {
                 for (fit, known) in outcome.fits.iter().zip(&base.fits) {
                     let row = |verdict| StabilityRow::new(subject, *family, case, &fit.fit.name, verdict);

@@ -4,7 +4,7 @@ use super::outcome::Family;
 use crate::element::{Cell, Element};
 use crate::error::Result;
 use crate::material::{Material, Plane};
-use crate::study::comparison::random_shapes;
+use crate::study::shapes::random_shapes;
 use nalgebra::{Rotation3, Vector3};
 
 const SEED: u64 = 8;

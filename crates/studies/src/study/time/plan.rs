@@ -2,14 +2,14 @@
 
 use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
-use super::outcome::Outcome;
-use super::run::Progress;
-use super::scene::{MotionRecipe, Part, Pull, Push, Scene};
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
 use crate::material::{Energy, Material};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
+use crate::study::outcome::Outcome;
+use crate::study::progress::Progress;
+use crate::study::scene::{AppliedForce, MotionRecipe, Part, PrescribedMotion, Scene};
 use crate::symbolic::{Expr, Program};
 
 /// Bytes of displacements that are kept until they are written or compared.
@@ -18,19 +18,19 @@ const MOST_BYTES: f64 = 4e9;
 const TRIALS: usize = 100_000;
 
 /// The motion and the vibrations that a scene asks for.
-pub struct Course {
+pub struct TimePlan {
     /// What `[[fix]]` holds.
     support: Support,
     motion: Option<Planned>,
 }
 
-impl Course {
+impl TimePlan {
     /// # Errors
     /// A part of the mesh is empty or unknown, a list has the wrong length, what moves is held, or a point that moves has no mass.
-    pub fn plan(scene: &Scene, mesh: &Mesh, material: Material, support: &Support) -> Result<Course> {
+    pub fn of(scene: &Scene, mesh: &Mesh, material: Material, support: &Support) -> Result<TimePlan> {
         let at = |e: Error| e.placed(|e| scene.at("motion", e));
         let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
-        Ok(Course { support: support.clone(), motion: scene.motion.as_ref().map(plan).transpose()? })
+        Ok(TimePlan { support: support.clone(), motion: scene.motion().map(plan).transpose()? })
     }
 
     /// Moves the finite elements and the networks of `outcome`, and finds their frequencies, where that is asked for.
@@ -44,7 +44,7 @@ impl Course {
         outcome: &mut Outcome,
         progress: &mut Progress,
     ) -> Result<()> {
-        if scene.output.frequencies > 0 {
+        if scene.output().frequencies > 0 {
             let found = natural_frequencies(scene, &self.support, outcome, progress);
             outcome.frequencies = found.map_err(|e| scene.at("output.frequencies", e))?;
         }
@@ -61,7 +61,7 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
     if !(recipe.gravity.is_empty() || recipe.gravity.len() == d) {
         return Err(entries("gravity", d, recipe.gravity.len()));
     }
-    let kept = if scene.output.vtu { scene.fits.len() + 1 } else { 1 };
+    let kept = if scene.output().vtu { scene.fits().len() + 1 } else { 1 };
     let (state, written) = ((8 * mesh.points.len() * kept) as f64, recipe.written());
     if state * written.len() as f64 > MOST_BYTES {
         let expected = format!("at most {:.0} states, which fill {MOST_BYTES:e} bytes", MOST_BYTES / state);
@@ -74,14 +74,15 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
         masses: lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), recipe.lumping),
         watched: Vec::new(),
         written,
-        draws: scene.output.vtu,
+        draws: scene.output().vtu,
     };
-    let mut pulled_by: Vec<Option<usize>> = vec![None; mesh.points.len()];
+    let mut prescribed_by: Vec<Option<usize>> = vec![None; mesh.points.len()];
     for (i, pull) in recipe.pulls.iter().enumerate() {
-        pulled(&mut planned, mesh, fixed, i, pull, &mut pulled_by).map_err(|e| e.under(format!("pull[{i}]")))?;
+        add_prescribed_motion(&mut planned, mesh, fixed, i, pull, &mut prescribed_by)
+            .map_err(|e| e.under(format!("pull[{i}]")))?;
     }
     for (i, push) in recipe.forces.iter().enumerate() {
-        pushed(&mut planned, mesh, push).map_err(|e| e.under(format!("force[{i}]")))?;
+        add_force(&mut planned, mesh, push).map_err(|e| e.under(format!("force[{i}]")))?;
     }
     if let Some(part) = &recipe.watch {
         planned.watched = points(mesh, part).map_err(|e| e.under("watch"))?;
@@ -107,13 +108,13 @@ fn points(mesh: &Mesh, part: &Part) -> Result<Vec<usize>> {
 }
 
 /// Adds one `[[motion.pull]]`, the one numbered `index`.
-fn pulled(
+fn add_prescribed_motion(
     planned: &mut Planned,
     mesh: &Mesh,
     fixed: &Support,
     index: usize,
-    pull: &Pull,
-    pulled_by: &mut [Option<usize>],
+    pull: &PrescribedMotion,
+    prescribed_by: &mut [Option<usize>],
 ) -> Result<()> {
     let d = mesh.dimension;
     if pull.displacement.len() != d {
@@ -142,7 +143,7 @@ fn pulled(
                 }
                 return Err(moves("[[fix]] holds"));
             }
-            if let Some(other) = pulled_by[dof].replace(index) {
+            if let Some(other) = prescribed_by[dof].replace(index) {
                 return Err(moves(&format!("motion.pull[{other}] moves")));
             }
             let curve = match &shared {
@@ -167,7 +168,7 @@ fn pulled(
 }
 
 /// Adds one `[[motion.force]]`.
-fn pushed(planned: &mut Planned, mesh: &Mesh, push: &Push) -> Result<()> {
+fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<()> {
     let d = mesh.dimension;
     if push.force.len() != d {
         return Err(entries("force", d, push.force.len()));

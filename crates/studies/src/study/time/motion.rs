@@ -1,16 +1,14 @@
 //! The finite elements and the networks of a scene in motion.
 
-use super::outcome::Outcome;
 use super::raised::{RELEASE, Raised};
-use super::run::Progress;
-use super::scene::{DampingRecipe, MotionRecipe};
-use crate::dynamics::{
-    Account, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation,
-};
+use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation};
 use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, LinearElastic, Network, Support, finite_elements};
+use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
+use crate::study::progress::{Event, Progress};
+use crate::study::scene::{DampingRecipe, MotionRecipe};
 use std::time::Instant;
 
 /// A displacement of so many times the body's size is none.
@@ -30,70 +28,6 @@ pub struct Planned {
     pub written: Vec<usize>,
     /// Whether the states are wanted after the motion.
     pub draws: bool,
-}
-
-/// The motion of a scene's models.
-#[derive(Debug, Clone)]
-pub struct MotionOutcome {
-    pub recipe: MotionRecipe,
-    /// How many points are watched.
-    pub watched: usize,
-    /// The finite elements, if they move, then the networks.
-    pub models: Vec<ModelMotion>,
-}
-
-/// How one model moved.
-#[derive(Debug, Clone)]
-pub struct ModelMotion {
-    /// Of the fit, or "finite elements".
-    pub name: String,
-    /// Its place among the fits; `None` for the finite elements.
-    pub fit: Option<usize>,
-    pub steps: usize,
-    /// For the steps, without what is written.
-    pub seconds: f64,
-    pub ending: MotionEnding,
-    /// Steps whose equations were not solved to the tolerance.
-    pub unsolved: usize,
-    /// Of a network that releases energy, how fast the fastest motion grows at rest, 1/s.
-    pub growth: Option<f64>,
-    pub records: Vec<Record>,
-    /// Displacements at the records, `[points · dimension]`, m, where they are drawn.
-    pub states: Vec<Vec<f64>>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub enum MotionEnding {
-    Complete,
-    /// The model had no response any more, as with a cell turned inside out.
-    NoResponse,
-    /// Numbers grew beyond all bounds.
-    RanAway,
-    /// No step could be made, and why.
-    Refused(String),
-}
-
-/// A state that is written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Record {
-    pub account: Account,
-    /// Mean displacement of the watched points, m; empty where none are.
-    pub watched: Vec<f64>,
-    /// Root mean square distance from the finite elements, in percent of their largest displacement in the whole motion.
-    pub error: Option<f64>,
-}
-
-impl ModelMotion {
-    pub fn steps_per_second(&self) -> f64 {
-        self.steps as f64 / self.seconds
-    }
-
-    /// Mean and largest error over the records.
-    pub fn error(&self) -> Option<[f64; 2]> {
-        let errors: Option<Vec<f64>> = self.records.iter().map(|record| record.error).collect();
-        let errors = errors.filter(|errors| !errors.is_empty())?;
-        Some([errors.iter().sum::<f64>() / errors.len() as f64, errors.iter().copied().fold(0.0, f64::max)])
-    }
 }
 
 /// Moves the finite elements, if they are to be, and every network of `outcome`; `energy` is that of the material's law.
@@ -136,7 +70,7 @@ pub fn move_models(
     for (i, fit) in outcome.fits.iter().enumerate() {
         let growth = growth(&fit.network, mesh, planned)?;
         if growth.is_some() {
-            progress(&indefinite(&fit.fit.name, &fit.network), 0, 0);
+            progress(Event::Note(&indefinite(&fit.fit.name, &fit.network)));
         }
         let damping = planned.damping(Some(&fit.network), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
@@ -220,7 +154,7 @@ impl Run<'_> {
         let stage = format!("motion of {name}{}", if growth.is_some() { ", indefinite" } else { "" });
         let mut states = Vec::new();
         for &until in &planned.written {
-            progress(&stage, made.steps, planned.recipe.steps);
+            progress(Event::stage(&stage, made.steps, planned.recipe.steps));
             let start = Instant::now();
             while made.steps < until && made.ending == MotionEnding::Complete {
                 match simulation.step().outcome {

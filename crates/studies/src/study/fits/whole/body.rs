@@ -1,19 +1,19 @@
-//! Whole-object fits of a scene: what they are to meet, and what came out.
+//! The body that whole-object fits of a scene are fitted to.
 
-use super::cases::Case;
-use super::checkpoint::{Controls, Fingerprint, Saved};
-use super::outcome::{FittedLoad, WholeOutcome};
-use super::run::Progress;
-use super::scene::{Judge, Named, NamedFit, Sharing, Start, WholeRecipe};
+use super::outcome::WholeOutcome;
+use super::recipe::{LoadSelection, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::model::{Entries, Network, Support, finite_elements, unheld_bodies};
 use crate::solve::{Factor, Newton, System, lowest_modes};
+use crate::study::body::Case;
+use crate::study::checkpoint::{Controls, Fingerprint, Saved};
+use crate::study::progress::{Event, Progress};
 use crate::whole::{
-    Displacements, Errors, Frequencies, NodalLoad, Object, Residual, Snapshot, Target, Unknowns, Validation, Wanted,
-    WholeFit, fit_whole, made_loads, random_loads,
+    Displacements, Frequencies, NodalLoad, Object, Residual, Snapshot, Target, Unknowns, Validation, Wanted, fit_whole,
+    made_loads, random_loads,
 };
 use std::sync::OnceLock;
 
@@ -26,15 +26,15 @@ pub struct WholeBody<'a> {
     material: Material,
     /// What `[[fix]]` holds.
     support: &'a Support,
-    pub(super) cases: &'a [Case],
+    pub(in crate::study) cases: &'a [Case],
     /// Of the finite elements, one per case; `None` where the load was not reached.
-    pub(super) displacements: Vec<Option<&'a Vec<f64>>>,
+    pub(in crate::study) displacements: Vec<Option<&'a Vec<f64>>>,
     /// At large deformation.
-    pub(super) newton: Option<Newton>,
+    pub(in crate::study) newton: Option<Newton>,
     /// `[points]`, kg.
     pub masses: Option<&'a [f64]>,
     /// The finite elements with what `[[fix]]` holds, where loads were solved with it.
-    pub(super) solved: Option<&'a (System, Factor)>,
+    pub(in crate::study) solved: Option<&'a (System, Factor)>,
     controls: &'a Controls,
     entries: OnceLock<Entries>,
     held: OnceLock<(System, Factor)>,
@@ -52,7 +52,7 @@ impl<'a> WholeBody<'a> {
         self.entries.get_or_init(|| finite_elements(self.mesh, self.material.moduli()))
     }
 
-    fn targets(&self, key: &str, named: &Named, make: impl Fn() -> Vec<NodalLoad>) -> Result<Vec<Target>> {
+    fn targets(&self, key: &str, named: &LoadSelection, make: impl Fn() -> Vec<NodalLoad>) -> Result<Vec<Target>> {
         let mut targets = Vec::new();
         for name in &named.names {
             let mut cases = self.cases.iter().zip(&self.displacements);
@@ -86,7 +86,7 @@ impl<'a> WholeBody<'a> {
     ///
     /// # Errors
     /// A body can move as a whole, or some motion meets no stiffness.
-    pub(super) fn held(&self, key: &str) -> Result<&(System, Factor)> {
+    pub(in crate::study) fn held(&self, key: &str) -> Result<&(System, Factor)> {
         if let Some(known) = self.solved.or(self.held.get()) {
             return Ok(known);
         }
@@ -116,9 +116,9 @@ impl<'a> WholeBody<'a> {
         let thickness = self.material.thickness();
         let trained = self.targets("loads", &recipe.loads, || made_loads(self.mesh, self.support, thickness))?;
         let validation = match &recipe.validation {
-            Judge::Given => Validation::None,
-            Judge::LeaveOneOut => Validation::LeaveOneOut,
-            Judge::Loads(named) => Validation::Loads(self.targets("validate", named, || {
+            ValidationRecipe::None => Validation::None,
+            ValidationRecipe::LeaveOneOut => Validation::LeaveOneOut,
+            ValidationRecipe::Loads(named) => Validation::Loads(self.targets("validate", named, || {
                 random_loads(self.mesh, self.support, thickness, RANDOM, recipe.seed)
             })?),
         };
@@ -128,18 +128,18 @@ impl<'a> WholeBody<'a> {
     }
 
     /// Fits the constants of `network`, which was assembled from `fits`.
-    pub(super) fn fit(
+    pub(in crate::study) fn fit(
         &self,
-        named: &NamedFit,
+        (name, springs): (&str, Option<&[String]>),
         recipe: &WholeRecipe,
         fits: &[CellFits],
         network: &Network,
         progress: &mut Progress,
     ) -> Result<(Network, WholeOutcome)> {
         let wanted = self.wanted(recipe)?;
-        let newton = format!("{:?}", self.newton);
-        let fingerprint = Fingerprint::of(named, &self.mesh.points, network, &wanted, &newton);
-        let (mut saved, snapshot) = Saved::open(self.controls, named, fingerprint)?;
+        let settings = format!("{recipe:?} {springs:?} {:?}", self.newton);
+        let fingerprint = Fingerprint::of(&settings, &self.mesh.points, network, &wanted);
+        let (mut saved, snapshot) = Saved::open(self.controls, name, fingerprint)?;
         let unknowns = match recipe.unknowns {
             Sharing::Spring => Unknowns::per_spring(network),
             Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
@@ -156,48 +156,26 @@ impl<'a> WholeBody<'a> {
                 object = object.scaled(factor);
             }
         }
+        if let Some(snapshot) = &snapshot {
+            let (unknowns, stages) = (object.unknowns().count(), recipe.settings.regularizations.len());
+            snapshot.check(unknowns, stages).map_err(|e| saved.blame(e))?;
+        }
         let mut kept = Ok(());
         let stages = recipe.settings.regularizations.len();
         let mut watch = |snapshot: Option<&Snapshot>| {
-            progress(&named.name, snapshot.map_or(0, |snapshot| snapshot.stage), stages);
+            progress(Event::stage(name, snapshot.map_or(0, |snapshot| snapshot.stage), stages));
             let ends = self.controls.cancelled();
             if let (Some(snapshot), Ok(())) = (snapshot, &kept) {
                 kept = saved.keep(snapshot, ends || snapshot.stage == stages);
             }
             !ends
         };
-        let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch);
-        let found = found.map_err(|e| saved.blame(e))?;
+        let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch)?;
         if let Err(e) = kept {
             // What was found is worth more than what it would go on from.
-            progress(&format!("{}: the checkpoint is not the last state: {e}", named.name), 0, 0);
+            progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
         }
         let outcome = WholeOutcome::of(recipe, &wanted, &found);
         Ok((found.network, outcome))
-    }
-}
-
-impl WholeOutcome {
-    fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit) -> WholeOutcome {
-        let errors = |targets: &[Target], [before, after]: &[Errors; 2]| {
-            let name = targets.iter().map(|target| target.name.clone());
-            let before = before.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
-            let after = after.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
-            name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
-        };
-        WholeOutcome {
-            loads: recipe.loads.words(),
-            validated: recipe.validation.words(),
-            regularization: found.regularization,
-            fitted: errors(&wanted.trained, &found.trained),
-            judged: errors(wanted.validation.loads(), &found.validated),
-            frequencies: found.trained.clone().map(|errors| errors.frequencies),
-            change: found.change,
-            range: found.range,
-            limited: found.limited,
-            steps: found.steps,
-            stands: found.stands,
-            cancelled: found.cancelled,
-        }
     }
 }

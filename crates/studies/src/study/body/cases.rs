@@ -1,51 +1,15 @@
 //! The loads of a scene on its mesh.
 
-use super::metrics::{DisplacementError, displacement_error};
-use super::outcome::MeasuredLoad;
-use super::scene::{MeasuredEntry, Scene};
+use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Material;
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
+use crate::study::scene::{MeasuredEntry, Scene};
 use std::path::Path;
 
-/// A load on this mesh: what is held, and the nodal forces.
-pub struct Case {
-    pub name: String,
-    pub support: Support,
-    pub forces: Vec<f64>,
-    /// Displacements that were measured under it, `[points · dimension]`, m, where known.
-    pub measured: Option<Field>,
-}
-
-impl Case {
-    /// How far displacements are from those measured under the load, at the points that were measured, or else from those of the
-    /// finite elements.
-    pub fn error(&self, fem: &[f64], found: &[f64], dimension: usize) -> Option<DisplacementError> {
-        let Some(field) = &self.measured else { return displacement_error(fem, found, dimension) };
-        let (mut wanted, mut own) = (Vec::new(), Vec::new());
-        for (measured, u) in field.displacements.chunks_exact(dimension).zip(found.chunks_exact(dimension)) {
-            if measured.iter().any(Option::is_some) {
-                wanted.extend(measured.iter().map(|m| m.unwrap_or(0.0)));
-                own.extend(measured.iter().zip(u).map(|(m, u)| m.map_or(0.0, |_| *u)));
-            }
-        }
-        displacement_error(&wanted, &own, dimension)
-    }
-}
-
-/// What was measured, and how far the finite elements are from it.
-pub fn measured_loads(cases: &[Case], fem: &[Vec<f64>], dimension: usize) -> Vec<MeasuredLoad> {
-    let of = |(case, u): (&Case, &Vec<f64>)| {
-        let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
-        let points = case.measured.as_ref()?.displacements.chunks_exact(dimension).filter(known).count();
-        Some(MeasuredLoad { name: case.name.clone(), points, error: case.error(u, u, dimension) })
-    };
-    cases.iter().zip(fem).filter_map(of).collect()
-}
-
 fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Field> {
-    let folder = scene.path.parent().unwrap_or(Path::new(""));
+    let folder = scene.path().parent().unwrap_or(Path::new(""));
     Field::read_named(&folder.join(&entry.file), mesh, entry.scale, entry.array.as_deref())
 }
 
@@ -53,7 +17,7 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
 fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
-    for (i, (part, axes)) in scene.supports.iter().enumerate() {
+    for (i, (part, axes)) in scene.supports().iter().enumerate() {
         let at = |e| scene.at(&format!("fix[{i}]"), e);
         let points = part.selection(d).and_then(|s| s.points(mesh)).map_err(at)?;
         if points.is_empty() {
@@ -77,7 +41,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
     let d = mesh.dimension;
     let fixed = held(scene, mesh)?;
     let mut cases = Vec::new();
-    for (i, load) in scene.loads.iter().enumerate() {
+    for (i, load) in scene.loads().iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);
         let (key, entries) = match &load.action {
             Action::Traction(v) => ("traction", v.len()),
@@ -94,13 +58,13 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
             return Err(at(Error::expected(format!("{key}[{i}]"), "an expression of x and y in a plane mesh", "z")));
         }
         let selection: Selection = load.part.selection(d).map_err(at)?;
-        let forces = nodal_forces(mesh, &selection, &load.action, material.thickness()).map_err(|e| match e.key() {
-            Some("load") => at(Error::new(e.problem())),
-            _ => at(e),
-        })?;
+        let points = selection.points(mesh).map_err(at)?;
+        // The part is known: any other error is about the load.
+        let forces = nodal_forces(mesh, &selection, &load.action, material.thickness());
+        let forces = forces.map_err(|e| at(Error::new(e.problem())))?;
         let mut support = fixed.clone();
         if let Action::Displacement(given) = &load.action {
-            for p in selection.points(mesh).map_err(at)? {
+            for p in points {
                 for (k, u) in given.iter().enumerate().filter(|(_, u)| u.is_some()) {
                     support.prescribed[p * d + k] = *u;
                 }
@@ -114,7 +78,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
                 "{} rigid {motions} left to the body of {} points at {place:?} m under load \"{}\"",
                 body.motions, body.points, load.name
             );
-            return Err(Error::expected("fix", expected, found).of_kind(ErrorKind::Infeasible).in_file(&scene.path));
+            return Err(Error::expected("fix", expected, found).of_kind(ErrorKind::Infeasible).in_file(scene.path()));
         }
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
         let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;

@@ -1,27 +1,16 @@
 //! Natural frequencies of the finite elements and the networks of a scene, side by side.
 
-use super::outcome::Outcome;
 use super::raised::{RELEASE, Raised};
-use super::run::Progress;
-use super::scene::Scene;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Entries, Lumping, Support, finite_elements, lumped_masses, unheld_bodies};
 use crate::solve::{System, lowest_modes};
+use crate::study::outcome::{FrequencyOutcome, Outcome};
+use crate::study::progress::{Event, Progress};
+use crate::study::scene::Scene;
 
 /// Share of the largest ω² by which all are raised where some motion meets no stiffness.
 const SHIFT: f64 = 1e-4;
-
-/// The lowest natural frequencies of one model, with masses lumped at its points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrequencyOutcome {
-    /// Of the fit, or "finite elements".
-    pub name: String,
-    /// Motions without stiffness that are left out: those of rigid bodies that `[[fix]]` leaves free.
-    pub rigid: usize,
-    /// Hz, ascending; or why there are none.
-    pub found: std::result::Result<Vec<f64>, String>,
-}
 
 /// Of the finite elements and of each network, with what `[[fix]]` holds. Masses are row sums, or where these are not positive
 /// those of HRZ, unless the scene's motion says which.
@@ -36,21 +25,21 @@ pub fn natural_frequencies(
 ) -> Result<Vec<FrequencyOutcome>> {
     let (mesh, material) = (&outcome.mesh, outcome.material);
     let lumped = |lumping| lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), lumping);
-    let masses = match &scene.motion {
+    let masses = match scene.motion() {
         Some(motion) => lumped(motion.lumping),
         None => {
             let sums = lumped(Lumping::RowSum);
             if sums.iter().all(|m| *m > 0.0) { sums } else { lumped(Lumping::Hrz) }
         }
     };
-    let count = scene.output.frequencies;
+    let count = scene.output().frequencies;
     let rigid: usize = unheld_bodies(mesh, support).iter().map(|body| body.motions).sum();
     let free = support.prescribed.iter().filter(|u| u.is_none()).count().saturating_sub(rigid);
     if count > free {
         return Err(Error::new(format!("expected at most {free}, the motions that deform, found {count}")));
     }
     let total = outcome.fits.len() + 1;
-    progress("frequencies", 0, total);
+    progress(Event::stage("frequencies", 0, total));
     let vibrations = Vibrations { mesh, support, masses: &masses, rigid, count };
     let of = |name: &str, stiffness: &Entries| {
         let found = vibrations.of(stiffness).map_err(|e| e.problem().to_string());
@@ -58,7 +47,7 @@ pub fn natural_frequencies(
     };
     let mut all = vec![of("finite elements", &finite_elements(mesh, material.moduli()))];
     for (done, fit) in outcome.fits.iter().enumerate() {
-        progress("frequencies", done + 1, total);
+        progress(Event::stage("frequencies", done + 1, total));
         all.push(of(&fit.fit.name, &fit.network.stiffness(&mesh.points)));
     }
     Ok(all)

@@ -1,13 +1,14 @@
 //! The loads of a scene at large deformation: Newton's method on both models.
 
-use super::cases::Case;
-use super::outcome::{FitOutcome, Followed, LoadOutcome};
-use super::run::Progress;
+use super::case::Case;
 use crate::error::{Error, Result};
 use crate::material::{Energy, State};
 use crate::mesh::Mesh;
+use crate::model::Network;
 use crate::model::{Body, Elastic, displaced};
 use crate::solve::{Ending, Equilibrium, Newton};
+use crate::study::outcome::{Followed, LoadOutcome};
+use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
 /// The finite element solutions of a scene whose material has a law.
@@ -32,7 +33,7 @@ impl LargeBody {
 
     /// # Errors
     /// The cells do not fill their space, or the equations do not fit into memory. A load that is not reached is no error.
-    pub(super) fn solve(
+    pub fn solve(
         mesh: &Mesh,
         state: State,
         energy: Energy,
@@ -46,7 +47,7 @@ impl LargeBody {
         }
         let mut body = LargeBody { newton, ..LargeBody::at_rest(energy, state) };
         for (done, case) in cases.iter().enumerate() {
-            progress("finite elements", done, cases.len());
+            progress(Event::stage("finite elements", done, cases.len()));
             let start = Instant::now();
             let model = Body { mesh, energy: &body.energy, state };
             let found = newton.solve(&model, &mesh.points, &case.support, &case.forces)?;
@@ -55,12 +56,12 @@ impl LargeBody {
             body.displacements.push(found.displacement);
             body.paths.push((case.name.clone(), found.path));
         }
-        progress("finite elements", cases.len(), cases.len());
+        progress(Event::stage("finite elements", cases.len(), cases.len()));
         Ok(body)
     }
 
     /// The displacements of each load, where it was reached.
-    pub(super) fn complete(&self) -> impl Iterator<Item = Option<&Vec<f64>>> {
+    pub fn complete(&self) -> impl Iterator<Item = Option<&Vec<f64>>> {
         let reached = |(u, f): (_, &Followed)| (f.ending == Ending::Converged).then_some(u);
         self.displacements.iter().zip(&self.followed).map(reached)
     }
@@ -79,14 +80,15 @@ impl LargeBody {
         Ok(states)
     }
 
-    /// Solves every load with the network of `fit` and writes the errors into it.
+    /// Solves every load with the network.
     ///
     /// # Errors
     /// The equations do not fit into memory.
-    pub(super) fn compare(&self, mesh: &Mesh, cases: &[Case], fit: &mut FitOutcome) -> Result<()> {
+    pub fn compare(&self, mesh: &Mesh, cases: &[Case], network: &Network) -> Result<Vec<LoadOutcome>> {
+        let mut loads = Vec::new();
         for (i, case) in cases.iter().enumerate() {
             let start = Instant::now();
-            let model: &dyn Elastic = &fit.network;
+            let model: &dyn Elastic = network;
             let found = self.newton.solve(model, &mesh.points, &case.support, &case.forces)?;
             let seconds_lem = start.elapsed().as_secs_f64();
             let followed = Followed::of(&found, &Body { mesh, energy: &self.energy, state: self.state });
@@ -94,17 +96,17 @@ impl LargeBody {
             let displacement = complete(&followed).then_some(found.displacement);
             let known = case.measured.is_some() || complete(&self.followed[i]);
             let compared = displacement.as_ref().filter(|_| known);
-            fit.loads.push(LoadOutcome {
+            loads.push(LoadOutcome {
                 name: case.name.clone(),
                 error: compared.and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,
                 followed: Some(followed),
-                gauged: None,
+                gauge: None,
             });
         }
-        Ok(())
+        Ok(loads)
     }
 }
 

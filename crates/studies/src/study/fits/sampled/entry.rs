@@ -1,17 +1,24 @@
 //! The keys of a `[[fit]]` whose objective is "sampled".
 
-use super::recipe::{ForceRecipe, SampledRecipe};
+use super::force::ForceRecipe;
+use super::recipe::SampledRecipe;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::fit::{Family, Norm, SampledFit, Sampling, Source, Weights};
+use crate::fit::{Family, Norm, Source, Weights};
 use crate::springs::Law;
+use crate::study::choice::choice;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What only a sampled fit has.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// The keys.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct SampledEntry {
+    pub weight: Option<String>,
+    pub higher: Option<f64>,
+    pub tied: bool,
+    pub nonnegative: bool,
     pub force: Option<toml::Value>,
     pub norm: Option<String>,
     pub huber: Option<f64>,
@@ -36,7 +43,7 @@ pub struct ShapesEntry {
 }
 
 impl SampledEntry {
-    /// The recipe, with what is not said as [`SampledRecipe::default`] has it.
+    /// The recipe, with the values of [`SampledRecipe::default`] for keys that are not given.
     ///
     /// # Errors
     /// A key has a wrong value; a file of gradients cannot be read.
@@ -46,18 +53,15 @@ impl SampledEntry {
         if let Some(force) = &self.force {
             recipe.force = force_of(force)?;
         }
-        recipe.fit.norm = match (self.norm.as_deref(), self.huber) {
-            (None | Some("2"), None) => Norm::Two,
-            (Some("1"), None) => Norm::One,
-            (Some("max"), None) => Norm::Max,
-            (Some("huber"), share) => Norm::Huber { share: share.unwrap_or(0.5) },
-            (None | Some("1" | "2" | "max"), Some(_)) => {
-                return Err(Error::at("huber", "belongs to the norm \"huber\""));
+        recipe.fit.norm = choice("norm", self.norm.as_deref(), Norm::Two, Norm::named)?;
+        if let Some(share) = self.huber {
+            match recipe.fit.norm {
+                Norm::Huber { .. } => recipe.fit.norm = Norm::Huber { share },
+                Norm::Two | Norm::One | Norm::Max => {
+                    return Err(Error::at("huber", "belongs to the norm \"huber\""));
+                }
             }
-            (Some(other), _) => {
-                return Err(Error::expected("norm", "one of \"2\", \"1\", \"max\", \"huber\"", format!("\"{other}\"")));
-            }
-        };
+        }
         for (name, value) in self.bounds.unwrap_or_default() {
             let range = pair(&value).ok_or_else(|| {
                 Error::expected(format!("bounds.{name}"), "two numbers such as [0, 10]", shown(&value))
@@ -71,17 +75,10 @@ impl SampledEntry {
         if let Some(shapes) = self.shapes {
             shapes.check(folder, &mut recipe).map_err(|e| e.placed(|e| e.under("shapes")))?;
         }
+        recipe.fit.weights = choice("weight", self.weight.as_deref(), Weights::Relative, Weights::named)?;
+        recipe.fit.higher = self.higher.unwrap_or(recipe.fit.higher);
+        (recipe.fit.tied, recipe.fit.nonnegative) = (self.tied, self.nonnegative);
         Ok(recipe)
-    }
-}
-
-impl Default for SampledRecipe {
-    /// Shapes around rest and in all directions, each counting for its relative error.
-    fn default() -> SampledRecipe {
-        let families = vec![Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
-        let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
-        let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
-        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None }
     }
 }
 
@@ -96,7 +93,8 @@ impl ShapesEntry {
         }
         let sampling = &mut recipe.fit.sampling;
         if let Some(names) = &self.families {
-            sampling.source = Source::Families(names.iter().map(|name| Family::named(name)).collect::<Result<_>>()?);
+            let families: Result<Vec<Family>> = names.iter().map(|name| Family::named(name)).collect();
+            sampling.source = Source::Families(families.map_err(|e| e.under("families"))?);
         }
         if let Some(path) = &self.gradients {
             let path = folder.join(path);

@@ -1,13 +1,14 @@
 //! The loads of a scene at small deformation: one linear system for each model and support.
 
-use super::cases::Case;
-use super::outcome::{FitOutcome, LoadOutcome};
-use super::run::Progress;
+use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::mesh::Mesh;
+use crate::model::Network;
 use crate::model::{Support, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
+use crate::study::outcome::LoadOutcome;
+use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
 /// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
@@ -20,6 +21,16 @@ pub struct LinearBody {
     /// The equations and factor of each load, as an index into these: loads of equal support share them.
     systems: Vec<(System, Factor)>,
     system_of: Vec<usize>,
+}
+
+/// The answers of a network to all loads.
+#[derive(Default)]
+pub struct NetworkAnswers {
+    pub loads: Vec<LoadOutcome>,
+    /// With the support of the first load; `None` without loads.
+    pub stability: Option<Stability>,
+    /// Points that move in the softest motion, at least half as far as the one that moves most.
+    pub loose_points: Vec<usize>,
 }
 
 /// Loads with the same support have the same equations: for each load, the first load it agrees with.
@@ -41,7 +52,7 @@ impl LinearBody {
         let assembly = start.elapsed().as_secs_f64();
         let mut setup = Vec::new();
         for (i, (case, first)) in cases.iter().zip(shared(cases)).enumerate() {
-            progress("finite elements", i, cases.len());
+            progress(Event::stage("finite elements", i, cases.len()));
             if first == i {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?;
@@ -49,8 +60,8 @@ impl LinearBody {
                     let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
                     let bending = "; surfaces and curves resist no bending, so hold their points across them";
                     let embedded = mesh.cell_dimension() < mesh.dimension;
-                    let problem = format!("{why}{}", if embedded { bending } else { "" });
-                    Error::at("mesh", problem).of_kind(ErrorKind::Infeasible)
+                    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" }))
+                        .of_kind(ErrorKind::Infeasible)
                 })?;
                 body.systems.push((system, factor));
                 body.system_of.push(body.systems.len() - 1);
@@ -72,7 +83,7 @@ impl LinearBody {
             body.seconds.push(assembly + setup[body.system_of[i]] + start.elapsed().as_secs_f64());
             body.displacements.push(u);
         }
-        progress("finite elements", cases.len(), cases.len());
+        progress(Event::stage("finite elements", cases.len(), cases.len()));
         Ok(body)
     }
 
@@ -82,13 +93,17 @@ impl LinearBody {
         Some(&self.systems[self.system_of[load]])
     }
 
-    /// Solves every load with the network of `fit` and writes the errors into it.
-    pub fn compare(&self, mesh: &Mesh, cases: &[Case], fit: &mut FitOutcome) -> Result<()> {
+    /// Solves every load with the network.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn compare(&self, mesh: &Mesh, cases: &[Case], network: &Network) -> Result<NetworkAnswers> {
+        let mut answers = NetworkAnswers::default();
         if cases.is_empty() {
-            return Ok(());
+            return Ok(answers);
         }
         let start = Instant::now();
-        let entries = fit.network.stiffness(&mesh.points);
+        let entries = network.stiffness(&mesh.points);
         let assembly = start.elapsed().as_secs_f64();
         let mut systems: Vec<(System, Option<Factor>, Stability, f64)> = Vec::new();
         for (i, case) in cases.iter().enumerate() {
@@ -109,21 +124,21 @@ impl LinearBody {
             let seconds_lem = assembly + setup + start.elapsed().as_secs_f64();
             let displacement = solution.filter(|(u, residual)| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
             let displacement = displacement.map(|(u, _)| u);
-            fit.loads.push(LoadOutcome {
+            answers.loads.push(LoadOutcome {
                 name: case.name.clone(),
                 error: displacement.as_ref().and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,
                 followed: None,
-                gauged: None,
+                gauge: None,
             });
         }
         if let Some((system, _, stability, _)) = systems.into_iter().next() {
-            fit.loose_points = moving_points(&system, &stability, mesh.dimension);
-            fit.stability = Some(stability);
+            answers.loose_points = moving_points(&system, &stability, mesh.dimension);
+            answers.stability = Some(stability);
         }
-        Ok(())
+        Ok(answers)
     }
 }
 

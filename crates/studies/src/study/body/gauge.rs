@@ -1,22 +1,13 @@
 //! Young's modulus and Poisson's ratio as a tension test gives them: from the strain of the straight part of a specimen.
 
-use super::cases::Case;
-use super::outcome::Outcome;
-use super::scene::{Gauge, LoadCase, Part, Scene};
+use super::case::Case;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::Action;
 use crate::solve::Ending;
+use crate::study::outcome::{Followed, GaugeResult, LoadOutcome, Reading};
+use crate::study::scene::{Gauge, LoadCase, Part, Scene};
 use nalgebra::{DMatrix, DVector};
-
-/// What a gauge says of a model under a load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
-    /// `F/(A ε)`: the load's resultant along the axis, the cross-section, the strain along the axis; Pa.
-    pub young: f64,
-    /// `−ε_across/ε`, the mean of the directions across.
-    pub poisson: f64,
-}
 
 /// The points of a scene's gauge, and the force in it under each load.
 pub struct Gauged {
@@ -63,23 +54,24 @@ impl Gauged {
             let pulls = matches!(load.action, Action::Traction(_) | Action::Force(_));
             Some(along(gauge.axis)).filter(|f| pulls && aside(case) && largest > 0.0 && f.abs() > 1e-6 * largest)
         };
-        Ok(Gauged { forces: cases.iter().zip(&scene.loads).map(force).collect(), ..gauged })
+        Ok(Gauged { forces: cases.iter().zip(scene.loads()).map(force).collect(), ..gauged })
     }
 
-    /// Writes what it says of the finite elements and of each network, under each load that was reached.
-    pub fn measure(&self, outcome: &mut Outcome) {
-        let mesh = &outcome.mesh;
-        let reached = |load: usize| outcome.followed.get(load).is_none_or(|f| f.ending == Ending::Converged);
-        let of_body = |(load, u): (usize, &Vec<f64>)| self.read(mesh, load, u).filter(|_| reached(load));
-        outcome.gauged = outcome.fem.iter().enumerate().map(of_body).collect();
-        for fit in &mut outcome.fits {
-            for (i, load) in fit.loads.iter_mut().enumerate() {
-                load.gauged = load.displacement.as_ref().and_then(|u| self.read(mesh, i, u));
-            }
+    /// The reading of the finite elements with displacements `u` under the load of this number.
+    pub fn body(&self, mesh: &Mesh, load: usize, u: &[f64], followed: Option<&Followed>) -> GaugeResult {
+        let reached = followed.is_none_or(|followed| followed.ending == Ending::Converged);
+        let reading = self.read(mesh, load, u).filter(|_| reached);
+        reading.map_or(GaugeResult::NoReading, GaugeResult::Reading)
+    }
+
+    /// Writes the readings of a network into the answers to its loads.
+    pub fn measure(&self, mesh: &Mesh, loads: &mut [LoadOutcome]) {
+        for (i, load) in loads.iter_mut().enumerate() {
+            load.gauge = load.displacement.as_ref().and_then(|u| self.read(mesh, i, u));
         }
     }
 
-    /// What it says of displacements under the load of that number; `None` where the load does not pull along the axis.
+    /// The reading for displacements `u` under the load of this number; `None` where the load does not pull along the axis.
     fn read(&self, mesh: &Mesh, load: usize, u: &[f64]) -> Option<Reading> {
         let force = self.forces[load]?;
         let strain = self.strain(mesh, u)?;

@@ -1,0 +1,13 @@
+//! The body of a scene under its loads: cases, gauges, and the finite element solutions.
+
+mod case;
+mod cases;
+mod gauge;
+mod large;
+mod linear;
+
+pub use case::Case;
+pub use cases::load_cases;
+pub use gauge::Gauged;
+pub use large::LargeBody;
+pub use linear::LinearBody;

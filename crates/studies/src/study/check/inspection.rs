@@ -1,0 +1,45 @@
+//! The properties of an element file together.
+
+use super::property::{Mark, Property};
+use super::{shape, space, springs};
+use crate::element::Element;
+use crate::error::Error;
+use std::sync::Arc;
+
+/// The properties of one file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inspection {
+    /// The file, or the name of a shipped element.
+    pub file: String,
+    pub title: String,
+    pub properties: Vec<Property>,
+}
+
+impl Inspection {
+    pub fn passes(&self) -> bool {
+        self.properties.iter().all(|p| p.mark != Mark::Fails)
+    }
+}
+
+/// Checks what `Element::load` made of the file: the element, or why it is none.
+pub fn inspect(file: &str, loaded: Result<Element, Error>) -> Inspection {
+    let element = match loaded {
+        Ok(element) => Arc::new(element),
+        Err(error) => {
+            let properties = vec![Property::new("loads", false, error.to_string())];
+            return Inspection { file: file.into(), title: String::new(), properties };
+        }
+    };
+    let springs: usize = element.springs.iter().map(|g| g.nodes.len().max(1)).sum();
+    let finding = format!(
+        "{} nodes, {springs} springs in {} groups, {} quadrature points",
+        element.nodes(),
+        element.springs.len(),
+        element.tabulation.points()
+    );
+    let mut properties = vec![Property::new("loads", true, finding)];
+    properties.extend(space::properties(&element));
+    properties.extend(shape::properties(&element));
+    properties.extend(springs::properties(&element));
+    Inspection { file: file.into(), title: element.title.clone(), properties }
+}

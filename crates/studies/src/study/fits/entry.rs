@@ -1,0 +1,235 @@
+//! A `[[fit]]` as it is written.
+
+use super::keys::keys;
+use super::named::NamedFit;
+use super::published::PublishedEntry;
+use super::recipe::Recipe;
+use super::sampled::SampledEntry;
+use super::stiffness::StiffnessEntry;
+use super::whole::{WholeEntry, starts};
+use crate::error::{Error, Result};
+use crate::file;
+use crate::fit::Objective;
+use crate::fit::published::Method;
+use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+use toml::{Spanned, Table, Value};
+
+/// A `[[fit]]`: what all fits have, and the keys of its kind, which its objective tells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitEntry {
+    pub name: Option<String>,
+    pub objective: String,
+    /// The spring groups; all that are not optional, if absent.
+    pub springs: Option<Vec<String>>,
+    keys: Table,
+    /// Where the values are in the text of the file, in bytes.
+    places: BTreeMap<String, usize>,
+}
+
+/// The keys that all fits have.
+const COMMON: [&str; 3] = ["name", "objective", "springs"];
+
+/// The kind of a fit, by its objective.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Stiffness,
+    Sampled,
+    Whole,
+    Published,
+}
+
+crate::named!(Kind {
+    "stiffness" => Stiffness,
+    "sampled" => Sampled,
+    "whole" => Whole,
+    "published" => Published,
+});
+
+impl Kind {
+    /// # Errors
+    /// There is no such objective.
+    fn of(objective: &str) -> Result<Kind> {
+        let unknown = || {
+            let expected = Kind::all().flat_map(Kind::objectives).collect::<Vec<_>>().join(", ");
+            Error::expected("objective", format!("one of {expected}"), format!("\"{objective}\""))
+        };
+        Kind::all().find(|kind| kind.objectives().contains(&objective)).ok_or_else(unknown)
+    }
+
+    fn objectives(self) -> Vec<&'static str> {
+        match self {
+            Kind::Stiffness => Objective::NAMES.to_vec(),
+            Kind::Sampled => vec!["sampled"],
+            Kind::Whole => vec!["whole"],
+            Kind::Published => Method::ALL.map(Method::name).to_vec(),
+        }
+    }
+
+    /// The names of its keys.
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Kind::Stiffness => keys::<StiffnessEntry>(),
+            Kind::Sampled => keys::<SampledEntry>(),
+            Kind::Whole => keys::<WholeEntry>(),
+            Kind::Published => keys::<PublishedEntry>(),
+        }
+    }
+
+    fn unknown(self, key: &str) -> Error {
+        let known: Vec<String> = COMMON.iter().chain(self.keys()).map(|known| format!("\"{known}\"")).collect();
+        Error::at(key, format!("unknown field \"{key}\", expected one of {}", known.join(", ")))
+    }
+}
+
+impl FitEntry {
+    pub fn new(objective: impl Into<String>) -> FitEntry {
+        let (name, springs, keys, places) = Default::default();
+        FitEntry { name, objective: objective.into(), springs, keys, places }
+    }
+
+    /// With this value of a key, if there is one.
+    pub fn with(mut self, key: &str, value: Option<impl Into<Value>>) -> FitEntry {
+        if let Some(value) = value {
+            self.keys.insert(key.into(), value.into());
+        }
+        self
+    }
+
+    pub fn with_springs(self, springs: Option<Vec<String>>) -> FitEntry {
+        FitEntry { springs, ..self }
+    }
+
+    /// That each key is known and of the right type; `text` is that of the file.
+    ///
+    /// # Errors
+    /// Names the key and its line.
+    pub fn check(&self, text: &str) -> Result<()> {
+        // An unknown objective is reported where its kind is needed.
+        let Ok(kind) = Kind::of(&self.objective) else { return Ok(()) };
+        let known = match self.keys.keys().find(|key| owners(key).next().is_none()) {
+            Some(key) => Err(kind.unknown(key)),
+            None => Ok(()),
+        };
+        let typed = known.and_then(|()| match kind {
+            Kind::Stiffness => self.typed::<StiffnessEntry>().map(|_| ()),
+            Kind::Sampled => self.typed::<SampledEntry>().map(|_| ()),
+            Kind::Whole => self.whole().map(|_| ()),
+            Kind::Published => Ok(()),
+        });
+        let line = |key: &str| {
+            let top = key.split(['.', '[']).next().unwrap_or(key);
+            self.places.get(top).map(|place| text[..*place].matches('\n').count() + 1)
+        };
+        typed.map_err(|e| match e.key().and_then(line) {
+            Some(line) => e.on_line(line),
+            None => e,
+        })
+    }
+
+    /// The fits that it describes, one for each start of a whole-object fit; files are relative to `folder`.
+    ///
+    /// # Errors
+    /// A key has a wrong value, or belongs to another objective.
+    pub fn fits(&self, folder: &Path) -> Result<Vec<NamedFit>> {
+        let kind = Kind::of(&self.objective)?;
+        self.check_owners(kind)?;
+        let recipe = match kind {
+            Kind::Stiffness => Recipe::Stiffness(self.typed::<StiffnessEntry>()?.fit(&self.objective)?),
+            Kind::Sampled => Recipe::Sampled(Box::new(self.typed::<SampledEntry>()?.check(folder)?)),
+            Kind::Published => Recipe::Published(Method::of_name(&self.objective)?),
+            Kind::Whole => {
+                let (entry, sampled) = self.whole()?;
+                let recipes = entry.recipes(|| sampled.clone().check(folder))?;
+                let several = recipes.len() > 1;
+                let fit = |(start, recipe): (String, _)| {
+                    let own = |name: &String| if several { format!("{name} from {start}") } else { name.clone() };
+                    self.fit(self.name.as_ref().map(own), Recipe::Whole(Box::new(recipe)))
+                };
+                return Ok(recipes.into_iter().map(fit).collect());
+            }
+        };
+        Ok(vec![self.fit(self.name.clone(), recipe)])
+    }
+
+    fn fit(&self, name: Option<String>, recipe: Recipe) -> NamedFit {
+        let name = name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
+        NamedFit::named(name, recipe, self.springs.clone())
+    }
+
+    /// The keys that `T` has.
+    fn typed<T: DeserializeOwned>(&self) -> Result<T> {
+        let own = self.keys.iter().filter(|(key, _)| keys::<T>().contains(&key.as_str()));
+        file::parse_table(own.map(|(key, value)| (key.clone(), value.clone())).collect())
+    }
+
+    /// The keys of a whole-object fit, and those of the sampled fit that it may start from.
+    fn whole(&self) -> Result<(WholeEntry, SampledEntry)> {
+        let sampled = if self.starts_from_sampled() { self.typed()? } else { SampledEntry::default() };
+        Ok((self.typed()?, sampled))
+    }
+
+    fn starts_from_sampled(&self) -> bool {
+        starts(self.keys.get("start")).is_ok_and(|starts| starts.contains(&"sampled".into()))
+    }
+
+    /// That no key belongs to another objective.
+    fn check_owners(&self, kind: Kind) -> Result<()> {
+        let objective = &self.objective;
+        let own = |key: &str| {
+            let from_sampled = kind == Kind::Whole && self.starts_from_sampled();
+            // Whole-object fits share constants by "unknowns".
+            kind.keys().contains(&key) || from_sampled && key != "tied" && Kind::Sampled.keys().contains(&key)
+        };
+        let Some(key) = self.keys.keys().find(|key| !own(key)) else { return Ok(()) };
+        let objectives: Vec<&str> = owners(key).flat_map(Kind::objectives).collect();
+        Err(match objectives[..] {
+            [] => kind.unknown(key),
+            [owner] => Error::at(key, format!("belongs to the objective \"{owner}\", found with \"{objective}\"")),
+            [..] => Error::at(key, format!("does not go with the objective \"{objective}\"")),
+        })
+    }
+}
+
+/// The kinds that have the key.
+fn owners(key: &str) -> impl Iterator<Item = Kind> {
+    Kind::all().filter(move |kind| kind.keys().contains(&key))
+}
+
+impl<'de> Deserialize<'de> for FitEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<FitEntry, D::Error> {
+        deserializer.deserialize_map(EntryVisitor)
+    }
+}
+
+struct EntryVisitor;
+
+impl<'de> Visitor<'de> for EntryVisitor {
+    type Value = FitEntry;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a table of keys")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<FitEntry, A::Error> {
+        let mut entry = FitEntry::new("");
+        let mut objective = None;
+        while let Some(key) = map.next_key::<String>()? {
+            match key.as_str() {
+                "name" => entry.name = Some(map.next_value()?),
+                "objective" => objective = Some(map.next_value()?),
+                "springs" => entry.springs = Some(map.next_value()?),
+                _ => {
+                    let value: Spanned<Value> = map.next_value()?;
+                    entry.places.insert(key.clone(), value.span().start);
+                    entry.keys.insert(key, value.into_inner());
+                }
+            }
+        }
+        entry.objective = objective.ok_or_else(|| A::Error::missing_field("objective"))?;
+        Ok(entry)
+    }
+}

@@ -1,0 +1,31 @@
+//! Kinds of fits, one folder each.
+
+mod entry;
+mod facts;
+mod fitted;
+mod keys;
+mod kind;
+mod named;
+mod published;
+mod recipe;
+mod record;
+mod sampled;
+mod spread;
+mod stiffness;
+mod whole;
+
+pub use entry::FitEntry;
+pub use facts::SceneFacts;
+pub use fitted::{Fitted, FittedKind};
+pub use kind::{CellMethod, FitKind, Reference, Task};
+pub use named::NamedFit;
+pub use published::{PublishedOutcome, PublishedOutcomeRecord, PublishedRecord};
+pub use recipe::Recipe;
+pub use record::KindRecord;
+pub use sampled::{ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, law_at};
+pub use spread::SpreadRecord;
+pub use stiffness::{StiffnessOutcome, StiffnessRecord};
+pub use whole::{
+    FittedLoad, LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord,
+    WholeRecipe, WholeRecord,
+};

@@ -1,0 +1,72 @@
+//! Fits by published formulas.
+
+use super::outcome::PublishedOutcome;
+use super::record::PublishedRecord;
+use crate::element::{Element, SpringKind};
+use crate::error::{Error, Result};
+use crate::fit::CellFits;
+use crate::fit::published::{self, Method, Unmet};
+use crate::material::Material;
+use crate::springs::Springs;
+use crate::study::fits::fitted::{Fitted, FittedKind};
+use crate::study::fits::kind::{CellMethod, FitKind, Task};
+use crate::study::fits::record::KindRecord;
+use crate::study::progress::Progress;
+use std::time::Instant;
+
+impl FitKind for Method {
+    fn title(&self, groups: &str) -> String {
+        self.name().to_string() + groups
+    }
+
+    fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
+        let start = Instant::now();
+        let of_method = |e: Error| e.placed(|e| Error::at("objective", e.to_string()));
+        let mut unmet: Option<Unmet> = None;
+        for block in &task.mesh.blocks {
+            let named = task.springs.iter().flat_map(|springs| block.element.select_groups(Some(springs)));
+            if let Some(group) = named.flatten().find(|group| group.kind != SpringKind::Length) {
+                let expected = format!("groups of length springs, beside which {} adds its own", self.name());
+                return Err(Error::expected("springs", expected, format!("\"{}\"", group.name)));
+            }
+            let (points, cells) = (&task.mesh.points, &block.connectivity);
+            let own = published::unmet(*self, &block.element, points, cells, task.material).map_err(of_method)?;
+            unmet = Some(unmet.unwrap_or_default().and(own));
+        }
+        let cells = task.each_block(progress, |block, springs, _| {
+            let (points, cells) = (&task.mesh.points, &block.connectivity);
+            published::fit(*self, &block.element, springs, points, cells, task.material).map_err(of_method)
+        })?;
+        let kind = FittedKind::Published(PublishedOutcome { method: *self, unmet: unmet.unwrap_or_default() });
+        Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
+    }
+
+    fn cell_method(&self) -> Option<&dyn CellMethod> {
+        Some(self)
+    }
+
+    fn record(&self) -> KindRecord {
+        KindRecord::Published(PublishedRecord::of(*self))
+    }
+}
+
+impl CellMethod for Method {
+    fn name(&self) -> String {
+        Method::name(*self).into()
+    }
+
+    fn solver(&self) -> &'static str {
+        "formula"
+    }
+
+    fn fit_cells(
+        &self,
+        element: &Element,
+        springs: &Springs,
+        points: &[f64],
+        cells: &[usize],
+        material: Material,
+    ) -> Result<CellFits> {
+        published::fit(*self, element, springs, points, cells, material)
+    }
+}

@@ -1,0 +1,33 @@
+//! The assumptions of a published formula that a body does not meet.
+
+use crate::fit::published::{Method, Unmet};
+use crate::material::Material;
+
+/// The assumptions of the method that are not met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PublishedOutcome {
+    pub method: Method,
+    pub unmet: Unmet,
+}
+
+impl PublishedOutcome {
+    /// What a reader must know of it. The body has `cells` cells of `material`.
+    pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
+        let unmet = &self.unmet;
+        let ratio = unmet.poisson.map(|assumed| {
+            format!("is made for Poisson's ratio {assumed:.4}, the material's is {}", material.poisson())
+        });
+        let shape = (unmet.cells > 0).then(|| {
+            let percent = 100.0 * unmet.deviation;
+            format!(
+                "{} of {cells} elements do not have the shape it is made for (lengths off by up to {percent:.0} %)",
+                unmet.cells
+            )
+        });
+        let lacking: Vec<String> = ratio.into_iter().chain(shape).collect();
+        if lacking.is_empty() {
+            return Vec::new();
+        }
+        vec![format!("{} {}", self.method.name(), lacking.join("; "))]
+    }
+}

@@ -1,0 +1,54 @@
+//! How the springs of a fit are found. The only file that tells kinds of fits apart.
+
+use super::kind::FitKind;
+use super::sampled::SampledRecipe;
+use super::whole::WholeRecipe;
+use crate::fit::Fit;
+use crate::fit::published::Method;
+
+/// How the springs of a fit are found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Recipe {
+    /// From the stiffness at rest.
+    Stiffness(Fit),
+    /// From the forces at sampled shapes.
+    Sampled(Box<SampledRecipe>),
+    /// From the displacements of the whole object.
+    Whole(Box<WholeRecipe>),
+    /// By a published formula.
+    Published(Method),
+}
+
+impl Recipe {
+    pub fn kind(&self) -> &dyn FitKind {
+        match self {
+            Recipe::Stiffness(fit) => fit,
+            Recipe::Sampled(recipe) => &**recipe,
+            Recipe::Whole(recipe) => &**recipe,
+            Recipe::Published(method) => method,
+        }
+    }
+
+    /// The sampled fit that it is or starts from.
+    pub fn sampled(&self) -> Option<&SampledRecipe> {
+        self.kind().sampled()
+    }
+
+    pub fn stiffness(&self) -> Option<Fit> {
+        if let Recipe::Stiffness(fit) = self { Some(*fit) } else { None }
+    }
+
+    pub fn whole(&self) -> Option<&WholeRecipe> {
+        if let Recipe::Whole(recipe) = self { Some(recipe) } else { None }
+    }
+
+    pub fn published(&self) -> Option<Method> {
+        if let Recipe::Published(method) = self { Some(*method) } else { None }
+    }
+
+    /// A name that tells how it is made, such as `modal 0.1 +bulk k>=0`.
+    pub fn name(&self, springs: Option<&[String]>) -> String {
+        let groups: String = springs.unwrap_or_default().iter().map(|group| format!(" +{group}")).collect();
+        self.kind().title(&groups)
+    }
+}

@@ -1,0 +1,17 @@
+//! The settings of a fit, as a report has them.
+
+use super::published::PublishedRecord;
+use super::sampled::SampledRecord;
+use super::stiffness::StiffnessRecord;
+use super::whole::WholeRecord;
+use serde::{Deserialize, Serialize};
+
+/// The settings of a fit by its kind; the key `objective` tells which.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum KindRecord {
+    Sampled(Box<SampledRecord>),
+    Whole(Box<WholeRecord>),
+    Published(PublishedRecord),
+    Stiffness(StiffnessRecord),
+}

@@ -1,0 +1,73 @@
+//! Fits to the forces at sampled shapes.
+
+use super::outcome::SampledOutcome;
+use super::recipe::SampledRecipe;
+use super::record::SampledRecord;
+use crate::error::{Error, Result};
+use crate::fit::{SampledFits, fit_sampled};
+use crate::material::Energy;
+use crate::study::body::LargeBody;
+use crate::study::fits::facts::SceneFacts;
+use crate::study::fits::fitted::{Fitted, FittedKind};
+use crate::study::fits::kind::{FitKind, Task};
+use crate::study::fits::record::KindRecord;
+use crate::study::progress::Progress;
+use std::sync::Arc;
+use std::time::Instant;
+
+impl FitKind for SampledRecipe {
+    fn title(&self, groups: &str) -> String {
+        let mut title = format!("sampled{}{groups}", self.force.name());
+        if self.fit.tied {
+            title += " tied";
+        }
+        if self.fit.nonnegative {
+            title += " k>=0";
+        }
+        title
+    }
+
+    fn check(&self, scene: &SceneFacts) -> Result<()> {
+        SampledRecipe::check(self, scene)
+    }
+
+    fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
+        let start = Instant::now();
+        let found = fit_shapes(self, task, progress)?;
+        let kind = FittedKind::Sampled(SampledOutcome::of(self, &found));
+        let cells = found.into_iter().map(|found| found.fits).collect();
+        Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
+    }
+
+    fn sampled(&self) -> Option<&SampledRecipe> {
+        Some(self)
+    }
+
+    fn record(&self) -> KindRecord {
+        KindRecord::Sampled(Box::new(SampledRecord::of(self)))
+    }
+}
+
+/// The fits of each block of cells.
+///
+/// # Errors
+/// There is no energy, no shape, a law of force without a group, or a spring group is no group of the elements.
+pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) -> Result<Vec<SampledFits>> {
+    let Task { mesh, material, .. } = *task;
+    let own = recipe.law.as_ref().map(|law| Energy::load(law, material)).transpose();
+    let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?;
+    let own = own.map(|energy| LargeBody::at_rest(energy, material.state()));
+    let expected = "the energy whose forces are sampled";
+    let large = own.as_ref().or(task.reference.large).ok_or_else(|| Error::expected("law", expected, "none"))?;
+    let states = Arc::new(large.states(mesh, &recipe.loads)?);
+    let mut known = Vec::new();
+    for block in &mesh.blocks {
+        known.extend(block.element.select_groups(task.springs)?.iter().map(|group| group.name.as_str()));
+    }
+    recipe.force.check_groups(&known)?;
+    task.each_block(progress, |block, springs, progress| {
+        let fit = recipe.resolve(&block.element, springs, &states)?;
+        let (points, cells) = (&mesh.points, &block.connectivity);
+        fit_sampled(&block.element, springs, points, cells, &large.energy, material.state(), &fit, progress)
+    })
+}

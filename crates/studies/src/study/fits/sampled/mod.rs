@@ -1,0 +1,15 @@
+//! Springs from the forces of a hyperelastic element at sampled shapes: `objective = "sampled"`.
+
+mod entry;
+mod fitting;
+mod force;
+mod outcome;
+mod recipe;
+mod record;
+
+pub use entry::{SampledEntry, law_at};
+pub use fitting::fit_shapes;
+pub use force::ForceRecipe;
+pub use outcome::SampledOutcome;
+pub use recipe::SampledRecipe;
+pub use record::{SampledOutcomeRecord, SampledRecord};

@@ -1,0 +1,53 @@
+//! How well a sampled fit meets the forces.
+
+use super::recipe::SampledRecipe;
+use crate::fit::{SampledFits, Spread};
+
+/// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledOutcome {
+    pub shapes: usize,
+    pub trained: Spread,
+    /// `None` where no shapes were held out.
+    pub held_out: Option<Spread>,
+    /// The least share of starts that found the best parameters, where there were several.
+    pub agreeing: Option<f64>,
+    /// Loads of the scene whose shapes were sampled: their errors are not held out.
+    pub loads: Vec<String>,
+}
+
+impl SampledOutcome {
+    /// Of the fits of all blocks of cells.
+    pub(super) fn of(recipe: &SampledRecipe, found: &[SampledFits]) -> SampledOutcome {
+        let spread =
+            |of: fn(&SampledFits) -> &Vec<f64>| Spread::of(&found.iter().flat_map(of).copied().collect::<Vec<f64>>());
+        let apart = found.iter().flat_map(|f| &f.held_out).all(|error| error.is_finite());
+        let held_out = apart.then(|| spread(|f| &f.held_out));
+        SampledOutcome {
+            shapes: recipe.fit.sampling.shapes,
+            trained: spread(|f| &f.trained),
+            held_out,
+            agreeing: found.iter().filter_map(|f| f.agreeing).reduce(f64::min),
+            loads: recipe.loads.clone(),
+        }
+    }
+}
+
+impl SampledOutcome {
+    /// What a reader must know of it.
+    pub fn notes(&self) -> Vec<String> {
+        let loads = (!self.loads.is_empty()).then(|| {
+            format!(
+                "fitted to the shapes of the finite elements under {}: its errors there are not held out",
+                self.loads.join(", ")
+            )
+        });
+        let agreeing = self.agreeing.filter(|share| *share < 1.0).map(|agreeing| {
+            format!(
+                "in the worst element {:.0} % of the starts found the best parameters, the others worse ones",
+                100.0 * agreeing
+            )
+        });
+        loads.into_iter().chain(agreeing).collect()
+    }
+}

@@ -1,0 +1,38 @@
+//! The keys of a `[[fit]]` to the stiffness at rest.
+
+use crate::error::{Error, Result};
+use crate::fit::{Choices, Fit, Objective, Solver, Topology};
+use serde::Deserialize;
+
+/// The keys.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StiffnessEntry {
+    pub weight: Option<String>,
+    pub higher: Option<f64>,
+    pub balance: Option<f64>,
+    pub tied: bool,
+    pub nonnegative: bool,
+    pub solver: Option<String>,
+    /// Of a general solver, as the two that follow.
+    pub iterations: Option<u64>,
+    pub topology: bool,
+    pub sparsity: Option<f64>,
+}
+
+impl StiffnessEntry {
+    /// The fit by the objective of this name.
+    ///
+    /// # Errors
+    /// The objective or the solver is unknown, a number is out of its range, or choices contradict each other.
+    pub fn fit(&self, objective: &str) -> Result<Fit> {
+        let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
+        let objective = Objective::named(objective, choices)?;
+        let topology = self.topology.then(|| Topology { sparsity: self.sparsity.unwrap_or(0.0) });
+        if let (None, Some(_)) = (topology, self.sparsity) {
+            return Err(Error::at("sparsity", "belongs to topology = true"));
+        }
+        let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations, topology)?;
+        Ok(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
+    }
+}

@@ -1,0 +1,77 @@
+//! Fits to the stiffness at rest.
+
+use super::outcome::StiffnessOutcome;
+use super::record::StiffnessRecord;
+use crate::element::Element;
+use crate::error::Result;
+use crate::fit::{CellFits, Fit, Solver, fit_cells};
+use crate::material::Material;
+use crate::springs::Springs;
+use crate::study::fits::fitted::{Fitted, FittedKind};
+use crate::study::fits::kind::{CellMethod, FitKind, Task};
+use crate::study::fits::record::KindRecord;
+use crate::study::progress::Progress;
+use std::time::Instant;
+
+impl FitKind for Fit {
+    fn title(&self, groups: &str) -> String {
+        let mut title = self.objective.title() + groups;
+        if self.solver != Solver::Native {
+            title += &format!(" by {}", self.solver.title());
+        }
+        if self.tied {
+            title += " tied";
+        }
+        if self.nonnegative {
+            title += " k>=0";
+        }
+        title
+    }
+
+    fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
+        let start = Instant::now();
+        let cells = fit_at_rest(self, task, progress)?;
+        let kind = FittedKind::Stiffness(StiffnessOutcome::of(self, &cells));
+        Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
+    }
+
+    fn cell_method(&self) -> Option<&dyn CellMethod> {
+        Some(self)
+    }
+
+    fn record(&self) -> KindRecord {
+        KindRecord::Stiffness(StiffnessRecord::of(self))
+    }
+}
+
+/// The constants of all cells of the body.
+///
+/// # Errors
+/// A spring group is no group of the elements, or the objective does not go with them.
+pub fn fit_at_rest(fit: &Fit, task: &Task, progress: &mut Progress) -> Result<Vec<CellFits>> {
+    let moduli = task.material.moduli();
+    task.each_block(progress, |block, springs, progress| {
+        fit_cells(&block.element, springs, &task.mesh.points, &block.connectivity, moduli, fit, progress)
+    })
+}
+
+impl CellMethod for Fit {
+    fn name(&self) -> String {
+        self.objective.title()
+    }
+
+    fn solver(&self) -> &'static str {
+        self.solver.name()
+    }
+
+    fn fit_cells(
+        &self,
+        element: &Element,
+        springs: &Springs,
+        points: &[f64],
+        cells: &[usize],
+        material: Material,
+    ) -> Result<CellFits> {
+        fit_cells(element, springs, points, cells, material.moduli(), self, &mut |_| {})
+    }
+}

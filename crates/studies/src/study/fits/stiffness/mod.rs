@@ -1,0 +1,11 @@
+//! Springs from the stiffness at rest: `objective = "frobenius"`, `"spectral"` and the others of [`crate::fit::Objective`].
+
+mod entry;
+mod fitting;
+mod outcome;
+mod record;
+
+pub use entry::StiffnessEntry;
+pub use fitting::fit_at_rest;
+pub use outcome::StiffnessOutcome;
+pub use record::StiffnessRecord;

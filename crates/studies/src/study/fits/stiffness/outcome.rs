@@ -1,0 +1,43 @@
+//! What is certified of a fit to the stiffness at rest.
+
+use crate::fit::{CellFits, Fit, Objective, Weight};
+
+/// The certificates of a fit to the stiffness at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StiffnessOutcome {
+    /// Cells whose spectral optimum is not unique.
+    pub ambiguous: usize,
+    /// The largest relative duality gap; `None` if the objective has no certificates.
+    pub gap: Option<f64>,
+    /// The relative error of the energy: ε if `(1 − ε) R ⪯ K ⪯ (1 + ε) R` in every cell with ε < 1.
+    pub energy_error: Option<f64>,
+}
+
+impl StiffnessOutcome {
+    pub(super) fn of(fit: &Fit, cells: &[CellFits]) -> StiffnessOutcome {
+        let certificates = || cells.iter().flat_map(|cells| &cells.certificates);
+        let largest = certificates().map(|c| c.value).reduce(f64::max);
+        let relative = fit.objective == Objective::Spectral(Weight::Relative);
+        StiffnessOutcome {
+            ambiguous: certificates().filter(|c| c.ambiguous).count(),
+            gap: certificates().map(|c| c.gap()).reduce(f64::max),
+            energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
+        }
+    }
+
+    /// What a reader must know of it.
+    pub fn notes(&self) -> Vec<String> {
+        let gap = self.gap.map(|gap| {
+            let mut note = format!("certified, no constants do better by more than {gap:.1e} of the error");
+            if self.ambiguous > 0 {
+                let others = "others do as well: the least Frobenius error decides";
+                note += &format!("; in {} elements {others}", self.ambiguous);
+            }
+            note
+        });
+        let energy = self
+            .energy_error
+            .map(|epsilon| format!("the energy of every deformation is within {:.1} % of the body's", 100.0 * epsilon));
+        gap.into_iter().chain(energy).collect()
+    }
+}

@@ -1,0 +1,43 @@
+//! The settings of a fit to the stiffness at rest, as a report has them.
+
+use crate::fit::{Fit, Objective, Solver};
+use serde::{Deserialize, Serialize};
+
+/// The settings, with defaults resolved; what the objective does not have is null.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StiffnessRecord {
+    pub objective: String,
+    pub weight: Option<String>,
+    /// Scale of the modes beyond constant strain.
+    pub higher: Option<f64>,
+    /// From 0, soft, to 1, stiff.
+    pub balance: Option<f64>,
+    /// One constant per group.
+    pub tied: bool,
+    pub nonnegative: bool,
+    pub solver: String,
+    /// Price of a spring, as a share of the objective at the start.
+    pub sparsity: Option<f64>,
+}
+
+impl StiffnessRecord {
+    pub(super) fn of(fit: &Fit) -> StiffnessRecord {
+        let solver = match (fit.solver, fit.objective, fit.nonnegative) {
+            (Solver::General { .. }, ..) => fit.solver.name(),
+            (Solver::Native, Objective::Frobenius(_), false) => "normal equations",
+            (Solver::Native, Objective::Frobenius(_), true) => "block principal pivoting",
+            (Solver::Native, Objective::Spectral(_), _) => "barrier",
+            (Solver::Native, Objective::Divergence { .. }, _) => "newton",
+        };
+        StiffnessRecord {
+            objective: fit.objective.name().into(),
+            weight: fit.objective.weight().map(|weight| weight.name().into()),
+            higher: fit.objective.higher(),
+            balance: if let Objective::Divergence { balance } = fit.objective { Some(balance) } else { None },
+            tied: fit.tied,
+            nonnegative: fit.nonnegative,
+            solver: solver.into(),
+            sparsity: fit.solver.topology().map(|topology| topology.sparsity),
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The keys of a `[[fit]]` whose objective is "whole".
+
+use super::recipe::{LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
+use crate::error::{Error, Result};
+use crate::fit::{Choices, Fit, Objective};
+use crate::study::choice::choice;
+use crate::study::fits::sampled::SampledRecipe;
+use crate::whole::{Method, Residual, WholeSettings};
+use serde::Deserialize;
+
+const SEED: u64 = 2010;
+
+/// The keys. Those of sampled fits are allowed as well if the fit starts from one.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WholeEntry {
+    /// An objective, "sampled" or "equal", or a list of them.
+    pub start: Option<toml::Value>,
+    /// Of the objective that it starts from, as the two that follow.
+    pub weight: Option<String>,
+    pub higher: Option<f64>,
+    pub balance: Option<f64>,
+    pub loads: Option<Vec<String>>,
+    pub validate: Option<Vec<String>>,
+    pub unknowns: Option<String>,
+    pub residual: Option<String>,
+    pub regularization: Option<f64>,
+    pub range: Option<f64>,
+    pub frequencies: Option<usize>,
+    pub seed: Option<u64>,
+    pub solver: Option<String>,
+    pub iterations: Option<u64>,
+}
+
+impl WholeEntry {
+    /// The recipes, one for each start with the name of the start; `sampled` makes that of a sampled fit.
+    ///
+    /// # Errors
+    /// A value is unknown or out of range, or a load is fitted and validates as well.
+    pub fn recipes(&self, sampled: impl Fn() -> Result<SampledRecipe>) -> Result<Vec<(String, WholeRecipe)>> {
+        let recipe = |name: String| {
+            let start = match name.as_str() {
+                "sampled" => Start::Sampled(Box::new(sampled()?)),
+                "equal" => self.equal()?,
+                objective => self.objective(objective)?,
+            };
+            Ok((name, self.recipe(start)?))
+        };
+        starts(self.start.as_ref())?.into_iter().map(recipe).collect()
+    }
+
+    fn equal(&self) -> Result<Start> {
+        let choices =
+            [("weight", self.weight.is_some()), ("higher", self.higher.is_some()), ("balance", self.balance.is_some())];
+        match choices.iter().find(|(_, given)| *given) {
+            Some((key, _)) => Err(Error::at(*key, "belongs to an objective, found with the start \"equal\"")),
+            None => Ok(Start::Equal),
+        }
+    }
+
+    fn objective(&self, name: &str) -> Result<Start> {
+        if !Objective::NAMES.contains(&name) {
+            let expected = format!("one of {}, sampled, equal", Objective::NAMES.join(", "));
+            return Err(Error::expected("start", expected, format!("\"{name}\"")));
+        }
+        let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
+        Ok(Start::Fit(Fit { nonnegative: true, ..Fit::new(Objective::named(name, choices)?) }))
+    }
+
+    /// The recipe with this start.
+    ///
+    /// # Errors
+    /// A value is unknown or out of range, or a load is fitted and validates as well.
+    fn recipe(&self, start: Start) -> Result<WholeRecipe> {
+        let loads = self.loads.clone().unwrap_or_else(|| vec![MADE.into()]);
+        if loads.is_empty() {
+            return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
+        }
+        for (key, names) in [("loads", Some(&loads)), ("validate", self.validate.as_ref())] {
+            let names = names.map_or(&[][..], |names| names);
+            if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+                return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
+            }
+        }
+        let settings = WholeSettings::default();
+        let mut settings = WholeSettings {
+            iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
+            method: choice("solver", self.solver.as_deref(), settings.method, Method::named)?,
+            residual: choice("residual", self.residual.as_deref(), settings.residual, Residual::named)?,
+            ..settings
+        };
+        settings.range = self.range.unwrap_or(settings.range);
+        if !(settings.range >= 1.0) {
+            return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
+        }
+        if settings.iterations == 0 {
+            return Err(Error::expected("iterations", "a number above 0", 0));
+        }
+        if settings.residual == Residual::Forces && self.frequencies.is_some() {
+            return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
+        }
+        if self.range.is_some() && self.regularization.is_some() {
+            return Err(Error::at(
+                "range",
+                "limits what \"validate\" may choose, found with a regularization that is given",
+            ));
+        }
+        let validation = match (self.validate.clone(), self.regularization) {
+            (Some(_), Some(_)) => {
+                return Err(Error::at("regularization", "is chosen by \"validate\" or given, found both"));
+            }
+            (None, Some(rho)) if !(rho >= 0.0 && rho.is_finite()) => {
+                return Err(Error::expected("regularization", "a number of at least 0", rho));
+            }
+            (None, Some(rho)) => {
+                settings.regularizations.retain(|larger| *larger > rho);
+                settings.regularizations.push(rho);
+                ValidationRecipe::None
+            }
+            (None, None) => ValidationRecipe::Loads(LoadSelection::new(vec![MADE.into()])),
+            (Some(names), None) if names == [LEAVE_ONE_OUT] => ValidationRecipe::LeaveOneOut,
+            (Some(names), None) => {
+                if names.is_empty() {
+                    let expected = "names of loads of the scene, \"made\", or \"leave-one-out\" alone";
+                    return Err(Error::expected("validate", expected, "none"));
+                }
+                if let Some(name) = names.iter().find(|name| *name != MADE && loads.contains(name)) {
+                    return Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\"")));
+                }
+                ValidationRecipe::Loads(LoadSelection::new(names))
+            }
+        };
+        let unknowns = choice("unknowns", self.unknowns.as_deref(), Sharing::default(), Sharing::named)?;
+        Ok(WholeRecipe {
+            start,
+            unknowns,
+            loads: LoadSelection::new(loads),
+            validation,
+            settings,
+            frequencies: self.frequencies.unwrap_or(0),
+            seed: self.seed.unwrap_or(SEED),
+        })
+    }
+}
+
+/// The names of the starts: a name or a list of names, each once.
+///
+/// # Errors
+/// It is neither.
+pub fn starts(value: Option<&toml::Value>) -> Result<Vec<String>> {
+    let Some(value) = value else { return Ok(vec!["offdiag".into()]) };
+    let names: Option<Vec<String>> = match value.as_array() {
+        None => value.as_str().map(|name| vec![name.into()]),
+        Some(list) => list.iter().map(|name| name.as_str().map(String::from)).collect(),
+    };
+    let once = |names: &Vec<String>| !names.is_empty() && (1..names.len()).all(|i| !names[..i].contains(&names[i]));
+    let wrong = || Error::at("start", "expected an objective or \"equal\", or a list of them, each once");
+    names.filter(once).ok_or_else(wrong)
+}
+
+impl Default for WholeRecipe {
+    fn default() -> WholeRecipe {
+        let entry = WholeEntry::default();
+        let start = entry.objective("offdiag").expect("this is an objective");
+        entry.recipe(start).expect("all keys have defaults")
+    }
+}

@@ -1,0 +1,83 @@
+//! Fits to the displacements of the whole object.
+
+use super::recipe::{Start, WholeRecipe};
+use super::record::WholeRecord;
+use crate::error::{Error, Result};
+use crate::fit::{CellFits, Fit, Objective, Weight};
+use crate::model::Network;
+use crate::study::fits::facts::SceneFacts;
+use crate::study::fits::fitted::{Fitted, FittedKind};
+use crate::study::fits::kind::{FitKind, Task};
+use crate::study::fits::record::KindRecord;
+use crate::study::fits::sampled::{SampledRecipe, fit_shapes};
+use crate::study::fits::stiffness::fit_at_rest;
+use crate::study::progress::Progress;
+use crate::whole::raise_idle;
+use std::time::Instant;
+
+impl WholeRecipe {
+    /// The constants that it starts from.
+    fn begin(&self, task: &Task, progress: &mut Progress) -> Result<Vec<CellFits>> {
+        match &self.start {
+            Start::Fit(fit) => fit_at_rest(fit, task, progress),
+            // Its springs are what matters, not their constants.
+            Start::Equal => fit_at_rest(&Fit::new(Objective::Frobenius(Weight::None)), task, progress),
+            Start::Sampled(recipe) => {
+                Ok(fit_shapes(recipe, task, progress)?.into_iter().map(|found| found.fits).collect())
+            }
+        }
+    }
+}
+
+impl FitKind for WholeRecipe {
+    fn title(&self, groups: &str) -> String {
+        format!("whole from {}{groups}", self.start.title())
+    }
+
+    fn check(&self, scene: &SceneFacts) -> Result<()> {
+        if let Some(recipe) = self.sampled() {
+            recipe.check(scene)?;
+        }
+        self.check_in(scene)
+    }
+
+    fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
+        let start = Instant::now();
+        let mut cells = self.begin(task, progress)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        raise_idle(&mut cells);
+        let network = Network::assemble(task.mesh, &cells);
+        let seconds_assembly = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
+        let body = task.reference.whole.ok_or_else(missing)?;
+        let (network, outcome) = body.fit((task.name, task.springs), self, &cells, &network, progress)?;
+        let seconds = seconds + start.elapsed().as_secs_f64();
+        Ok(Fitted { cells: Vec::new(), network, seconds, seconds_assembly, kind: FittedKind::Whole(outcome) })
+    }
+
+    fn sampled(&self) -> Option<&SampledRecipe> {
+        match &self.start {
+            Start::Sampled(recipe) => Some(recipe),
+            Start::Fit(_) | Start::Equal => None,
+        }
+    }
+
+    fn stage(&self, name: &str) -> String {
+        let shapes = self.sampled().map_or(String::new(), SampledRecipe::shapes);
+        let loads = self.loads.words().join(", ");
+        let chosen = match self.validation.words().join(", ") {
+            none if none.is_empty() => String::new(),
+            words => format!(", rho chosen by {words}"),
+        };
+        let start = self.start.title();
+        format!(
+            "fit {name}: start from {start}{shapes}, assemble its network, fit it to displacements under {loads}{chosen}"
+        )
+    }
+
+    fn record(&self) -> KindRecord {
+        KindRecord::Whole(Box::new(WholeRecord::of(self)))
+    }
+}

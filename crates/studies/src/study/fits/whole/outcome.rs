@@ -1,0 +1,94 @@
+//! The loads that a whole-object fit was fitted to, and how it ended.
+
+use super::recipe::WholeRecipe;
+use crate::whole::{Errors, Target, Wanted, WholeFit};
+
+/// What a whole-object fit has seen, and what it did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WholeOutcome {
+    /// The loads that were fitted, and those that chose the regularization.
+    pub loads: Vec<String>,
+    pub validated: Vec<String>,
+    /// `None` where the start was best.
+    pub regularization: Option<f64>,
+    /// The loads of the fit, and those that chose the regularization.
+    pub fitted: Vec<FittedLoad>,
+    pub judged: Vec<FittedLoad>,
+    /// `ω_i/ω̄_i − 1` of the frequencies that were fitted, before and after.
+    pub frequencies: [Vec<f64>; 2],
+    /// The largest factor by which a constant changed.
+    pub change: f64,
+    /// The largest constant of a length spring, as a multiple of the least.
+    pub range: f64,
+    /// Whether a smaller ρ was left because the range would have been too large.
+    pub limited: bool,
+    pub steps: usize,
+    /// Whether the network stands under every load at the start; else it is left as it is.
+    pub stands: bool,
+    /// Whether it was ended before its time.
+    pub cancelled: bool,
+}
+
+/// `‖u_l − ū_l‖/‖ū_l‖` of a load before and after a whole-object fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedLoad {
+    pub name: String,
+    pub before: f64,
+    pub after: f64,
+}
+
+impl WholeOutcome {
+    pub(super) fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit) -> WholeOutcome {
+        let errors = |targets: &[Target], [before, after]: &[Errors; 2]| {
+            let name = targets.iter().map(|target| target.name.clone());
+            let before = before.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
+            let after = after.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
+            name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
+        };
+        WholeOutcome {
+            loads: recipe.loads.words(),
+            validated: recipe.validation.words(),
+            regularization: found.regularization,
+            fitted: errors(&wanted.trained, &found.trained),
+            judged: errors(wanted.validation.loads(), &found.validated),
+            frequencies: found.trained.clone().map(|errors| errors.frequencies),
+            change: found.change,
+            range: found.range,
+            limited: found.limited,
+            steps: found.steps,
+            stands: found.stands,
+            cancelled: found.cancelled,
+        }
+    }
+
+    /// What a reader must know of it.
+    pub fn notes(&self) -> Vec<String> {
+        let validated = match &self.validated[..] {
+            [] => String::new(),
+            loads => format!(", rho chosen by {}", loads.join(", ")),
+        };
+        let done = match self.regularization {
+            Some(rho) => {
+                let (change, range) = (self.change, self.range);
+                format!(
+                    "rho {rho:.0e}, {} steps, constants changed by factors up to {change:.1}, range {range:.0}",
+                    self.steps
+                )
+            }
+            None if !self.stands => "at the start it does not stand under each of them, so it is left as it was".into(),
+            None => format!("none of the rho tried did better than the start, {} steps", self.steps),
+        };
+        let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
+        let [before, after] = [0, 1].map(|i| largest(&self.frequencies[i]));
+        let done = match self.frequencies[0].len() {
+            0 => done,
+            count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
+        };
+        let ended = match (self.cancelled, self.limited) {
+            (true, _) => "; ended before its time",
+            (_, true) => "; a smaller rho goes beyond the range that is allowed",
+            _ => "",
+        };
+        vec![format!("fitted to {}, whose errors are not held out{validated}: {done}{ended}", self.loads.join(", "))]
+    }
+}

@@ -1,0 +1,47 @@
+//! The fit of one recipe to a body.
+
+use super::fits::{NamedFit, Reference, Task};
+use super::outcome::FitOutcome;
+use super::progress::Progress;
+use crate::error::Result;
+use crate::fit::{ElementErrors, Spread, element_errors};
+use crate::material::Material;
+use crate::mesh::Mesh;
+
+/// Fits one objective on every cell and assembles the network; `reference` is needed by sampled and whole-object fits.
+///
+/// # Errors
+/// A spring group is no group of the elements, a law does not go with the groups, or there is nothing to sample.
+pub fn fit_mesh(
+    mesh: &Mesh,
+    material: Material,
+    reference: &Reference,
+    named: &NamedFit,
+    progress: &mut Progress,
+) -> Result<FitOutcome> {
+    // Threads start before the clock does.
+    rayon::broadcast(|_| ());
+    let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
+    let fitted = named.recipe.kind().fit(&task, progress)?;
+    let mut errors = ElementErrors::default();
+    for (block, fit) in mesh.blocks.iter().zip(&fitted.cells) {
+        errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, material.moduli(), fit)?);
+    }
+    let spread = |values: &[f64]| (!fitted.cells.is_empty()).then(|| Spread::of(values));
+    Ok(FitOutcome {
+        fit: named.clone(),
+        seconds: fitted.seconds,
+        seconds_assembly: fitted.seconds_assembly,
+        deficient: fitted.cells.iter().map(|cells| cells.deficient).sum(),
+        unreached: fitted.cells.iter().map(|cells| cells.unreached).sum(),
+        reused: fitted.cells.iter().map(|cells| cells.reused).sum(),
+        frobenius: spread(&errors.frobenius),
+        spectral: spread(&errors.spectral),
+        network: fitted.network,
+        kind: fitted.kind,
+        moduli: None,
+        stability: None,
+        loose_points: Vec::new(),
+        loads: Vec::new(),
+    })
+}

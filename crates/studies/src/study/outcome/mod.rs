@@ -1,0 +1,15 @@
+//! The results of a scene.
+
+mod fit;
+mod frequencies;
+mod gauge;
+mod load;
+mod motion;
+mod scene;
+
+pub use fit::FitOutcome;
+pub use frequencies::FrequencyOutcome;
+pub use gauge::{GaugeResult, Reading};
+pub use load::{BodyLoad, Followed, LoadOutcome, Measured};
+pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record};
+pub use scene::Outcome;

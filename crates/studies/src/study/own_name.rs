@@ -1,0 +1,14 @@
+//! Names that must differ.
+
+use crate::error::{Error, Result};
+
+/// That `name` is not among `others`.
+///
+/// # Errors
+/// It is; the key is `key`.
+pub fn expect_own_name<'a>(key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
+    match others.any(|other| other == name) {
+        true => Err(Error::expected(key, "a name of its own", format!("\"{name}\" again"))),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,12 @@
+//! The material of single elements.
+
+use crate::error::Result;
+use crate::material::Material;
+
+/// Of an element of this dimension, at plane stress in the plane; E in Pa.
+///
+/// # Errors
+/// A constant is out of range.
+pub fn material(dimension: usize, young: f64, poisson: f64) -> Result<Material> {
+    Material::for_body(dimension, young, poisson, None, None)
+}

@@ -1,0 +1,293 @@
+//! A scene, read and checked.
+
+use super::entry::{FixEntry, MaterialEntry, SceneFile};
+use super::gauge::Gauge;
+use super::input::MeshInput;
+use super::load::{LoadCase, LoadEntry};
+use super::motion::MotionRecipe;
+use super::output::Output;
+use super::part::Part;
+use crate::error::{Error, Result};
+use crate::file;
+use crate::material::{Energy, Material};
+use crate::mesh::Mesh;
+use crate::model::{Action, Component};
+use crate::solve::Newton;
+use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
+use crate::study::own_name::expect_own_name;
+use std::path::{Path, PathBuf};
+
+/// A mesh, a material, fits, supports and loads; proved as far as it can be without reading the mesh.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    path: PathBuf,
+    title: String,
+    mesh: MeshInput,
+    material: MaterialEntry,
+    fits: Vec<NamedFit>,
+    supports: Vec<(Part, Option<Vec<usize>>)>,
+    loads: Vec<LoadCase>,
+    newton: Newton,
+    gauge: Option<Gauge>,
+    motion: Option<MotionRecipe>,
+    output: Output,
+}
+
+impl Scene {
+    /// Reads and checks a scene.
+    ///
+    /// # Errors
+    /// Names the file, the key, what was expected and what was found.
+    pub fn load(path: &Path) -> Result<Scene> {
+        Scene::parse(&file::read_text(path)?, path)
+    }
+
+    /// Checks the text of a scene that stands at `path`, from where other files are named.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Scene> {
+        Scene::checked(text, path).map_err(|e| e.in_file(path))
+    }
+
+    fn checked(text: &str, path: &Path) -> Result<Scene> {
+        let entry: SceneFile = file::parse_toml(text)?;
+        for (i, fit) in entry.fit.iter().enumerate() {
+            fit.check(text).map_err(|e| e.under(format!("fit[{i}]")))?;
+        }
+        let mesh = entry.mesh;
+        mesh.check()?;
+        if entry.fit.is_empty() {
+            return Err(Error::expected("fit", "at least one [[fit]]", "none"));
+        }
+        entry.material.check()?;
+        let fits = read_fits(&entry.fit, path.parent().unwrap_or(Path::new("")))?;
+        let fix = |(i, fix): (usize, FixEntry)| fix.check().map_err(|e| e.under(format!("fix[{i}]")));
+        let supports = entry.fix.into_iter().enumerate().map(fix).collect::<Result<_>>()?;
+        let loads = read_loads(entry.load)?;
+        if entry.newton.is_some() && entry.material.law.is_none() {
+            return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
+        }
+        let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
+        let motion = entry.motion.map(|e| e.check().map_err(|e| e.under("motion"))).transpose()?;
+        if motion.is_some() && entry.material.density.is_none() {
+            return Err(Error::expected("material.density", "a number of kg/m³, for [motion] moves masses", "none"));
+        }
+        if entry.output.frequencies > 0 && entry.material.density.is_none() {
+            return Err(Error::expected("output.frequencies", "a density in [material]", "none"));
+        }
+        check_fits(&fits, &entry.material, &loads)?;
+        if let Some(i) = loads.iter().position(|load| RESERVED.contains(&load.name.as_str())) {
+            let expected = format!("a name other than {}", RESERVED.join(", "));
+            return Err(Error::expected(format!("load[{i}].name"), expected, format!("\"{}\"", loads[i].name)));
+        }
+        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Scene {
+            path: path.to_path_buf(),
+            title: entry.title.unwrap_or(stem),
+            mesh,
+            material: entry.material,
+            fits,
+            supports,
+            loads,
+            newton,
+            gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
+            motion,
+            output: entry.output,
+        })
+    }
+
+    /// The file, from where others are named.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The title, or the stem of the file's name.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Where the mesh comes from.
+    pub fn mesh(&self) -> &MeshInput {
+        &self.mesh
+    }
+
+    /// The fits, in the order of the file.
+    pub fn fits(&self) -> &[NamedFit] {
+        &self.fits
+    }
+
+    /// The parts that are held, and in which directions (all if absent).
+    pub fn supports(&self) -> &[(Part, Option<Vec<usize>>)] {
+        &self.supports
+    }
+
+    /// The loads, in the order of the file.
+    pub fn loads(&self) -> &[LoadCase] {
+        &self.loads
+    }
+
+    /// How loads are followed if the material has a law.
+    pub fn newton(&self) -> Newton {
+        self.newton
+    }
+
+    /// Where the modulus and the ratio of a specimen are measured.
+    pub fn gauge(&self) -> Option<&Gauge> {
+        self.gauge.as_ref()
+    }
+
+    /// How the body moves in time.
+    pub fn motion(&self) -> Option<&MotionRecipe> {
+        self.motion.as_ref()
+    }
+
+    /// What is written and worked out beside the table.
+    pub fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// The same scene with other fits in place of its own.
+    pub fn with_fits(self, fits: Vec<NamedFit>) -> Scene {
+        Scene { fits, ..self }
+    }
+
+    /// The same scene with other outputs.
+    pub fn with_output(self, output: Output) -> Scene {
+        Scene { output, ..self }
+    }
+
+    /// The same scene with other settings of Newton's method.
+    pub fn with_newton(self, newton: Newton) -> Scene {
+        Scene { newton, ..self }
+    }
+
+    /// The same scene without loads, and without the gauge that measures under them.
+    pub fn without_loads(self) -> Scene {
+        Scene { loads: Vec::new(), gauge: None, ..self }
+    }
+
+    /// The same scene without its gauge.
+    pub fn without_gauge(self) -> Scene {
+        Scene { gauge: None, ..self }
+    }
+
+    /// The same scene at rest.
+    pub fn without_motion(self) -> Scene {
+        Scene { motion: None, ..self }
+    }
+
+    /// The same scene with a mesh `factor` times as large.
+    pub fn with_lengths_times(mut self, factor: f64) -> Scene {
+        self.mesh.scale *= factor;
+        self
+    }
+
+    /// Reads or generates the mesh.
+    ///
+    /// # Errors
+    /// The file or an element is wrong, or a cell has no volume.
+    pub fn build_mesh(&self) -> Result<Mesh> {
+        self.mesh.build(&self.path)
+    }
+
+    /// Whether something in it is written in metres besides its mesh: conditions, and loads that vary.
+    pub fn is_in_metres(&self) -> bool {
+        let conditions = self.supports.iter().map(|(part, _)| part).chain(self.loads.iter().map(|load| &load.part));
+        let varies = |load: &LoadCase| match &load.action {
+            Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
+            _ => load.measured.is_some(),
+        };
+        conditions.into_iter().any(|part| matches!(part, Part::Where(_))) || self.loads.iter().any(varies)
+    }
+
+    /// The same scene with Young's modulus times `factor`, and of another Poisson's ratio where one is given.
+    pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
+        let mut scene = self.clone();
+        scene.material.young.0 *= factor;
+        scene.material.poisson = poisson.unwrap_or(scene.material.poisson);
+        scene
+    }
+
+    /// The material of a body of that dimension.
+    ///
+    /// # Errors
+    /// A constant is out of range, or the plane state does not go with the dimension.
+    pub fn material(&self, dimension: usize) -> Result<Material> {
+        let entry = &self.material;
+        let material = Material::for_body(dimension, entry.young.0, entry.poisson, entry.plane, entry.thickness);
+        material
+            .and_then(|m| entry.area.map_or(Ok(m), |area| m.with_area(area)))
+            .map_err(|e| e.under("material").in_file(&self.path))
+    }
+
+    /// The name of the material's law, where the scene gives one: loads are at large deformation then.
+    pub fn law(&self) -> Option<&str> {
+        self.material.law.as_deref()
+    }
+
+    /// The law's energy for a body of that material.
+    ///
+    /// # Errors
+    /// There is no such law, or its file is wrong.
+    pub fn energy(&self, material: Material) -> Result<Option<Energy>> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let load = |law: &str| {
+            Energy::load(&law_at(law, folder), material)
+                .map_err(|e| e.placed(|e| Error::at("material.law", e.problem()).in_file(&self.path)))
+        };
+        self.law().map(load).transpose()
+    }
+
+    /// kg/m³, where the scene gives one.
+    pub fn density(&self) -> Option<f64> {
+        self.material.density
+    }
+
+    /// Names the scene in an error about one of its entries.
+    pub fn at(&self, key: &str, error: Error) -> Error {
+        error.under(key).in_file(&self.path)
+    }
+}
+
+/// The fits of all `[[fit]]`; files are relative to `folder`.
+fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
+    let mut fits: Vec<NamedFit> = Vec::new();
+    for (i, entry) in entries.iter().enumerate() {
+        for fit in entry.fits(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))? {
+            let key = format!("fit[{i}].name");
+            if fit.name.trim().is_empty() {
+                return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
+            }
+            expect_own_name(&key, &fit.name, fits.iter().map(|fit| fit.name.as_str()))?;
+            fits.push(fit.of_entry(i));
+        }
+    }
+    Ok(fits)
+}
+
+fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
+    let mut loads: Vec<LoadCase> = Vec::new();
+    for (i, load) in entries.into_iter().enumerate() {
+        let name = load.name.clone().unwrap_or_else(|| format!("load {}", i + 1));
+        expect_own_name(&format!("load[{i}].name"), &name, loads.iter().map(|load| load.name.as_str()))?;
+        loads.push(load.check(name).map_err(|e| e.under(format!("load[{i}]")))?);
+    }
+    Ok(loads)
+}
+
+/// That the material and the loads are those that the fits need.
+fn check_fits(fits: &[NamedFit], material: &MaterialEntry, loads: &[LoadCase]) -> Result<()> {
+    let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
+    let facts = SceneFacts { law: material.law.is_some(), density: material.density.is_some(), loads: &names };
+    for fit in fits {
+        let place = fit.place();
+        let lawless = fit.recipe.sampled().is_some_and(|recipe| recipe.law.is_none());
+        if lawless && material.law.is_none() {
+            let expected = format!("the energy whose forces {place} samples, such as \"neo-hookean\"");
+            return Err(Error::expected("material.law", expected, "none"));
+        }
+        fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,51 @@
+//! A part of the mesh.
+
+use crate::error::{Error, Result};
+use crate::mesh::Selection;
+use crate::symbolic::Scope;
+
+/// A part of the mesh as a scene names it; a condition is parsed once the mesh's dimension is known.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    Group(String),
+    Where(String),
+    Everything,
+}
+
+impl Part {
+    pub(super) fn optional(group: Option<String>, condition: Option<String>) -> Result<Part> {
+        match (group, condition) {
+            (Some(_), Some(_)) => Err(Error::new("expected \"group\" or \"where\", found both")),
+            (Some(name), None) => Ok(Part::Group(name)),
+            (None, Some(text)) => {
+                // Fails early on what is wrong in any dimension.
+                Scope::new(&["x", "y", "z"]).predicate(&text).map_err(|e| e.under("where"))?;
+                Ok(Part::Where(text))
+            }
+            (None, None) => Ok(Part::Everything),
+        }
+    }
+
+    /// As [`Part::optional`], but not everything.
+    pub(super) fn required(group: Option<String>, condition: Option<String>) -> Result<Part> {
+        match Part::optional(group, condition)? {
+            Part::Everything => Err(Error::new("expected \"group\" or \"where\", found neither")),
+            part => Ok(part),
+        }
+    }
+
+    /// The part as a selection of a mesh of that dimension.
+    ///
+    /// # Errors
+    /// The condition names z in the plane.
+    pub fn selection(&self, dimension: usize) -> Result<Selection> {
+        Ok(match self {
+            Part::Group(name) => Selection::Group(name.clone()),
+            Part::Where(text) => {
+                let scope = Scope::new(&["x", "y", "z"][..dimension]);
+                Selection::Where(scope.predicate(text).map_err(|e| e.under("where"))?)
+            }
+            Part::Everything => Selection::Everything,
+        })
+    }
+}

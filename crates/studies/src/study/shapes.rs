@@ -1,0 +1,73 @@
+//! Random shapes of an element. A seed gives the same shapes always.
+
+use super::random::Random;
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::stiffness::Geometry;
+
+/// How far nodes are moved, in units of the reference cell.
+const JITTER: f64 = 0.15;
+
+/// Node positions of `count` elements, `[count × nodes × dimension]`: the reference cell under random affine maps, each node
+/// moved by up to 7 % of its size; those that tangle are drawn again.
+///
+/// # Errors
+/// Nearly every shape tangles.
+pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f64>> {
+    let d = element.dimension();
+    let shapes = valid(element, count, seed, |random| {
+        let map = affine(d, 0.4, random);
+        let mut shape = Vec::new();
+        for at in element.positions.chunks_exact(d) {
+            for k in 0..d {
+                shape.push((0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>() + JITTER * random.symmetric());
+            }
+        }
+        shape
+    });
+    match shapes.len() == count {
+        true => Ok(shapes.concat()),
+        false => Err(Error::new(format!("{}: nearly every random shape tangles", element.name))),
+    }
+}
+
+/// Node positions, `[nodes × dimension]`, of up to `count` elements with straight edges, far from tangled; fewer if most shapes
+/// tangle.
+pub fn straight_shapes(element: &Element, count: usize, seed: u64) -> Vec<Vec<f64>> {
+    let d = element.dimension();
+    valid(element, count, seed, |random| {
+        let map = affine(d, 0.25, random);
+        let terms = element.cell.straight_terms();
+        let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random.symmetric()).collect();
+        let place = |at: &[f64], k: usize| {
+            let straight: f64 = (0..d).map(|l| map[k * d + l] * at[l]).sum();
+            let product = |e: &[i32]| at.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();
+            straight + terms.iter().enumerate().map(|(i, e)| bent[k * terms.len() + i] * product(e)).sum::<f64>()
+        };
+        let nodes = element.positions.chunks_exact(d);
+        nodes.flat_map(|at| (0..d).map(|k| place(at, k)).collect::<Vec<_>>()).collect()
+    })
+}
+
+/// The identity with entries of up to `size` added, `[dimension × dimension]`.
+fn affine(dimension: usize, size: f64, random: &mut Random) -> Vec<f64> {
+    let identity = |i: usize| f64::from(u8::from(i.is_multiple_of(dimension + 1)));
+    (0..dimension * dimension).map(|i| identity(i) + size * random.symmetric()).collect()
+}
+
+/// The first `count` of the shapes drawn that are not tangled, of a hundred times as many at most.
+fn valid(element: &Element, count: usize, seed: u64, mut draw: impl FnMut(&mut Random) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let mut random = Random::new(seed);
+    let mut geometry = Geometry::new(&element.tabulation);
+    let mut shapes = Vec::with_capacity(count);
+    for _ in 0..100 * count {
+        let shape = draw(&mut random);
+        if geometry.set(&element.tabulation, &shape).is_ok() {
+            shapes.push(shape);
+        }
+        if shapes.len() == count {
+            break;
+        }
+    }
+    shapes
+}

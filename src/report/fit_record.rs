@@ -1,0 +1,90 @@
+//! Fits in `report.json`.
+
+use super::load_record::LoadRecord;
+use super::number::finite;
+use crate::study::{
+    FitOutcome, KindRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, WholeOutcomeRecord,
+};
+use serde::{Deserialize, Serialize};
+
+/// A fit: the settings of its kind, its network and its errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitRecord {
+    #[serde(flatten)]
+    pub kind: KindRecord,
+    pub name: String,
+    /// The spring groups, if not all that are not optional.
+    pub groups: Option<Vec<String>>,
+    /// `fitted`, `sound`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
+    pub status: String,
+    pub springs: usize,
+    /// For the constants, without assembly.
+    pub seconds: f64,
+    pub seconds_per_element: f64,
+    pub seconds_assembly: f64,
+    /// `‖R − K‖/‖R‖` of the elements; null for whole-object fits.
+    pub relative_frobenius: SpreadRecord,
+    pub relative_spectral: SpreadRecord,
+    pub negative_springs: usize,
+    pub undetermined_elements: usize,
+    /// The least and the largest energy of the network over the body's.
+    pub energy_ratio: Option<[Option<f64>; 2]>,
+    /// Points that move most in the softest motion, from 0.
+    pub loose_nodes: Vec<usize>,
+    /// The largest relative duality gap.
+    pub certificate_gap: Option<f64>,
+    /// Elements with the constants of another of the same shape.
+    pub reused_elements: usize,
+    /// Elements whose optimum is not unique.
+    pub ambiguous_elements: usize,
+    /// Elements whose iteration stopped short of the optimum.
+    pub unreached_elements: usize,
+    pub energy_error_bound: Option<f64>,
+    /// Pa.
+    pub effective_young: Option<f64>,
+    pub effective_poisson: Option<f64>,
+    pub zener: Option<f64>,
+    pub loads: Vec<LoadRecord>,
+    /// Of a published method.
+    pub unmet: Option<PublishedOutcomeRecord>,
+    /// Of a whole-object fit.
+    pub whole: Option<WholeOutcomeRecord>,
+    /// Of a sampled fit.
+    pub sampled: Option<SampledOutcomeRecord>,
+}
+
+impl FitRecord {
+    /// Of a body of `elements` elements.
+    pub(super) fn of(outcome: &FitOutcome, elements: usize, thickness: f64) -> FitRecord {
+        let certificate = outcome.kind.stiffness();
+        let moduli = outcome.moduli.as_ref();
+        FitRecord {
+            kind: outcome.fit.recipe.kind().record(),
+            name: outcome.fit.name.clone(),
+            groups: outcome.fit.springs.clone(),
+            status: outcome.status().into(),
+            springs: outcome.network.len(),
+            seconds: outcome.seconds,
+            seconds_per_element: outcome.seconds / elements.max(1) as f64,
+            seconds_assembly: outcome.seconds_assembly,
+            relative_frobenius: outcome.frobenius.into(),
+            relative_spectral: outcome.spectral.into(),
+            negative_springs: outcome.network.negative(),
+            undetermined_elements: outcome.deficient,
+            energy_ratio: outcome.stability.as_ref().map(|stability| stability.energy_ratio.map(finite)),
+            loose_nodes: outcome.loose_points.clone(),
+            certificate_gap: certificate.and_then(|certificate| certificate.gap),
+            reused_elements: outcome.reused,
+            ambiguous_elements: certificate.map_or(0, |certificate| certificate.ambiguous),
+            unreached_elements: outcome.unreached,
+            energy_error_bound: certificate.and_then(|certificate| certificate.energy_error),
+            effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness)),
+            effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
+            zener: moduli.and_then(|moduli| finite(moduli.zener)),
+            loads: outcome.loads.iter().map(LoadRecord::from).collect(),
+            unmet: outcome.kind.published().map(|published| PublishedOutcomeRecord::of(&published.unmet)),
+            whole: outcome.kind.whole().map(WholeOutcomeRecord::of),
+            sampled: outcome.kind.sampled().map(SampledOutcomeRecord::of),
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Loads and their answers in `report.json`.
+
+use super::number::finite;
+use crate::solve::Ending;
+use crate::study::{BodyLoad, Followed, LoadOutcome, Reading};
+use serde::{Deserialize, Serialize};
+
+/// Young's modulus, Pa, and Poisson's ratio as a gauge measures them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ReadingRecord {
+    pub young: f64,
+    pub poisson: f64,
+}
+
+/// A load under which displacements were measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredRecord {
+    pub load: String,
+    pub points: usize,
+    /// Of the finite elements, percent.
+    pub fem_e_rms: Option<f64>,
+    pub fem_e_max: Option<f64>,
+}
+
+/// How far an equilibrium was followed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FollowedRecord {
+    pub converged: bool,
+    /// The share of the load that was reached.
+    pub load: Option<f64>,
+    /// Relative to the forces that act.
+    pub residual: Option<f64>,
+    pub iterations: usize,
+    /// Iterations whose tangent was shifted.
+    pub shifted: usize,
+    pub inverted_elements: usize,
+}
+
+/// The answer of a network to a load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoadRecord {
+    pub name: String,
+    /// Percent of the largest displacement.
+    pub e_rms: Option<f64>,
+    pub e_max: Option<f64>,
+    /// To assemble, factorise and solve, each as if this were the only load.
+    pub seconds_fem: f64,
+    pub seconds_lem: f64,
+    pub followed: Option<FollowedRecord>,
+    pub gauge: Option<ReadingRecord>,
+}
+
+impl From<Reading> for ReadingRecord {
+    fn from(reading: Reading) -> ReadingRecord {
+        ReadingRecord { young: reading.young, poisson: reading.poisson }
+    }
+}
+
+impl MeasuredRecord {
+    /// `None` if nothing was measured under the load.
+    pub(super) fn of(load: &BodyLoad) -> Option<MeasuredRecord> {
+        let measured = load.measured?;
+        Some(MeasuredRecord {
+            load: load.name.clone(),
+            points: measured.points,
+            fem_e_rms: measured.error.and_then(|e| finite(e.rms)),
+            fem_e_max: measured.error.and_then(|e| finite(e.max)),
+        })
+    }
+}
+
+impl From<&Followed> for FollowedRecord {
+    fn from(followed: &Followed) -> FollowedRecord {
+        FollowedRecord {
+            converged: followed.ending == Ending::Converged,
+            load: finite(followed.load),
+            residual: finite(followed.residual),
+            iterations: followed.iterations,
+            shifted: followed.shifted,
+            inverted_elements: followed.inverted,
+        }
+    }
+}
+
+impl From<&LoadOutcome> for LoadRecord {
+    fn from(load: &LoadOutcome) -> LoadRecord {
+        LoadRecord {
+            name: load.name.clone(),
+            e_rms: load.error.and_then(|e| finite(e.rms)),
+            e_max: load.error.and_then(|e| finite(e.max)),
+            seconds_fem: load.seconds_fem,
+            seconds_lem: load.seconds_lem,
+            followed: load.followed.as_ref().map(FollowedRecord::from),
+            gauge: load.gauge.map(ReadingRecord::from),
+        }
+    }
+}
