@@ -13,6 +13,7 @@ mod load_record;
 mod motion;
 mod motion_record;
 mod network;
+mod network_format;
 mod number;
 mod paper;
 mod pictures;
@@ -35,6 +36,7 @@ pub use load_record::{FollowedRecord, LoadRecord, MeasuredRecord, ReadingRecord}
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::{network_csv, network_json};
+pub use network_format::{NETWORK_FORMATS, NetworkFile, NetworkFormat};
 pub use paper::{paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use series::write_series;

@@ -1,0 +1,60 @@
+//! `springfit check`.
+
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::element::Element;
+use springfit::error::{Error, Result};
+use springfit::study::{self, Event};
+use springfit::{files_in, report};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Check element files: one line for each property; exit code 1 if one fails
+#[derive(Args)]
+pub struct Check {
+    /// Element files, folders of them, or names of shipped elements
+    #[arg(required = true)]
+    what: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Check {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let mut files = Vec::new();
+        for what in &self.what {
+            let path = Path::new(what);
+            if !path.is_dir() {
+                files.push(what.clone());
+                continue;
+            }
+            let before = files.len();
+            files.extend(files_in(path, "toml")?.iter().map(|file| file.display().to_string()));
+            if files.len() == before {
+                return Err(Error::new("expected element files that end in .toml, found none").in_file(path));
+            }
+        }
+        let mut inspections = Vec::new();
+        for (done, file) in files.iter().enumerate() {
+            terminal.show(Event::stage("check", done, files.len()));
+            let loaded = Element::load(file);
+            // A file that is not there is no fault of an element.
+            if let (Err(error), false) = (&loaded, Path::new(file).is_file()) {
+                return Err(error.clone());
+            }
+            let inspection = study::inspect(file, loaded);
+            if !self.json {
+                terminal.print(&(report::check_text(&inspection) + "\n"))?;
+            }
+            inspections.push(inspection);
+        }
+        if self.json {
+            terminal.print(&report::check_json(&inspections))?;
+        } else {
+            let failed = inspections.iter().filter(|i| !i.passes()).count();
+            terminal.print(&format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()))?;
+        }
+        Ok(if inspections.iter().all(|i| i.passes()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    }
+}

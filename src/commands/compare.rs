@@ -1,0 +1,85 @@
+//! `springfit compare`.
+
+use super::is_scene;
+use super::state::State;
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::element::Element;
+use springfit::error::{Error, Result};
+use springfit::fit::Solver;
+use springfit::material::Material;
+use springfit::report::{self, Comparison};
+use springfit::study::{self, Event, Scene};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Compare objectives and solvers, error against run time, on random shapes of an element or on a scene
+#[derive(Args)]
+pub struct Compare {
+    /// A shipped element's name, an element file, or a scene
+    what: String,
+    /// Random shapes of an element
+    #[arg(long, default_value_t = 100)]
+    shapes: usize,
+    /// Iterations of the general optimisers
+    #[arg(long, default_value_t = Solver::DEFAULT_ITERATIONS)]
+    iterations: u64,
+    /// Poisson's ratio, for an element
+    #[arg(long, default_value_t = 0.3, allow_hyphen_values = true)]
+    poisson: f64,
+    /// An element at large deformation: the energy, a shipped name such as neo-hookean, or a file
+    #[arg(long)]
+    law: Option<String>,
+    /// With --law, the largest stretch that is sampled
+    #[arg(long, default_value_t = 0.35, allow_hyphen_values = true)]
+    stretch: f64,
+    /// Plane element: stress or strain [default: stress]
+    #[arg(long)]
+    plane: Option<State>,
+    /// Where the tables and figures go [default: out/compare-NAME]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Compare {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let path = Path::new(&self.what);
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("compare-{stem}")));
+        springfit::check_folder(&folder)?;
+        let mut progress = |event: Event| terminal.show(event);
+        if self.law.is_some() && is_scene(path) {
+            return Err(Error::at("--law", "goes with an element; a scene names it in its material"));
+        }
+        let comparison = if is_scene(path) {
+            Comparison::of_scene(&study::compare_scene(&Scene::load(path)?, &mut progress)?)
+        } else {
+            let element = Element::load(&self.what)?;
+            let plane = self.plane.map(Into::into);
+            let material =
+                Material::for_body(element.dimension(), 10e3, self.poisson, plane, None).map_err(Error::of_option)?;
+            if let Some(law) = &self.law {
+                let element = Arc::new(element);
+                let study = study::compare_stretches(&element, material, law, self.stretch, &mut progress);
+                let study = study.map_err(|e| e.placed(Error::of_option))?;
+                let paths = report::write_stretches(&study, &folder);
+                terminal.print(&report::stretches_text(&study))?;
+                terminal.written(&paths?)?;
+                return Ok(ExitCode::SUCCESS);
+            }
+            if self.iterations == 0 {
+                return Err(Error::expected("--iterations", "a number above 0", 0));
+            }
+            let (shapes, iterations) = (self.shapes, self.iterations);
+            let outcomes = study::compare_element(&element, material, shapes, iterations, &mut progress)
+                .map_err(|e| e.placed(Error::of_option))?;
+            let title = format!("{}: {shapes} random shapes, nu = {}, one thread", element.name, self.poisson);
+            Comparison::of_element(title, &outcomes, material.young())
+        };
+        let paths = comparison.write(&folder);
+        terminal.print(&comparison.table())?;
+        terminal.written(&paths?)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

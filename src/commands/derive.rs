@@ -1,0 +1,55 @@
+//! `springfit derive`.
+
+use super::state::State;
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::element::Element;
+use springfit::error::{Error, Result};
+use springfit::fit::{ClosedForm, Weight};
+use springfit::material::Plane;
+use springfit::report::Derivation;
+use springfit::springs::Springs;
+use springfit::study::Event;
+use std::process::ExitCode;
+
+/// Print the exact closed forms of an element's stiffness and spring constants
+#[derive(Args)]
+pub struct Derive {
+    /// A shipped element's name, or an element file
+    element: String,
+    /// Lengths a, b, c along the axes as variables, instead of the reference cell
+    #[arg(long)]
+    sides: bool,
+    /// Plane element: stress or strain, for the constants in terms of E and nu [default: stress]
+    #[arg(long)]
+    plane: Option<State>,
+    /// Spring groups to use, separated by commas [default: all that are not optional]
+    #[arg(long, value_delimiter = ',')]
+    springs: Option<Vec<String>>,
+    /// Print the stiffness matrix as well
+    #[arg(long)]
+    matrix: bool,
+    /// Print LaTeX
+    #[arg(long)]
+    latex: bool,
+}
+
+impl Derive {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let element = Element::load(&self.element)?;
+        let plane = match (element.dimension(), self.plane) {
+            (2, plane) => Some(plane.map_or(Plane::Stress, Into::into)),
+            (_, Some(_)) => {
+                return Err(Error::at("--plane", format!("expected a plane element, found {}", element.name)));
+            }
+            (_, None) => None,
+        };
+        let springs = Springs::select(&element, self.springs.as_deref()).map_err(Error::of_option)?;
+        terminal.show(Event::stage("closed form", 0, 1));
+        let form = ClosedForm::new(&element, &springs, self.sides)?;
+        let fits = [Weight::None, Weight::OffDiagonal].map(|weight| form.fit(weight));
+        let derivation = Derivation { element: &element, form: &form, fits: &fits, plane, matrix: self.matrix };
+        terminal.print(&if self.latex { derivation.latex() } else { derivation.text() })?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

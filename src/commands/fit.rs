@@ -1,0 +1,184 @@
+//! `springfit fit`.
+
+use super::interrupt::end_early;
+use super::state::State;
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::material::{Material, parse_pressure};
+use springfit::mesh::{Gate, Mesh, MeshSource, Selection};
+use springfit::model::{self, Support};
+use springfit::report::{NetworkFile, NetworkFormat};
+use springfit::study::{Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, fit_mesh, load_elements};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Fit the springs of a mesh, without a scene
+#[derive(Args)]
+pub struct Fit {
+    /// The mesh: .msh, .vtu or .vtk
+    mesh: PathBuf,
+    /// Young's modulus, such as 10kPa
+    #[arg(long, allow_hyphen_values = true)]
+    young: String,
+    /// Poisson's ratio
+    #[arg(long, allow_hyphen_values = true)]
+    poisson: f64,
+    /// frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: offdiag with --nonnegative]
+    #[arg(long)]
+    objective: Option<String>,
+    /// A group of the mesh that is held; may be repeated (whole only)
+    #[arg(long)]
+    fix: Vec<String>,
+    /// Energy whose forces are sampled: a shipped name such as neo-hookean, or a file (sampled only)
+    #[arg(long)]
+    law: Option<String>,
+    /// linear, free-rest, or a law of force such as "k1*s + k3*s^3" (sampled only)
+    #[arg(long)]
+    force: Option<String>,
+    /// Largest amplitude of the sampled shapes [default: 0.3] (sampled only)
+    #[arg(long, allow_hyphen_values = true)]
+    stretch: Option<f64>,
+    /// How many shapes to fit to [default: 300] (sampled only)
+    #[arg(long)]
+    shapes: Option<usize>,
+    /// What counts: none, offdiag, modal or relative (with frobenius and spectral), none or relative (with sampled)
+    #[arg(long)]
+    weight: Option<String>,
+    /// Scale of what is beyond constant strain (modal and sampled only)
+    #[arg(long)]
+    higher: Option<f64>,
+    /// From 0, which errs to the soft side, to 1 (divergence only)
+    #[arg(long)]
+    balance: Option<f64>,
+    /// Spring groups to use, separated by commas [default: all that are not optional]
+    #[arg(long, value_delimiter = ',')]
+    springs: Option<Vec<String>>,
+    /// One constant per group
+    #[arg(long)]
+    tied: bool,
+    /// No constant below zero
+    #[arg(long)]
+    nonnegative: bool,
+    /// Plane mesh or surface: stress or strain [default: stress]
+    #[arg(long)]
+    plane: Option<State>,
+    /// Plane mesh or surface: thickness in m [default: 1]
+    #[arg(long, allow_hyphen_values = true)]
+    thickness: Option<f64>,
+    /// Mesh of lines: cross-section in m² [default: 1]
+    #[arg(long, allow_hyphen_values = true)]
+    area: Option<f64>,
+    /// In kg/m³; gives the points masses
+    #[arg(long, allow_hyphen_values = true)]
+    density: Option<f64>,
+    /// Mesh units to metres
+    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
+    scale: f64,
+    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]
+    #[arg(long)]
+    below: Option<String>,
+    /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
+    #[arg(long)]
+    least: Option<f64>,
+    /// An element file to look in before the shipped ones; may be repeated
+    #[arg(long)]
+    element: Vec<String>,
+    /// Where the springs go: .vtu, .json or .csv
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+impl Fit {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let format = NetworkFormat::of(&self.output).map_err(|e| e.at_key("--output"))?;
+        springfit::check_file(&self.output)?;
+        let young = parse_pressure(&self.young).map_err(|e| e.under("--young"))?;
+        let named = self.named_fit()?;
+        self.check()?;
+        let whole = named.recipe.whole().is_some();
+        let sampled = !whole && named.recipe.sampled().is_some();
+        if whole == self.fix.is_empty() {
+            let problem = "goes with the objective \"whole\", and that with it: a group of the mesh that is held";
+            return Err(Error::at("--fix", problem));
+        }
+        if sampled && self.law.is_none() {
+            let problem = "goes with the objective \"sampled\": the energy whose forces are sampled";
+            return Err(Error::at("--law", problem));
+        }
+        let mesh = self.mesh()?;
+        let plane = self.plane.map(Into::into);
+        let material = Material::for_body(mesh.cell_dimension(), young, self.poisson, plane, self.thickness)
+            .and_then(|m| self.area.map_or(Ok(m), |area| m.with_area(area)))
+            .map_err(Error::of_option)?;
+        let support = self.support(&mesh)?;
+        let controls = Arc::new(Controls::default());
+        if whole {
+            end_early(&controls);
+        }
+        let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
+        let reference = Reference { large: None, whole: body.as_ref() };
+        let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
+        let fit = fit.map_err(|e| if sampled || whole { e.placed(Error::of_option) } else { e })?;
+        let masses = self.density.map(|density| model::masses(&mesh, density, material.thickness()));
+        // The file first: who reads the table may have gone away.
+        let file = NetworkFile { mesh: &mesh, masses: masses.as_deref(), fit: &fit, loads: &[] };
+        format.write(&self.output, &file)?;
+        let outcome = Outcome::of_fit(self.mesh.display().to_string(), mesh, material, masses, fit);
+        terminal.print_outcome(&outcome)?;
+        terminal.written(std::slice::from_ref(&self.output))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn check(&self) -> Result<()> {
+        if !(self.scale > 0.0 && self.scale.is_finite()) {
+            return Err(Error::expected("--scale", "a positive number of metres per mesh unit", self.scale));
+        }
+        match self.density.filter(|d| !(*d > 0.0 && d.is_finite())) {
+            Some(density) => Err(Error::expected("--density", "a positive number of kg/m³", density)),
+            None => Ok(()),
+        }
+    }
+
+    /// What the options say of the fit.
+    fn named_fit(&self) -> Result<NamedFit> {
+        // Of the fits that serve every element alike, the one with the least error among those that are always stable.
+        let objective = self.objective.clone().unwrap_or("offdiag".into());
+        let nonnegative = self.nonnegative || self.objective.is_none();
+        let mut shapes = toml::Table::new();
+        shapes.extend(self.shapes.map(|count| ("count".into(), (count as i64).into())));
+        shapes.extend(self.stretch.map(|stretch| ("stretch".into(), stretch.into())));
+        let entry = FitEntry::new(objective)
+            .with_springs(self.springs.clone())
+            .with("weight", self.weight.clone())
+            .with("higher", self.higher)
+            .with("balance", self.balance)
+            .with("tied", self.tied.then_some(true))
+            .with("nonnegative", nonnegative.then_some(true))
+            .with("force", self.force.clone())
+            .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
+            .with("law", self.law.clone());
+        Ok(entry.fits(Path::new("")).map_err(|e| e.placed(Error::of_option))?.remove(0))
+    }
+
+    fn mesh(&self) -> Result<Mesh> {
+        let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
+        let source = MeshSource::read(&self.mesh)?;
+        let asked = self.below.is_some() || self.least.is_some();
+        let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
+        let mesh = Mesh::resolve_within(&source, &own, self.scale, asked.then_some(gate));
+        mesh.map_err(|e| e.in_file(&self.mesh))
+    }
+
+    /// The groups that are held.
+    fn support(&self, mesh: &Mesh) -> Result<Support> {
+        let mut support = Support::free(mesh);
+        let directions: Vec<usize> = (0..mesh.dimension).collect();
+        for group in &self.fix {
+            let points = Selection::Group(group.clone()).points(mesh).map_err(|e| e.at_key("--fix"))?;
+            support.fix(&points, &directions, mesh.dimension);
+        }
+        Ok(support)
+    }
+}

@@ -1,0 +1,55 @@
+//! The subcommands: each file has the arguments of one, with their help texts, and what it does.
+
+mod check;
+mod compare;
+mod derive;
+mod fit;
+mod interrupt;
+mod paper;
+mod run;
+mod stability;
+mod state;
+
+use crate::terminal::Terminal;
+use clap::Subcommand;
+use springfit::error::Result;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// One list of the subcommands: their names, and who runs them.
+macro_rules! commands {
+    ($($name:ident: $arguments:ty),+ $(,)?) => {
+        #[derive(Subcommand)]
+        pub enum Command {
+            $($name($arguments)),+
+        }
+
+        impl Command {
+            /// The exit code: 0, or 1 where the command found a fault that it was to look for.
+            ///
+            /// # Errors
+            /// An input is wrong, or a file cannot be read or written.
+            pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+                match self {
+                    $(Command::$name(arguments) => arguments.run(terminal)),+
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    Run: run::Run,
+    Fit: Box<fit::Fit>,
+    Check: check::Check,
+    Derive: derive::Derive,
+    Compare: compare::Compare,
+    Paper: paper::Paper,
+    Stability: stability::Stability,
+}
+
+/// Whether a file is a scene: it has a `[mesh]`, where an element has nodes. A file that cannot be read counts as an element.
+fn is_scene(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    text.lines().any(|line| line.trim_start().starts_with("[mesh]") || line.trim_start().starts_with("mesh."))
+}

@@ -1,0 +1,45 @@
+//! `springfit paper`.
+
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::study::{self, Index};
+use springfit::{check_folder, report};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Reproduce the tables and figures of Natsupakpong and Cavusoglu (2010)
+#[derive(Args)]
+pub struct Paper {
+    /// Only this table, such as 1 or "figure 9"; may be repeated
+    #[arg(long)]
+    table: Vec<String>,
+    /// Where the tables and figures go, and the scenes that were run [default: out/paper]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// An index of experiments of your own, such as scenes/paper/index.toml
+    #[arg(long)]
+    index: Option<PathBuf>,
+}
+
+impl Paper {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
+        check_folder(&folder)?;
+        let index = self.index.as_ref().map_or_else(Index::shipped, |path| Index::load(path))?;
+        index.expect(&self.table).map_err(Error::of_option)?;
+        let path = match &self.index {
+            Some(path) => path.clone(),
+            None => study::write_experiments(&folder.join("scenes"))?,
+        };
+        let paper = study::run_paper(&index, &self.table, &path, &mut |event| terminal.show(event));
+        let paper = paper.map_err(|e| e.placed(Error::of_option))?;
+        let written = report::write_paper(&paper, &folder);
+        for table in &paper.tables {
+            terminal.print(&(report::paper_text(table) + "\n"))?;
+        }
+        let written = written?;
+        terminal.print(&format!("written: {} files in {}\n", written.len(), folder.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,59 @@
+//! `springfit run`.
+
+use super::interrupt::end_early;
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::study::{Controls, Scene, run_with, stages};
+use springfit::{check_folder, report};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Fit, solve and compare a scene
+#[derive(Args)]
+pub struct Run {
+    /// The scene file
+    scene: PathBuf,
+    /// Where the report goes [default: out/NAME of the scene]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Where whole-object fits save their state, and what they go on from if it is there; Ctrl-C ends them at their best point
+    #[arg(long)]
+    checkpoint: Option<PathBuf>,
+    /// Say which stages will run and which are left out, and stop
+    #[arg(long)]
+    explain: bool,
+}
+
+impl Run {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let scene = Scene::load(&self.scene)?;
+        if self.explain {
+            let lines = stages(&scene).into_iter().map(|(stage, left_out)| match left_out {
+                None => format!("run       {stage}\n"),
+                Some(why) => format!("left out  {stage}: {why}\n"),
+            });
+            terminal.print(&lines.collect::<String>())?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        let stem = self.scene.file_stem().unwrap_or_default();
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
+        check_folder(&folder)?;
+        let controls = Arc::new(Controls { checkpoint: self.checkpoint.clone(), ..Controls::default() });
+        if scene.fits().iter().any(|fit| fit.recipe.whole().is_some()) {
+            end_early(&controls);
+        } else if self.checkpoint.is_some() {
+            return Err(Error::at(
+                "--checkpoint",
+                "goes with fits whose objective is \"whole\", found none in the scene",
+            ));
+        }
+        let outcome = run_with(&scene, &controls, &mut |event| terminal.show(event))?;
+        // Files first: who reads the table may have gone away.
+        let paths = report::write_outputs(&outcome, scene.output(), &folder);
+        terminal.print_outcome(&outcome)?;
+        terminal.written(&paths?)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,42 @@
+//! `springfit stability`.
+
+use super::is_scene;
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::element::Element;
+use springfit::error::Result;
+use springfit::study::{self, Event, Scene};
+use springfit::{check_folder, report};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Run the numerical stability sweep against double-double and closed-form references; exit code 1 if an error is too large
+#[derive(Args)]
+pub struct Stability {
+    /// A shipped element's name, an element file, or a scene [default: an element of each kind, bodies and motions]
+    what: Option<String>,
+    /// Where the table and the maps go [default: out/stability, or out/stability-NAME]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Stability {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let what = self.what.as_deref();
+        let stem = what.map(|what| Path::new(what).file_stem().unwrap_or_default().to_string_lossy());
+        let name = stem.map_or("stability".to_string(), |stem| format!("stability-{stem}"));
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(name));
+        check_folder(&folder)?;
+        let mut progress = |event: Event| terminal.show(event);
+        let outcome = match what {
+            Some(path) if is_scene(Path::new(path)) => {
+                study::sweep_scene(&Scene::load(Path::new(path))?, &mut progress)?
+            }
+            _ => study::sweep(what.map(Element::load).transpose()?, &mut progress)?,
+        };
+        let paths = report::write_stability(&outcome, &folder);
+        terminal.print(&report::stability_text(&outcome))?;
+        terminal.written(&paths?)?;
+        Ok(if outcome.lost().count() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    }
+}
