@@ -15,13 +15,19 @@ use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::Arc;
 
 /// A number times a numerator over a denominator without a common divisor. Both have integer coefficients without a
 /// common divisor, of which the first of [`Polynomial::sorted`] is positive; so equal functions are equal fractions.
 ///
 /// Fractions that meet in an operation have the same number of variables.
+///
+/// Copies share their terms: kernels copy often.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fraction {
+pub struct Fraction(Arc<Terms>);
+
+#[derive(Debug, PartialEq, Eq)]
+struct Terms {
     content: BigRational,
     numerator: Polynomial,
     denominator: Polynomial,
@@ -36,55 +42,55 @@ impl Fraction {
             return Fraction::number(BigRational::zero(), denominator.variables());
         }
         let [_, numerator, denominator] = numerator.with_cofactors(&denominator);
-        Fraction {
+        Fraction(Arc::new(Terms {
             content: numerator.content() / denominator.content(),
             numerator: numerator.primitive(),
             denominator: denominator.primitive(),
-        }
+        }))
     }
 
     /// `c`, as a function of `variables` variables.
     pub fn number(c: BigRational, variables: usize) -> Fraction {
         let one = Polynomial::constant(BigRational::one(), variables);
         let numerator = if c.is_zero() { Polynomial::default() } else { one.clone() };
-        Fraction { content: c, numerator, denominator: one }
+        Fraction(Arc::new(Terms { content: c, numerator, denominator: one }))
     }
 
     /// The variable of that index among `variables`.
     pub fn variable(index: usize, variables: usize) -> Fraction {
-        Fraction {
+        Fraction(Arc::new(Terms {
             content: BigRational::one(),
             numerator: Polynomial::variable(index, variables),
             denominator: Polynomial::constant(BigRational::one(), variables),
-        }
+        }))
     }
 
     /// The number in front, with the sign.
     pub fn content(&self) -> &BigRational {
-        &self.content
+        &self.0.content
     }
 
     /// What the content multiplies; zero if the fraction is.
     pub fn numerator(&self) -> &Polynomial {
-        &self.numerator
+        &self.0.numerator
     }
 
     pub fn denominator(&self) -> &Polynomial {
-        &self.denominator
+        &self.0.denominator
     }
 
     pub fn variables(&self) -> usize {
-        self.denominator.variables()
+        self.0.denominator.variables()
     }
 
     pub fn is_zero(&self) -> bool {
-        self.content.is_zero()
+        self.0.content.is_zero()
     }
 
     /// The value where the variables have the values `at`, or `None` at a pole.
     pub fn evaluate(&self, at: &[BigRational]) -> Option<BigRational> {
-        let below = self.denominator.evaluate(at);
-        (!below.is_zero()).then(|| &self.content * self.numerator.evaluate(at) / below)
+        let below = self.0.denominator.evaluate(at);
+        (!below.is_zero()).then(|| &self.0.content * self.0.numerator.evaluate(at) / below)
     }
 
     /// `1/self`.
@@ -93,28 +99,34 @@ impl Fraction {
     /// If `self` is zero.
     pub fn inverse(&self) -> Fraction {
         assert!(!self.is_zero(), "a fraction is divided by zero");
-        Fraction {
-            content: self.content.recip(),
-            numerator: self.denominator.clone(),
-            denominator: self.numerator.clone(),
-        }
+        Fraction(Arc::new(Terms {
+            content: self.0.content.recip(),
+            numerator: self.0.denominator.clone(),
+            denominator: self.0.numerator.clone(),
+        }))
+    }
+
+    /// The same polynomials with another number, not zero, in front.
+    fn of_content(&self, content: BigRational) -> Fraction {
+        let (numerator, denominator) = (self.0.numerator.clone(), self.0.denominator.clone());
+        Fraction(Arc::new(Terms { content, numerator, denominator }))
     }
 
     /// Henrici's sum of `self` and `c` times the other's polynomials: only what the denominators share can cancel.
     fn plus(&self, c: &BigRational, other: &Fraction) -> Fraction {
-        let [shared, below, other_below] = self.denominator.with_cofactors(&other.denominator);
-        let unit = BigRational::new_raw(BigInt::one(), self.content.denom().lcm(c.denom()));
-        let term = (&self.numerator * &other_below).scaled(&(&self.content / &unit));
-        let numerator = &term + &(&other.numerator * &below).scaled(&(c / &unit));
+        let [shared, below, other_below] = self.0.denominator.with_cofactors(&other.0.denominator);
+        let unit = BigRational::new_raw(BigInt::one(), self.0.content.denom().lcm(c.denom()));
+        let term = (&self.0.numerator * &other_below).scaled(&(&self.0.content / &unit));
+        let numerator = &term + &(&other.0.numerator * &below).scaled(&(c / &unit));
         if numerator.is_zero() {
             return Fraction::number(BigRational::zero(), self.variables());
         }
         let [_, numerator, shared] = numerator.with_cofactors(&shared);
-        Fraction {
+        Fraction(Arc::new(Terms {
             content: numerator.content() * unit,
             numerator: numerator.primitive(),
             denominator: &(&below * &other_below) * &shared,
-        }
+        }))
     }
 
     /// The product: only a numerator and the other's denominator can cancel.
@@ -122,13 +134,13 @@ impl Fraction {
         if self.is_zero() || other.is_zero() {
             return Fraction::number(BigRational::zero(), self.variables());
         }
-        let [_, above, other_below] = self.numerator.with_cofactors(&other.denominator);
-        let [_, other_above, below] = other.numerator.with_cofactors(&self.denominator);
-        Fraction {
-            content: &self.content * &other.content,
+        let [_, above, other_below] = self.0.numerator.with_cofactors(&other.0.denominator);
+        let [_, other_above, below] = other.0.numerator.with_cofactors(&self.0.denominator);
+        Fraction(Arc::new(Terms {
+            content: &self.0.content * &other.0.content,
             numerator: &above * &other_above,
             denominator: &below * &other_below,
-        }
+        }))
     }
 }
 
@@ -136,7 +148,7 @@ impl Neg for Fraction {
     type Output = Fraction;
 
     fn neg(self) -> Fraction {
-        Fraction { content: -self.content, ..self }
+        self.of_content(-&self.0.content)
     }
 }
 
@@ -169,7 +181,7 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, a, b => a.plus(&b.content, b));
-operator!(Sub, sub, a, b => a.plus(&-&b.content, b));
+operator!(Add, add, a, b => a.plus(&b.0.content, b));
+operator!(Sub, sub, a, b => a.plus(&-&b.0.content, b));
 operator!(Mul, mul, a, b => a.times(b));
 operator!(Div, div, a, b => a.times(&b.inverse()));

@@ -23,7 +23,7 @@ impl Scalar for Fraction {
         if num_traits::Zero::is_zero(c) {
             return self.constant(c);
         }
-        Fraction { content: self.content * c, ..self }
+        self.of_content(self.content() * c)
     }
 
     fn plus_product(self, a: &Fraction, b: &Fraction) -> Fraction {
