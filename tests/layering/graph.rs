@@ -75,7 +75,8 @@ impl Graph {
             let own = |path: String| sources.iter().position(|s| s.package == *package && s.path == path);
             let found = own(format!("{stem}.rs")).or_else(|| own(format!("{stem}/mod.rs")));
             let found = found.unwrap_or_else(|| panic!("{path} declares {child}, which is in no file"));
-            self.add(sources, found, [&place[..], &[child.clone()]].concat(), Module::parse(&sources[found].text));
+            let place = place.iter().chain([child]).cloned().collect();
+            self.add(sources, found, place, Module::parse(&sources[found].text));
         }
         for (child, inline) in std::mem::take(&mut module.inline) {
             self.add(sources, file, [&place[..], &[child]].concat(), inline);
@@ -144,7 +145,7 @@ impl Graph {
             return None;
         }
         let (file, module) = self.modules.get(place)?;
-        let child = [&place[..], &[name.to_string()]].concat();
+        let child: Place = place.iter().cloned().chain([name.to_string()]).collect();
         let mut found = None;
         if self.modules.contains_key(&child) {
             found.get_or_insert_with(Vec::new).push(Found::Module(child));
