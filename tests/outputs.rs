@@ -22,7 +22,7 @@ fn each_fit_has_a_file_of_its_own() {
     let scene = Scene::parse(&[SCENE, &fits.concat()].concat(), Path::new("scene.toml")).unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let written = write_outputs(&outcome, &scene.output, folder.path()).unwrap();
+    let written = write_outputs(&outcome, scene.output(), folder.path()).unwrap();
     let written: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
     assert_eq!(written, ["modal-0.1-bulk.csv", "modal-0.1-bulk-2.csv", "mesh-2.csv", "-2.csv"]);
 }
