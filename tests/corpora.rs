@@ -1,16 +1,10 @@
 //! Runs again over the files that fuzzing has kept: each reaches code that no other does, or once went wrong.
 
-#[path = "../fuzz/bodies/element.rs"]
 mod element;
-#[path = "../fuzz/bodies/expression.rs"]
 mod expression;
-#[path = "../fuzz/bodies/gmsh.rs"]
 mod gmsh;
-#[path = "../fuzz/bodies/meshes.rs"]
 mod meshes;
-#[path = "../fuzz/bodies/scene.rs"]
 mod scene;
-#[path = "../fuzz/bodies/vtk.rs"]
 mod vtk;
 
 use std::fs;
@@ -18,7 +12,12 @@ use std::panic::catch_unwind;
 use std::path::Path;
 
 fn replay(target: &str, check: fn(&[u8])) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
+    let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
+    if !fuzz.is_dir() {
+        // A published package has no corpus.
+        return;
+    }
+    let folder = fuzz.join("corpus").join(target);
     let (mut count, mut wrong) = (0, Vec::new());
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

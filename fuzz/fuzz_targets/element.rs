@@ -1,6 +1,6 @@
 #![no_main]
 
-#[path = "../bodies/element.rs"]
+#[path = "../../tests/corpora/element.rs"]
 mod element;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| element::check(bytes));

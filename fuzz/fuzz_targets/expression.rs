@@ -1,6 +1,6 @@
 #![no_main]
 
-#[path = "../bodies/expression.rs"]
+#[path = "../../tests/corpora/expression.rs"]
 mod expression;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| expression::check(bytes));

@@ -1,8 +1,8 @@
 #![no_main]
 
-#[path = "../bodies/gmsh.rs"]
+#[path = "../../tests/corpora/gmsh.rs"]
 mod gmsh;
-#[path = "../bodies/meshes.rs"]
+#[path = "../../tests/corpora/meshes.rs"]
 mod meshes;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| gmsh::check(bytes));

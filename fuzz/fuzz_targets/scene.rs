@@ -1,6 +1,6 @@
 #![no_main]
 
-#[path = "../bodies/scene.rs"]
+#[path = "../../tests/corpora/scene.rs"]
 mod scene;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| scene::check(bytes));

@@ -1,8 +1,8 @@
 #![no_main]
 
-#[path = "../bodies/meshes.rs"]
+#[path = "../../tests/corpora/meshes.rs"]
 mod meshes;
-#[path = "../bodies/vtk.rs"]
+#[path = "../../tests/corpora/vtk.rs"]
 mod vtk;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| vtk::check(bytes));

@@ -125,12 +125,3 @@ fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     }
     stems.split_off(1)
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn each_fit_has_a_file_of_its_own() {
-        let names = ["modal 0.1 +bulk", "modal 0.1 bulk", "mesh", "±"];
-        assert_eq!(super::file_stems(names.into_iter()), ["modal-0.1-bulk", "modal-0.1-bulk-2", "mesh-2", "-2"]);
-    }
-}

@@ -15,13 +15,14 @@ mod resistance;
 mod rest;
 mod settle;
 mod simulation;
+mod solver;
 
 pub use damping::{Dampers, Damping};
 pub use drive::{Curve, Drive};
-pub use equations::{LEAST_TOLERANCE, Solver};
 pub use integrator::Integrator;
 pub use ledger::{Account, Balance};
 pub use limit::largest_square;
 pub use motion::{Motion, Options};
 pub use settle::{Outcome, Step};
 pub use simulation::{Simulation, State};
+pub use solver::{LEAST_TOLERANCE, Solver};

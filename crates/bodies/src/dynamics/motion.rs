@@ -2,8 +2,8 @@
 
 use super::damping::Damping;
 use super::drive::Drive;
-use super::equations::Solver;
 use super::integrator::Integrator;
+use super::solver::Solver;
 use crate::error::{Error, Result};
 use crate::model::{Elastic, Support};
 use std::fmt;

@@ -3,9 +3,9 @@
 use super::balance::Balance;
 use super::descent::lbfgs;
 use super::displacements::{Displacements, Errors};
-use super::fit::{Method, Residual, Validation, Wanted, WholeSettings};
 use super::linearized::LeastSquares;
 use super::object::Object;
+use super::settings::{Method, Residual, Validation, Wanted, WholeSettings};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 

@@ -68,18 +68,3 @@ fn is_permutation(p: &[usize]) -> bool {
     sorted.sort_unstable();
     sorted.into_iter().eq(0..p.len())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The orders of the groups: 2, 6, 8, 24, 48, the wedge's 6 · 2, the pyramid's 8; of the rational pentagon its mirror.
-    #[test]
-    fn cells_have_the_symmetry_of_their_shape() {
-        let orders = Cell::ALL.map(|cell| {
-            let corners = cell.corners().concat();
-            permutations(cell, &corners).len()
-        });
-        assert_eq!(orders, [2, 6, 8, 2, 24, 48, 12, 8]);
-    }
-}

@@ -306,28 +306,3 @@ impl Numbers {
         UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Train and held-out shapes of a list never meet, and each is reached.
-    #[test]
-    fn lists_are_split() {
-        for count in 1..40 {
-            let reached = |part| -> Vec<usize> {
-                let mut all: Vec<usize> = (0..2 * count).map(|i| chosen(count, part, i)).collect();
-                all.sort_unstable();
-                all.dedup();
-                all
-            };
-            let (trained, held_out) = (reached(Part::Trained), reached(Part::HeldOut));
-            if count < APART {
-                assert_eq!(trained.len(), count);
-                continue;
-            }
-            assert_eq!(trained.len() + held_out.len(), count, "{count}");
-            assert!(held_out.iter().all(|i| !trained.contains(i)));
-        }
-    }
-}
