@@ -10,7 +10,7 @@ use springfit::fit::{
     Fit, Objective, Weight, condition, constants_in, constants_of_kind, distance_from_optimum, fit_cells, fit_element,
 };
 use springfit::material::Moduli;
-use springfit::scalar::Twofold;
+use springfit::scalar::DoubleDouble;
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use std::sync::{Arc, OnceLock};
@@ -220,7 +220,7 @@ fn twice_the_digits_are_right() {
             let table = element.tabulation.map(|v| rational(*v));
             let exact = constants_in(weight, &springs, &table, &exact_x, &exact_moduli).unwrap();
             let fit = Fit::new(Objective::Frobenius(weight));
-            let found = constants_of_kind(&Twofold::from(0.0), &element, &springs, &x, &moduli, &fit).unwrap();
+            let found = constants_of_kind(&DoubleDouble::from(0.0), &element, &springs, &x, &moduli, &fit).unwrap();
             let size = found.iter().map(|k| k.hi.abs()).fold(0.0, f64::max);
             for (found, exact) in found.iter().zip(&exact) {
                 let off = rational(found.hi) + rational(found.lo) - exact;

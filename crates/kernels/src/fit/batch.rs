@@ -1,8 +1,8 @@
 //! Fits of many cells, one cell per lane of the machine's registers.
 
-use super::careful::Careful;
 use super::closed::Closed;
 use super::constrained::solve_nonnegative;
+use super::delicate::DelicateCells;
 use super::least_squares::{normal_equations, off_diagonal_equations};
 use super::method::{Method, Verdict};
 use super::normal::{Normal, Rank};
@@ -61,7 +61,7 @@ impl PackedWork for Batch<'_> {
 
     fn run<T: Packed>(self, zero: T) -> Self::Output {
         let (n, m) = (self.element.nodes(), self.springs.len());
-        let mut room = Room::new(zero, &self);
+        let mut workspace = Workspace::new(zero, &self);
         let mut tally = Tally::default();
         let cells = self.connectivity.len() / n;
         let (mut cell, mut alone) = (0, 0);
@@ -69,13 +69,13 @@ impl PackedWork for Batch<'_> {
             let count = if cell < alone { 1 } else { T::COUNT.min(cells - cell) };
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             let constants = &mut self.constants[cell * m..(cell + count) * m];
-            if room.fit(nodes, constants, &mut tally) {
+            if workspace.fit(nodes, constants, &mut tally) {
                 cell += count;
             } else if count > 1 {
                 // One of them has no regular equations. Each alone in all lanes: its digits do not depend on the others.
                 alone = cell + count;
             } else {
-                tally.add(room.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
+                tally.add(workspace.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
                 cell += 1;
             }
         }
@@ -84,7 +84,7 @@ impl PackedWork for Batch<'_> {
 }
 
 /// What the cells of one register's width need.
-struct Room<'a, T: Packed> {
+struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
     points: &'a [f64],
@@ -101,21 +101,21 @@ struct Room<'a, T: Packed> {
     geometry: Geometry<T>,
 }
 
-impl<'a, T: Packed> Room<'a, T> {
-    fn new(zero: T, batch: &Batch<'a>) -> Room<'a, T> {
+impl<'a, T: Packed> Workspace<'a, T> {
+    fn new(zero: T, batch: &Batch<'a>) -> Workspace<'a, T> {
         let Batch { element, springs, points, moduli, fit, .. } = *batch;
-        Room {
+        Workspace {
             element,
             springs,
             points,
             moduli,
             fit,
             closed: Closed::of(springs, &fit),
-            method: Method::of_kind(&zero, springs, &fit),
+            method: Method::like(&zero, springs, &fit),
             x: vec![zero.clone(); element.nodes() * element.dimension()],
             measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
             placement: Placement::new(&element.tabulation),
-            geometry: Geometry::of_kind(&zero, &element.tabulation),
+            geometry: Geometry::like(&zero, &element.tabulation),
         }
     }
 
@@ -135,9 +135,9 @@ impl<'a, T: Packed> Room<'a, T> {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.lane(lane));
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
                 if verdict.delicate
-                    && let Ok(careful) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
+                    && let Ok(delicate) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
                 {
-                    verdict = careful;
+                    verdict = delicate;
                 }
                 tally.add(verdict);
             }
@@ -146,9 +146,9 @@ impl<'a, T: Packed> Room<'a, T> {
         regular
     }
 
-    /// [`Room::fit`] by the closed form.
+    /// [`Workspace::fit`] by the closed form.
     fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
-        let Room { element, springs, moduli, fit, .. } = *self;
+        let Workspace { element, springs, moduli, fit, .. } = *self;
         if !self.closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
             return false;
         }
@@ -187,21 +187,21 @@ impl<'a, T: Packed> Room<'a, T> {
         if !self.springs.function_gradients(&x, &mut measured) {
             return Err(Fault::Unmeasured);
         }
-        let Room { element, springs, moduli, fit, .. } = self;
+        let Workspace { element, springs, moduli, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
         if is_delicate || quality <= T::delicate() {
-            let careful = Careful { element, springs, moduli, fit };
+            let delicate = DelicateCells { element, springs, moduli, fit };
             let d = element.dimension();
             let mut given = x.clone();
             if element.space() == d {
                 // As they are, for their differences are exact in more digits.
                 gather(self.points, d, nodes, &mut given);
             }
-            if let Some(verdict) = careful.constants(&given, (&x, &geometry), &measured, constants) {
+            if let Some(verdict) = delicate.constants(&given, (&x, &geometry), &measured, constants) {
                 return Ok(verdict);
             }
         }
-        if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
+        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit) {
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }

@@ -91,7 +91,7 @@ impl ClosedForm {
         if !is_exact(element, &table.map(to_f64)) {
             return Err(refuse("its quadrature is not exact for its own stiffness"));
         }
-        let mut geometry = Geometry::of_kind(&x[0], &table);
+        let mut geometry = Geometry::like(&x[0], &table);
         if !geometry.update(&table, &x) {
             return Err(refuse("its reference cell is turned inside out"));
         }

@@ -227,7 +227,7 @@ pub fn search(
     fit: &Fit,
     (method, iterations, topology): (Search, u64, Option<Topology>),
 ) -> Vec<f64> {
-    let mut reduced = Reduced::of_kind(&0.0, springs, fit.tied);
+    let mut reduced = Reduced::like(&0.0, springs, fit.tied);
     let mut measured = vec![0.0; springs.functions.len() * x.len()];
     springs.function_gradients(x, &mut measured);
     reduced.set(fit.objective.weight().unwrap_or(Weight::Relative), springs, x, geometry, moduli, &measured);

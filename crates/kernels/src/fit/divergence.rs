@@ -41,7 +41,7 @@ pub struct Divergence<T> {
 }
 
 impl<T: Real> Divergence<T> {
-    pub fn of_kind(any: &T, reduced: &Reduced<T>, balance: f64, nonnegative: bool) -> Divergence<T> {
+    pub fn like(any: &T, reduced: &Reduced<T>, balance: f64, nonnegative: bool) -> Divergence<T> {
         let (p, m, c) = (reduced.order, reduced.unknowns.len(), reduced.scales.len());
         let room = |size: usize| vec![any.zero(); size];
         Divergence {

@@ -32,7 +32,7 @@ pub fn constants_in<T: Scalar>(
     if weight == Weight::Relative || !springs.functions.is_empty() {
         return None;
     }
-    let mut geometry = Geometry::of_kind(x.first()?, table);
+    let mut geometry = Geometry::like(x.first()?, table);
     let mut normal = Normal::default();
     if !geometry.update(table, x) {
         return None;

@@ -76,8 +76,8 @@ pub struct Verdict {
 
 impl<T: Real> Method<T> {
     /// None for the objectives that the closed form serves.
-    pub fn of_kind(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
-        let reduced = Reduced::of_kind(any, springs, fit.tied);
+    pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
+        let reduced = Reduced::like(any, springs, fit.tied);
         let m = springs.len();
         let (weight, solver) = match fit.objective {
             // The closed form knows length springs and the content; of what else is measured only the gradient is known.
@@ -89,10 +89,10 @@ impl<T: Real> Method<T> {
             }
             Objective::Frobenius(_) => return None,
             Objective::Spectral(weight) => {
-                (weight, Solver::Spectral(Box::new(Spectral::of_kind(any, &reduced, fit.nonnegative))))
+                (weight, Solver::Spectral(Box::new(Spectral::like(any, &reduced, fit.nonnegative))))
             }
             Objective::Divergence { balance } => {
-                let solver = Divergence::of_kind(any, &reduced, balance, fit.nonnegative);
+                let solver = Divergence::like(any, &reduced, balance, fit.nonnegative);
                 (Weight::Relative, Solver::Divergence(solver))
             }
         };

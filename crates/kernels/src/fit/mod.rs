@@ -1,11 +1,12 @@
 //! Spring constants from the stiffness of each element.
 
 mod batch;
-mod careful;
+
 mod closed;
 mod closed_form;
 mod congruence;
 mod constrained;
+mod delicate;
 mod dense;
 mod descent;
 mod divergence;
@@ -157,7 +158,7 @@ impl CellFits {
                 fitted.constants.resize(shapes * m, 0.0);
                 let mut share = |done: usize| progress(done * cells / shapes);
                 fitted.fit_each(element, points, &few, moduli, fit, &mut share)?;
-                self.take_over(&fitted, &congruence.shapes);
+                self.copy_by_shape(&fitted, &congruence.shapes);
                 return Ok(());
             }
         }
@@ -217,7 +218,7 @@ impl CellFits {
     }
 
     /// The constants of one cell of each shape for all cells; `shapes` gives the shape of each.
-    fn take_over(&mut self, fitted: &CellFits, shapes: &[usize]) {
+    fn copy_by_shape(&mut self, fitted: &CellFits, shapes: &[usize]) {
         let m = self.springs.len();
         for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(shapes) {
             constants.copy_from_slice(&fitted.constants[shape * m..(shape + 1) * m]);

@@ -6,7 +6,7 @@ use super::normal::Normal;
 use super::{Fit, Weight, constants_in};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Real, Twofold};
+use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -41,7 +41,7 @@ pub fn distance_from_optimum(
     fit: &Fit,
     (constants, value): (&[f64], f64),
 ) -> Option<f64> {
-    let x = differences(&Twofold::from(0.0), element.dimension(), x);
+    let x = differences(&DoubleDouble::from(0.0), element.dimension(), x);
     shaped(element, springs, &x, moduli, fit)??.distance_from_optimum(constants, value)
 }
 
@@ -53,7 +53,7 @@ fn shaped<T: Real>(
     moduli: &Moduli,
     fit: &Fit,
 ) -> Option<Option<Method<T>>> {
-    let mut geometry = Geometry::of_kind(x.first()?, &element.tabulation);
+    let mut geometry = Geometry::like(x.first()?, &element.tabulation);
     if !geometry.update(&element.tabulation, x) {
         return None;
     }
@@ -72,7 +72,7 @@ pub(super) fn solved<T: Real>(
     measured: &[f64],
     fit: &Fit,
 ) -> Option<Method<T>> {
-    let mut method = Method::of_kind(&x[0], springs, fit)?;
+    let mut method = Method::like(&x[0], springs, fit)?;
     let measured: Vec<T> = measured.iter().map(|g| x[0].constant(g)).collect();
     method.solve(springs, x, geometry, moduli, &measured);
     Some(method)

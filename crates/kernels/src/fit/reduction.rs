@@ -38,7 +38,7 @@ pub struct Reduced<T> {
 
 impl<T: Real> Reduced<T> {
     /// Room for the elements with these springs; `any` says the kind of number.
-    pub fn of_kind(any: &T, springs: &Springs, tied: bool) -> Reduced<T> {
+    pub fn like(any: &T, springs: &Springs, tied: bool) -> Reduced<T> {
         let (n, d, m) = (springs.nodes, springs.dimension, springs.len());
         let unknowns = if tied { springs.groups.clone() } else { (0..m).collect() };
         let count = unknowns.iter().max().map_or(0, |last| last + 1);

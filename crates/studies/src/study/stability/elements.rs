@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::fit::{
     CellFits, Fit, Objective, Weight, condition, constants_of_kind, distance_from_optimum, fit_cells, fit_element,
 };
-use crate::scalar::{Real, Twofold};
+use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use crate::study::random::Random;
@@ -58,7 +58,7 @@ impl Subject<'_> {
             Err(e) => return of(Verdict::Refused(e.problem().into())),
         };
         let k = &fits.constants;
-        let reference = constants_of_kind(&Twofold::from(0.0), element, springs, &case.x, &moduli, &fit);
+        let reference = constants_of_kind(&DoubleDouble::from(0.0), element, springs, &case.x, &moduli, &fit);
         let mut row = match (objective, &reference) {
             _ if k.iter().any(|k| !k.is_finite()) => of(Verdict::Lost).with_error(f64::INFINITY, PROMISED),
             _ if fits.deficient > 0 => of(Verdict::Dependent),
@@ -156,9 +156,9 @@ impl Subject<'_> {
 }
 
 /// `max |a − b| / max |b|`, with b in twice the digits.
-fn distance(a: &[f64], b: &[Twofold]) -> f64 {
+fn distance(a: &[f64], b: &[DoubleDouble]) -> f64 {
     let size = b.iter().map(|b| b.hi.abs()).fold(0.0, f64::max);
-    let away = worst(a.iter().zip(b).map(|(a, b)| (Twofold::from(*a) - b).hi.abs()));
+    let away = worst(a.iter().zip(b).map(|(a, b)| (DoubleDouble::from(*a) - b).hi.abs()));
     if away == 0.0 { 0.0 } else { away / size }
 }
 

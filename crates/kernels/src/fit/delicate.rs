@@ -9,19 +9,19 @@ use super::normal::Normal;
 use super::precision::{differences, solved};
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Scalar, Twofold};
+use crate::scalar::{DoubleDouble, Scalar};
 use crate::springs::{Springs, dot};
 use crate::stiffness::Geometry;
 
 /// What the cells of a block have in common.
-pub struct Careful<'a> {
+pub struct DelicateCells<'a> {
     pub element: &'a Element,
     pub springs: &'a Springs,
     pub moduli: &'a Moduli,
     pub fit: &'a Fit,
 }
 
-impl Careful<'_> {
+impl DelicateCells<'_> {
     /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `plain` and `shape` are that
     /// from its first in `f64`, `measured` as [`Method::solve`] needs it. None where
     /// the Jacobian vanishes, or springs on functions are seen block by block, which is known in `f64` alone.
@@ -32,10 +32,10 @@ impl Careful<'_> {
         measured: &[f64],
         constants: &mut [f64],
     ) -> Option<Verdict> {
-        let Careful { element, springs, moduli, fit } = *self;
-        let any = Twofold::from(0.0);
+        let DelicateCells { element, springs, moduli, fit } = *self;
+        let any = DoubleDouble::from(0.0);
         let x = differences(&any, element.dimension(), x);
-        let mut geometry = Geometry::of_kind(&any, &element.tabulation);
+        let mut geometry = Geometry::like(&any, &element.tabulation);
         if !geometry.update(&element.tabulation, &x) {
             return None;
         }
@@ -48,7 +48,7 @@ impl Careful<'_> {
         let mut normal = Normal::default();
         normal_equations(fit.objective.weight()?, springs, &x, &geometry, moduli, &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
-        let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, Twofold::given());
+        let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         spread(fit, springs, constants, &k);
         Some(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
