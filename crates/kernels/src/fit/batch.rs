@@ -3,7 +3,7 @@
 use super::closed::Closed;
 use super::constrained::solve_nonnegative;
 use super::delicate::DelicateCells;
-use super::least_squares::{normal_equations, off_diagonal_equations};
+use super::least_squares::off_diagonal_equations;
 use super::method::{Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::{Certificate, Fit};
@@ -90,9 +90,9 @@ struct Workspace<'a, T: Packed> {
     points: &'a [f64],
     moduli: Moduli,
     fit: Fit,
-    /// Of the objectives that it serves.
-    closed: Closed<T>,
-    /// Of the others.
+    /// Of the objectives that have a closed form.
+    closed: Option<Closed<T>>,
+    /// Of those that need the reduced element.
     method: Option<Method<T>>,
     x: Vec<T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
@@ -122,7 +122,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
     /// Jacobian of one is not safely positive or its equations are not regular.
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
-        if self.closed.is_foreign_to(self.springs) || !self.gather(nodes) {
+        if (self.closed.is_none() && self.method.is_none()) || !self.gather(nodes) {
             return false;
         }
         let Some(mut method) = self.method.take() else { return self.fit_closed(constants) };
@@ -149,12 +149,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
     /// [`Workspace::fit`] by the closed form.
     fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
         let Workspace { element, springs, moduli, fit, .. } = *self;
-        if !self.closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
+        let Some(closed) = &mut self.closed else { return false };
+        if !closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
             return false;
         }
         let m = springs.len();
         for s in 0..m {
-            let k = self.closed.constant(springs, s).as_slice();
+            let k = closed.constant(springs, s).as_slice();
             for (cell, k) in (0..constants.len() / m).zip(k) {
                 constants[cell * m + s] = *k;
             }
@@ -162,7 +163,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
-        let Some(equations) = self.closed.equations(springs, &self.x, &self.geometry, &moduli) else {
+        let Some(equations) = closed.equations(springs, &self.x, &self.geometry, &moduli) else {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
@@ -205,12 +206,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }
-        let mut normal = Normal::default();
-        if self.springs.functions.is_empty() {
-            normal_equations(self.closed.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
-        } else {
-            normal = off_diagonal_equations(self.springs, &x, &geometry, self.moduli);
-        }
+        let normal = match &self.closed {
+            Some(closed) => closed.equations_alone(self.springs, &x, &geometry, &self.moduli),
+            None => off_diagonal_equations(self.springs, &x, &geometry, self.moduli),
+        };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
         spread(&self.fit, self.springs, constants, &k);

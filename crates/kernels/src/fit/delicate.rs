@@ -7,6 +7,7 @@ use super::least_squares::normal_equations;
 use super::method::Verdict;
 use super::normal::Normal;
 use super::precision::{differences, solved};
+use super::weight::Route;
 use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::{DoubleDouble, Scalar};
@@ -39,14 +40,13 @@ impl DelicateCells<'_> {
         if !geometry.update(&element.tabulation, &x) {
             return None;
         }
-        if let Some(method) = solved(springs, &x, &geometry, moduli, measured, fit) {
+        let route = fit.objective.route(!springs.functions.is_empty());
+        let Route::Closed(weight) = route else {
+            let method = solved(springs, &x, &geometry, moduli, measured, fit)?;
             return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
-        }
-        if !springs.functions.is_empty() {
-            return None;
-        }
+        };
         let mut normal = Normal::default();
-        normal_equations(fit.objective.weight()?, springs, &x, &geometry, moduli, &mut normal);
+        normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         spread(fit, springs, constants, &k);
