@@ -144,8 +144,8 @@ fn groups_go_as_a_whole() {
     for (method, accuracy) in SEARCHES.into_iter().zip([1e-6, 1e-2]) {
         let solver = Solver::General { method, iterations: 2000, topology: Some(Topology { sparsity: 0.06 }) };
         let found = of(&springs, &Fit { solver, ..tied });
-        for (k, &group) in found.iter().zip(&springs.groups) {
-            match springs.names[group].as_str() {
+        for (k, &group) in found.iter().zip(springs.groups()) {
+            match springs.names()[group].as_str() {
                 "face diagonal" => assert!((k / wanted - 1.0).abs() < accuracy, "{method:?}: {k} for {wanted}"),
                 other => assert_eq!(*k, 0.0, "{method:?}: {other}"),
             }
