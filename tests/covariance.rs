@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
 use num_traits::Signed;
 use proptest::prelude::*;
-use springfit::element::{Element, permutations};
+use springfit::element::{Element, SpringKind, permutations};
 use springfit::fit::{
     Balance, Fit, Higher, MotionWeight, Objective, Weight, condition, constants_in, constants_of_kind,
     distance_from_optimum, fit_cells, fit_element,
@@ -49,11 +49,11 @@ fn measured(springs: &Springs, s: usize) -> i32 {
     let d = springs.dimension() as i32;
     match s.checked_sub(springs.pairs().len()) {
         None => 0,
-        Some(f) if f < springs.functions().len() => match springs.functions()[f].kind.name() {
-            "angle" => -2,
-            "area" => 2,
-            "volume" => 4,
-            _ => 0,
+        Some(f) if f < springs.functions().len() => match springs.functions()[f].kind {
+            SpringKind::Angle => -2,
+            SpringKind::Area => 2,
+            SpringKind::Volume => 4,
+            SpringKind::Length | SpringKind::Coupling | SpringKind::Measure => 0,
         },
         Some(_) => 2 * (d - 1),
     }

@@ -70,7 +70,7 @@ fn forces_and_tangents_are_those_of_differences() {
             kinds.push(kind);
         }
     }
-    for kind in [SpringKind::Angle, SpringKind::Area, SpringKind::Volume, SpringKind::Coupling, SpringKind::Measure] {
+    for kind in SpringKind::all() {
         assert!(kinds.contains(&kind), "{kind:?}");
     }
 }
