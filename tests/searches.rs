@@ -118,7 +118,7 @@ fn redundant_springs_are_switched_off() {
 #[test]
 fn searches_begin_no_lower_and_repeat() {
     let body = Body::new();
-    for (method, iterations) in SEARCHES.into_iter().flat_map(|method| [0, 1, 3, 450].map(|n| (method, n))) {
+    for (method, iterations) in SEARCHES.into_iter().flat_map(|method| [1, 3, 450].map(|n| (method, n))) {
         for topology in [None, Some(Topology::default()), Some(Topology { sparsity: 0.1 })] {
             let sparsity = topology.map_or(0.0, |topology| topology.sparsity);
             let k = body.search(method, iterations, topology);
