@@ -2,7 +2,9 @@
 //! batched NumPy implementation of the same fit, in the same run. Medians of five runs.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::fit::{CellFits, Fit, Objective, SampledFit, Sampling, Weight, fit_cells, fit_sampled};
+use springfit::fit::{
+    Balance, CellFits, Fit, Higher, MotionWeight, Objective, SampledFit, Sampling, Weight, fit_cells, fit_sampled,
+};
 use springfit::material::{Energy, Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::Network;
@@ -65,10 +67,10 @@ fn main() {
         let springs = element.nodes() * (element.nodes() - 1) / 2;
         let count = (25_000_000 / (springs * springs)).clamp(64, 30_000);
         let (Some(mesh), Some(small)) = (jittered(element, count), jittered(element, count / 30)) else { continue };
-        let frobenius = [Weight::None, Weight::OffDiagonal, Weight::Modal { higher: 0.316 }, Weight::Relative];
+        let frobenius = [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::DEFAULT), Weight::Relative];
         let mut objectives: Vec<(Objective, &Mesh)> = frobenius.map(|w| (Objective::Frobenius(w), &mesh)).into();
-        objectives.push((Objective::Spectral(Weight::None), &small));
-        objectives.push((Objective::Divergence { balance: 0.25 }, &small));
+        objectives.push((Objective::Spectral(MotionWeight::None), &small));
+        objectives.push((Objective::Divergence(Balance::DEFAULT), &small));
         for (objective, mesh) in objectives {
             for nonnegative in [false, true] {
                 let (_, seconds) = one.install(|| timed(mesh, Fit { nonnegative, ..Fit::new(objective) }));

@@ -6,7 +6,7 @@
 
 use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
-use springfit::fit::{Fit, Objective, Weight};
+use springfit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
 use springfit::solve::Standing;
 use springfit::study::{NamedFit, Scene, run};
 use std::collections::BTreeMap;
@@ -67,11 +67,15 @@ fn candidates(lengths: &[String], all: &[String]) -> Vec<NamedFit> {
     for (groups, bulk) in [(lengths, ""), (all, " with bulk")] {
         for nonnegative in [false, true] {
             let mut objectives = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
-            objectives.extend([0.7, 0.5, 0.316, 0.2, 0.1].map(|higher| Objective::Frobenius(Weight::Modal { higher })));
+            objectives.extend(
+                [0.7, 0.5, 0.316, 0.2, 0.1]
+                    .map(|higher| Objective::Frobenius(Weight::Modal(Higher::new(higher).unwrap()))),
+            );
             objectives.push(Objective::Frobenius(Weight::Relative));
-            objectives
-                .extend([Weight::None, Weight::Modal { higher: 0.316 }, Weight::Relative].map(Objective::Spectral));
-            objectives.extend([0.0, 0.1, 0.25, 0.5, 1.0].map(|balance| Objective::Divergence { balance }));
+            objectives.extend(MotionWeight::all().map(Objective::Spectral));
+            objectives.extend(
+                [0.0, 0.1, 0.25, 0.5, 1.0].map(|balance| Objective::Divergence(Balance::new(balance).unwrap())),
+            );
             for objective in objectives {
                 let fit = Fit { nonnegative, ..Fit::new(objective) };
                 let mut named = NamedFit::new(fit, None);

@@ -1,7 +1,7 @@
 //! The reference figures of whole bodies, %e_rms / %e_max, and how networks that do not stand are told.
 
 use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight};
+use springfit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
 use springfit::material::Material;
 use springfit::report::Comparison;
 use springfit::solve::Standing;
@@ -24,7 +24,7 @@ fn check(scene: &str, objective: Objective, bulk: bool, load: usize, rms: f64, m
     assert!((found.rms - rms).abs() < 0.021 && (found.max - max).abs() < 0.021, "{scene}: {found:?}, {rms} / {max}");
 }
 
-const MODAL: Objective = Objective::Frobenius(Weight::Modal { higher: 0.316 });
+const MODAL: Objective = Objective::Frobenius(Weight::Modal(Higher::DEFAULT));
 
 /// Derived with a linear model on both sides, a fixed face and consistent traction; `offdiag` 2.18 by an independent
 /// computation.
@@ -51,7 +51,7 @@ fn spectral_fits_match_the_reference_figures() {
         ("cube_hex", 5.47, 9.08),
     ];
     for (scene, rms, max) in figures {
-        let outcome = fitted(scene, Fit::new(Objective::Spectral(Weight::None)), false);
+        let outcome = fitted(scene, Fit::new(Objective::Spectral(MotionWeight::None)), false);
         let found = outcome.loads[0].error.unwrap();
         assert!((found.rms / rms - 1.0).abs() < 0.02 && (found.max / max - 1.0).abs() < 0.02, "{scene}: {found:?}");
         assert!(outcome.kind.stiffness().unwrap().gap.unwrap() <= 1e-8 && outcome.unreached == 0);
@@ -70,7 +70,7 @@ fn divergence_fits_match_the_reference_figures() {
         ("tissue_tri", 0.0, false, 1.44, 0.27),
     ];
     for (scene, balance, bulk, tension, shear) in figures {
-        let outcome = fitted(scene, Fit::new(Objective::Divergence { balance }), bulk);
+        let outcome = fitted(scene, Fit::new(Objective::Divergence(Balance::new(balance).unwrap())), bulk);
         for (load, rms) in [(0, tension), (1, shear)] {
             let found = outcome.loads[load].error.unwrap().rms;
             assert!((found - rms).abs() < 0.006 + 0.001 * rms, "{scene} {balance}: {found}, expected {rms}");
@@ -87,7 +87,7 @@ fn modal_fits_with_a_content_spring_match_the_reference_figures() {
     check("cylinder_hex", MODAL, true, 1, 0.19, 1.55);
     check("tissue_quad", MODAL, true, 0, 0.54, 1.48);
     check("tissue_quad", MODAL, true, 1, 0.20, 0.68);
-    let cube = fitted("cube_hex", Fit::new(Objective::Frobenius(Weight::Modal { higher: 0.1 })), true);
+    let cube = fitted("cube_hex", Fit::new(Objective::Frobenius(Weight::Modal(Higher::new(0.1).unwrap()))), true);
     for (load, rms, max) in [(0, 0.15, 0.62), (1, 0.40, 0.92)] {
         let found = cube.loads[load].error.unwrap();
         assert!(found.rms <= rms && found.max <= max, "{found:?}");
@@ -96,7 +96,8 @@ fn modal_fits_with_a_content_spring_match_the_reference_figures() {
 
 #[test]
 fn a_network_that_releases_energy_is_told() {
-    let outcome = fitted("cylinder_hex", Fit::new(Objective::Frobenius(Weight::Modal { higher: 0.1 })), true);
+    let outcome =
+        fitted("cylinder_hex", Fit::new(Objective::Frobenius(Weight::Modal(Higher::new(0.1).unwrap()))), true);
     assert!(outcome.loads[0].error.unwrap().max > 500.0);
     let stability = outcome.stability.unwrap();
     assert_eq!(stability.standing, Standing::Indefinite);
@@ -136,7 +137,7 @@ fn every_fit_that_a_scene_is_given_has_an_outcome() {
     let given = scene.fits().len() + 3;
     let fits = (1..=given).map(|i| {
         let higher = i as f64 / given as f64;
-        NamedFit::new(Fit::new(Objective::Frobenius(Weight::Modal { higher })), None)
+        NamedFit::new(Fit::new(Objective::Frobenius(Weight::Modal(Higher::new(higher).unwrap()))), None)
     });
     let fits: Vec<NamedFit> = fits.collect();
     let outcome = run(&scene.with_fits(fits.clone()), &mut |_| {}).unwrap();

@@ -1,7 +1,7 @@
 //! The shipped elements in meshes that Gmsh, meshio and VTK wrote: node orders, contents, and surfaces and curves in space.
 
 use springfit::element::{Quadrature, SHIPPED, Tabulation};
-use springfit::fit::{Fit, Objective, Weight, element_errors, fit_cells};
+use springfit::fit::{Balance, Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
 use springfit::material::Material;
 use springfit::mesh::{Mesh, MeshSource};
 use springfit::model::{Network, finite_elements, masses};
@@ -61,7 +61,7 @@ fn a_rod_is_one_spring() {
     let element = &mesh.blocks[0].element;
     let material = Material::for_body(1, 2e9, 0.3, None, None).unwrap().with_area(3e-4).unwrap();
     let springs = Springs::select(element, None).unwrap();
-    for objective in [Objective::Frobenius(Weight::None), Objective::Spectral(Weight::None)] {
+    for objective in [Objective::Frobenius(Weight::None), Objective::Spectral(MotionWeight::None)] {
         let (points, cells) = (&mesh.points, &mesh.blocks[0].connectivity);
         let fits =
             fit_cells(element, &springs, points, cells, material.moduli(), &Fit::new(objective), &mut |_| {}).unwrap();
@@ -89,7 +89,7 @@ fn surfaces_are_membranes() {
     for names in [&every[..1], &every[..]] {
         let springs = Springs::select(element, Some(names)).unwrap();
         let cells = &mesh.blocks[0].connectivity;
-        for objective in [Objective::Frobenius(Weight::None), Objective::Divergence { balance: 0.25 }] {
+        for objective in [Objective::Frobenius(Weight::None), Objective::Divergence(Balance::DEFAULT)] {
             let fit = Fit::new(objective);
             let fits = fit_cells(element, &springs, &mesh.points, cells, material.moduli(), &fit, &mut |_| {}).unwrap();
             for (nodes, k) in cells.chunks_exact(3).zip(fits.constants.chunks_exact(springs.len())) {
@@ -133,11 +133,11 @@ fn surfaces_are_membranes() {
                 let area = base * height / 2.0;
                 let squares = xx * xx + yy * yy + 2.0 * xy * xy;
                 body += area * (moduli.lambda * (xx + yy).powi(2) + 2.0 * moduli.mu * squares);
-                for (&[i, j], k) in springs.pairs.iter().zip(k) {
+                for (&[i, j], k) in springs.pairs().iter().zip(k) {
                     let n = edge(i, j);
                     lattice += k * dot(&n, &map(&n)).powi(2) / dot(&n, &n);
                 }
-                if springs.content.is_some() {
+                if springs.content().is_some() {
                     lattice += k[3] * (area * (xx + yy)).powi(2);
                 }
             }

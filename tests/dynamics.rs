@@ -6,7 +6,7 @@ use springfit::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome, Simulation, Solver,
 };
 use springfit::element::{Element, SHIPPED};
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit::fit::{Fit, Higher, Objective, Weight, fit_cells};
 use springfit::material::{Energy, Material, State};
 use springfit::mesh::{BoxMesh, DiscMesh, Mesh};
 use springfit::model::{
@@ -50,7 +50,7 @@ fn cube(element: &str, side: usize) -> (Mesh, Network) {
     let every: Vec<String> = block.element.springs.iter().map(|group| group.name.clone()).collect();
     let springs = Springs::select(&block.element, Some(&every)).unwrap();
     let moduli = Material::new(10e3, 0.3, springfit::material::State::Solid).unwrap().moduli();
-    let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::Modal { higher: 0.316 })) };
+    let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::Modal(Higher::DEFAULT))) };
     let fits = fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &fit, &mut |_| {});
     let network = Network::assemble(&mesh, &[fits.unwrap()]);
     (mesh, network)

@@ -8,6 +8,7 @@ mod corpora;
 mod covariance;
 mod crash;
 mod derive;
+mod door;
 mod dynamics;
 mod elements;
 mod energies;

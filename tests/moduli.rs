@@ -63,7 +63,7 @@ fn squares_have_the_published_moduli() {
     assert!((found.young - 0.852).abs() < 5e-4 && (found.poisson - 0.404).abs() < 5e-4, "{found:?}");
     let with = |edge: f64, diagonal: f64| {
         let side = |&[a, b]: &[usize; 2]| (a + b) % 2 == 1;
-        let constants = springs.pairs.iter().map(|pair| if side(pair) { edge } else { diagonal }).collect();
+        let constants = springs.pairs().iter().map(|pair| if side(pair) { edge } else { diagonal }).collect();
         lattice("quad4", material).with_constants(constants).of_springs().unwrap()
     };
     let lloyd = with(5.0 / 16.0, 7.0 / 16.0);
@@ -86,7 +86,7 @@ fn cubes_have_the_published_moduli() {
         let differ = (0..3).filter(|k| element.positions[3 * a + k] != element.positions[3 * b + k]).count();
         [edge, 0.0, diagonal][differ - 1]
     };
-    let constants = springs.pairs.iter().map(constant).collect();
+    let constants = springs.pairs().iter().map(constant).collect();
     let baudet = lattice("hex8", material).with_constants(constants).of_springs().unwrap();
     close(&baudet, 1.0, 0.25, 1.0, 1e-12);
 }

@@ -3,7 +3,7 @@
 use crate::shapes::{Random, distorted, elements};
 use nalgebra::Matrix3;
 use springfit::element::{Element, SpringKind};
-use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
+use springfit::fit::{CellFits, Fit, Higher, Objective, Weight, fit_cells};
 use springfit::material::{Energy, Material, Plane, SHIPPED, State};
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
@@ -245,7 +245,7 @@ fn networks_are_solved_at_large_deformation() {
     let every: Vec<String> = block.element.springs.iter().map(|g| g.name.clone()).collect();
     let springs = Springs::select(&block.element, Some(&every)).unwrap();
     let material = Material::new(1.0, 0.3, State::Solid).unwrap();
-    let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::Modal { higher: 0.316 })) };
+    let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::Modal(Higher::DEFAULT))) };
     let fits: CellFits =
         fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, material.moduli(), &fit, &mut |_| {})
             .unwrap();

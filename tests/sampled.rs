@@ -6,8 +6,8 @@ use crate::shapes::{Random, distorted};
 use nalgebra::{DMatrix, DVector};
 use springfit::element::Element;
 use springfit::fit::{
-    CellFits, Family, Fit, Norm, Objective, SampledFit, SampledFits, Sampling, Source, Weight, Weights, fit_cells,
-    fit_sampled,
+    Balance, CellFits, Family, Fit, Higher, Norm, Objective, SampledFit, SampledFits, Sampling, Source, Weight,
+    Weights, fit_cells, fit_sampled,
 };
 use springfit::material::{Energy, Material, Plane, State};
 use springfit::mesh::{BoxMesh, Mesh, Selection};
@@ -31,7 +31,7 @@ fn sampled(element: &Arc<Element>, springs: &Springs, x: &[f64], law: &str, fit:
 }
 
 fn law(text: &str, springs: &Springs) -> Force {
-    Force::of_all(Law::parse(text).unwrap(), springs.names.len())
+    Force::of_all(Law::parse(text).unwrap(), springs.names().len())
 }
 
 const BASIC: [Family; 4] = [Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
@@ -247,7 +247,7 @@ fn springs_are_a_neo_hookean_simplex_exactly() {
     for name in ["tri3", "tet4"] {
         let element = Arc::new(Element::load(name).unwrap());
         let springs = Springs::select(&element, Some(&every(&element))).unwrap();
-        assert_eq!(springs.names, ["edge", "bulk"]);
+        assert_eq!(springs.names(), ["edge", "bulk"]);
         let d = element.dimension();
         let plane = (d == 2).then_some(Plane::Strain);
         let material = Material::for_body(d, 1.0, 0.3, plane, None).unwrap();
@@ -266,7 +266,7 @@ fn springs_are_a_neo_hookean_simplex_exactly() {
             let (lambda, mu) = (0.3 / 1.3 / 0.4, 0.5 / 1.3);
             let gradient = |a: usize| &geometry.gradients[a * d..(a + 1) * d];
             let product = |[a, b]: [usize; 2]| gradient(a).iter().zip(gradient(b)).map(|(g, h)| g * h).sum::<f64>();
-            let pairs = springs.pairs.iter().map(|&pair| -mu * geometry.content() * product(pair));
+            let pairs = springs.pairs().iter().map(|&pair| -mu * geometry.content() * product(pair));
             for (k, expected) in found.fits.parameters.iter().zip(pairs.chain([-mu, lambda])) {
                 assert!((k - expected).abs() < 1e-7, "{name}: {k} {expected}");
             }
@@ -310,8 +310,8 @@ fn sampled_springs_follow_large_deformations() {
             errors.map(error).map(|e| e.max(1e-9).ln()).sum::<f64>().exp().powf(1.0 / 3.0)
         };
         let (points, cells) = (&mesh.points, &block.connectivity);
-        let weights = [Weight::None, Weight::OffDiagonal, Weight::Modal { higher: 0.316 }];
-        let objectives = weights.map(Objective::Frobenius).into_iter().chain([Objective::Divergence { balance: 0.25 }]);
+        let weights = [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::DEFAULT)];
+        let objectives = weights.map(Objective::Frobenius).into_iter().chain([Objective::Divergence(Balance::DEFAULT)]);
         let at_rest = |objective: Objective| {
             let fit = Fit { nonnegative: true, ..Fit::new(objective) };
             error(fit_cells(&block.element, &springs, points, cells, material.moduli(), &fit, &mut |_| {}).unwrap())
@@ -332,7 +332,7 @@ fn sampled_springs_follow_large_deformations() {
                 fit_sampled(&block.element, &springs, points, cells, &energy, State::Solid, &fit, &mut |_| {}).unwrap();
             error(found.fits)
         };
-        let groups = springs.names.len();
+        let groups = springs.names().len();
         let cubic = format!("{CUBIC} + p*(s + 1/2) + q*(s - 1)");
         let mut laws: Vec<_> = (0..groups).map(|_| Arc::new(Law::parse("k*c").unwrap())).collect();
         laws[groups - 1] = Arc::new(Law::parse("a/(1 + s) + b*ln(1 + s)/(1 + s)").unwrap());

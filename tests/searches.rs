@@ -118,7 +118,7 @@ fn redundant_springs_are_switched_off() {
 #[test]
 fn searches_begin_no_lower_and_repeat() {
     let body = Body::new();
-    for (method, iterations) in SEARCHES.into_iter().flat_map(|method| [0, 1, 3, 450].map(|n| (method, n))) {
+    for (method, iterations) in SEARCHES.into_iter().flat_map(|method| [1, 3, 450].map(|n| (method, n))) {
         for topology in [None, Some(Topology::default()), Some(Topology { sparsity: 0.1 })] {
             let sparsity = topology.map_or(0.0, |topology| topology.sparsity);
             let k = body.search(method, iterations, topology);
@@ -144,8 +144,8 @@ fn groups_go_as_a_whole() {
     for (method, accuracy) in SEARCHES.into_iter().zip([1e-6, 1e-2]) {
         let solver = Solver::General { method, iterations: 2000, topology: Some(Topology { sparsity: 0.06 }) };
         let found = of(&springs, &Fit { solver, ..tied });
-        for (k, &group) in found.iter().zip(&springs.groups) {
-            match springs.names[group].as_str() {
+        for (k, &group) in found.iter().zip(springs.groups()) {
+            match springs.names()[group].as_str() {
                 "face diagonal" => assert!((k / wanted - 1.0).abs() < accuracy, "{method:?}: {k} for {wanted}"),
                 other => assert_eq!(*k, 0.0, "{method:?}: {other}"),
             }

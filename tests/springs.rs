@@ -2,7 +2,9 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::{Element, SpringKind};
-use springfit::fit::{CellFits, Fit, Objective, Search, Solver, Weight, element_errors, fit_cells};
+use springfit::fit::{
+    Balance, CellFits, Fit, Higher, MotionWeight, Objective, Search, Solver, Weight, element_errors, fit_cells,
+};
 use springfit::material::{Material, Plane};
 use springfit::springs::{Law, Measure, Springs};
 use std::path::Path;
@@ -51,13 +53,13 @@ fn forces_and_tangents_are_those_of_differences() {
         let at =
             |x: &[f64], nodes: &[usize]| -> Vec<f64> { nodes.iter().flat_map(|a| x[a * d..][..d].to_vec()).collect() };
         let mut measures: Vec<(SpringKind, Vec<usize>, Measure)> = springs
-            .functions
+            .functions()
             .iter()
             .map(|f| (f.kind, f.nodes.clone(), Measure::Function(f.function.clone())))
             .collect();
-        measures.push((SpringKind::Length, springs.pairs[0].to_vec(), Measure::Length));
+        measures.push((SpringKind::Length, springs.pairs()[0].to_vec(), Measure::Length));
         // 81 coordinates, each moved, take a while.
-        if let Some(kind) = springs.content.filter(|_| element.nodes() < 20) {
+        if let Some(kind) = springs.content().filter(|_| element.nodes() < 20) {
             measures.push((kind, (0..element.nodes()).collect(), Measure::Content(element.clone())));
         }
         for (kind, nodes, measure) in measures {
@@ -68,7 +70,7 @@ fn forces_and_tangents_are_those_of_differences() {
             kinds.push(kind);
         }
     }
-    for kind in [SpringKind::Angle, SpringKind::Area, SpringKind::Volume, SpringKind::Coupling, SpringKind::Measure] {
+    for kind in SpringKind::all() {
         assert!(kinds.contains(&kind), "{kind:?}");
     }
 }
@@ -150,7 +152,7 @@ fn fitted(element: &Element, names: &[&str], x: &[f64], material: Material, fit:
 const NORMS: [Objective; 3] = [
     Objective::Frobenius(Weight::None),
     Objective::Frobenius(Weight::OffDiagonal),
-    Objective::Frobenius(Weight::Modal { higher: 0.316 }),
+    Objective::Frobenius(Weight::Modal(Higher::DEFAULT)),
 ];
 
 /// With products of elongations springs are the finite element, on any triangle and tetrahedron: the residual is rounding,
@@ -169,11 +171,11 @@ fn couplings_make_simplices_exact() {
                     let (_, frobenius, _) = fitted(&element, groups, &x, material, Fit::new(objective));
                     assert!(frobenius < 1e-10, "{name} {objective:?}: {frobenius}");
                 }
-                let spectral = Fit::new(Objective::Spectral(Weight::None));
+                let spectral = Fit::new(Objective::Spectral(MotionWeight::None));
                 let (fits, _, error) = fitted(&element, groups, &x, material, spectral);
                 // The bound is zero too, and the gap relative to a millionth of R.
                 assert!(error < 1e-9 && fits.certificates[0].gap() < 1e-5, "{name}: {error} {:?}", fits.certificates);
-                let balance = Objective::Divergence { balance: 0.25 };
+                let balance = Objective::Divergence(Balance::DEFAULT);
                 let (_, frobenius, _) = fitted(&element, groups, &x, material, Fit::new(balance));
                 assert!(frobenius < 1e-3, "{name}: divergence {frobenius}");
             }
@@ -258,8 +260,12 @@ fn measures_without_a_gradient_are_told() {
         let names = ["edge".to_string(), "height".to_string()];
         let springs = Springs::select(&element, Some(&names)).unwrap();
         let material = Material::for_body(2, 1.0, 0.3, None, None).unwrap();
-        for objective in [NORMS[0], NORMS[1], Objective::Spectral(Weight::None), Objective::Divergence { balance: 0.0 }]
-        {
+        for objective in [
+            NORMS[0],
+            NORMS[1],
+            Objective::Spectral(MotionWeight::None),
+            Objective::Divergence(Balance::new(0.0).unwrap()),
+        ] {
             let x = element.positions.clone();
             let cells = [0, 1, 2, 0, 1, 2];
             let searched = Solver::General { method: Search::NelderMead, iterations: 5, topology: None };

@@ -135,7 +135,7 @@ fn derivatives_are_those_of_differences_at_large_deformation() {
         for fit in &mut fits {
             let count = law.parameters.len();
             fit.parameters = fit.constants.iter().flat_map(|k| vec![0.3 * k; count]).collect();
-            fit.force = springfit::springs::Force::Laws(vec![law.clone(); fit.springs.names.len()]);
+            fit.force = springfit::springs::Force::Laws(vec![law.clone(); fit.springs.names().len()]);
         }
         let network = Network::assemble(&body.mesh, &fits);
         let object =

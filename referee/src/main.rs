@@ -7,7 +7,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::{DMatrix, DVector};
 use springfit::element::{Element, SHIPPED};
-use springfit::fit::{Fit, Objective, Search, Solver, Weight, fit_cells};
+use springfit::fit::{Fit, MotionWeight, Objective, Search, Solver, fit_cells};
 use springfit::material::{Material, Moduli};
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
@@ -119,7 +119,7 @@ fn compare(element: &Element, springs: &Springs, moduli: Moduli, nonnegative: bo
     let x = random_shapes(element, count, 2026).expect("few shapes tangle");
     let size = element.positions.len();
     let cells: Vec<usize> = (0..count * element.nodes()).collect();
-    let fit = Fit { nonnegative, ..Fit::new(Objective::Spectral(Weight::None)) };
+    let fit = Fit { nonnegative, ..Fit::new(Objective::Spectral(MotionWeight::None)) };
     let start = Instant::now();
     let fits = fit_cells(element, springs, &x, &cells, moduli, &fit, &mut |_| {}).expect("every shape is valid");
     let native = start.elapsed().as_secs_f64() / count as f64;

@@ -1,6 +1,7 @@
 //! Networks for simulators.
 
 use super::rows::csv;
+use crate::element::SpringKind;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Law;
@@ -39,7 +40,7 @@ pub fn network_csv(network: &Network) -> String {
 #[derive(Debug, Serialize)]
 struct NetworkRecord<'a> {
     /// By quantity.
-    units: BTreeMap<&'static str, &'static str>,
+    units: BTreeMap<String, &'static str>,
     /// `[points][axes]`.
     points: Vec<&'a [f64]>,
     masses: Option<&'a [f64]>,
@@ -61,14 +62,11 @@ struct SpringRecord<'a> {
     parameters: Option<BTreeMap<&'a str, f64>>,
 }
 
-const UNITS: [(&str, &str); 6] = [
-    ("length", "m"),
-    ("mass", "kg"),
-    ("length spring", "N/m"),
-    ("area spring", "N/m^3"),
-    ("volume spring", "N/m^5"),
-    ("angle spring", "N*m"),
-];
+/// Of lengths, masses and the constants of each kind of springs.
+fn units() -> BTreeMap<String, &'static str> {
+    let kinds = SpringKind::all().map(|kind| (format!("{} spring", kind.name()), kind.properties().unit));
+    [("length".into(), "m"), ("mass".into(), "kg")].into_iter().chain(kinds).collect()
+}
 
 /// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
 pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a Network) -> String {
@@ -93,7 +91,7 @@ pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a 
         }
     });
     let record = NetworkRecord {
-        units: UNITS.into_iter().collect(),
+        units: units(),
         points: mesh.points.chunks_exact(mesh.dimension).collect(),
         masses,
         springs: lengths.chain(others).collect(),

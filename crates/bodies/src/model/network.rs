@@ -179,31 +179,31 @@ impl Network {
 /// The springs of one block that measure more than a length, each cell's for itself.
 fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> {
     let (d, springs) = (mesh.dimension, &fit.springs);
-    let (m, first) = (springs.len(), springs.pairs.len());
-    let every: Vec<usize> = (0..springs.nodes).collect();
+    let (m, first) = (springs.len(), springs.pairs().len());
+    let every: Vec<usize> = (0..springs.nodes()).collect();
     let function = |f: &FunctionSpring| Measure::Function(f.in_space.as_ref().unwrap_or(&f.function).clone());
-    let functions = springs.functions.iter().map(|f| (f.kind, &f.nodes, function(f)));
-    let of_cell = |kind: SpringKind| match springs.space == springs.dimension {
+    let functions = springs.functions().iter().map(|f| (f.kind, &f.nodes, function(f)));
+    let of_cell = |kind: SpringKind| match springs.space() == springs.dimension() {
         true => Measure::Content(block.element.clone()),
         false => {
-            let formula = Measure::of_kind(kind, springs.nodes, d);
+            let formula = Measure::of_kind(kind, springs.nodes(), d);
             Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space")))
         }
     };
-    let content = springs.content.map(|kind| (kind, &every, of_cell(kind)));
+    let content = springs.content().map(|kind| (kind, &every, of_cell(kind)));
     let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(content).collect();
     let mut all = Vec::new();
     if kinds.is_empty() {
         return all;
     }
-    let places = fit.force.places(&springs.groups);
+    let places = fit.force.places(springs.groups());
     let count = places[m];
     for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m)).enumerate() {
         for (s, (kind, own, measure)) in (first..).zip(&kinds) {
             let constant = constants[s];
             let parameters = &fit.parameters[cell * count..][places[s]..places[s + 1]];
             let idle = match &fit.force {
-                Force::Laws(laws) => is_idle(&laws[springs.groups[s]], parameters),
+                Force::Laws(laws) => is_idle(&laws[springs.groups()[s]], parameters),
                 _ => constant == 0.0 && parameters.iter().all(|p| *p == 0.0),
             };
             if idle {
@@ -216,7 +216,7 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             let (law, rest) = match &fit.force {
                 Force::Linear => (None, now),
                 Force::FreeRest => (None, parameters[0] / constant),
-                Force::Laws(laws) => (Some(laws[springs.groups[s]].clone()), now),
+                Force::Laws(laws) => (Some(laws[springs.groups()[s]].clone()), now),
             };
             let parameters = if law.is_some() { parameters.to_vec() } else { Vec::new() };
             all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law, parameters });
@@ -233,12 +233,12 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
     for (block, fit) in mesh.blocks.iter().zip(fits) {
         let Force::Laws(laws) = &fit.force else { continue };
         let m = fit.springs.len();
-        let places = fit.force.places(&fit.springs.groups);
+        let places = fit.force.places(fit.springs.groups());
         for (cell, nodes) in block.cells().enumerate() {
-            for (s, &[a, b]) in fit.springs.pairs.iter().enumerate() {
+            for (s, &[a, b]) in fit.springs.pairs().iter().enumerate() {
                 let at = cell * m + s;
                 let parameters = &fit.parameters[cell * places[m]..][places[s]..places[s + 1]];
-                let law = &laws[fit.springs.groups[s]];
+                let law = &laws[fit.springs.groups()[s]];
                 if is_idle(law, parameters) {
                     continue;
                 }
@@ -335,7 +335,7 @@ impl<'a> Star<'a> {
             next[point] += 1;
         }
         let mut springs = vec![Vec::new(); block.element.nodes()];
-        for (s, &[a, b]) in fit.springs.pairs.iter().enumerate() {
+        for (s, &[a, b]) in fit.springs.pairs().iter().enumerate() {
             springs[a].push((s, b));
             springs[b].push((s, a));
         }

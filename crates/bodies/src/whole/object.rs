@@ -111,8 +111,8 @@ impl<'a> Object<'a> {
 pub fn raise_idle(fits: &mut [CellFits]) {
     for fit in fits.iter_mut().filter(|fit| fit.force == Force::Linear) {
         let m = fit.springs.len().max(1);
-        for group in 0..fit.springs.names.len() {
-            let own = |place: usize| fit.springs.groups[place % m] == group;
+        for group in 0..fit.springs.names().len() {
+            let own = |place: usize| fit.springs.groups()[place % m] == group;
             raise(fit.constants.iter_mut().enumerate().filter(|(place, _)| own(*place)).map(|(_, k)| k).collect());
         }
     }

@@ -75,7 +75,7 @@ impl Unknowns {
             let m = fit.springs.len();
             for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m.max(1))).enumerate() {
                 for (spring, &constant) in constants.iter().enumerate().filter(|(_, k)| **k != 0.0) {
-                    let at = match fit.springs.pairs.get(spring) {
+                    let at = match fit.springs.pairs().get(spring) {
                         Some(&[a, b]) => place.get(&[nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]).copied(),
                         None => {
                             next += 1;
@@ -136,5 +136,5 @@ impl Unknowns {
 }
 
 fn group(fit: &CellFits, spring: usize) -> &str {
-    &fit.springs.names[fit.springs.groups[spring]]
+    &fit.springs.names()[fit.springs.groups()[spring]]
 }

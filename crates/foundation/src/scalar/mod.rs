@@ -3,13 +3,13 @@
 //! The same source runs on `f64`, on [`Lanes`] of them (one element per lane), on `f32` and on pairs of `f64` for studies of
 //! rounding, and on exact rationals.
 
+mod double_double;
 mod lanes;
 mod sum;
-mod twofold;
 
+pub use double_double::DoubleDouble;
 pub use lanes::{Lanes, Packed, PackedWork, widest};
 pub use sum::Sum;
-pub use twofold::Twofold;
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};

@@ -2,6 +2,7 @@
 
 use super::cell::Cell;
 use super::constant::Constant;
+use super::kind::SpringKind;
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
@@ -41,37 +42,6 @@ pub enum Rule {
     Simplex { degree: usize },
     Degree { degree: usize },
     Explicit { points: Vec<Vec<Constant>>, weights: Vec<Constant> },
-}
-
-/// What a spring measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SpringKind {
-    /// The distance of two nodes, m.
-    Length,
-    /// The angle at the second of three nodes, rad.
-    Angle,
-    /// The area of a polygon of nodes, or of the whole cell in two dimensions, m².
-    Area,
-    /// The volume of a tetrahedron of nodes, or of the whole cell in three dimensions, m³.
-    Volume,
-    /// The sum of the distances a-b and c-d of four nodes, m, whose square holds the product of the two elongations.
-    Coupling,
-    /// An expression of the nodes' coordinates.
-    Measure,
-}
-
-impl SpringKind {
-    pub fn name(self) -> &'static str {
-        match self {
-            SpringKind::Length => "length",
-            SpringKind::Angle => "angle",
-            SpringKind::Area => "area",
-            SpringKind::Volume => "volume",
-            SpringKind::Coupling => "coupling",
-            SpringKind::Measure => "measure",
-        }
-    }
 }
 
 #[derive(Debug, Deserialize)]

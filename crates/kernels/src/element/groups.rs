@@ -1,6 +1,7 @@
 //! Groups of springs from the entries of an element file.
 
-use super::definition::{Definition, NodeLists, SpringEntry, SpringKind};
+use super::definition::{Definition, NodeLists, SpringEntry};
+use super::kind::{Kind, SpringKind, Symmetry};
 use super::symmetry::permutations;
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Scope};
@@ -24,9 +25,6 @@ impl SpringGroup {
         self.nodes.is_empty()
     }
 }
-
-/// The longest list of nodes of a spring.
-const MOST_NODES: usize = 8;
 
 /// The groups of a file.
 ///
@@ -90,8 +88,7 @@ fn nodes_of(
             return Err(Error::expected(key("nodes"), expected, format!("\"{name}\"")));
         }
         (Some(NodeLists::Given(lists)), _) => lists,
-        (None, SpringKind::Area) if d == 2 => return Ok(Vec::new()),
-        (None, SpringKind::Volume) if d == 3 => return Ok(Vec::new()),
+        (None, kind) if kind.properties().content == Some(d) => return Ok(Vec::new()),
         (None, SpringKind::Area) => {
             return Err(Error::expected(
                 key("kind"),
@@ -106,28 +103,17 @@ fn nodes_of(
                 "\"volume\"",
             ));
         }
-        (None, kind) => {
-            let expected = if kind == SpringKind::Length { "pairs of nodes" } else { "lists of nodes" };
-            return Err(Error::expected(key("nodes"), expected, "none"));
+        (None, SpringKind::Length) => return Err(Error::expected(key("nodes"), "pairs of nodes", "none")),
+        (None, SpringKind::Angle | SpringKind::Coupling | SpringKind::Measure) => {
+            return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
         }
     };
     if lists.is_empty() {
         return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
     }
-    let range = match entry.kind {
-        SpringKind::Length => 2..=2,
-        SpringKind::Angle => 3..=3,
-        SpringKind::Area => 3..=MOST_NODES,
-        SpringKind::Volume | SpringKind::Coupling => 4..=4,
-        SpringKind::Measure => 1..=MOST_NODES,
-    };
-    let smallest = match entry.kind {
-        SpringKind::Volume => 3,
-        SpringKind::Angle | SpringKind::Area => 2,
-        _ => 1,
-    };
-    if d < smallest {
-        let expected = format!("a cell of at least {smallest} dimensions");
+    let Kind { nodes: range, least_dimension, symmetry, .. } = entry.kind.properties();
+    if d < least_dimension {
+        let expected = format!("a cell of at least {least_dimension} dimensions");
         return Err(Error::expected(key("kind"), expected, format!("\"{}\" in {d}", entry.kind.name())));
     }
     for (p, list) in lists.iter().enumerate() {
@@ -138,15 +124,11 @@ fn nodes_of(
             let expected = if least == most { format!("{least} nodes") } else { format!("{least} to {most} nodes") };
             return Err(Error::expected(key, expected, list.len()));
         }
-        let different = match entry.kind {
-            SpringKind::Coupling => list[0] != list[1] && list[2] != list[3] && pair(&list[..2]) != pair(&list[2..]),
-            _ => (0..list.len()).all(|j| !list[..j].contains(&list[j])),
-        };
-        if list.iter().any(|a| *a >= count) || !different {
-            let what = match entry.kind {
-                SpringKind::Coupling => "two different pairs of different".to_string(),
-                SpringKind::Length => "two different".to_string(),
-                _ => "different".to_string(),
+        if list.iter().any(|a| *a >= count) || !symmetry.are_different(list) {
+            let what = match symmetry {
+                Symmetry::Pairs => "two different pairs of different",
+                Symmetry::Any if *range.end() == 2 => "two different",
+                Symmetry::Any | Symmetry::Ends | Symmetry::Ordered => "different",
             };
             return Err(Error::expected(key, format!("{what} nodes below {count}"), format!("{list:?}")));
         }
@@ -183,28 +165,8 @@ pub fn coordinate_names(nodes: usize, dimension: usize) -> Vec<String> {
 
 /// What two springs that measure the same have in common.
 fn identity(entry: &SpringEntry, nodes: &[usize]) -> (SpringKind, String, Vec<usize>) {
-    let nodes = match entry.kind {
-        SpringKind::Angle => {
-            let ends = pair(&[nodes[0], nodes[2]]);
-            vec![nodes[1], ends[0], ends[1]]
-        }
-        SpringKind::Coupling => {
-            let mut pairs = [pair(&nodes[..2]), pair(&nodes[2..])];
-            pairs.sort_unstable();
-            pairs.concat()
-        }
-        SpringKind::Measure => nodes.to_vec(),
-        _ => {
-            let mut sorted = nodes.to_vec();
-            sorted.sort_unstable();
-            sorted
-        }
-    };
+    let nodes = entry.kind.properties().symmetry.representative(nodes);
     (entry.kind, entry.measure.clone().unwrap_or_default(), nodes)
-}
-
-fn pair(nodes: &[usize]) -> [usize; 2] {
-    [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])]
 }
 
 /// The orbits of the springs under the permutations of the nodes, in the order of their first springs.

@@ -3,7 +3,9 @@
 mod cell;
 mod constant;
 mod definition;
+mod formula;
 mod groups;
+mod kind;
 mod proof;
 mod quadrature;
 mod rational;
@@ -11,8 +13,10 @@ mod symmetry;
 mod tabulation;
 
 pub use cell::{Cell, Side};
-pub use definition::{FormatEntry, Formats, SpringKind};
+pub use definition::{FormatEntry, Formats};
+pub(crate) use formula::{Formula, dot};
 pub use groups::{SpringGroup, coordinate_names};
+pub use kind::{Kind, SpringKind, Symmetry};
 pub use quadrature::Quadrature;
 pub use springfit_shipped::{ELEMENTS as SHIPPED, ElementFile};
 pub use symmetry::permutations;

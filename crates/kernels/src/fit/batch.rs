@@ -1,9 +1,9 @@
 //! Fits of many cells, one cell per lane of the machine's registers.
 
-use super::careful::Careful;
 use super::closed::Closed;
 use super::constrained::solve_nonnegative;
-use super::least_squares::{normal_equations, off_diagonal_equations};
+use super::delicate::DelicateCells;
+use super::least_squares::off_diagonal_equations;
 use super::method::{Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::{Certificate, Fit};
@@ -61,7 +61,7 @@ impl PackedWork for Batch<'_> {
 
     fn run<T: Packed>(self, zero: T) -> Self::Output {
         let (n, m) = (self.element.nodes(), self.springs.len());
-        let mut room = Room::new(zero, &self);
+        let mut workspace = Workspace::new(zero, &self);
         let mut tally = Tally::default();
         let cells = self.connectivity.len() / n;
         let (mut cell, mut alone) = (0, 0);
@@ -69,13 +69,13 @@ impl PackedWork for Batch<'_> {
             let count = if cell < alone { 1 } else { T::COUNT.min(cells - cell) };
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             let constants = &mut self.constants[cell * m..(cell + count) * m];
-            if room.fit(nodes, constants, &mut tally) {
+            if workspace.fit(nodes, constants, &mut tally) {
                 cell += count;
             } else if count > 1 {
                 // One of them has no regular equations. Each alone in all lanes: its digits do not depend on the others.
                 alone = cell + count;
             } else {
-                tally.add(room.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
+                tally.add(workspace.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
                 cell += 1;
             }
         }
@@ -84,15 +84,15 @@ impl PackedWork for Batch<'_> {
 }
 
 /// What the cells of one register's width need.
-struct Room<'a, T: Packed> {
+struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
     points: &'a [f64],
     moduli: Moduli,
     fit: Fit,
-    /// Of the objectives that it serves.
-    closed: Closed<T>,
-    /// Of the others.
+    /// Of the objectives that have a closed form.
+    closed: Option<Closed<T>>,
+    /// Of those that need the reduced element.
     method: Option<Method<T>>,
     x: Vec<T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
@@ -101,28 +101,28 @@ struct Room<'a, T: Packed> {
     geometry: Geometry<T>,
 }
 
-impl<'a, T: Packed> Room<'a, T> {
-    fn new(zero: T, batch: &Batch<'a>) -> Room<'a, T> {
+impl<'a, T: Packed> Workspace<'a, T> {
+    fn new(zero: T, batch: &Batch<'a>) -> Workspace<'a, T> {
         let Batch { element, springs, points, moduli, fit, .. } = *batch;
-        Room {
+        Workspace {
             element,
             springs,
             points,
             moduli,
             fit,
             closed: Closed::of(springs, &fit),
-            method: Method::of_kind(&zero, springs, &fit),
+            method: Method::like(&zero, springs, &fit),
             x: vec![zero.clone(); element.nodes() * element.dimension()],
             measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
             placement: Placement::new(&element.tabulation),
-            geometry: Geometry::of_kind(&zero, &element.tabulation),
+            geometry: Geometry::like(&zero, &element.tabulation),
         }
     }
 
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
     /// Jacobian of one is not safely positive or its equations are not regular.
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
-        if self.closed.is_foreign_to(self.springs) || !self.gather(nodes) {
+        if (self.closed.is_none() && self.method.is_none()) || !self.gather(nodes) {
             return false;
         }
         let Some(mut method) = self.method.take() else { return self.fit_closed(constants) };
@@ -135,9 +135,9 @@ impl<'a, T: Packed> Room<'a, T> {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.lane(lane));
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
                 if verdict.delicate
-                    && let Ok(careful) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
+                    && let Ok(delicate) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
                 {
-                    verdict = careful;
+                    verdict = delicate;
                 }
                 tally.add(verdict);
             }
@@ -146,15 +146,16 @@ impl<'a, T: Packed> Room<'a, T> {
         regular
     }
 
-    /// [`Room::fit`] by the closed form.
+    /// [`Workspace::fit`] by the closed form.
     fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
-        let Room { element, springs, moduli, fit, .. } = *self;
-        if !self.closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
+        let Workspace { element, springs, moduli, fit, .. } = *self;
+        let Some(closed) = &mut self.closed else { return false };
+        if !closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
             return false;
         }
         let m = springs.len();
         for s in 0..m {
-            let k = self.closed.constant(springs, s).as_slice();
+            let k = closed.constant(springs, s).as_slice();
             for (cell, k) in (0..constants.len() / m).zip(k) {
                 constants[cell * m + s] = *k;
             }
@@ -162,7 +163,7 @@ impl<'a, T: Packed> Room<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
-        let Some(equations) = self.closed.equations(springs, &self.x, &self.geometry, &moduli) else {
+        let Some(equations) = closed.equations(springs, &self.x, &self.geometry, &moduli) else {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
@@ -187,30 +188,28 @@ impl<'a, T: Packed> Room<'a, T> {
         if !self.springs.function_gradients(&x, &mut measured) {
             return Err(Fault::Unmeasured);
         }
-        let Room { element, springs, moduli, fit, .. } = self;
+        let Workspace { element, springs, moduli, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
         if is_delicate || quality <= T::delicate() {
-            let careful = Careful { element, springs, moduli, fit };
+            let delicate = DelicateCells { element, springs, moduli, fit };
             let d = element.dimension();
             let mut given = x.clone();
             if element.space() == d {
                 // As they are, for their differences are exact in more digits.
                 gather(self.points, d, nodes, &mut given);
             }
-            if let Some(verdict) = careful.constants(&given, (&x, &geometry), &measured, constants) {
+            if let Some(verdict) = delicate.constants(&given, (&x, &geometry), &measured, constants) {
                 return Ok(verdict);
             }
         }
-        if let Some(mut method) = Method::of_kind(&0.0, self.springs, &self.fit) {
+        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit) {
             method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }
-        let mut normal = Normal::default();
-        if self.springs.functions.is_empty() {
-            normal_equations(self.closed.weight, self.springs, &x, &geometry, &self.moduli, &mut normal);
-        } else {
-            normal = off_diagonal_equations(self.springs, &x, &geometry, self.moduli);
-        }
+        let normal = match &self.closed {
+            Some(closed) => closed.equations_alone(self.springs, &x, &geometry, &self.moduli),
+            None => off_diagonal_equations(self.springs, &x, &geometry, self.moduli),
+        };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
         spread(&self.fit, self.springs, constants, &k);

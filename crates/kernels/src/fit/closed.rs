@@ -1,9 +1,10 @@
 //! Least squares in closed form: the constants of one element, or of one per lane, from the node positions alone.
 
+use super::Fit;
 use super::least_squares::{equations, normal_equations};
 use super::nodal::{Nodal, is_shorter};
 use super::normal::Normal;
-use super::{Fit, Objective, Weight};
+use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
 use crate::material::Moduli;
 use crate::scalar::Real;
@@ -13,8 +14,8 @@ use crate::stiffness::Geometry;
 /// How a fit solves its equations, and the memory that it does so in.
 #[derive(Debug, Clone)]
 pub struct Closed<T> {
-    pub weight: Weight,
-    route: Route,
+    weight: ClosedWeight,
+    steps: Steps,
     nonnegative: bool,
     nodal: Nodal<T>,
     normal: Normal<T>,
@@ -24,7 +25,7 @@ pub struct Closed<T> {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Route {
+enum Steps {
     /// `M = 2I`: each constant is half of its right-hand side.
     Decoupled,
     /// By the equations of the nodes, which are fewer than those of the springs.
@@ -35,28 +36,25 @@ enum Route {
 }
 
 impl<T: Real> Closed<T> {
-    pub fn of(springs: &Springs, fit: &Fit) -> Closed<T> {
-        let lengths_alone = springs.content.is_none() && springs.functions.is_empty() && springs.parallel.is_empty();
-        let route = match fit.objective {
-            _ if fit.tied => Route::Groups,
-            Objective::Frobenius(Weight::OffDiagonal) if lengths_alone => Route::Decoupled,
-            Objective::Frobenius(Weight::None) if is_shorter(springs) => Route::Nodes,
-            _ => Route::Springs,
+    /// None for the objectives that have no closed form.
+    pub fn of(springs: &Springs, fit: &Fit) -> Option<Closed<T>> {
+        let Route::Closed(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
+        let lengths_alone = springs.content.is_none() && springs.parallel.is_empty();
+        let steps = match weight {
+            _ if fit.tied => Steps::Groups,
+            ClosedWeight::OffDiagonal if lengths_alone => Steps::Decoupled,
+            ClosedWeight::None if is_shorter(springs) => Steps::Nodes,
+            ClosedWeight::None | ClosedWeight::OffDiagonal | ClosedWeight::Modal(_) => Steps::Springs,
         };
-        Closed {
-            weight: fit.objective.weight().unwrap_or(Weight::None),
-            route,
+        Some(Closed {
+            weight,
+            steps,
             nonnegative: fit.nonnegative,
             nodal: Nodal::default(),
             normal: Normal::default(),
             tied: Normal::default(),
             kept: Normal::default(),
-        }
-    }
-
-    /// Whether the blocks of different nodes are asked of springs that measure functions, of which only the gradient is known.
-    pub fn is_foreign_to(&self, springs: &Springs) -> bool {
-        self.weight == Weight::OffDiagonal && !springs.functions.is_empty()
+        })
     }
 
     /// Solves for the element with nodes at `x`, `[nodes × dimension]`, and fills in its geometry. Returns false if the Jacobian is
@@ -72,7 +70,7 @@ impl<T: Real> Closed<T> {
     where
         T: Real,
     {
-        if self.route == Route::Nodes {
+        if self.steps == Steps::Nodes {
             return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, moduli, &mut self.normal);
         }
         // A copy for each of the common sizes, in which the loops unroll: for few nodes they are all overhead.
@@ -110,7 +108,7 @@ impl<T: Real> Closed<T> {
             return false;
         }
         equations::<T, D>(n, self.weight, springs, x, geometry, moduli, &mut self.normal);
-        if self.route == Route::Decoupled {
+        if self.steps == Steps::Decoupled {
             for b in &mut self.normal.rhs {
                 *b = b.clone().scaled(&0.5);
             }
@@ -120,10 +118,10 @@ impl<T: Real> Closed<T> {
 
     /// Solves the equations.
     fn finish(&mut self, springs: &Springs) -> bool {
-        let equations = match self.route {
-            Route::Decoupled | Route::Nodes => return true,
-            Route::Springs => &mut self.normal,
-            Route::Groups => {
+        let equations = match self.steps {
+            Steps::Decoupled | Steps::Nodes => return true,
+            Steps::Springs => &mut self.normal,
+            Steps::Groups => {
                 self.normal.tied(&springs.groups, springs.names.len(), &mut self.tied);
                 &mut self.tied
             }
@@ -137,10 +135,17 @@ impl<T: Real> Closed<T> {
 
     /// The constant of spring `s` after [`Closed::solve`], N/m, without regard to a bound.
     pub fn constant(&self, springs: &Springs, s: usize) -> &T {
-        match self.route {
-            Route::Groups => &self.tied.rhs[springs.groups[s]],
-            Route::Decoupled | Route::Nodes | Route::Springs => &self.normal.rhs[s],
+        match self.steps {
+            Steps::Groups => &self.tied.rhs[springs.groups[s]],
+            Steps::Decoupled | Steps::Nodes | Steps::Springs => &self.normal.rhs[s],
         }
+    }
+
+    /// The equations of a single element, one per spring.
+    pub fn equations_alone(&self, springs: &Springs, x: &[f64], geometry: &Geometry, moduli: &Moduli) -> Normal {
+        let mut normal = Normal::default();
+        normal_equations(self.weight, springs, x, geometry, moduli, &mut normal);
+        normal
     }
 
     /// The equations that [`Closed::solve`] solved, for bounded constants; none where each constant has one of its own.
@@ -151,13 +156,13 @@ impl<T: Real> Closed<T> {
         geometry: &Geometry<T>,
         moduli: &Moduli,
     ) -> Option<&Normal<T>> {
-        match self.route {
-            Route::Decoupled => None,
-            Route::Nodes => {
+        match self.steps {
+            Steps::Decoupled => None,
+            Steps::Nodes => {
                 normal_equations(self.weight, springs, x, geometry, moduli, &mut self.normal);
                 Some(&self.normal)
             }
-            Route::Springs | Route::Groups => Some(&self.kept),
+            Steps::Springs | Steps::Groups => Some(&self.kept),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Least-squares fits as formulas: the same kernels on exact rational functions of the side lengths.
 
-use super::Weight;
 use super::least_squares::normal_equations;
 use super::normal::Normal;
+use super::weight::{ClosedWeight, Weight};
 use crate::element::{Element, permutations};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
@@ -56,9 +56,10 @@ impl ClosedForm {
     /// The element at its reference positions, or, with `sides`, stretched along its axes to the lengths a, b, c.
     ///
     /// # Errors
-    /// A node or shape function is not rational, the element's own quadrature is not exact on such a shape, or a spring
+    /// The springs are those of another element, a node or shape function is not rational, the element's own quadrature is not exact on such a shape, or a spring
     /// measures something that needs roots.
     pub fn new(element: &Element, springs: &Springs, sides: bool) -> Result<ClosedForm> {
+        springs.check(element)?;
         let refuse = |why: &str| {
             Error::new(format!("{} has no closed form: {why}", element.name)).of_kind(ErrorKind::Unsupported)
         };
@@ -91,14 +92,14 @@ impl ClosedForm {
         if !is_exact(element, &table.map(to_f64)) {
             return Err(refuse("its quadrature is not exact for its own stiffness"));
         }
-        let mut geometry = Geometry::of_kind(&x[0], &table);
+        let mut geometry = Geometry::like(&x[0], &table);
         if !geometry.update(&table, &x) {
             return Err(refuse("its reference cell is turned inside out"));
         }
         let classes = classes(element, springs, &x);
         let equations = |moduli: Moduli<BigRational>| {
             let mut normal = Normal::default();
-            normal_equations(Weight::None, springs, &x, &geometry, &moduli, &mut normal);
+            normal_equations(ClosedWeight::None, springs, &x, &geometry, &moduli, &mut normal);
             normal
         };
         let plain = units().map(equations);
@@ -107,11 +108,12 @@ impl ClosedForm {
         Ok(ClosedForm { variables, positions: x, stiffness, classes, norm, springs: springs.clone(), plain, geometry })
     }
 
-    /// The constants under this weight, which must not be `relative`.
+    /// The constants under this weight.
     ///
     /// # Errors
-    /// The weight does not determine the springs.
+    /// The weight has no closed form, as `relative`, or it does not determine the springs.
     pub fn fit(&self, weight: Weight) -> Result<ClosedFit> {
+        let closed = weight.closed(false)?;
         let zero = self.positions[0].zero();
         let mut group = vec![0; self.springs.len()];
         for (i, class) in self.classes.iter().enumerate() {
@@ -127,10 +129,11 @@ impl ClosedForm {
         };
         let weighted = |moduli: Moduli<BigRational>| {
             let mut normal = Normal::default();
-            normal_equations(weight, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
+            normal_equations(closed, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
             solve(&normal)
         };
-        let solved = if weight == Weight::None { self.plain.each_ref().map(solve) } else { units().map(weighted) };
+        let solved =
+            if closed == ClosedWeight::None { self.plain.each_ref().map(solve) } else { units().map(weighted) };
         let [Some(lambda), Some(mu)] = solved else {
             return Err(Error::new("this weight does not determine the springs").of_kind(ErrorKind::Infeasible));
         };

@@ -7,7 +7,8 @@
 //! deformations", MICCAI 2004.
 
 use super::reduction::Reduced;
-use super::{Fit, Objective, Weight};
+use super::weight::MotionWeight;
+use super::{Fit, Objective};
 use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::Springs;
@@ -51,8 +52,24 @@ pub enum Search {
     SimulatedAnnealing,
 }
 
+/// The name of a solver in files and options.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Name {
+    Native,
+    NelderMead,
+    ParticleSwarm,
+    SimulatedAnnealing,
+}
+
+crate::named!(Name {
+    "native" => Native,
+    "nelder-mead" => NelderMead,
+    "particle-swarm" => ParticleSwarm,
+    "simulated-annealing" => SimulatedAnnealing,
+});
+
 impl Solver {
-    pub const NAMES: [&'static str; 4] = ["native", "nelder-mead", "particle-swarm", "simulated-annealing"];
+    pub const NAMES: &'static [&'static str] = Name::NAMES;
     pub const DEFAULT_ITERATIONS: u64 = 2000;
 
     /// The solver called `name`; `iterations` and `topology` belong to the general ones.
@@ -60,58 +77,55 @@ impl Solver {
     /// # Errors
     /// The name is unknown, no iterations are allowed, the native solver is given any, or the solver cannot do the topology.
     pub fn named(name: &str, iterations: Option<u64>, topology: Option<Topology>) -> Result<Solver> {
-        let method = match name {
-            "native" => {
+        let method = match Name::named(name).map_err(|e| e.at_key("solver"))? {
+            Name::Native => {
                 let given = [("iterations", iterations.is_some()), ("topology", topology.is_some())];
                 return match given.iter().find(|(_, given)| *given) {
                     Some((key, _)) => Err(Error::at(*key, "belongs to a general solver, found with \"native\"")),
                     None => Ok(Solver::Native),
                 };
             }
-            "nelder-mead" => Search::NelderMead,
-            "particle-swarm" => Search::ParticleSwarm,
-            "simulated-annealing" => Search::SimulatedAnnealing,
-            _ => {
-                let expected = format!("one of {}", Solver::NAMES.join(", "));
-                return Err(Error::expected("solver", expected, format!("\"{name}\"")));
-            }
+            Name::NelderMead => Search::NelderMead,
+            Name::ParticleSwarm => Search::ParticleSwarm,
+            Name::SimulatedAnnealing => Search::SimulatedAnnealing,
         };
-        if let Some(count) = iterations.filter(|count| !(1..=MOST_ITERATIONS).contains(count)) {
-            return Err(Error::expected("iterations", format!("a number from 1 to {MOST_ITERATIONS}"), count));
-        }
         let iterations = iterations.unwrap_or(Solver::DEFAULT_ITERATIONS);
         let solver = Solver::General { method, iterations, topology };
-        solver.check_topology().map(|()| solver)
+        solver.check_numbers().map(|()| solver)
     }
 
-    fn check_topology(&self) -> Result<()> {
+    fn check_numbers(&self) -> Result<()> {
         match self {
+            Solver::General { iterations, .. } if !(1..=MOST_ITERATIONS).contains(iterations) => {
+                Err(Error::expected("iterations", format!("a number from 1 to {MOST_ITERATIONS}"), iterations))
+            }
             Solver::General { method: Search::NelderMead, topology: Some(_), .. } => {
                 Err(Error::at("topology", "does not go with \"nelder-mead\", which cannot switch springs off"))
             }
             Solver::General { topology: Some(Topology { sparsity }), .. } if !(0.0..=1.0).contains(sparsity) => {
                 Err(Error::expected("sparsity", "a share from 0 to 1", sparsity))
             }
-            _ => Ok(()),
+            Solver::Native | Solver::General { .. } => Ok(()),
         }
     }
 
     /// That it can search for this objective.
     pub(super) fn check(&self, objective: Objective) -> Result<()> {
-        if *self != Solver::Native && objective == Objective::Frobenius(Weight::OffDiagonal) {
+        if *self != Solver::Native && objective.of_motions().is_err() {
             let expected = "\"native\": the blocks of different nodes leave no choice to search";
             return Err(Error::expected("solver", expected, format!("\"{}\"", self.name())));
         }
-        self.check_topology()
+        self.check_numbers()
     }
 
     pub fn name(&self) -> &'static str {
-        match self {
-            Solver::Native => Solver::NAMES[0],
-            Solver::General { method: Search::NelderMead, .. } => Solver::NAMES[1],
-            Solver::General { method: Search::ParticleSwarm, .. } => Solver::NAMES[2],
-            Solver::General { method: Search::SimulatedAnnealing, .. } => Solver::NAMES[3],
-        }
+        let name = match self {
+            Solver::Native => Name::Native,
+            Solver::General { method: Search::NelderMead, .. } => Name::NelderMead,
+            Solver::General { method: Search::ParticleSwarm, .. } => Name::ParticleSwarm,
+            Solver::General { method: Search::SimulatedAnnealing, .. } => Name::SimulatedAnnealing,
+        };
+        name.name()
     }
 
     pub fn topology(&self) -> Option<Topology> {
@@ -159,7 +173,8 @@ impl Raw<'_> {
         match self.objective {
             Objective::Frobenius(_) => e.norm(),
             Objective::Spectral(_) => e.symmetric_eigenvalues().amax(),
-            Objective::Divergence { balance } => {
+            Objective::Divergence(balance) => {
+                let balance = balance.value();
                 let eigenvalues = (DMatrix::identity(p, p) - e).symmetric_eigenvalues();
                 if eigenvalues.min() <= 0.0 {
                     return 1e300;
@@ -225,12 +240,13 @@ pub fn search(
     geometry: &Geometry,
     moduli: &Moduli,
     fit: &Fit,
+    weight: MotionWeight,
     (method, iterations, topology): (Search, u64, Option<Topology>),
 ) -> Vec<f64> {
-    let mut reduced = Reduced::of_kind(&0.0, springs, fit.tied);
+    let mut reduced = Reduced::like(&0.0, springs, fit.tied);
     let mut measured = vec![0.0; springs.functions.len() * x.len()];
     springs.function_gradients(x, &mut measured);
-    reduced.set(fit.objective.weight().unwrap_or(Weight::Relative), springs, x, geometry, moduli, &measured);
+    reduced.set(weight, springs, x, geometry, moduli, &measured);
     let count = reduced.scales.len();
     let mut start = vec![reduced.uniform(); count];
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;

@@ -5,6 +5,7 @@
 //! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
 //! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
 
+use super::Balance;
 use super::dense::{add_outers, at_rounding, factorize, inner, invert, room_below, row_products, solve, tie, trace};
 use super::reduction::Reduced;
 use crate::scalar::Real;
@@ -24,7 +25,7 @@ pub struct Divergence<T> {
     pub kappa: Vec<T>,
     /// Positive where the optimum was reached.
     pub reached: T,
-    balance: f64,
+    balance: Balance,
     nonnegative: bool,
     matrix: Vec<T>,
     pivots: Vec<T>,
@@ -41,7 +42,7 @@ pub struct Divergence<T> {
 }
 
 impl<T: Real> Divergence<T> {
-    pub fn of_kind(any: &T, reduced: &Reduced<T>, balance: f64, nonnegative: bool) -> Divergence<T> {
+    pub fn like(any: &T, reduced: &Reduced<T>, balance: Balance, nonnegative: bool) -> Divergence<T> {
         let (p, m, c) = (reduced.order, reduced.unknowns.len(), reduced.scales.len());
         let room = |size: usize| vec![any.zero(); size];
         Divergence {
@@ -88,7 +89,7 @@ impl<T: Real> Divergence<T> {
         let last = one.constant(if self.nonnegative { &BARRIER[1] } else { &0.0 });
         self.reached = zero.clone() - &one;
         // Stein's loss first: its Newton steps are long from far away, where those of tr A⁻¹ are not.
-        let full = one.constant(&self.balance);
+        let full = one.constant(&self.balance.value());
         let mut balance = zero.clone();
         for _ in 0..STEPS {
             let mut inside = one.clone();

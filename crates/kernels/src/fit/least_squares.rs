@@ -9,10 +9,12 @@
 //!   motions `u_a = A r_a`, r_a = x_a less the mean of the nodes, in which g has no rotation. With `S = Σ r_a r_aᵀ`,
 //!   `(P g)_a = (r_aᵀ S⁻¹ d) n`, so that `w = h² (∇N_j − ∇N_i) + (1 − h²) S⁻¹ d`.
 
-use super::Weight;
+use super::input::check_length;
 use super::linear_motions::{LinearMotions, from_mean};
 use super::normal::Normal;
+use super::weight::{ClosedWeight, Higher, Weight};
 use crate::element::Tabulation;
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::scalar::{Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
@@ -20,30 +22,42 @@ use crate::stiffness::Geometry;
 use std::array::from_fn;
 
 /// The constants of one element in any kind of number, such as `f32` or exact rationals; nodes at `x`,
-/// `[nodes × dimension]`. None if the Jacobian is not positive everywhere or the springs are linearly dependent, and for the
-/// weight `relative` and springs on functions, which need roots.
+/// `[nodes × dimension]`.
+///
+/// # Errors
+/// The springs and the table have not as many nodes and dimensions, `x` has another length, the weight is `relative` or springs
+/// measure functions, which need roots, the Jacobian is not positive everywhere, or the springs are linearly dependent.
 pub fn constants_in<T: Scalar>(
     weight: Weight,
     springs: &Springs,
     table: &Tabulation<T::Constant>,
     x: &[T],
     moduli: &Moduli<T::Constant>,
-) -> Option<Vec<T>> {
-    if weight == Weight::Relative || !springs.functions.is_empty() {
-        return None;
+) -> Result<Vec<T>> {
+    let weight = weight.closed(!springs.functions.is_empty())?;
+    if (table.nodes, table.dimension) != (springs.nodes, springs.dimension) {
+        let expected = format!("a table of {} nodes in {} dimensions", springs.nodes, springs.dimension);
+        return Err(Error::expected("table", expected, format!("{} in {}", table.nodes, table.dimension)));
     }
-    let mut geometry = Geometry::of_kind(x.first()?, table);
-    let mut normal = Normal::default();
+    check_length("x", x.len(), springs.nodes * springs.dimension)?;
+    let none = |problem: &str| Error::new(problem).of_kind(ErrorKind::Infeasible);
+    let mut geometry = Geometry::like(&x[0], table);
     if !geometry.update(table, x) {
-        return None;
+        return Err(none("the Jacobian is not positive everywhere"));
     }
+    let mut normal = Normal::default();
     normal_equations(weight, springs, x, &geometry, moduli, &mut normal);
-    normal.solve_regular().then_some(normal.rhs)
+    // What is not a number is not one more than itself.
+    let is_finite = |k: &T| (k.one() + &(k.clone() - k)).exceeds(&k.zero());
+    if !(normal.solve_regular() && normal.rhs.iter().all(is_finite)) {
+        return Err(none("the springs are linearly dependent"));
+    }
+    Ok(normal.rhs)
 }
 
 /// Fills in the lower triangle of `M`, and `b`, of the element with nodes at `x`, `[nodes × dimension]`.
 pub fn normal_equations<T: Scalar>(
-    weight: Weight,
+    weight: ClosedWeight,
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
@@ -65,7 +79,7 @@ pub fn normal_equations<T: Scalar>(
 #[inline(always)]
 pub(super) fn equations<T: Scalar, const D: usize>(
     n: usize,
-    weight: Weight,
+    weight: ClosedWeight,
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
@@ -84,7 +98,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     let edges = cell.edges;
     let two = zero.one() + &zero.one();
     match weight {
-        Weight::None => {
+        ClosedWeight::None => {
             cell.plain_energies(rhs);
             clear(gram, m, &zero);
             for &(s, t) in &springs.touching {
@@ -94,8 +108,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
                 gram[s * m + s] = two.clone().squared();
             }
         }
-        Weight::Relative => unreachable!("it needs R itself, which another method forms"),
-        Weight::OffDiagonal => {
+        ClosedWeight::OffDiagonal => {
             cell.energies(
                 rhs,
                 #[inline(always)]
@@ -115,7 +128,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
                 gram[s * m + s] = two.clone();
             }
         }
-        Weight::Modal { higher } => {
+        ClosedWeight::Modal(higher) => {
             let (h2, rest) = scales(&zero, higher);
             positions.resize(n * D, zero.clone());
             let q = positions.as_chunks_mut::<D>().0;
@@ -259,7 +272,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
 
     /// The last row of `M` and entry of `b`: the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V the
     /// content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
-    pub fn content(&self, weight: Weight, row: &mut [T], rhs: &mut [T]) {
+    pub fn content(&self, weight: ClosedWeight, row: &mut [T], rhs: &mut [T]) {
         self.lambda.vectorize(
             #[inline(always)]
             || self.add_content(weight, row, rhs),
@@ -267,7 +280,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
     }
 
     #[inline(always)]
-    fn add_content(&self, weight: Weight, row: &mut [T], rhs: &mut [T]) {
+    fn add_content(&self, weight: ClosedWeight, row: &mut [T], rhs: &mut [T]) {
         let last = self.springs.len() - 1;
         let zero = self.lambda.zero();
         let two = zero.one() + &zero.one();
@@ -284,19 +297,24 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
         let (mut h2, mut linear) = (zero.one(), from_fn(|_| zeros(&zero)));
         let mut q = self.x.to_vec();
         let mut motions = None;
-        if let Weight::Modal { higher } = weight {
-            let rest;
-            (h2, rest) = scales(&zero, higher);
-            from_mean(self.x, &mut q);
-            let (found, factor) = (LinearMotions::of(&mut q), rest * &volume);
-            linear = found.inverse_spread(&factor);
-            motions = Some((found, factor));
+        match weight {
+            ClosedWeight::None | ClosedWeight::OffDiagonal => {}
+            ClosedWeight::Modal(higher) => {
+                let rest;
+                (h2, rest) = scales(&zero, higher);
+                from_mean(self.x, &mut q);
+                let (found, factor) = (LinearMotions::of(&mut q), rest * &volume);
+                linear = found.inverse_spread(&factor);
+                motions = Some((found, factor));
+            }
         }
         for (s, &[i, j]) in self.springs.pairs.iter().enumerate() {
             let d = &self.edges[s];
             row[s] = match weight {
-                Weight::OffDiagonal => zero.clone() - &(two.clone() * &self.q[s] * &dot(d, &c[i]) * &dot(d, &c[j])),
-                _ => {
+                ClosedWeight::OffDiagonal => {
+                    zero.clone() - &(two.clone() * &self.q[s] * &dot(d, &c[i]) * &dot(d, &c[j]))
+                }
+                ClosedWeight::None | ClosedWeight::Modal(_) => {
                     let mut along = h2.clone() * &dot(d, &difference(&c[j], &c[i]));
                     if let Some((motions, factor)) = &motions {
                         let turned = difference(&q[j], &q[i]);
@@ -307,8 +325,8 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
             };
         }
         row[last] = match weight {
-            Weight::OffDiagonal => cc.squared() - &fourth,
-            _ => {
+            ClosedWeight::OffDiagonal => cc.squared() - &fourth,
+            ClosedWeight::None | ClosedWeight::Modal(_) => {
                 let mut trace = linear[0][0].clone();
                 for k in 1..D {
                     trace = trace + &linear[k][k];
@@ -329,7 +347,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
                         h[k][l] = h[k][l].clone().plus_product(&h2, &outer[k][l]);
                     }
                 }
-                if weight == Weight::OffDiagonal {
+                if weight == ClosedWeight::OffDiagonal {
                     alone = alone + &density(&outer, &lambda, &mu);
                 }
             }
@@ -353,8 +371,8 @@ fn density<T: Scalar, const D: usize>(h: &[[T; D]; D], lambda: &T, mu: &T) -> T 
 
 /// `h²` and `1 − h²`.
 #[inline(always)]
-fn scales<T: Scalar>(zero: &T, higher: f64) -> (T, T) {
-    let h2 = zero.constant(&T::exact(higher)).squared();
+fn scales<T: Scalar>(zero: &T, higher: Higher) -> (T, T) {
+    let h2 = zero.constant(&T::exact(higher.value())).squared();
     (h2.clone(), zero.one() - &h2)
 }
 

@@ -6,7 +6,8 @@ use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
 use super::reduction::Reduced;
 use super::spectral::{EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
-use super::{Fit, Objective, Weight};
+use super::weight::{MotionWeight, Route};
+use super::{Fit, Objective};
 use crate::material::Moduli;
 use crate::scalar::Real;
 use crate::springs::Springs;
@@ -51,7 +52,7 @@ impl Certificate {
 #[derive(Debug, Clone)]
 pub struct Method<T> {
     reduced: Reduced<T>,
-    weight: Weight,
+    weight: MotionWeight,
     nonnegative: bool,
     solver: Solver<T>,
 }
@@ -75,25 +76,19 @@ pub struct Verdict {
 }
 
 impl<T: Real> Method<T> {
-    /// None for the objectives that the closed form serves.
-    pub fn of_kind(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
-        let reduced = Reduced::of_kind(any, springs, fit.tied);
+    /// None for the objectives that do not need the reduced element.
+    pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
+        let Route::Reduced(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
+        let reduced = Reduced::like(any, springs, fit.tied);
         let m = springs.len();
-        let (weight, solver) = match fit.objective {
-            // The closed form knows length springs and the content; of what else is measured only the gradient is known.
-            Objective::Frobenius(Weight::OffDiagonal) => return None,
-            Objective::Frobenius(weight) if weight == Weight::Relative || !springs.functions.is_empty() => {
+        let solver = match fit.objective {
+            Objective::Frobenius(_) => {
                 let products = vec![any.zero(); m * m.max(reduced.order)];
-                let normal = Normal::default();
-                (weight, Solver::LeastSquares { normal, products })
+                Solver::LeastSquares { normal: Normal::default(), products }
             }
-            Objective::Frobenius(_) => return None,
-            Objective::Spectral(weight) => {
-                (weight, Solver::Spectral(Box::new(Spectral::of_kind(any, &reduced, fit.nonnegative))))
-            }
-            Objective::Divergence { balance } => {
-                let solver = Divergence::of_kind(any, &reduced, balance, fit.nonnegative);
-                (Weight::Relative, Solver::Divergence(solver))
+            Objective::Spectral(_) => Solver::Spectral(Box::new(Spectral::like(any, &reduced, fit.nonnegative))),
+            Objective::Divergence(balance) => {
+                Solver::Divergence(Divergence::like(any, &reduced, balance, fit.nonnegative))
             }
         };
         Some(Method { reduced, weight, nonnegative: fit.nonnegative, solver })
@@ -153,7 +148,7 @@ impl<T: Real> Method<T> {
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
         if let Solver::LeastSquares { normal, .. } = &self.solver {
             // Relative weights make pivots as small as the softest motion: that says nothing of what is given.
-            let relative = self.weight == Weight::Relative && independent();
+            let relative = self.weight.divides_by_stiffness() && independent();
             let rounding = if relative { T::epsilon() } else { T::given() };
             let (kappa, rank, pivot) = solve_precisely(normal, self.nonnegative, rounding);
             for (constant, &unknown) in constants.iter_mut().zip(&self.reduced.unknowns) {

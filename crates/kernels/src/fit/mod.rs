@@ -1,14 +1,16 @@
 //! Spring constants from the stiffness of each element.
 
 mod batch;
-mod careful;
+
 mod closed;
 mod closed_form;
 mod congruence;
 mod constrained;
+mod delicate;
 mod dense;
 mod descent;
 mod divergence;
+mod input;
 mod jacobi;
 mod least_squares;
 mod linear_motions;
@@ -23,6 +25,7 @@ mod reduction;
 mod residual;
 mod sampled;
 mod spectral;
+mod weight;
 
 pub use closed_form::{ClosedFit, ClosedForm, SymmetryClass};
 pub use descent::{Search, Solver, Topology};
@@ -30,10 +33,11 @@ pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use normal::Rank;
 pub use norms::Norm;
-pub use objective::{Choices, Objective, Weight};
+pub use objective::{Balance, Choices, Objective};
 pub use precision::{condition, constants_of_kind, distance_from_optimum};
 pub use residual::{ElementErrors, Spread, element_errors};
 pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
+pub use weight::{Higher, MotionWeight, Weight};
 
 use crate::element::Element;
 use crate::error::{Error, Result};
@@ -42,6 +46,7 @@ use crate::springs::{Force, Springs};
 use crate::stiffness::{self, Fault, Geometry};
 use batch::{Batch, Tally};
 use congruence::Congruence;
+use input::{check_fit, check_nodes};
 use rayon::prelude::*;
 
 /// Cells that one thread fits in one go.
@@ -67,8 +72,7 @@ impl Fit {
 
     /// Whether a cell takes microseconds instead of nanoseconds.
     fn is_costly(&self) -> bool {
-        let closed = matches!(self.objective, Objective::Frobenius(weight) if weight != Weight::Relative);
-        !closed || self.solver != Solver::Native
+        self.objective.is_costly() || self.solver != Solver::Native
     }
 }
 
@@ -96,7 +100,8 @@ pub struct CellFits {
 /// `progress` is told the number of cells done, now and then.
 ///
 /// # Errors
-/// A cell is reversed, tangled or flat; the error names it, counted from 1.
+/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, or a
+/// cell is reversed, tangled or flat; the error names it, counted from 1.
 pub fn fit_cells(
     element: &Element,
     springs: &Springs,
@@ -138,6 +143,8 @@ impl CellFits {
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
+        check_fit(element, &self.springs, points, connectivity, &moduli)?;
+        fit.solver.check(fit.objective)?;
         let (n, m) = (element.nodes(), self.springs.len());
         let cells = connectivity.len() / n;
         self.constants.resize(cells * m, 0.0);
@@ -146,7 +153,6 @@ impl CellFits {
         if m == 0 {
             return Ok(());
         }
-        fit.solver.check(fit.objective)?;
         if fit.is_costly() && cells > 1 {
             let congruence = Congruence::of(element, points, connectivity)?;
             let shapes = congruence.representatives.len();
@@ -157,7 +163,7 @@ impl CellFits {
                 fitted.constants.resize(shapes * m, 0.0);
                 let mut share = |done: usize| progress(done * cells / shapes);
                 fitted.fit_each(element, points, &few, moduli, fit, &mut share)?;
-                self.take_over(&fitted, &congruence.shapes);
+                self.copy_by_shape(&fitted, &congruence.shapes);
                 return Ok(());
             }
         }
@@ -180,16 +186,20 @@ impl CellFits {
         let cells = connectivity.len() / n;
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
             if let Solver::General { method, iterations, topology } = fit.solver {
+                let weight = fit.objective.of_motions()?;
                 let mut unmeasured = None;
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
                     if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {
                         unmeasured.get_or_insert(cell);
                         return;
                     }
-                    let found = descent::search(springs, x, geometry, &moduli, fit, (method, iterations, topology));
+                    let found =
+                        descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology));
                     constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
                 })?;
-                let fault = unmeasured.map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
+                let not_finite = || constants.iter().position(|k| !k.is_finite()).map(|place| place / m);
+                let fault =
+                    unmeasured.or_else(not_finite).map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
                 return fault.map_or(Ok(Tally::default()), Err);
             }
             let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
@@ -217,7 +227,7 @@ impl CellFits {
     }
 
     /// The constants of one cell of each shape for all cells; `shapes` gives the shape of each.
-    fn take_over(&mut self, fitted: &CellFits, shapes: &[usize]) {
+    fn copy_by_shape(&mut self, fitted: &CellFits, shapes: &[usize]) {
         let m = self.springs.len();
         for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(shapes) {
             constants.copy_from_slice(&fitted.constants[shape * m..(shape + 1) * m]);
@@ -230,11 +240,12 @@ impl CellFits {
     }
 }
 
-/// The constants of a single element with nodes at `x`, `[nodes × dimension]`, m; `[springs]`.
+/// The constants of a single element with nodes at `x`, `[nodes × space]`, m; `[springs]`.
 ///
 /// # Errors
-/// The element is reversed, tangled or flat.
+/// Those of [`fit_cells`].
 pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
+    check_nodes(element, element.space(), x)?;
     let connectivity: Vec<usize> = (0..element.nodes()).collect();
     Ok(fit_cells(element, springs, x, &connectivity, moduli, fit, &mut |_| {})?.constants)
 }

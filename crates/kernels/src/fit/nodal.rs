@@ -5,10 +5,10 @@
 //! spring, and W counts those below twice. With d(d+1)/2 entries per node that is of lower rank than the number of springs
 //! from about eight nodes on, and `M⁻¹ b = ½ (b − V S⁻¹ Vᵀ b)`, `S = 2W⁻¹ + VᵀV` (Woodbury 1950).
 
-use super::Weight;
 use super::dense::solve as substitute;
 use super::least_squares::Cell;
 use super::normal::Normal;
+use super::weight::ClosedWeight;
 use crate::material::Moduli;
 use crate::scalar::Scalar;
 use crate::springs::Springs;
@@ -76,7 +76,7 @@ impl<T: Scalar> Nodal<T> {
         self.border.clear();
         self.border.resize(m, zero.clone());
         if springs.content.is_some() {
-            cell.content(Weight::None, &mut self.border, rhs);
+            cell.content(ClosedWeight::None, &mut self.border, rhs);
         }
         self.set_entries(&cell);
         self.set_small::<D>(springs, &zero);

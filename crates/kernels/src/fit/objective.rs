@@ -1,28 +1,45 @@
-//! What a fit minimises, stated once: a measure of `R − K(k)`, `K(k) = Σ_s k_s g_s g_sᵀ`, seen through a weight.
+//! What a fit minimises: a measure of `R − K(k)`, `K(k) = Σ_s k_s g_s g_sᵀ`, seen through a weight.
 
+use super::weight::{Higher, MotionWeight, Route, Weight};
 use crate::error::{Error, Result};
+use std::fmt;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
     /// `‖W (R − K) W‖_F`: normal equations.
     Frobenius(Weight),
     /// `‖W (R − K) W‖₂`, the largest eigenvalue: a semidefinite programme, solved with a certificate.
-    Spectral(Weight),
-    /// `tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R^(−1/2) K R^(−1/2)`, c = `balance`: K stays positive.
-    Divergence { balance: f64 },
+    Spectral(MotionWeight),
+    /// `tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R^(−1/2) K R^(−1/2)`: K stays positive.
+    Divergence(Balance),
 }
 
-/// How much each part of `R − K` counts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Weight {
-    /// All entries alike.
-    None,
-    /// The blocks of different nodes only; with length springs alone, `k_s = −nᵀ R_ij n`. Of a norm of entries only.
-    OffDiagonal,
-    /// `W = C Cᵀ + higher · H Hᵀ`: C an orthonormal basis of the constant-strain motions, H of all other deformations.
-    Modal { higher: f64 },
-    /// `W = R^(−1/2)` on the deformations: what counts is the relative error of the energy.
-    Relative,
+/// The balance c of the divergence, `0 ≤ c ≤ 1`.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Balance(f64);
+
+impl Balance {
+    /// Chosen by the study in the README.
+    pub const DEFAULT: Balance = Balance(0.25);
+
+    /// # Errors
+    /// The number is not from 0 to 1.
+    pub fn new(balance: f64) -> Result<Balance> {
+        if !(0.0..=1.0).contains(&balance) {
+            return Err(Error::expected("balance", "a number from 0 to 1", balance));
+        }
+        Ok(Balance(balance))
+    }
+
+    pub const fn value(self) -> f64 {
+        self.0
+    }
+}
+
+impl fmt::Display for Balance {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.0.fmt(f)
+    }
 }
 
 /// The numbers and the weight that may go with an objective's name.
@@ -33,37 +50,34 @@ pub struct Choices<'a> {
     pub balance: Option<f64>,
 }
 
-impl Weight {
-    pub const NAMES: [&'static str; 4] = ["none", "offdiag", "modal", "relative"];
-
-    pub fn name(&self) -> &'static str {
-        match self {
-            Weight::None => "none",
-            Weight::OffDiagonal => "offdiag",
-            Weight::Modal { .. } => "modal",
-            Weight::Relative => "relative",
-        }
-    }
+/// The name of an objective in files and options.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Name {
+    Frobenius,
+    OffDiagonal,
+    Modal,
+    Spectral,
+    Divergence,
 }
+
+crate::named!(Name {
+    "frobenius" => Frobenius,
+    "offdiag" => OffDiagonal,
+    "modal" => Modal,
+    "spectral" => Spectral,
+    "divergence" => Divergence,
+});
 
 impl Objective {
     /// Besides these, `offdiag` and `modal` are short for `frobenius` with that weight.
-    pub const NAMES: [&'static str; 5] = ["frobenius", "offdiag", "modal", "spectral", "divergence"];
-    /// The scale of the higher modes where none is given; chosen by the study in the README.
-    pub const DEFAULT_HIGHER: f64 = 0.316;
-    /// The balance of the divergence where none is given; chosen by the study in the README.
-    pub const DEFAULT_BALANCE: f64 = 0.25;
+    pub const NAMES: &'static [&'static str] = Name::NAMES;
 
     /// Every objective with its default numbers; modal ones where the element has motions beyond constant strain.
     pub fn all(higher_modes: bool) -> Vec<Objective> {
-        let modal = Weight::Modal { higher: Objective::DEFAULT_HIGHER };
-        let mut all = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
-        all.extend(higher_modes.then_some(Objective::Frobenius(modal)));
-        all.extend([Objective::Frobenius(Weight::Relative), Objective::Spectral(Weight::None)]);
-        all.extend(higher_modes.then_some(Objective::Spectral(modal)));
-        all.push(Objective::Spectral(Weight::Relative));
-        all.push(Objective::Divergence { balance: Objective::DEFAULT_BALANCE });
-        all
+        let entries = Weight::all().filter(|weight| higher_modes || !weight.needs_higher_modes());
+        let motions = MotionWeight::all().filter(|weight| higher_modes || !Weight::from(*weight).needs_higher_modes());
+        let norms = entries.map(Objective::Frobenius).chain(motions.map(Objective::Spectral));
+        norms.chain([Objective::Divergence(Balance::DEFAULT)]).collect()
     }
 
     /// The objective called `name`.
@@ -71,50 +85,39 @@ impl Objective {
     /// # Errors
     /// A name is unknown, a number out of its range, or a choice belongs to another objective.
     pub fn named(name: &str, choices: Choices) -> Result<Objective> {
-        let (family, implied) = match name {
-            "offdiag" | "modal" => ("frobenius", Some(name)),
-            "frobenius" | "spectral" | "divergence" => (name, None),
-            _ => {
-                let expected = format!("one of {}", Objective::NAMES.join(", "));
-                return Err(Error::expected("objective", expected, format!("\"{name}\"")));
-            }
+        let known = Name::named(name).map_err(|e| e.at_key("objective"))?;
+        let implied = match known {
+            Name::OffDiagonal => Some(Weight::OffDiagonal),
+            Name::Modal => Some(Weight::Modal(Higher::DEFAULT)),
+            Name::Frobenius | Name::Spectral | Name::Divergence => None,
         };
         if let (Some(weight), Some(_)) = (choices.weight, implied) {
             let problem = format!("belongs to \"frobenius\" and \"spectral\", found \"{weight}\" with \"{name}\"");
             return Err(Error::at("weight", problem));
         }
-        if family == "divergence" {
-            return Objective::divergence(choices);
-        }
-        if choices.balance.is_some() {
-            return Err(Error::at(
-                "balance",
-                format!("belongs to the objective \"divergence\", found with \"{name}\""),
-            ));
-        }
-        let weight = match choices.weight.or(implied).unwrap_or("none") {
-            "none" => Weight::None,
-            "offdiag" if family == "spectral" => {
-                let expected = "one of none, modal, relative: the largest eigenvalue has no blocks";
-                return Err(Error::expected("weight", expected, "\"offdiag\""));
+        let weight = || {
+            if choices.balance.is_some() {
+                let problem = format!("belongs to the objective \"divergence\", found with \"{name}\"");
+                return Err(Error::at("balance", problem));
             }
-            "offdiag" => Weight::OffDiagonal,
-            "modal" => Weight::Modal { higher: choices.higher.unwrap_or(Objective::DEFAULT_HIGHER) },
-            "relative" => Weight::Relative,
-            other => {
-                let expected = format!("one of {}", Weight::NAMES.join(", "));
-                return Err(Error::expected("weight", expected, format!("\"{other}\"")));
-            }
+            let chosen = choices.weight.map(|weight| Weight::named(weight).map_err(|e| e.at_key("weight")));
+            Ok(chosen.transpose()?.or(implied).unwrap_or(Weight::None))
         };
-        match (weight, choices.higher) {
-            (Weight::Modal { higher }, _) if !(higher > 0.0 && higher <= 1.0) => {
-                Err(Error::expected("higher", "a scale above 0 and at most 1", higher))
+        let scaled = |weight: Weight| {
+            let Some(higher) = choices.higher else { return Ok(weight) };
+            if weight.higher().is_none() {
+                let problem = format!("belongs to the objective \"modal\", found with \"{name}\"");
+                return Err(Error::at("higher", problem));
             }
-            (Weight::None | Weight::OffDiagonal | Weight::Relative, Some(_)) => {
-                Err(Error::at("higher", format!("belongs to the objective \"modal\", found with \"{name}\"")))
+            Ok(weight.with_higher(Higher::new(higher)?))
+        };
+        match known {
+            Name::Frobenius | Name::OffDiagonal | Name::Modal => Ok(Objective::Frobenius(scaled(weight()?)?)),
+            Name::Spectral => {
+                let weight = weight()?.of_motions()?;
+                Ok(Objective::Spectral(scaled(weight.into())?.of_motions()?))
             }
-            _ if family == "spectral" => Ok(Objective::Spectral(weight)),
-            _ => Ok(Objective::Frobenius(weight)),
+            Name::Divergence => Objective::divergence(choices),
         }
     }
 
@@ -125,49 +128,86 @@ impl Objective {
                 return Err(Error::at(key, problem));
             }
         }
-        let balance = choices.balance.unwrap_or(Objective::DEFAULT_BALANCE);
-        if !(0.0..=1.0).contains(&balance) {
-            return Err(Error::expected("balance", "a number from 0 to 1", balance));
-        }
-        Ok(Objective::Divergence { balance })
+        let balance = choices.balance.map_or(Ok(Balance::DEFAULT), Balance::new)?;
+        Ok(Objective::Divergence(balance))
     }
 
     /// The shortest name: `offdiag` and `modal` for `frobenius` with that weight.
     pub fn name(&self) -> &'static str {
+        let name = match self {
+            Objective::Frobenius(Weight::None | Weight::Relative) => Name::Frobenius,
+            Objective::Frobenius(Weight::OffDiagonal) => Name::OffDiagonal,
+            Objective::Frobenius(Weight::Modal(_)) => Name::Modal,
+            Objective::Spectral(_) => Name::Spectral,
+            Objective::Divergence(_) => Name::Divergence,
+        };
+        name.name()
+    }
+
+    /// The name with what goes with it, such as `spectral modal 0.316`.
+    pub fn title(&self) -> String {
+        let name = self.name();
         match self {
-            Objective::Frobenius(Weight::OffDiagonal) => "offdiag",
-            Objective::Frobenius(Weight::Modal { .. }) => "modal",
-            Objective::Frobenius(_) => "frobenius",
-            Objective::Spectral(_) => "spectral",
-            Objective::Divergence { .. } => "divergence",
+            Objective::Frobenius(Weight::None | Weight::OffDiagonal) | Objective::Spectral(MotionWeight::None) => {
+                name.into()
+            }
+            Objective::Frobenius(Weight::Relative) | Objective::Spectral(MotionWeight::Relative) => {
+                format!("{name} relative")
+            }
+            Objective::Frobenius(Weight::Modal(higher)) => format!("{name} {higher}"),
+            Objective::Spectral(MotionWeight::Modal(higher)) => format!("{name} modal {higher}"),
+            Objective::Divergence(balance) => format!("{name} {balance}"),
         }
     }
 
     /// The weight of a norm.
     pub fn weight(&self) -> Option<Weight> {
         match self {
-            Objective::Frobenius(weight) | Objective::Spectral(weight) => Some(*weight),
-            Objective::Divergence { .. } => None,
+            Objective::Frobenius(weight) => Some(*weight),
+            Objective::Spectral(weight) => Some((*weight).into()),
+            Objective::Divergence(_) => None,
         }
     }
 
     /// The scale of the higher modes, where the objective has one.
     pub fn higher(&self) -> Option<f64> {
-        match self.weight() {
-            Some(Weight::Modal { higher }) => Some(higher),
-            _ => None,
+        self.weight().and_then(Weight::higher).map(Higher::value)
+    }
+
+    /// The balance of the divergence.
+    pub fn balance(&self) -> Option<f64> {
+        match self {
+            Objective::Divergence(balance) => Some(balance.value()),
+            Objective::Frobenius(_) | Objective::Spectral(_) => None,
         }
     }
 
-    /// The name with what goes with it, such as `spectral modal 0.316`.
-    pub fn title(&self) -> String {
+    /// How the equations are set up, with springs of which some measure a function of some nodes or none does.
+    pub(super) fn route(&self, has_functions: bool) -> Route {
+        match *self {
+            Objective::Frobenius(weight) => weight.route(has_functions),
+            Objective::Spectral(weight) => Route::Reduced(weight),
+            Objective::Divergence(_) => Route::Reduced(MotionWeight::Relative),
+        }
+    }
+
+    /// The weight through which the objective is a function of the reduced element.
+    ///
+    /// # Errors
+    /// It is one of blocks, which the reduced element does not have.
+    pub(super) fn of_motions(&self) -> Result<MotionWeight> {
+        match *self {
+            Objective::Frobenius(weight) => weight.of_motions(),
+            Objective::Spectral(weight) => Ok(weight),
+            Objective::Divergence(_) => Ok(MotionWeight::Relative),
+        }
+    }
+
+    /// Whether a cell takes microseconds instead of nanoseconds.
+    pub(super) fn is_costly(&self) -> bool {
         match self {
-            Objective::Frobenius(Weight::Relative) => "frobenius relative".into(),
-            Objective::Spectral(Weight::Relative) => "spectral relative".into(),
-            Objective::Spectral(Weight::Modal { higher }) => format!("spectral modal {higher}"),
-            Objective::Frobenius(Weight::Modal { higher }) => format!("modal {higher}"),
-            Objective::Divergence { balance } => format!("divergence {balance}"),
-            _ => self.name().into(),
+            Objective::Frobenius(weight) => weight.is_costly(),
+            Objective::Spectral(_) | Objective::Divergence(_) => true,
         }
     }
 }

@@ -1,9 +1,9 @@
 //! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, where R is
 //! regular, weighted and scaled to sizes of one.
 
-use super::Weight;
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;
+use super::weight::MotionWeight;
 use crate::material::Moduli;
 use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
@@ -38,7 +38,7 @@ pub struct Reduced<T> {
 
 impl<T: Real> Reduced<T> {
     /// Room for the elements with these springs; `any` says the kind of number.
-    pub fn of_kind(any: &T, springs: &Springs, tied: bool) -> Reduced<T> {
+    pub fn like(any: &T, springs: &Springs, tied: bool) -> Reduced<T> {
         let (n, d, m) = (springs.nodes, springs.dimension, springs.len());
         let unknowns = if tied { springs.groups.clone() } else { (0..m).collect() };
         let count = unknowns.iter().max().map_or(0, |last| last + 1);
@@ -66,7 +66,7 @@ impl<T: Real> Reduced<T> {
     /// measure a function, `[springs × nodes·dimension]`.
     pub fn set(
         &mut self,
-        weight: Weight,
+        weight: MotionWeight,
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
@@ -86,7 +86,7 @@ impl<T: Real> Reduced<T> {
     #[inline(always)]
     fn set_in<const D: usize>(
         &mut self,
-        weight: Weight,
+        weight: MotionWeight,
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
@@ -99,7 +99,7 @@ impl<T: Real> Reduced<T> {
         self.set_stiffness::<D>(n, geometry, moduli);
         self.set_gradients(springs, x, geometry, measured);
         self.take_out_rotations::<D>(n);
-        if weight == Weight::Relative {
+        if weight.divides_by_stiffness() {
             self.divide_by_stiffness();
         }
         self.normalise();
@@ -108,7 +108,7 @@ impl<T: Real> Reduced<T> {
     /// The map from nodes to differences, `[nodes − 1 × nodes]`. Modal: seen through `h + (1 − h) P`, P the projection on the
     /// linear motions, `X S⁻¹ Xᵀ` with X the positions in differences and `S = XᵀX`.
     #[inline(always)]
-    fn set_mix<const D: usize>(&mut self, weight: Weight, x: &[[T; D]]) {
+    fn set_mix<const D: usize>(&mut self, weight: MotionWeight, x: &[[T; D]]) {
         let n = x.len();
         let zero = x[0][0].zero();
         for (mix, plain) in self.mix.iter_mut().zip(&self.differences) {
@@ -121,7 +121,8 @@ impl<T: Real> Reduced<T> {
                 *position = plus_multiple(position, &zero.constant(c), x);
             }
         }
-        let Weight::Modal { higher } = weight else { return };
+        let Some(higher) = weight.higher() else { return };
+        let higher = higher.value();
         let (rest, q) = (zero.constant(&(1.0 - higher)), self.work[..(n - 1) * D].as_chunks_mut::<D>().0);
         q.clone_from_slice(positions);
         let linear = LinearMotions::of(q);

@@ -1,5 +1,6 @@
 //! How far the springs of an element are from its stiffness.
 
+use super::input::{check_fit, check_length};
 use super::{CHUNK, CellFits, each_cell};
 use crate::element::Element;
 use crate::error::Result;
@@ -42,7 +43,8 @@ impl Spread {
 /// The relative errors of every cell, with R and `K = Σ k_s g_s g_sᵀ` formed.
 ///
 /// # Errors
-/// A cell is reversed, tangled or flat.
+/// An array has a wrong length, a coordinate or modulus is not finite or out of its range, the springs are those of another
+/// element, or a cell is reversed, tangled or flat.
 pub fn element_errors(
     element: &Element,
     points: &[f64],
@@ -50,6 +52,12 @@ pub fn element_errors(
     moduli: Moduli,
     fits: &CellFits,
 ) -> Result<ElementErrors> {
+    check_fit(element, &fits.springs, points, connectivity, &moduli)?;
+    let cells = connectivity.len() / element.nodes();
+    check_length("constants", fits.constants.len(), cells * fits.springs.len())?;
+    fits.force.check(fits.springs.names.len())?;
+    let parameters = fits.force.places(&fits.springs.groups).last().map_or(0, |count| cells * count);
+    check_length("parameters", fits.parameters.len(), parameters)?;
     let (n, size) = (element.nodes(), element.nodes() * element.dimension());
     let m = fits.springs.len();
     let pulls = Pulls::of(element, fits);

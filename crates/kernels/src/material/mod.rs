@@ -30,6 +30,27 @@ impl State {
             State::PlaneStress { thickness } | State::PlaneStrain { thickness } => thickness,
         }
     }
+
+    /// Of the body.
+    pub fn dimension(self) -> usize {
+        match self {
+            State::Rod { .. } => 1,
+            State::PlaneStress { .. } | State::PlaneStrain { .. } => 2,
+            State::Solid => 3,
+        }
+    }
+
+    /// # Errors
+    /// It is not a state of bodies of this dimension, or its thickness is not positive.
+    pub(crate) fn check(self, dimension: usize) -> Result<()> {
+        if self.dimension() != dimension {
+            return Err(Error::expected("state", format!("one of a body of {dimension} dimensions"), self.dimension()));
+        }
+        if !(self.thickness() > 0.0 && self.thickness().is_finite()) {
+            return Err(Error::expected("thickness", "a positive number", self.thickness()));
+        }
+        Ok(())
+    }
 }
 
 /// The two plane states, by name.

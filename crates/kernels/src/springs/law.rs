@@ -119,6 +119,19 @@ pub enum Force {
 }
 
 impl Force {
+    /// That there is a law for each of so many groups, where there are laws.
+    ///
+    /// # Errors
+    /// There are more or fewer.
+    pub(crate) fn check(&self, groups: usize) -> Result<()> {
+        match self {
+            Force::Laws(laws) if laws.len() != groups => {
+                Err(Error::expected("force", format!("a law for each of {groups} groups"), laws.len()))
+            }
+            Force::Linear | Force::FreeRest | Force::Laws(_) => Ok(()),
+        }
+    }
+
     /// The same law for so many groups.
     pub fn of_all(law: Law, groups: usize) -> Force {
         Force::Laws(std::iter::repeat_n(Arc::new(law), groups).collect())

@@ -1,8 +1,8 @@
 //! What a spring measures, c(x), with its first and second derivatives: all that its force and its tangent need.
 
-use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
+use crate::element::{Element, Formula, SpringKind, Tabulation, dot};
 use crate::error::{Error, ErrorKind, Result};
-use crate::symbolic::{Expr, Jet, Scope};
+use crate::symbolic::{Expr, Jet};
 use std::sync::Arc;
 
 /// One number c of the positions of some points.
@@ -33,19 +33,14 @@ impl Measure {
     /// # Errors
     /// The kind has no formula for so many points.
     pub fn of_kind(kind: SpringKind, nodes: usize, dimension: usize) -> Result<Expr> {
-        let formula = Formula::new(nodes, dimension);
-        let text = match (kind, nodes, dimension) {
-            (SpringKind::Length, 2, _) => formula.distance(0, 1),
-            (SpringKind::Angle, 3, 2 | 3) => formula.angle(),
-            (SpringKind::Area, 3.., 2 | 3) => formula.area(),
-            (SpringKind::Volume, 4, 3) => formula.volume(),
-            (SpringKind::Coupling, 4, _) => format!("{} + {}", formula.distance(0, 1), formula.distance(2, 3)),
-            _ => {
-                let problem = format!("no {} of {nodes} nodes in {dimension} dimensions is known", kind.name());
-                return Err(Error::new(problem).of_kind(ErrorKind::Unsupported));
-            }
+        let properties = kind.properties();
+        let is_possible = properties.nodes.contains(&nodes) && (properties.least_dimension..=3).contains(&dimension);
+        let Some(text) = properties.formula.filter(|_| is_possible) else {
+            let problem = format!("no {} of {nodes} nodes in {dimension} dimensions is known", kind.name());
+            return Err(Error::new(problem).of_kind(ErrorKind::Unsupported));
         };
-        formula.scope.expression(&text)
+        let formula = Formula::new(nodes, dimension);
+        formula.expression(&text(&formula))
     }
 
     /// The squared distances of the points 0-1, 2-3, … added up, m².
@@ -58,7 +53,7 @@ impl Measure {
             let u = formula.vector(2 * pair, 2 * pair + 1);
             dot(&u, &u)
         };
-        formula.scope.expression(&(0..pairs).map(square).collect::<Vec<_>>().join(" + "))
+        formula.expression(&(0..pairs).map(square).collect::<Vec<_>>().join(" + "))
     }
 
     /// The distance of the centre of the first `side` points from that of the `side` others, m.
@@ -73,7 +68,7 @@ impl Measure {
             format!("(({sum})/{side})")
         };
         let u: Vec<String> = (0..dimension).map(mean).collect();
-        formula.scope.expression(&format!("sqrt({})", dot(&u, &u)))
+        formula.expression(&format!("sqrt({})", dot(&u, &u)))
     }
 
     /// c and its derivatives at the positions `x`, `[points × dimension]`, m.
@@ -201,63 +196,4 @@ fn node(dn: &[f64], a: usize, d: usize) -> [f64; 3] {
 /// `a · (b × c)`.
 fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
-}
-
-/// Builds formulas in the coordinates of a few points.
-struct Formula {
-    names: Vec<String>,
-    scope: Scope,
-    nodes: usize,
-    dimension: usize,
-}
-
-impl Formula {
-    fn new(nodes: usize, dimension: usize) -> Formula {
-        let names = coordinate_names(nodes, dimension);
-        Formula { scope: Scope::new(&names), names, nodes, dimension }
-    }
-
-    /// The vector from point a to point b.
-    fn vector(&self, a: usize, b: usize) -> Vec<String> {
-        let name = |point: usize, k: usize| &self.names[point * self.dimension + k];
-        (0..self.dimension).map(|k| format!("({} - {})", name(b, k), name(a, k))).collect()
-    }
-
-    fn distance(&self, a: usize, b: usize) -> String {
-        let u = self.vector(a, b);
-        format!("sqrt({})", dot(&u, &u))
-    }
-
-    /// `θ = 2 atan(|u × v|/(|u||v| + u·v))`, which loses no digits at any angle (Kahan 2006).
-    fn angle(&self) -> String {
-        let (u, v) = (self.vector(1, 0), self.vector(1, 2));
-        let across: Vec<String> = cross(&u, &v);
-        let (uu, vv, uv) = (dot(&u, &u), dot(&v, &v), dot(&u, &v));
-        format!("2*atan(sqrt({})/(sqrt(({uu})*({vv})) + {uv}))", dot(&across, &across))
-    }
-
-    /// Half the cross products of the fan from the first point: their sum in the plane, its length in space.
-    fn area(&self) -> String {
-        let fan = |i: usize| cross(&self.vector(0, i), &self.vector(0, i + 1));
-        let parts: Vec<Vec<String>> = (1..self.nodes - 1).map(fan).collect();
-        let sum = |k: usize| parts.iter().map(|p| p[k].clone()).collect::<Vec<_>>().join(" + ");
-        if self.dimension == 2 {
-            return format!("({})/2", sum(0));
-        }
-        format!("sqrt(({})^2 + ({})^2 + ({})^2)/2", sum(0), sum(1), sum(2))
-    }
-
-    fn volume(&self) -> String {
-        format!("({})/6", dot(&self.vector(0, 1), &cross(&self.vector(0, 2), &self.vector(0, 3))))
-    }
-}
-
-fn dot(u: &[String], v: &[String]) -> String {
-    u.iter().zip(v).map(|(a, b)| format!("{a}*{b}")).collect::<Vec<_>>().join(" + ")
-}
-
-/// The cross product; in the plane its one component.
-fn cross(u: &[String], v: &[String]) -> Vec<String> {
-    let part = |k: usize, l: usize| format!("({}*{} - {}*{})", u[k], v[l], u[l], v[k]);
-    if u.len() == 2 { vec![part(0, 1)] } else { vec![part(1, 2), part(2, 0), part(0, 1)] }
 }

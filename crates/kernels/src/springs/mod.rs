@@ -21,19 +21,19 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Springs {
     /// Of the cell.
-    pub dimension: usize,
+    pub(crate) dimension: usize,
     /// Coordinates of a node, more than the dimension on surfaces and curves.
-    pub space: usize,
-    pub nodes: usize,
+    pub(crate) space: usize,
+    pub(crate) nodes: usize,
     /// Node pairs of the length springs.
-    pub pairs: Vec<[usize; 2]>,
+    pub(crate) pairs: Vec<[usize; 2]>,
     /// Angles, areas, volumes, couplings and users' own.
-    pub functions: Vec<FunctionSpring>,
+    pub(crate) functions: Vec<FunctionSpring>,
     /// Whether the last spring measures the cell's area or volume.
-    pub content: Option<SpringKind>,
+    pub(crate) content: Option<SpringKind>,
     /// The group of each spring, as an index into `names`.
-    pub groups: Vec<usize>,
-    pub names: Vec<String>,
+    pub(crate) groups: Vec<usize>,
+    pub(crate) names: Vec<String>,
     /// Length springs that share a node: `(s, t)`, s < t, `(g_s · g_t)² = (n_s · n_t)²`; all others are orthogonal.
     pub(crate) touching: Vec<(usize, usize)>,
     /// Those of them that join the same two nodes.
@@ -153,6 +153,61 @@ impl Springs {
         lengths.chain(functions).chain(content).collect()
     }
 
+    /// That they are of this element, or of one with as many nodes and dimensions.
+    ///
+    /// # Errors
+    /// They are not.
+    pub fn check(&self, element: &Element) -> Result<()> {
+        let expected = (element.nodes(), element.dimension(), element.space());
+        if (self.nodes, self.dimension, self.space) != expected {
+            let words =
+                |(nodes, dimension, space)| format!("{nodes} nodes, {dimension} dimensions in space of {space}");
+            let expected = format!("those of {}: {}", element.name, words(expected));
+            return Err(Error::expected("springs", expected, words((self.nodes, self.dimension, self.space))));
+        }
+        Ok(())
+    }
+
+    /// Of the cell.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Coordinates of a node, more than the dimension on surfaces and curves.
+    pub fn space(&self) -> usize {
+        self.space
+    }
+
+    /// Of the cell.
+    pub fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// Node pairs of the length springs.
+    pub fn pairs(&self) -> &[[usize; 2]] {
+        &self.pairs
+    }
+
+    /// Angles, areas, volumes, couplings and users' own.
+    pub fn functions(&self) -> &[FunctionSpring] {
+        &self.functions
+    }
+
+    /// What the last spring measures, where that is the cell's area or volume.
+    pub fn content(&self) -> Option<SpringKind> {
+        self.content
+    }
+
+    /// The group of each spring, as an index into [`names`](Springs::names).
+    pub fn groups(&self) -> &[usize] {
+        &self.groups
+    }
+
+    /// Of the groups.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
     pub fn len(&self) -> usize {
         self.groups.len()
     }
@@ -165,6 +220,9 @@ impl Springs {
     ///
     /// A length spring's g is dimensionless: −n at its first node and n at its second. That of the content is
     /// `∫ ∇N dV`, in m² (m in two dimensions), so its constant is in N/m⁵ (N/m³).
+    ///
+    /// # Panics
+    /// `x` or the geometry is that of an element with fewer nodes.
     pub fn gradients(&self, x: &[f64], geometry: &Geometry, g: &mut Vec<f64>) {
         let d = self.dimension;
         let size = self.nodes * d;
@@ -187,6 +245,9 @@ impl Springs {
 
     /// The rows of the springs on functions alone, `[functions × nodes·dimension]`, into rows of zeros. False if one is zero or
     /// not finite.
+    ///
+    /// # Panics
+    /// A length is another.
     pub fn function_gradients(&self, x: &[f64], rows: &mut [f64]) -> bool {
         let d = self.dimension;
         let size = self.nodes * d;

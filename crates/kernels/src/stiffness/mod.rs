@@ -42,7 +42,7 @@ pub struct Geometry<T = f64> {
 
 impl<T: Scalar> Geometry<T> {
     /// Room for any element of this tabulation, filled by [`Geometry::update`]; `any` says the kind of number.
-    pub fn of_kind(any: &T, table: &Tabulation<T::Constant>) -> Geometry<T> {
+    pub fn like(any: &T, table: &Tabulation<T::Constant>) -> Geometry<T> {
         Geometry {
             dimension: table.dimension,
             nodes: table.nodes,
@@ -139,7 +139,7 @@ impl<T: Scalar> Geometry<T> {
 impl Geometry {
     /// Room for any element of this tabulation; filled by [`Geometry::set`].
     pub fn new(table: &Tabulation) -> Geometry {
-        Geometry::of_kind(&0.0, table)
+        Geometry::like(&0.0, table)
     }
 
     /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m.

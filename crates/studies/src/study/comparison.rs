@@ -13,7 +13,7 @@ use super::stretches::sampled_fits;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
-use crate::fit::{Fit, Objective, Search, Solver, Spread, Weight, element_errors};
+use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, element_errors};
 use crate::material::Material;
 use crate::mesh::CellBlock;
 use crate::springs::Springs;
@@ -60,7 +60,7 @@ pub fn compare_element(
         Objective::all(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))).collect();
     for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
         let solver = Solver::General { method, iterations, topology: None };
-        recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(Weight::None)) }));
+        recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(MotionWeight::None)) }));
     }
     let cell: Vec<usize> = (0..element.nodes()).collect();
     let published = Method::ALL.into_iter().filter(|m| serves(*m, element, &element.positions, &cell, material));

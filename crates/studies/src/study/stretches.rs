@@ -7,7 +7,7 @@ use super::metrics::displacement_error;
 use super::progress::{Event, Progress};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
-use crate::fit::{Family, Fit, Objective, Sampling, Source, Weight, fit_sampled};
+use crate::fit::{Balance, Family, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
 use crate::material::{Energy, Material};
 use crate::mesh::{BoxMesh, Mesh, Selection};
 use crate::model::{Body, Elastic, Response, Support, displaced};
@@ -124,10 +124,10 @@ struct Held {
 /// The ways that are compared, all with every spring group of the element.
 fn recipes(element: &Element, sampled: f64) -> Vec<NamedFit> {
     let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
-    let modal = Weight::Modal { higher: Objective::DEFAULT_HIGHER };
+    let modal = Weight::Modal(Higher::DEFAULT);
     let mut objectives: Vec<Objective> = [Weight::None, Weight::OffDiagonal].map(Objective::Frobenius).into();
     objectives.extend(element.has_higher_modes().then_some(Objective::Frobenius(modal)));
-    objectives.push(Objective::Divergence { balance: Objective::DEFAULT_BALANCE });
+    objectives.push(Objective::Divergence(Balance::DEFAULT));
     let at_rest = |objective: Objective| {
         let fit = Fit { nonnegative: true, ..Fit::new(objective) };
         let name = format!("{} k>=0", objective.title());
@@ -159,7 +159,7 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
         recipe.fit.sampling = Sampling { source, stretch: [-0.1, stretch], ..recipe.fit.sampling };
         recipe.fit.nonnegative = nonnegative;
         if element.has_higher_modes() {
-            recipe.fit.higher = Objective::DEFAULT_HIGHER;
+            recipe.fit.higher = Higher::DEFAULT.value();
         }
         NamedFit::named(name, Recipe::Sampled(Box::new(recipe)), groups.map(<[String]>::to_vec))
     };

@@ -16,6 +16,7 @@ mod van_gelder;
 pub use method::{Cover, Joint, Method, Ratio};
 pub use shape::{Shape, Unmet, unmet};
 
+use super::input::check_cells;
 use super::{CellFits, each_cell};
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
@@ -31,7 +32,7 @@ use pattern::Pattern;
 /// lengths, distances of sides, the content, is added. No spring pulls at rest.
 ///
 /// # Errors
-/// The method has no formula for the element's cell, the element has nodes beside the corners, a length spring is
+/// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the method has no formula for the element's cell, the element has nodes beside the corners, a length spring is
 /// missing, Poisson's ratio is out of the method's range, the material is of another dimension, or a cell is reversed,
 /// tangled or flat. A cell of another [`Shape`] than the method's and another Poisson's ratio than it assumes are no
 /// errors: [`unmet`] tells them.
@@ -43,6 +44,8 @@ pub fn fit(
     connectivity: &[usize],
     material: Material,
 ) -> Result<CellFits> {
+    springs.check(element)?;
+    check_cells(element, points, connectivity)?;
     let cover = method.cover(element)?;
     let corners = Corners::of(element)?;
     let bulk = Elasticity::of(element, material)?;

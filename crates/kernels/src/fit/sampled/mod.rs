@@ -13,6 +13,7 @@ pub use shapes::{Family, Sampling, Source};
 
 use super::congruence::Congruence;
 use super::constrained::solve_nonnegative;
+use super::input::check_cells;
 use super::normal::Rank;
 use super::norms::{Norm, solve_norm};
 use super::{CellFits, each_cell};
@@ -95,7 +96,8 @@ pub struct SampledFits {
 /// `progress` is told the number of cells done, now and then.
 ///
 /// # Errors
-/// A cell is tangled, the numbers of the sampling are out of range, or the cells are those of a surface or curve in space.
+/// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the state is not one
+/// of its dimension, a cell is tangled, the numbers of the sampling are out of range, or the cells are those of a surface or curve in space.
 #[allow(clippy::too_many_arguments)]
 pub fn fit_sampled(
     element: &Arc<Element>,
@@ -110,11 +112,16 @@ pub fn fit_sampled(
     if springs.is_empty() {
         return Err(Error::expected("springs", "at least one spring to fit", "none"));
     }
+    springs.check(element)?;
     fit.check(element.dimension())?;
     if element.space() > element.dimension() {
         let problem = "the sampled fit is known for cells that fill their space";
         return Err(Error::new(problem).of_kind(ErrorKind::Unsupported));
     }
+    fit.force.check(springs.names.len())?;
+    fit.sampling.check_states(points.len())?;
+    check_cells(element, points, connectivity)?;
+    state.check(element.dimension())?;
     let n = element.nodes();
     let cells = connectivity.len() / n;
     let Congruence { representatives, shapes } = Congruence::by_translation(element, points, connectivity)?;

@@ -1,6 +1,7 @@
 //! Deformed shapes of a cell: families of homogeneous and bent ones at random amplitudes and directions, or shapes of a list.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::fit::input::{check_finite, check_length};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -128,9 +129,24 @@ impl Sampling {
             Source::States(states) if states.is_empty() => {
                 return Err(Error::expected("states", "at least one state", "none"));
             }
-            _ => {}
+            Source::Gradients(list) => check_finite("gradients", list)?,
+            Source::States(_) | Source::Families(_) => {}
         }
         Ok(())
+    }
+
+    /// That the states have so many numbers, all finite.
+    ///
+    /// # Errors
+    /// One has not.
+    pub(super) fn check_states(&self, numbers: usize) -> Result<()> {
+        match &self.source {
+            Source::States(states) => states.iter().try_for_each(|state| {
+                check_length("states", state.len(), numbers)?;
+                check_finite("states", state)
+            }),
+            Source::Families(_) | Source::Gradients(_) => Ok(()),
+        }
     }
 }
 

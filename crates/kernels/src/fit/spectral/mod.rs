@@ -71,7 +71,7 @@ pub struct Spectral<T> {
 }
 
 impl<T: Real> Spectral<T> {
-    pub fn of_kind(any: &T, reduced: &Reduced<T>, nonnegative: bool) -> Spectral<T> {
+    pub fn like(any: &T, reduced: &Reduced<T>, nonnegative: bool) -> Spectral<T> {
         let (p, m, c) = (reduced.order, reduced.unknowns.len(), reduced.scales.len());
         let zero = any.zero();
         let room = |size: usize| vec![zero.clone(); size];

@@ -36,7 +36,7 @@ fn rank_and_condition(element: &Element, springs: &Springs) -> (Property, Proper
     for x in shapes(element) {
         let mut g = Vec::new();
         springs.gradients(&x, &geometry(element, &x), &mut g);
-        if !springs.function_gradients(&x, &mut vec![0.0; springs.functions.len() * x.len()]) {
+        if !springs.function_gradients(&x, &mut vec![0.0; springs.functions().len() * x.len()]) {
             let finding = "a spring's measure has no finite gradient other than zero";
             let rank = Property::new("rank of the springs", false, finding);
             return (rank, Property::noted("condition of the equations", "not looked at"));

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::fit::{
     CellFits, Fit, Objective, Weight, condition, constants_of_kind, distance_from_optimum, fit_cells, fit_element,
 };
-use crate::scalar::{Real, Twofold};
+use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use crate::study::random::Random;
@@ -58,7 +58,7 @@ impl Subject<'_> {
             Err(e) => return of(Verdict::Refused(e.problem().into())),
         };
         let k = &fits.constants;
-        let reference = constants_of_kind(&Twofold::from(0.0), element, springs, &case.x, &moduli, &fit);
+        let reference = constants_of_kind(&DoubleDouble::from(0.0), element, springs, &case.x, &moduli, &fit).ok();
         let mut row = match (objective, &reference) {
             _ if k.iter().any(|k| !k.is_finite()) => of(Verdict::Lost).with_error(f64::INFINITY, PROMISED),
             _ if fits.deficient > 0 => of(Verdict::Dependent),
@@ -68,14 +68,14 @@ impl Subject<'_> {
             (Objective::Spectral(_), _) => {
                 let said = (&k[..], fits.certificates[0].value);
                 match distance_from_optimum(element, springs, &case.x, &moduli, &fit, said) {
-                    Some(distance) => self.judged(of, distance, GAP, objective),
-                    None => of(Verdict::Lost).with_error(f64::INFINITY, GAP),
+                    Ok(distance) => self.judged(of, distance, GAP, objective),
+                    Err(_) => of(Verdict::Lost).with_error(f64::INFINITY, GAP),
                 }
             }
             (_, Some(reference)) => self.judged(of, distance(k, reference), PROMISED, objective),
             (_, None) => of(Verdict::Told("twice the digits find no answer to compare with".into())),
         };
-        let single = constants_of_kind(&0f32, element, springs, &case.x, &moduli, &fit);
+        let single = constants_of_kind(&0f32, element, springs, &case.x, &moduli, &fit).ok();
         let closed = !matches!(objective, Objective::Spectral(_));
         row.single = single
             .zip(reference)
@@ -83,7 +83,7 @@ impl Subject<'_> {
             .map(|(k, reference)| distance(&k.iter().map(Real::rounded).collect::<Vec<_>>(), &reference));
         row.single = row.single.filter(|error| error.is_finite());
         let weight = objective.weight().filter(|weight| *weight != Weight::Relative).unwrap_or(Weight::None);
-        row.condition = condition(weight, element, springs, &case.x, &moduli);
+        row.condition = condition(weight, element, springs, &case.x, &moduli).ok();
         row.negative = Some([k.iter().filter(|k| **k < 0.0).count(), k.len()]);
         self.measure(&fits, &mut row);
         row
@@ -156,9 +156,9 @@ impl Subject<'_> {
 }
 
 /// `max |a − b| / max |b|`, with b in twice the digits.
-fn distance(a: &[f64], b: &[Twofold]) -> f64 {
+fn distance(a: &[f64], b: &[DoubleDouble]) -> f64 {
     let size = b.iter().map(|b| b.hi.abs()).fold(0.0, f64::max);
-    let away = worst(a.iter().zip(b).map(|(a, b)| (Twofold::from(*a) - b).hi.abs()));
+    let away = worst(a.iter().zip(b).map(|(a, b)| (DoubleDouble::from(*a) - b).hi.abs()));
     if away == 0.0 { 0.0 } else { away / size }
 }
 

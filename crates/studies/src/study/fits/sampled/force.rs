@@ -38,7 +38,7 @@ impl ForceRecipe {
         match self {
             ForceRecipe::Linear => Ok(Force::Linear),
             ForceRecipe::FreeRest => Ok(Force::FreeRest),
-            ForceRecipe::Law(law) => Ok(Force::of_all(law.clone(), springs.names.len())),
+            ForceRecipe::Law(law) => Ok(Force::of_all(law.clone(), springs.names().len())),
             ForceRecipe::Groups(laws) => {
                 let law = |group: &String| match laws.iter().find(|(named, _)| named == group) {
                     Some((_, law)) => Ok(Arc::new(law.clone())),
@@ -47,7 +47,7 @@ impl ForceRecipe {
                         Err(Error::expected("force", expected, "none"))
                     }
                 };
-                springs.names.iter().map(law).collect::<Result<_>>().map(Force::Laws)
+                springs.names().iter().map(law).collect::<Result<_>>().map(Force::Laws)
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What is certified of a fit to the stiffness at rest.
 
-use crate::fit::{CellFits, Fit, Objective, Weight};
+use crate::fit::{CellFits, Fit, MotionWeight, Objective};
 
 /// The certificates of a fit to the stiffness at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -17,7 +17,7 @@ impl StiffnessOutcome {
     pub(super) fn of(fit: &Fit, cells: &[CellFits]) -> StiffnessOutcome {
         let certificates = || cells.iter().flat_map(|cells| &cells.certificates);
         let largest = certificates().map(|c| c.value).reduce(f64::max);
-        let relative = fit.objective == Objective::Spectral(Weight::Relative);
+        let relative = fit.objective == Objective::Spectral(MotionWeight::Relative);
         StiffnessOutcome {
             ambiguous: certificates().filter(|c| c.ambiguous).count(),
             gap: certificates().map(|c| c.gap()).reduce(f64::max),

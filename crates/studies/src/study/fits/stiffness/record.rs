@@ -33,7 +33,7 @@ impl StiffnessRecord {
             objective: fit.objective.name().into(),
             weight: fit.objective.weight().map(|weight| weight.name().into()),
             higher: fit.objective.higher(),
-            balance: if let Objective::Divergence { balance } = fit.objective { Some(balance) } else { None },
+            balance: fit.objective.balance(),
             tied: fit.tied,
             nonnegative: fit.nonnegative,
             solver: solver.into(),

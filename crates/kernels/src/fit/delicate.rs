@@ -7,21 +7,22 @@ use super::least_squares::normal_equations;
 use super::method::Verdict;
 use super::normal::Normal;
 use super::precision::{differences, solved};
+use super::weight::Route;
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Scalar, Twofold};
+use crate::scalar::{DoubleDouble, Scalar};
 use crate::springs::{Springs, dot};
 use crate::stiffness::Geometry;
 
 /// What the cells of a block have in common.
-pub struct Careful<'a> {
+pub struct DelicateCells<'a> {
     pub element: &'a Element,
     pub springs: &'a Springs,
     pub moduli: &'a Moduli,
     pub fit: &'a Fit,
 }
 
-impl Careful<'_> {
+impl DelicateCells<'_> {
     /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `plain` and `shape` are that
     /// from its first in `f64`, `measured` as [`Method::solve`] needs it. None where
     /// the Jacobian vanishes, or springs on functions are seen block by block, which is known in `f64` alone.
@@ -32,23 +33,22 @@ impl Careful<'_> {
         measured: &[f64],
         constants: &mut [f64],
     ) -> Option<Verdict> {
-        let Careful { element, springs, moduli, fit } = *self;
-        let any = Twofold::from(0.0);
+        let DelicateCells { element, springs, moduli, fit } = *self;
+        let any = DoubleDouble::from(0.0);
         let x = differences(&any, element.dimension(), x);
-        let mut geometry = Geometry::of_kind(&any, &element.tabulation);
+        let mut geometry = Geometry::like(&any, &element.tabulation);
         if !geometry.update(&element.tabulation, &x) {
             return None;
         }
-        if let Some(method) = solved(springs, &x, &geometry, moduli, measured, fit) {
+        let route = fit.objective.route(!springs.functions.is_empty());
+        let Route::Closed(weight) = route else {
+            let method = solved(springs, &x, &geometry, moduli, measured, fit)?;
             return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
-        }
-        if !springs.functions.is_empty() {
-            return None;
-        }
+        };
         let mut normal = Normal::default();
-        normal_equations(fit.objective.weight()?, springs, &x, &geometry, moduli, &mut normal);
+        normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
-        let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, Twofold::given());
+        let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         spread(fit, springs, constants, &k);
         Some(Verdict { certificate: None, rank, reached: true, delicate: false })
     }

@@ -9,66 +9,66 @@ use std::ops::{Add, Div, Mul, Sub};
 /// Sum and product are algorithms 6 and 12 of Joldes, Muller, Popescu, ACM Trans. Math. Softw. 44 (2017); the quotient takes a
 /// third digit by long division, the root one step of Newton's method (Karp and Markstein 1997).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Twofold {
+pub struct DoubleDouble {
     pub hi: f64,
     pub lo: f64,
 }
 
-impl From<f64> for Twofold {
-    fn from(value: f64) -> Twofold {
-        Twofold { hi: value, lo: 0.0 }
+impl From<f64> for DoubleDouble {
+    fn from(value: f64) -> DoubleDouble {
+        DoubleDouble { hi: value, lo: 0.0 }
     }
 }
 
 /// `a + b` exactly.
 #[inline(always)]
-fn two_sum(a: f64, b: f64) -> Twofold {
+fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
     let other = hi - a;
-    Twofold { hi, lo: (a - (hi - other)) + (b - other) }
+    DoubleDouble { hi, lo: (a - (hi - other)) + (b - other) }
 }
 
 /// `a + b` exactly where |a| ≥ |b|.
 #[inline(always)]
-fn fast_two_sum(a: f64, b: f64) -> Twofold {
+fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
-    Twofold { hi, lo: b - (hi - a) }
+    DoubleDouble { hi, lo: b - (hi - a) }
 }
 
-impl Twofold {
+impl DoubleDouble {
     #[inline(always)]
-    fn times(self, y: f64) -> Twofold {
+    fn times(self, y: f64) -> DoubleDouble {
         let high = self.hi * y;
         let low = self.lo.mul_add(y, self.hi.mul_add(y, -high));
         fast_two_sum(high, low)
     }
 }
 
-impl Add<&Twofold> for Twofold {
-    type Output = Twofold;
+impl Add<&DoubleDouble> for DoubleDouble {
+    type Output = DoubleDouble;
 
     #[inline(always)]
-    fn add(self, y: &Twofold) -> Twofold {
+    fn add(self, y: &DoubleDouble) -> DoubleDouble {
         let (s, t) = (two_sum(self.hi, y.hi), two_sum(self.lo, y.lo));
         let v = fast_two_sum(s.hi, s.lo + t.hi);
         fast_two_sum(v.hi, t.lo + v.lo)
     }
 }
 
-impl Sub<&Twofold> for Twofold {
-    type Output = Twofold;
+impl Sub<&DoubleDouble> for DoubleDouble {
+    type Output = DoubleDouble;
 
     #[inline(always)]
-    fn sub(self, y: &Twofold) -> Twofold {
-        self + &Twofold { hi: -y.hi, lo: -y.lo }
+    fn sub(self, y: &DoubleDouble) -> DoubleDouble {
+        self + &DoubleDouble { hi: -y.hi, lo: -y.lo }
     }
 }
 
-impl Mul<&Twofold> for Twofold {
-    type Output = Twofold;
+impl Mul<&DoubleDouble> for DoubleDouble {
+    type Output = DoubleDouble;
 
     #[inline(always)]
-    fn mul(self, y: &Twofold) -> Twofold {
+    fn mul(self, y: &DoubleDouble) -> DoubleDouble {
         let high = self.hi * y.hi;
         let rest = self.hi.mul_add(y.hi, -high);
         let low = self.lo.mul_add(y.hi, self.hi.mul_add(y.lo, self.lo * y.lo));
@@ -76,20 +76,20 @@ impl Mul<&Twofold> for Twofold {
     }
 }
 
-impl Div<&Twofold> for Twofold {
-    type Output = Twofold;
+impl Div<&DoubleDouble> for DoubleDouble {
+    type Output = DoubleDouble;
 
     #[inline(always)]
-    fn div(self, y: &Twofold) -> Twofold {
+    fn div(self, y: &DoubleDouble) -> DoubleDouble {
         let first = self.hi / y.hi;
         let rest = self - &y.times(first);
         let second = rest.hi / y.hi;
         let third = (rest - &y.times(second)).hi / y.hi;
-        fast_two_sum(first, second) + &Twofold::from(third)
+        fast_two_sum(first, second) + &DoubleDouble::from(third)
     }
 }
 
-impl Scalar for Twofold {
+impl Scalar for DoubleDouble {
     type Constant = f64;
 
     fn exact(value: f64) -> f64 {
@@ -111,37 +111,37 @@ impl Scalar for Twofold {
         f64::EPSILON / 2.0
     }
 
-    fn constant(&self, c: &f64) -> Twofold {
-        Twofold::from(*c)
+    fn constant(&self, c: &f64) -> DoubleDouble {
+        DoubleDouble::from(*c)
     }
 
     #[inline(always)]
-    fn scaled(self, c: &f64) -> Twofold {
+    fn scaled(self, c: &f64) -> DoubleDouble {
         self.times(*c)
     }
 
     #[inline(always)]
-    fn plus_product(self, a: &Twofold, b: &Twofold) -> Twofold {
+    fn plus_product(self, a: &DoubleDouble, b: &DoubleDouble) -> DoubleDouble {
         self + &(*a * b)
     }
 
     #[inline(always)]
-    fn minus_product(self, a: &Twofold, b: &Twofold) -> Twofold {
+    fn minus_product(self, a: &DoubleDouble, b: &DoubleDouble) -> DoubleDouble {
         self - &(*a * b)
     }
 
-    fn exceeds(&self, other: &Twofold) -> bool {
+    fn exceeds(&self, other: &DoubleDouble) -> bool {
         (*self - other).hi > 0.0
     }
 }
 
-impl Real for Twofold {
-    fn sqrt(self) -> Twofold {
+impl Real for DoubleDouble {
+    fn sqrt(self) -> DoubleDouble {
         let root = self.hi.sqrt();
         if !(root > 0.0) {
-            return Twofold::from(root);
+            return DoubleDouble::from(root);
         }
-        let rest = self - &Twofold::from(root).times(root);
+        let rest = self - &DoubleDouble::from(root).times(root);
         fast_two_sum(root, rest.hi / (2.0 * root))
     }
 
@@ -149,7 +149,7 @@ impl Real for Twofold {
         self.hi
     }
 
-    fn choose(&self, yes: &Twofold, no: &Twofold) -> Twofold {
+    fn choose(&self, yes: &DoubleDouble, no: &DoubleDouble) -> DoubleDouble {
         if self.hi > 0.0 { *yes } else { *no }
     }
 }

@@ -1,0 +1,71 @@
+//! What springs measure, as formulas in the coordinates of their nodes.
+
+use super::groups::coordinate_names;
+use crate::error::Result;
+use crate::symbolic::{Expr, Scope};
+
+/// Builds formulas in the coordinates of a few points.
+pub struct Formula {
+    names: Vec<String>,
+    scope: Scope,
+    nodes: usize,
+    dimension: usize,
+}
+
+impl Formula {
+    pub fn new(nodes: usize, dimension: usize) -> Formula {
+        let names = coordinate_names(nodes, dimension);
+        Formula { scope: Scope::new(&names), names, nodes, dimension }
+    }
+
+    /// # Errors
+    /// Those of an expression.
+    pub fn expression(&self, text: &str) -> Result<Expr> {
+        self.scope.expression(text)
+    }
+
+    /// The vector from point a to point b.
+    pub fn vector(&self, a: usize, b: usize) -> Vec<String> {
+        let name = |point: usize, k: usize| &self.names[point * self.dimension + k];
+        (0..self.dimension).map(|k| format!("({} - {})", name(b, k), name(a, k))).collect()
+    }
+
+    pub fn distance(&self, a: usize, b: usize) -> String {
+        let u = self.vector(a, b);
+        format!("sqrt({})", dot(&u, &u))
+    }
+
+    /// `θ = 2 atan(|u × v|/(|u||v| + u·v))`, which loses no digits at any angle (Kahan 2006).
+    pub fn angle(&self) -> String {
+        let (u, v) = (self.vector(1, 0), self.vector(1, 2));
+        let across: Vec<String> = cross(&u, &v);
+        let (uu, vv, uv) = (dot(&u, &u), dot(&v, &v), dot(&u, &v));
+        format!("2*atan(sqrt({})/(sqrt(({uu})*({vv})) + {uv}))", dot(&across, &across))
+    }
+
+    /// Half the cross products of the fan from the first point: their sum in the plane, its length in space.
+    pub fn area(&self) -> String {
+        let fan = |i: usize| cross(&self.vector(0, i), &self.vector(0, i + 1));
+        let parts: Vec<Vec<String>> = (1..self.nodes - 1).map(fan).collect();
+        let sum = |k: usize| parts.iter().map(|p| p[k].clone()).collect::<Vec<_>>().join(" + ");
+        if self.dimension == 2 {
+            return format!("({})/2", sum(0));
+        }
+        format!("sqrt(({})^2 + ({})^2 + ({})^2)/2", sum(0), sum(1), sum(2))
+    }
+
+    pub fn volume(&self) -> String {
+        format!("({})/6", dot(&self.vector(0, 1), &cross(&self.vector(0, 2), &self.vector(0, 3))))
+    }
+}
+
+/// `u · v`.
+pub fn dot(u: &[String], v: &[String]) -> String {
+    u.iter().zip(v).map(|(a, b)| format!("{a}*{b}")).collect::<Vec<_>>().join(" + ")
+}
+
+/// The cross product; in the plane its one component.
+fn cross(u: &[String], v: &[String]) -> Vec<String> {
+    let part = |k: usize, l: usize| format!("({}*{} - {}*{})", u[k], v[l], u[l], v[k]);
+    if u.len() == 2 { vec![part(0, 1)] } else { vec![part(1, 2), part(2, 0), part(0, 1)] }
+}

@@ -1,0 +1,156 @@
+//! The kinds of springs, a row for each.
+
+use super::formula::Formula;
+use serde::Deserialize;
+use std::ops::RangeInclusive;
+
+/// What a spring measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpringKind {
+    /// The distance of two nodes, m.
+    Length,
+    /// The angle at the second of three nodes, rad.
+    Angle,
+    /// The area of a polygon of nodes, or of the whole cell in two dimensions, m².
+    Area,
+    /// The volume of a tetrahedron of nodes, or of the whole cell in three dimensions, m³.
+    Volume,
+    /// The sum of the distances a-b and c-d of four nodes, m, whose square holds the product of the two elongations.
+    Coupling,
+    /// An expression of the nodes' coordinates.
+    Measure,
+}
+
+crate::named!(SpringKind {
+    "length" => Length,
+    "angle" => Angle,
+    "area" => Area,
+    "volume" => Volume,
+    "coupling" => Coupling,
+    "measure" => Measure,
+});
+
+/// The longest list of nodes of a spring.
+const MOST_NODES: usize = 8;
+
+/// The properties of a kind of springs.
+pub struct Kind {
+    /// How many nodes a spring has.
+    pub nodes: RangeInclusive<usize>,
+    /// Of the cell.
+    pub least_dimension: usize,
+    /// The dimension of the cells of which a spring without nodes measures the content.
+    pub content: Option<usize>,
+    pub symmetry: Symmetry,
+    /// Of a spring constant, in J per square of the measure's unit.
+    pub unit: &'static str,
+    /// The measure as a formula, where the kind alone determines it.
+    pub(crate) formula: Option<fn(&Formula) -> String>,
+}
+
+/// The orders of a spring's nodes in which it measures the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symmetry {
+    /// All.
+    Any,
+    /// The first and the last node may change places.
+    Ends,
+    /// The nodes of each of two pairs may change places, and the pairs.
+    Pairs,
+    /// The given one alone.
+    Ordered,
+}
+
+impl SpringKind {
+    /// The row of the kind.
+    pub fn properties(self) -> Kind {
+        match self {
+            SpringKind::Length => Kind {
+                nodes: 2..=2,
+                least_dimension: 1,
+                content: None,
+                symmetry: Symmetry::Any,
+                unit: "N/m",
+                formula: Some(|formula| formula.distance(0, 1)),
+            },
+            SpringKind::Angle => Kind {
+                nodes: 3..=3,
+                least_dimension: 2,
+                content: None,
+                symmetry: Symmetry::Ends,
+                unit: "N*m",
+                formula: Some(Formula::angle),
+            },
+            SpringKind::Area => Kind {
+                nodes: 3..=MOST_NODES,
+                least_dimension: 2,
+                content: Some(2),
+                symmetry: Symmetry::Any,
+                unit: "N/m^3",
+                formula: Some(Formula::area),
+            },
+            SpringKind::Volume => Kind {
+                nodes: 4..=4,
+                least_dimension: 3,
+                content: Some(3),
+                symmetry: Symmetry::Any,
+                unit: "N/m^5",
+                formula: Some(Formula::volume),
+            },
+            SpringKind::Coupling => Kind {
+                nodes: 4..=4,
+                least_dimension: 1,
+                content: None,
+                symmetry: Symmetry::Pairs,
+                unit: "N/m",
+                formula: Some(|formula| format!("{} + {}", formula.distance(0, 1), formula.distance(2, 3))),
+            },
+            SpringKind::Measure => Kind {
+                nodes: 1..=MOST_NODES,
+                least_dimension: 1,
+                content: None,
+                symmetry: Symmetry::Ordered,
+                unit: "J per square of the unit of the measure",
+                formula: None,
+            },
+        }
+    }
+}
+
+impl Symmetry {
+    /// The same list for all orders in which a spring measures the same.
+    pub(super) fn representative(self, nodes: &[usize]) -> Vec<usize> {
+        match self {
+            Symmetry::Any => {
+                let mut sorted = nodes.to_vec();
+                sorted.sort_unstable();
+                sorted
+            }
+            Symmetry::Ends => {
+                let ends = pair(&[nodes[0], nodes[2]]);
+                vec![nodes[1], ends[0], ends[1]]
+            }
+            Symmetry::Pairs => {
+                let mut pairs = [pair(&nodes[..2]), pair(&nodes[2..])];
+                pairs.sort_unstable();
+                pairs.concat()
+            }
+            Symmetry::Ordered => nodes.to_vec(),
+        }
+    }
+
+    /// Whether so many nodes differ as a spring needs.
+    pub(super) fn are_different(self, nodes: &[usize]) -> bool {
+        match self {
+            Symmetry::Pairs => nodes[0] != nodes[1] && nodes[2] != nodes[3] && pair(&nodes[..2]) != pair(&nodes[2..]),
+            Symmetry::Any | Symmetry::Ends | Symmetry::Ordered => {
+                (0..nodes.len()).all(|j| !nodes[..j].contains(&nodes[j]))
+            }
+        }
+    }
+}
+
+fn pair(nodes: &[usize]) -> [usize; 2] {
+    [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])]
+}

@@ -1,0 +1,95 @@
+//! What the public functions of the fits check once, before any cell is looked at.
+
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::material::Moduli;
+use crate::springs::Springs;
+
+/// Values that are checked without a branch between them.
+const BLOCK: usize = 64;
+
+/// Rounding of moduli near the bounds of Poisson's ratio, relative to the larger one.
+const ROUNDING: f64 = 1e-9;
+
+/// Cells with nodes `connectivity`, `[cells × nodes]`, among `points`, `[points × space]`, m.
+///
+/// # Errors
+/// A length is no multiple of the element's, a coordinate is not finite, or a node is not among the points.
+pub fn check_cells(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
+    let (n, space) = (element.nodes(), element.space());
+    if points.len() % space != 0 {
+        return Err(Error::expected("points", format!("{space} coordinates of each point"), points.len()));
+    }
+    check_finite("points", points)?;
+    if connectivity.len() % n != 0 {
+        return Err(Error::expected("connectivity", format!("{n} nodes of each cell"), connectivity.len()));
+    }
+    let count = points.len() / space;
+    if let Some(place) = first_other(connectivity, |node| *node < count) {
+        let (expected, found) = (format!("a node below {count}"), connectivity[place]);
+        return Err(Error::expected(format!("connectivity[{place}]"), expected, found));
+    }
+    Ok(())
+}
+
+/// A single element with nodes at `x`, `[nodes × dimension]`, m, with `dimension` coordinates of each.
+///
+/// # Errors
+/// The length is another, or a coordinate is not finite.
+pub fn check_nodes(element: &Element, dimension: usize, x: &[f64]) -> Result<()> {
+    check_length("x", x.len(), element.nodes() * dimension)?;
+    check_finite("x", x)
+}
+
+/// # Errors
+/// The length of an array is another.
+pub fn check_length(key: &str, found: usize, expected: usize) -> Result<()> {
+    if found == expected { Ok(()) } else { Err(Error::expected(key, format!("{expected} numbers"), found)) }
+}
+
+/// # Errors
+/// A value is not finite.
+pub fn check_finite(key: &str, values: &[f64]) -> Result<()> {
+    match first_other(values, |value| value.is_finite()) {
+        Some(place) => Err(Error::expected(format!("{key}[{place}]"), "a finite number", values[place])),
+        None => Ok(()),
+    }
+}
+
+/// Moduli of which the energy of no strain is negative: `μ ≥ 0` and `d λ + 2 μ ≥ 0` in d dimensions, not both zero.
+///
+/// # Errors
+/// The moduli are not finite, or others.
+pub fn check_moduli(moduli: &Moduli, dimension: usize) -> Result<()> {
+    let Moduli { lambda, mu } = *moduli;
+    let size = lambda.abs().max(mu.abs());
+    let is_stable = mu >= 0.0 && dimension as f64 * lambda + 2.0 * mu >= -ROUNDING * size;
+    if !(size > 0.0 && lambda.is_finite() && mu.is_finite() && is_stable) {
+        let expected = format!("mu >= 0 and {dimension} lambda + 2 mu >= 0, finite and not both 0");
+        return Err(Error::expected("moduli", expected, format!("lambda = {lambda:?}, mu = {mu:?}")));
+    }
+    Ok(())
+}
+
+/// Cells, springs and moduli of one fit.
+///
+/// # Errors
+/// Those of [`check_cells`], [`check_moduli`] and [`Springs::check`].
+pub fn check_fit(
+    element: &Element,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    moduli: &Moduli,
+) -> Result<()> {
+    springs.check(element)?;
+    check_moduli(moduli, element.dimension())?;
+    check_cells(element, points, connectivity)
+}
+
+/// The place of the first value that fails the test.
+fn first_other<T>(values: &[T], test: impl Fn(&T) -> bool) -> Option<usize> {
+    let passes = |block: &[T]| block.iter().fold(true, |all, value| all & test(value));
+    let block = values.chunks(BLOCK).position(|block| !passes(block))?;
+    values[block * BLOCK..].iter().position(|value| !test(value)).map(|place| block * BLOCK + place)
+}
