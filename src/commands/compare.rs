@@ -1,6 +1,6 @@
 //! `springfit compare`.
 
-use super::is_scene;
+use super::scene_file::is_scene;
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;

@@ -7,13 +7,13 @@ mod fit;
 mod interrupt;
 mod paper;
 mod run;
+mod scene_file;
 mod stability;
 mod state;
 
 use crate::terminal::Terminal;
 use clap::Subcommand;
 use springfit::error::Result;
-use std::path::Path;
 use std::process::ExitCode;
 
 /// One list of the subcommands: their names, and who runs them.
@@ -46,10 +46,4 @@ commands! {
     Compare: compare::Compare,
     Paper: paper::Paper,
     Stability: stability::Stability,
-}
-
-/// Whether a file is a scene: it has a `[mesh]`, where an element has nodes. A file that cannot be read counts as an element.
-fn is_scene(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    text.lines().any(|line| line.trim_start().starts_with("[mesh]") || line.trim_start().starts_with("mesh."))
 }

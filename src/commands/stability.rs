@@ -1,6 +1,6 @@
 //! `springfit stability`.
 
-use super::is_scene;
+use super::scene_file::is_scene;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;

@@ -103,6 +103,17 @@ impl<S: Simd> Scalar for Lanes<S> {
 
     const UNROLLED: bool = true;
 
+    // Copied, for a closure might not be inlined into the function that has the machine's instructions.
+    #[inline(always)]
+    fn repeated<const N: usize>(&self) -> [Lanes<S>; N] {
+        [*self; N]
+    }
+
+    #[inline(always)]
+    fn repeated_rows<const A: usize, const B: usize>(&self) -> [[Lanes<S>; B]; A] {
+        [[*self; B]; A]
+    }
+
     #[inline(never)]
     fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
         self.simd.vectorize(Work(work))

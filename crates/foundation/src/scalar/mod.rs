@@ -34,6 +34,18 @@ pub trait Scalar:
         outlined(work)
     }
 
+    /// N copies.
+    #[inline(always)]
+    fn repeated<const N: usize>(&self) -> [Self; N] {
+        std::array::from_fn(|_| self.clone())
+    }
+
+    /// A rows of B copies.
+    #[inline(always)]
+    fn repeated_rows<const A: usize, const B: usize>(&self) -> [[Self; B]; A] {
+        std::array::from_fn(|_| self.repeated())
+    }
+
     /// `value` exactly, where the type can.
     fn exact(value: f64) -> Self::Constant;
 
@@ -93,7 +105,7 @@ fn outlined<R>(work: impl FnOnce() -> R) -> R {
 
 #[inline(always)]
 pub fn zeros<T: Scalar, const D: usize>(zero: &T) -> [T; D] {
-    std::array::from_fn(|_| zero.clone())
+    zero.repeated()
 }
 
 /// What the solvers need besides: roots and choices, lane by lane.
@@ -200,7 +212,7 @@ pub fn product<T: Scalar, const D: usize>(a: &[[T; D]; D], b: &[T; D]) -> [T; D]
 #[inline(always)]
 pub fn adjugate<T: Scalar, const D: usize>(a: &[[T; D]; D]) -> ([[T; D]; D], T) {
     let zero = a[0][0].zero();
-    let mut adjugate: [[T; D]; D] = std::array::from_fn(|_| zeros(&zero));
+    let mut adjugate: [[T; D]; D] = zero.repeated_rows();
     match D {
         1 => adjugate[0][0] = zero.one(),
         2 => {

@@ -9,8 +9,11 @@ use crate::scalar::{Real, Scalar};
 fn eliminate<T: Scalar, const B: usize>(row: &mut [T], before: &[T], m: usize, t: usize) {
     let (done, rest) = row.split_at_mut(t);
     let entries = &mut rest[..B];
-    let mut sums: [T; B] = std::array::from_fn(|b| entries[b].clone());
-    let others: [&[T]; B] = std::array::from_fn(|b| &before[(t + b) * m..(t + b) * m + t + b]);
+    let (mut sums, mut others): ([T; B], [&[T]; B]) = (entries[0].repeated(), [before; B]);
+    for b in 0..B {
+        sums[b] = entries[b].clone();
+        others[b] = &before[(t + b) * m..(t + b) * m + t + b];
+    }
     for r in 0..t {
         for b in 0..B {
             sums[b] = sums[b].clone().minus_product(&done[r], &others[b][r]);
@@ -225,9 +228,14 @@ fn products<T: Scalar, const A: usize, const B: usize>(
     columns: usize,
     out: &mut [T],
 ) {
-    let left: [&[T]; A] = std::array::from_fn(|i| &a[(s + i) * n..(s + i + 1) * n]);
-    let right: [&[T]; B] = std::array::from_fn(|j| &b[(t + j) * n..(t + j + 1) * n]);
-    let mut sums: [[T; B]; A] = std::array::from_fn(|_| std::array::from_fn(|_| a[0].zero()));
+    let (mut left, mut right): ([&[T]; A], [&[T]; B]) = ([a; A], [b; B]);
+    for i in 0..A {
+        left[i] = &a[(s + i) * n..(s + i + 1) * n];
+    }
+    for j in 0..B {
+        right[j] = &b[(t + j) * n..(t + j + 1) * n];
+    }
+    let mut sums: [[T; B]; A] = a[0].zero().repeated_rows();
     for k in 0..n {
         for i in 0..A {
             for j in 0..B {
@@ -266,9 +274,9 @@ fn add_outers_order<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: 
     let rows = g.len() / n;
     let mut s = 0;
     while s + 4 <= rows {
-        let mut factors: [T; 4] = std::array::from_fn(|i| c[unknowns[s + i]].clone());
-        for factor in &mut factors {
-            *factor = factor.clone().scaled(&sign);
+        let mut factors: [T; 4] = c[0].repeated();
+        for i in 0..4 {
+            factors[i] = c[unknowns[s + i]].clone().scaled(&sign);
         }
         outers(a, g, n, s, factors);
         s += 4;
@@ -281,7 +289,10 @@ fn add_outers_order<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: 
 
 #[inline(always)]
 fn outers<T: Scalar, const A: usize>(a: &mut [T], g: &[T], n: usize, s: usize, c: [T; A]) {
-    let rows: [&[T]; A] = std::array::from_fn(|r| &g[(s + r) * n..(s + r + 1) * n]);
+    let mut rows: [&[T]; A] = [g; A];
+    for r in 0..A {
+        rows[r] = &g[(s + r) * n..(s + r + 1) * n];
+    }
     for i in 0..n {
         let mut factors = c.clone();
         for r in 0..A {

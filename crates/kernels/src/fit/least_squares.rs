@@ -16,10 +16,9 @@ use super::weight::{ClosedWeight, Higher, Weight};
 use crate::element::Tabulation;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
-use crate::scalar::{Scalar, difference, dot, plus_multiple, zeros};
+use crate::scalar::{Scalar, difference, dot, plus_multiple};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
-use std::array::from_fn;
 
 /// The constants of one element in any kind of number, such as `f32` or exact rationals; nodes at `x`,
 /// `[nodes × dimension]`.
@@ -294,7 +293,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
         }
         let volume = self.geometry.content();
         // y_a = h² c_a + (1 − h²) V S⁻¹ r_a, ∇y = h² Σ_a c_a ∇N_aᵀ + linear
-        let (mut h2, mut linear) = (zero.one(), from_fn(|_| zeros(&zero)));
+        let (mut h2, mut linear) = (zero.one(), zero.repeated_rows());
         let mut q = self.x.to_vec();
         let mut motions = None;
         match weight {
@@ -340,7 +339,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
             let mut h = linear.clone();
             let mut alone = zero.clone();
             for (c, g) in c.iter().zip(grad) {
-                let mut outer: [[T; D]; D] = from_fn(|_| zeros(&zero));
+                let mut outer: [[T; D]; D] = zero.repeated_rows();
                 for k in 0..D {
                     for l in 0..D {
                         outer[k][l] = c[k].clone() * &g[l];

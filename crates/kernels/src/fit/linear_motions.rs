@@ -1,7 +1,6 @@
 //! The linear motions of an element, `u_a = A r_a` with r_a its nodes from their mean: what modal weights tell apart.
 
 use crate::scalar::{Scalar, plus_multiple, zeros};
-use std::array::from_fn;
 
 /// `R = Q U` with Q of orthogonal columns and U unit upper triangular, R the rows r_a: `S⁻¹ = (RᵀR)⁻¹ = U⁻¹ D⁻¹ U⁻ᵀ`,
 /// `D = QᵀQ`, and the projection on the linear motions is `Q D⁻¹ Qᵀ`.
@@ -20,7 +19,7 @@ impl<T: Scalar, const D: usize> LinearMotions<T, D> {
     #[inline(always)]
     pub fn of(q: &mut [[T; D]]) -> LinearMotions<T, D> {
         let zero = q[0][0].zero();
-        let mut back: [[T; D]; D] = from_fn(|_| zeros(&zero));
+        let mut back: [[T; D]; D] = zero.repeated_rows();
         let mut inverse_squares: [T; D] = zeros(&zero);
         for l in 0..D {
             back[l][l] = zero.one();
@@ -72,7 +71,7 @@ impl<T: Scalar, const D: usize> LinearMotions<T, D> {
     #[inline(always)]
     pub fn inverse_spread(&self, factor: &T) -> [[T; D]; D] {
         let zero = factor.zero();
-        let mut inverse: [[T; D]; D] = from_fn(|_| zeros(&zero));
+        let mut inverse: [[T; D]; D] = zero.repeated_rows();
         for l in 0..D {
             let scale = self.inverse_squares[l].clone() * factor;
             for i in 0..=l {

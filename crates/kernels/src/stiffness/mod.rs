@@ -8,9 +8,8 @@ pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;
 use crate::material::Moduli;
-use crate::scalar::{Scalar, adjugate, multiple, zeros};
+use crate::scalar::{Scalar, adjugate, multiple};
 use nalgebra::DMatrix;
-use std::array::from_fn;
 
 /// Why an element has no stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -256,7 +255,7 @@ pub fn each_cell(
 #[inline(always)]
 fn jacobian<T: Scalar, const D: usize>(x: &[[T; D]], dn: &[[T::Constant; D]]) -> [[T; D]; D] {
     let zero = x[0][0].zero();
-    let mut j: [[T; D]; D] = from_fn(|_| zeros(&zero));
+    let mut j: [[T; D]; D] = zero.repeated_rows();
     for k in 0..D {
         for l in 0..D {
             j[k][l] = x[0][k].clone().scaled(&dn[0][l]);
