@@ -17,11 +17,11 @@ const ROUNDING: f64 = 1e-9;
 /// A length is no multiple of the element's, a coordinate is not finite, or a node is not among the points.
 pub fn check_cells(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
     let (n, space) = (element.nodes(), element.space());
-    if points.len() % space != 0 {
+    if !points.len().is_multiple_of(space) {
         return Err(Error::expected("points", format!("{space} coordinates of each point"), points.len()));
     }
     check_finite("points", points)?;
-    if connectivity.len() % n != 0 {
+    if !connectivity.len().is_multiple_of(n) {
         return Err(Error::expected("connectivity", format!("{n} nodes of each cell"), connectivity.len()));
     }
     let count = points.len() / space;
