@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+pub mod prelude;
 #[cfg(feature = "cli")]
 pub mod report;
 

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 19] = [
+const LAYERS: [&str; 20] = [
     "shipped",
     "error",
     "named",
@@ -28,6 +28,7 @@ const LAYERS: [&str; 19] = [
     "dynamics",
     "whole",
     "study",
+    "prelude",
     "report",
     "program",
 ];
