@@ -33,34 +33,6 @@ const LAYERS: [&str; 20] = [
     "program",
 ];
 
-/// Circles that are not cut yet, each within the files of a line. A line goes with its circle; none is added.
-const KNOWN: [&[&str]; 4] = [
-    &[
-        "kernels/fit/batch.rs",
-        "kernels/fit/closed.rs",
-        "kernels/fit/congruence.rs",
-        "kernels/fit/delicate.rs",
-        "kernels/fit/descent.rs",
-        "kernels/fit/method.rs",
-        "kernels/fit/mod.rs",
-        "kernels/fit/precision.rs",
-    ],
-    &[
-        "kernels/fit/published/baudet.rs",
-        "kernels/fit/published/corners.rs",
-        "kernels/fit/published/delingette.rs",
-        "kernels/fit/published/lloyd.rs",
-        "kernels/fit/published/maciel.rs",
-        "kernels/fit/published/method.rs",
-        "kernels/fit/published/mod.rs",
-        "kernels/fit/published/pattern.rs",
-        "kernels/fit/published/shape.rs",
-        "kernels/fit/published/van_gelder.rs",
-    ],
-    &["kernels/fit/sampled/cell.rs", "kernels/fit/sampled/inner.rs", "kernels/fit/sampled/mod.rs"],
-    &["kernels/stiffness/mod.rs", "kernels/stiffness/placement.rs"],
-];
-
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -141,15 +113,8 @@ fn circles(sources: &[Source]) -> Vec<(BTreeSet<String>, String)> {
 fn files_do_not_import_each_other_in_a_circle() {
     let sources = sources();
     let found = circles(&sources);
-    let within = |files: &BTreeSet<String>, known: &[&str]| files.iter().all(|f| known.contains(&f.as_str()));
-    let known = |files: &BTreeSet<String>| KNOWN.iter().any(|known| within(files, known));
-    let new: String = found.iter().filter(|(files, _)| !known(files)).map(|(_, text)| format!("{text}\n")).collect();
-    assert!(new.is_empty(), "files import each other in a circle:\n{new}");
-    for known in KNOWN {
-        let absent = !sources.iter().any(|source| known.contains(&source.name().as_str()));
-        let stays = found.iter().any(|(files, _)| within(files, known));
-        assert!(absent || stays, "no circle is left within {known:?}: take the line out of KNOWN");
-    }
+    let circles: String = found.iter().map(|(_, text)| format!("{text}\n")).collect();
+    assert!(circles.is_empty(), "files import each other in a circle:\n{circles}");
 }
 
 fn circle_of(sources: &[(&str, &str, &str)]) -> Vec<Vec<String>> {

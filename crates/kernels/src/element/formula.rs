@@ -1,6 +1,5 @@
 //! What springs measure, as formulas in the coordinates of their nodes.
 
-use super::groups::coordinate_names;
 use crate::error::Result;
 use crate::symbolic::{Expr, Scope};
 
@@ -68,4 +67,10 @@ pub fn dot(u: &[String], v: &[String]) -> String {
 fn cross(u: &[String], v: &[String]) -> Vec<String> {
     let part = |k: usize, l: usize| format!("({}*{} - {}*{})", u[k], v[l], u[l], v[k]);
     if u.len() == 2 { vec![part(0, 1)] } else { vec![part(1, 2), part(2, 0), part(0, 1)] }
+}
+
+/// The names of the coordinates of a few nodes: `x0, y0, z0, x1, …`.
+pub fn coordinate_names(nodes: usize, dimension: usize) -> Vec<String> {
+    let axes = &["x", "y", "z"][..dimension];
+    (0..nodes).flat_map(|a| axes.iter().map(move |axis| format!("{axis}{a}"))).collect()
 }

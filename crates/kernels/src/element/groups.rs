@@ -1,6 +1,7 @@
 //! Groups of springs from the entries of an element file.
 
 use super::definition::{Definition, NodeLists, SpringEntry};
+use super::formula::coordinate_names;
 use super::kind::{Kind, SpringKind, Symmetry};
 use super::symmetry::permutations;
 use crate::error::{Error, Result};
@@ -155,12 +156,6 @@ fn measure_of(i: usize, entry: &SpringEntry, definition: &Definition, nodes: &[V
             Err(Error::at(key, format!("belongs to the kind \"measure\", found with \"{}\"", kind.name())))
         }
     }
-}
-
-/// The names of the coordinates of a few nodes: `x0, y0, z0, x1, …`.
-pub fn coordinate_names(nodes: usize, dimension: usize) -> Vec<String> {
-    let axes = &["x", "y", "z"][..dimension];
-    (0..nodes).flat_map(|a| axes.iter().map(move |axis| format!("{axis}{a}"))).collect()
 }
 
 /// What two springs that measure the same have in common.

@@ -14,8 +14,9 @@ mod tabulation;
 
 pub use cell::{Cell, Side};
 pub use definition::{FormatEntry, Formats};
+pub use formula::coordinate_names;
 pub(crate) use formula::{Formula, dot};
-pub use groups::{SpringGroup, coordinate_names};
+pub use groups::SpringGroup;
 pub use kind::{Kind, SpringKind, Symmetry};
 pub use quadrature::Quadrature;
 pub use springfit_shipped::{ELEMENTS as SHIPPED, ElementFile};

@@ -4,9 +4,9 @@ use super::closed::Closed;
 use super::constrained::solve_nonnegative;
 use super::delicate::DelicateCells;
 use super::least_squares::off_diagonal_equations;
-use super::method::{Method, Verdict};
+use super::method::{Certificate, Method, Verdict};
 use super::normal::{Normal, Rank};
-use super::{Certificate, Fit};
+use super::settings::Fit;
 use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::{Packed, PackedWork, widest};
@@ -173,7 +173,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             }
             let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
             let (k, _) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
-            spread(&fit, springs, constants, &k);
+            fit.spread(springs, constants, &k);
         }
         true
     }
@@ -212,7 +212,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
-        spread(&self.fit, self.springs, constants, &k);
+        self.fit.spread(self.springs, constants, &k);
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
@@ -284,12 +284,5 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 }
             }
         }
-    }
-}
-
-/// One constant per spring from the solution of the equations, which has one per group where they are tied.
-pub(super) fn spread(fit: &Fit, springs: &Springs, constants: &mut [f64], k: &[f64]) {
-    for (s, constant) in constants.iter_mut().enumerate() {
-        *constant = k[if fit.tied { springs.groups[s] } else { s }];
     }
 }

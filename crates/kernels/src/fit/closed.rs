@@ -1,9 +1,9 @@
 //! Least squares in closed form: the constants of one element, or of one per lane, from the node positions alone.
 
-use super::Fit;
 use super::least_squares::{equations, normal_equations};
 use super::nodal::{Nodal, is_shorter};
 use super::normal::Normal;
+use super::settings::Fit;
 use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
 use crate::material::Moduli;

@@ -1,6 +1,6 @@
 //! Cells of the same shape: what is costly to fit is fitted once for all of them.
 
-use super::each_cell;
+use super::visit::each_cell;
 use crate::element::Element;
 use crate::error::Result;
 use crate::springs::distance;

@@ -1,12 +1,11 @@
 //! Cells that take more digits than `f64` has, slivers and needles: in numbers of twice as many.
 
-use super::Fit;
-use super::batch::spread;
 use super::constrained::solve_precisely;
 use super::least_squares::normal_equations;
 use super::method::Verdict;
 use super::normal::Normal;
 use super::precision::{differences, solved};
+use super::settings::Fit;
 use super::weight::Route;
 use crate::element::Element;
 use crate::material::Moduli;
@@ -49,7 +48,7 @@ impl DelicateCells<'_> {
         normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
-        spread(fit, springs, constants, &k);
+        fit.spread(springs, constants, &k);
         Some(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 }

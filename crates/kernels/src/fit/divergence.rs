@@ -5,8 +5,8 @@
 //! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
 //! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
 
-use super::Balance;
 use super::dense::{add_outers, at_rounding, factorize, inner, invert, room_below, row_products, solve, tie, trace};
+use super::objective::Balance;
 use super::reduction::Reduced;
 use crate::scalar::Real;
 

@@ -1,11 +1,13 @@
 //! One element in another kind of number: in twice the digits, to tell what rounding did, or in half of them.
 
 use super::input::{check_finite, check_length, check_moduli, check_nodes};
+use super::least_squares::constants_in;
 use super::least_squares::normal_equations;
 use super::method::Method;
 use super::normal::Normal;
+use super::objective::Objective;
+use super::settings::Fit;
 use super::weight::{Route, Weight};
-use super::{Fit, Objective, constants_in};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;

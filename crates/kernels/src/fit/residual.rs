@@ -1,7 +1,8 @@
 //! How far the springs of an element are from its stiffness.
 
+use super::cells::{CHUNK, CellFits};
 use super::input::{check_fit, check_length};
-use super::{CHUNK, CellFits, each_cell};
+use super::visit::each_cell;
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::Moduli;

@@ -1,8 +1,10 @@
 //! The stiffness of one element: its geometry at the quadrature points, the strain energy, and R.
 
+mod fault;
 mod large;
 mod placement;
 
+pub use fault::Fault;
 pub use large::Response;
 pub use placement::{Placement, gather};
 
@@ -10,21 +12,6 @@ use crate::element::Tabulation;
 use crate::material::Moduli;
 use crate::scalar::{Scalar, adjugate, multiple};
 use nalgebra::DMatrix;
-
-/// Why an element has no stiffness.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fault {
-    /// The Jacobian determinant is negative at every quadrature point: the nodes are numbered the other way round.
-    Reversed,
-    /// The Jacobian changes sign, or vanishes somewhere; the quadrature point with the least determinant.
-    Tangled { point: usize, determinant: f64, largest: f64 },
-    /// The Jacobian vanishes at every quadrature point: no length, area or volume.
-    Flat,
-    /// One of its nodes is there twice.
-    Collapsed,
-    /// What a spring measures has no finite gradient, or none at all.
-    Unmeasured,
-}
 
 /// Gradients of the shape functions and volumes at the quadrature points of one element, or of one per lane.
 #[derive(Debug, Clone)]
@@ -292,25 +279,4 @@ fn squared_bound<T: Scalar, const D: usize>(j: &[[T; D]; D]) -> T {
         bound = bound * &square;
     }
     bound
-}
-
-impl std::fmt::Display for Fault {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Fault::Reversed => write!(f, "its nodes are numbered the other way round (negative Jacobian everywhere)"),
-            Fault::Tangled { point, determinant, .. } if *determinant > 0.0 => write!(
-                f,
-                "the element is flat at quadrature point {point}: its Jacobian determinant there, {determinant:.3e}, is within \
-                 the rounding of its nodes"
-            ),
-            Fault::Tangled { point, determinant, largest } => write!(
-                f,
-                "the element is tangled: its Jacobian determinant goes from {largest:.3e} down to {determinant:.3e} at \
-                 quadrature point {point}"
-            ),
-            Fault::Flat => write!(f, "the element has no volume (its Jacobian vanishes)"),
-            Fault::Collapsed => write!(f, "one of its nodes is there twice: springs between them would have no length"),
-            Fault::Unmeasured => write!(f, "what one of its springs measures has no finite gradient other than zero"),
-        }
-    }
 }

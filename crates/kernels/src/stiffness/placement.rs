@@ -3,7 +3,7 @@
 //! Far from the origin coordinates have few digits left for a shape, and sums of them lose those; their differences are exact
 //! (Sterbenz 1974).
 
-use super::Fault;
+use super::fault::Fault;
 use crate::element::Tabulation;
 
 /// Room to place the nodes of one cell after the other.

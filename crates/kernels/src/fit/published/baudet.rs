@@ -6,8 +6,8 @@
 //! ν = −1/(d + 1) they do not stand. A body of cubes that nothing holds has three motions besides the rigid ones that no
 //! spring resists, and none if a side is held.
 
-use super::method::Joint;
-use super::{CellShape, Elasticity};
+use super::cell_shape::{CellShape, Elasticity};
+use super::corners::Joint;
 
 /// Of a rectangle with sides l and h: `k_d = E (l² + h²)/(4 l h (1 + ν))` of the diagonals and
 /// `k_l = E (h² (3ν + 2) − l²)/(4 l h (1 + ν))` of the sides l, N/m. Sides beyond `l = h √(3ν + 2)` are below zero.

@@ -1,8 +1,17 @@
 //! What joins the corners of a cell: edges, diagonals, opposite sides; from the cell's geometry alone.
 
-use super::method::Joint;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
+
+/// Two corners of a cell, by what of the cell lies between them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joint {
+    Edge,
+    /// A side of a solid.
+    FaceDiagonal,
+    /// The inside.
+    Diagonal,
+}
 
 /// The corners of a cell as nodes of an element that has no others.
 #[derive(Debug)]

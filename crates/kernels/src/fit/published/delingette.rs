@@ -7,7 +7,7 @@
 //! A product of two elongations is `x y = ½ ((x + y)² − x² − y²)`, so that couplings are springs on sums of two
 //! measures, and each takes its constant from the springs of its two edges.
 
-use super::{CellShape, Elasticity};
+use super::cell_shape::{CellShape, Elasticity};
 
 /// Of the edges and then of [`couples`] of them: triangular quadratic springs,
 /// `W = Σ_i l_i² k_i (Δl_i)² + Σ_ij 2 l_i l_j k_ij Δl_i Δl_j`, N/m. Their stiffness at rest is that of the finite

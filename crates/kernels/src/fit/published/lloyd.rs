@@ -1,7 +1,7 @@
 //! Lloyd, Székely and Harders (2007): constants of regular cells, and forces that preserve their content.
 
-use super::method::Joint;
-use super::{CellShape, Elasticity};
+use super::cell_shape::{CellShape, Elasticity};
+use super::corners::Joint;
 
 /// `k = √3/4 E` of an equilateral triangle, exact at ν = 1/3, N/m.
 pub fn triangle(bulk: &Elasticity, k: &mut [f64]) {

@@ -1,6 +1,6 @@
 //! One constant for all springs, scaled to Young's modulus, after Maciel, Boulic and Thalmann (2003).
 
-use super::Elasticity;
+use super::cell_shape::Elasticity;
 use crate::springs::{Springs, distance};
 use std::collections::HashMap;
 

@@ -1,5 +1,6 @@
 //! The methods by name, with what each covers and takes for granted.
 
+use super::corners::Joint;
 use super::shape::Shape;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
@@ -27,16 +28,6 @@ pub struct Cover {
     pub poisson: Ratio,
     /// The shape that the formula is made for; any other is taken for one like it, see [`unmet`](super::unmet).
     pub shape: Option<Shape>,
-}
-
-/// Two corners of a cell, by what of the cell lies between them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Joint {
-    Edge,
-    /// A side of a solid.
-    FaceDiagonal,
-    /// The inside.
-    Diagonal,
 }
 
 /// The Poisson's ratios for which a method keeps what it promises.

@@ -4,6 +4,7 @@
 //! `E h/(1 − ν²)` and `ν/(1 − ν)` in plane strain.
 
 mod baudet;
+mod cell_shape;
 mod corners;
 mod delingette;
 mod lloyd;
@@ -11,17 +12,22 @@ mod maciel;
 mod method;
 mod pattern;
 mod shape;
+mod unmet;
 mod van_gelder;
 
-pub use method::{Cover, Joint, Method, Ratio};
-pub use shape::{Shape, Unmet, unmet};
+pub use corners::Joint;
+pub use method::{Cover, Method, Ratio};
+pub use shape::Shape;
+pub use unmet::{Unmet, unmet};
 
+use super::cells::CellFits;
 use super::input::check_cells;
-use super::{CellFits, each_cell};
+use super::visit::each_cell;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
-use crate::material::{Material, Moduli, State};
+use crate::material::Material;
 use crate::springs::{Springs, distance};
+use cell_shape::{CellShape, Elasticity};
 use corners::Corners;
 use pattern::Pattern;
 
@@ -104,47 +110,5 @@ fn constants(method: Method, cell: Cell, shape: &CellShape, bulk: &Elasticity, k
         (Method::DelingetteQuadratic, _) => delingette::quadratic(shape, bulk, k),
         (Method::DelingetteBiquadratic, _) => delingette::biquadratic(shape, bulk, k),
         (Method::MacielUniform, _) => {}
-    }
-}
-
-/// What a formula knows of a cell.
-struct CellShape<'a> {
-    dimension: usize,
-    corners: &'a Corners,
-    /// Nodes that the formula joins, and their distances, m.
-    pairs: &'a [[usize; 2]],
-    lengths: Vec<f64>,
-    /// Area or volume, m² or m³.
-    content: f64,
-}
-
-impl CellShape<'_> {
-    /// The mean length of the edges in each direction, m; zero where the formula joins no edges.
-    fn extents(&self) -> Vec<f64> {
-        let place = |[a, b]: [usize; 2]| self.pairs.iter().position(|p| *p == [a, b] || *p == [b, a]);
-        self.corners.extents(|pair| place(pair).map_or(0.0, |s| self.lengths[s]))
-    }
-}
-
-/// The material in the dimensions of the cell.
-struct Elasticity {
-    /// Pa; in the plane N/m.
-    young: f64,
-    poisson: f64,
-    moduli: Moduli,
-}
-
-impl Elasticity {
-    fn of(element: &Element, material: Material) -> Result<Elasticity> {
-        let (e, nu, moduli) = (material.young(), material.poisson(), material.moduli());
-        match (material.state(), element.dimension()) {
-            (State::Solid, 3) => Ok(Elasticity { young: e, poisson: nu, moduli }),
-            (State::PlaneStress { thickness }, 2) => Ok(Elasticity { young: e * thickness, poisson: nu, moduli }),
-            (State::PlaneStrain { thickness }, 2) => {
-                let young = e * thickness / ((1.0 + nu) * (1.0 - nu));
-                Ok(Elasticity { young, poisson: nu / (1.0 - nu), moduli })
-            }
-            (_, d) => Err(Error::at("material", format!("is not one of a body of {d} dimensions"))),
-        }
     }
 }

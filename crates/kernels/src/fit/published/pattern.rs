@@ -1,8 +1,8 @@
 //! The springs of a method, from those that an element offers.
 
-use super::corners::Corners;
+use super::corners::{Corners, Joint};
 use super::delingette::couples;
-use super::method::{Cover, Joint, Method};
+use super::method::{Cover, Method};
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, Result};
 use crate::springs::{FunctionSpring, Measure, Springs};

@@ -1,6 +1,6 @@
 //! Van Gelder (1998): membranes of triangles, and bodies of tetrahedra.
 
-use super::{CellShape, Elasticity};
+use super::cell_shape::{CellShape, Elasticity};
 
 /// `k_c = E/(1 + ν) · A/c² + E ν/(1 − ν²) · (a² + b² − c²)/(8 A)`, c the edge and a, b the two others, N/m.
 ///

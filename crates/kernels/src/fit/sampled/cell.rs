@@ -1,7 +1,7 @@
 //! One cell of the sampled fit: its forces and those of its springs at every shape, added up to normal equations.
 
+use super::settings::{SampledFit, Weights};
 use super::shapes::{Part, Shapes};
-use super::{SampledFit, Weights};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::dense::inner;

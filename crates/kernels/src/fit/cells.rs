@@ -1,0 +1,195 @@
+//! The fits of all cells of one element.
+
+use super::batch::{Batch, Tally};
+use super::congruence::Congruence;
+use super::descent;
+use super::input::{check_fit, check_nodes};
+use super::method::Certificate;
+use super::settings::Fit;
+use super::solver::Solver;
+use super::visit::{cell_fault, each_cell};
+use crate::element::Element;
+use crate::error::Result;
+use crate::material::Moduli;
+use crate::springs::{Force, Springs};
+use crate::stiffness::Fault;
+use rayon::prelude::*;
+
+/// Cells that one thread fits in one go.
+pub(super) const CHUNK: usize = 512;
+/// Cells between two reports of progress.
+const ROUND: usize = 64 * CHUNK;
+
+/// The constants of all cells of one element type.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellFits {
+    pub springs: Springs,
+    /// `[cells × springs]`, N/m; that of an area or volume spring N/m³ or N/m⁵. The slope of the force at rest.
+    pub constants: Vec<f64>,
+    pub force: Force,
+    /// Of the springs of each cell one after another, see [`Force::places`].
+    pub parameters: Vec<f64>,
+    /// Cells whose normal equations were singular, see [`Rank::Deficient`](super::Rank::Deficient).
+    pub deficient: usize,
+    /// Cells whose iteration did not reach its end; of cells of one shape only the fitted one counts.
+    pub unreached: usize,
+    /// Cells that have the shape of another and took its constants over; where the objective has no closed form.
+    pub reused: usize,
+    /// `[cells]` for the spectral objective, otherwise empty.
+    pub certificates: Vec<Certificate>,
+}
+
+/// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+///
+/// `progress` is told the number of cells done, now and then.
+///
+/// # Errors
+/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, or a
+/// cell is reversed, tangled or flat; the error names it, counted from 1.
+pub fn fit_cells(
+    element: &Element,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    moduli: Moduli,
+    fit: &Fit,
+    progress: &mut dyn FnMut(usize),
+) -> Result<CellFits> {
+    let mut fits = CellFits::new(springs.clone());
+    fits.refit(element, points, connectivity, moduli, fit, progress)?;
+    Ok(fits)
+}
+
+impl CellFits {
+    pub(super) fn new(springs: Springs) -> CellFits {
+        CellFits {
+            springs,
+            constants: Vec::new(),
+            force: Force::Linear,
+            parameters: Vec::new(),
+            deficient: 0,
+            unreached: 0,
+            reused: 0,
+            certificates: Vec::new(),
+        }
+    }
+
+    /// [`fit_cells`] into the memory of an earlier fit.
+    ///
+    /// # Errors
+    /// Those of [`fit_cells`].
+    pub fn refit(
+        &mut self,
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        moduli: Moduli,
+        fit: &Fit,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<()> {
+        check_fit(element, &self.springs, points, connectivity, &moduli)?;
+        fit.solver.check(fit.objective)?;
+        let (n, m) = (element.nodes(), self.springs.len());
+        let cells = connectivity.len() / n;
+        self.constants.resize(cells * m, 0.0);
+        (self.deficient, self.unreached, self.reused) = (0, 0, 0);
+        self.certificates.clear();
+        if m == 0 {
+            return Ok(());
+        }
+        if fit.is_costly() && cells > 1 {
+            let congruence = Congruence::of(element, points, connectivity)?;
+            let shapes = congruence.representatives.len();
+            if shapes < cells {
+                let nodes = |&cell: &usize| &connectivity[cell * n..(cell + 1) * n];
+                let few: Vec<usize> = congruence.representatives.iter().flat_map(nodes).copied().collect();
+                let mut fitted = CellFits::new(self.springs.clone());
+                fitted.constants.resize(shapes * m, 0.0);
+                let mut share = |done: usize| progress(done * cells / shapes);
+                fitted.fit_each(element, points, &few, moduli, fit, &mut share)?;
+                self.copy_by_shape(&fitted, &congruence.shapes);
+                return Ok(());
+            }
+        }
+        self.fit_each(element, points, connectivity, moduli, fit, progress)
+    }
+
+    /// Fits every cell by itself; the constants have room for them.
+    fn fit_each(
+        &mut self,
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        moduli: Moduli,
+        fit: &Fit,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<()> {
+        let CellFits { springs, constants, .. } = self;
+        let springs = &*springs;
+        let (n, m) = (element.nodes(), springs.len());
+        let cells = connectivity.len() / n;
+        let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
+            if let Solver::General { method, iterations, topology } = fit.solver {
+                let weight = fit.objective.of_motions()?;
+                let mut unmeasured = None;
+                each_cell(element, points, connectivity, first, |cell, x, geometry| {
+                    if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {
+                        unmeasured.get_or_insert(cell);
+                        return;
+                    }
+                    let found =
+                        descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology));
+                    constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
+                })?;
+                let not_finite = || constants.iter().position(|k| !k.is_finite()).map(|place| place / m);
+                let fault =
+                    unmeasured.or_else(not_finite).map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
+                return fault.map_or(Ok(Tally::default()), Err);
+            }
+            let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
+            let tally = batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))?;
+            // As of a spring between two nodes at one place.
+            match constants.iter().position(|k| !k.is_finite()) {
+                Some(place) => Err(cell_fault(element, first + place / m, Fault::Unmeasured)),
+                None => Ok(tally),
+            }
+        };
+        let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
+        for (round, (nodes, constants)) in rounds.enumerate() {
+            let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m)).enumerate();
+            let results: Vec<Result<Tally>> =
+                chunks.map(|(i, (nodes, constants))| chunk(round * ROUND + i * CHUNK, nodes, constants)).collect();
+            for tally in results {
+                let tally = tally?;
+                self.deficient += tally.deficient;
+                self.unreached += tally.unreached;
+                self.certificates.extend(tally.certificates);
+            }
+            progress(((round + 1) * ROUND).min(cells));
+        }
+        Ok(())
+    }
+
+    /// The constants of one cell of each shape for all cells; `shapes` gives the shape of each.
+    fn copy_by_shape(&mut self, fitted: &CellFits, shapes: &[usize]) {
+        let m = self.springs.len();
+        for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(shapes) {
+            constants.copy_from_slice(&fitted.constants[shape * m..(shape + 1) * m]);
+        }
+        if !fitted.certificates.is_empty() {
+            self.certificates = shapes.iter().map(|&shape| fitted.certificates[shape]).collect();
+        }
+        (self.deficient, self.unreached) = (fitted.deficient, fitted.unreached);
+        self.reused = shapes.len() - fitted.constants.len() / m;
+    }
+}
+
+/// The constants of a single element with nodes at `x`, `[nodes × space]`, m; `[springs]`.
+///
+/// # Errors
+/// Those of [`fit_cells`].
+pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
+    check_nodes(element, element.space(), x)?;
+    let connectivity: Vec<usize> = (0..element.nodes()).collect();
+    Ok(fit_cells(element, springs, x, &connectivity, moduli, fit, &mut |_| {})?.constants)
+}

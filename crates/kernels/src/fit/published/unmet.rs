@@ -1,0 +1,67 @@
+//! How far cells and material are from what a method assumes.
+
+use super::cell_shape::Elasticity;
+use super::corners::Corners;
+use super::method::{Method, Ratio};
+use crate::element::Element;
+use crate::error::Result;
+use crate::fit::visit::each_cell;
+use crate::material::Material;
+use crate::springs::distance;
+
+/// What cells and material lack of what a method takes for granted; nothing if it equals `Unmet::default()`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Unmet {
+    /// The Poisson's ratio that the constants are made for, where the material's (in the plane, of the plane) is another.
+    pub poisson: Option<f64>,
+    /// Cells of another shape.
+    pub cells: usize,
+    /// By how much two lengths differ that the shape makes equal, as a part of their mean; the largest over all cells.
+    pub deviation: f64,
+}
+
+impl Unmet {
+    /// Of cells of both kinds.
+    pub fn and(self, other: Unmet) -> Unmet {
+        Unmet {
+            poisson: self.poisson.or(other.poisson),
+            cells: self.cells + other.cells,
+            deviation: self.deviation.max(other.deviation),
+        }
+    }
+}
+
+/// Below this a deviation is rounding of a mesh file's digits.
+const ROUNDING: f64 = 1e-6;
+
+/// Compares cells, `[cells × nodes]` into `points`, and material with what the method takes for granted.
+///
+/// # Errors
+/// The method has no formula for the element, or a cell is reversed, tangled or flat.
+pub fn unmet(
+    method: Method,
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    material: Material,
+) -> Result<Unmet> {
+    let cover = method.cover(element)?;
+    let corners = Corners::of(element)?;
+    let ratio = Elasticity::of(element, material)?.poisson;
+    let mut unmet = Unmet::default();
+    if let Ratio::Only(assumed) = cover.poisson {
+        unmet.poisson = Some(assumed).filter(|assumed| (assumed - ratio).abs() > ROUNDING);
+    }
+    let Some(shape) = cover.shape else { return Ok(unmet) };
+    let d = element.dimension();
+    each_cell(element, points, connectivity, 0, |_, x, _| {
+        let length = |[a, b]: [usize; 2]| distance(&x[a * d..(a + 1) * d], &x[b * d..(b + 1) * d]);
+        let deviation = shape.deviation(&corners, length);
+        unmet.cells += usize::from(deviation > ROUNDING);
+        unmet.deviation = unmet.deviation.max(deviation);
+    })?;
+    if unmet.cells == 0 {
+        unmet.deviation = 0.0;
+    }
+    Ok(unmet)
+}

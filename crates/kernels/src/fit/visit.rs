@@ -1,0 +1,22 @@
+//! Cells one after another, with errors that name them.
+
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::stiffness::{self, Fault, Geometry};
+
+/// [`stiffness::each_cell`] with an error that names the cell, the first being number `first` (from 0) of its block.
+pub fn each_cell(
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    first: usize,
+    visit: impl FnMut(usize, &[f64], &Geometry),
+) -> Result<()> {
+    stiffness::each_cell(&element.tabulation, points, connectivity, visit)
+        .map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+}
+
+/// `cell` is counted from 0, and named from 1.
+pub fn cell_fault(element: &Element, cell: usize, fault: Fault) -> Error {
+    Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string())
+}
