@@ -25,7 +25,12 @@ pub fn check_cells(element: &Element, points: &[f64], connectivity: &[usize]) ->
         return Err(Error::expected("connectivity", format!("{n} nodes of each cell"), connectivity.len()));
     }
     let count = points.len() / space;
-    if let Some(place) = first_other(connectivity, |node| *node < count) {
+    // The sign bit of count − 1 − node, and that of the node: sums without a branch, which every machine has lanes for.
+    let last = count.wrapping_sub(1);
+    let signs = connectivity.iter().fold(last, |signs, node| signs | last.wrapping_sub(*node) | node);
+    if signs > usize::MAX / 2
+        && let Some(place) = connectivity.iter().position(|node| *node >= count)
+    {
         let (expected, found) = (format!("a node below {count}"), connectivity[place]);
         return Err(Error::expected(format!("connectivity[{place}]"), expected, found));
     }
