@@ -29,7 +29,7 @@ macro_rules! named {
             /// The value of this name.
             ///
             /// # Errors
-            /// There is none.
+            /// No value has this name.
             pub fn named(name: &str) -> $crate::error::Result<$type> {
                 match name {
                     $($name => Ok($type::$variant { $($($field: $value),+)? }),)+

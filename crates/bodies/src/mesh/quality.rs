@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 /// What becomes of cells whose quality is below the least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Below {
-    /// They are told.
+    /// They are reported.
     #[default]
     Warn,
     /// The mesh is not taken.
@@ -24,7 +24,7 @@ pub struct Gate {
 }
 
 impl Default for Gate {
-    /// Four digits lost leave twelve: what is worse is told.
+    /// A loss of four digits leaves twelve; cells of lower quality are reported.
     fn default() -> Gate {
         Gate { least: 1e-4, below: Below::Warn }
     }

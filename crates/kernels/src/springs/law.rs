@@ -119,7 +119,7 @@ pub enum Force {
 }
 
 impl Force {
-    /// That there is a law for each of so many groups, where there are laws.
+    /// Checks that laws, where the force has any, are as many as the groups.
     ///
     /// # Errors
     /// There are more or fewer.

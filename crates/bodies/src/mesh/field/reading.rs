@@ -38,7 +38,7 @@ impl Reading<'_> {
     /// The point of the mesh at a position in m; where several are, the one of them whose number is `preferred`.
     ///
     /// # Errors
-    /// None is there, or several of which none is preferred.
+    /// No point is at the position, or several are and none of them is the preferred one.
     pub fn point_at(&self, position: &[f64], preferred: Option<usize>) -> Result<usize> {
         let found = self.locator.at(position);
         match (&found[..], preferred) {

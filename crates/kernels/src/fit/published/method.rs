@@ -81,7 +81,7 @@ impl Method {
     /// The method called `name`.
     ///
     /// # Errors
-    /// There is none.
+    /// No method has this name.
     pub fn of_name(name: &str) -> Result<Method> {
         Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
             let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();

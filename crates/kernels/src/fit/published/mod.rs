@@ -38,7 +38,8 @@ use pattern::Pattern;
 /// lengths, distances of sides, the content, is added. No spring pulls at rest.
 ///
 /// # Errors
-/// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the method has no formula for the element's cell, the element has nodes beside the corners, a length spring is
+/// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the method has no
+/// formula for the element's cell, the element has nodes beside the corners, a length spring is
 /// missing, Poisson's ratio is out of the method's range, the material is of another dimension, or a cell is reversed,
 /// tangled or flat. A cell of another [`Shape`] than the method's and another Poisson's ratio than it assumes are no
 /// errors: [`unmet`] tells them.
