@@ -25,9 +25,15 @@ pub struct Fit {
     /// Poisson's ratio
     #[arg(long, allow_hyphen_values = true)]
     poisson: f64,
-    /// frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: offdiag with --nonnegative]
+    /// exact, frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: offdiag with --nonnegative]
     #[arg(long)]
     objective: Option<String>,
+    /// The body's energy: stable-neo-hookean or neo-hookean [default: stable-neo-hookean] (exact only)
+    #[arg(long)]
+    energy: Option<String>,
+    /// Where volumes are measured: points, cells or patches [default: points] (exact only)
+    #[arg(long)]
+    volume: Option<String>,
     /// A group of the mesh that is held; may be repeated (whole only)
     #[arg(long)]
     fix: Vec<String>,
@@ -118,7 +124,7 @@ impl Fit {
             end_early(&controls);
         }
         let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
-        let reference = Reference { large: None, whole: body.as_ref() };
+        let reference = Reference { whole: body.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
         let fit = fit.map_err(|e| if sampled || whole { e.placed(Error::of_option) } else { e })?;
         let masses = self.density.map(|density| model::masses(&mesh, density, material.thickness()));
@@ -151,6 +157,8 @@ impl Fit {
         shapes.extend(self.stretch.map(|stretch| ("stretch".into(), stretch.into())));
         let entry = FitEntry::new(objective)
             .with_springs(self.springs.clone())
+            .with("energy", self.energy.clone())
+            .with("volume", self.volume.clone())
             .with("weight", self.weight.clone())
             .with("higher", self.higher)
             .with("balance", self.balance)

@@ -116,7 +116,7 @@ fn stored<const D: usize>(springs: &[LengthSpring], x: &[f64]) -> Option<f64> {
     let mut sound = true;
     let energy = |spring: &LengthSpring| {
         let (_, length) = between(x, spring.points);
-        sound &= length > 0.0;
+        sound &= spring.has_direction(length);
         spring.constant * (length - spring.rest).powi(2) / 2.0
     };
     let total: f64 = springs.iter().map(energy).sum();
@@ -130,8 +130,8 @@ fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) 
     for spring in springs {
         let [i, j] = spring.points;
         let (r, length) = between(x, spring.points);
-        let t = spring.constant * (length - spring.rest) / length;
-        sound &= length > 0.0;
+        let t = spring.stress(length);
+        sound &= spring.has_direction(length);
         for k in 0..D {
             force[i][k] -= t * r[k];
             force[j][k] += t * r[k];
@@ -154,10 +154,10 @@ fn pull_and_stiffen<const D: usize>(
         let [i, j] = spring.points;
         let (r, length) = between(x, spring.points);
         let change = length - spring.rest;
-        let t = spring.constant * change / length;
+        let t = spring.stress(length);
         let [across, along] = if definite { [t.max(0.0), spring.constant.max(0.0)] } else { [t, spring.constant] };
-        let along = (along - across) / (length * length);
-        sound &= length > 0.0;
+        let along = if spring.rest == 0.0 { 0.0 } else { (along - across) / (length * length) };
+        sound &= spring.has_direction(length);
         energy += spring.constant * change * change / 2.0;
         for k in 0..D {
             force[i][k] -= t * r[k];

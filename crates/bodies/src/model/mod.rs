@@ -6,6 +6,7 @@ mod linear;
 mod load;
 mod lumping;
 mod network;
+mod patches;
 mod support;
 mod system;
 
@@ -14,6 +15,7 @@ pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses};
 pub use network::{LengthSpring, MeasureSpring, Network};
+pub use patches::patch_springs;
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};
 

@@ -28,6 +28,18 @@ impl LengthSpring {
     pub fn pull(&self, length: f64) -> [f64; 3] {
         linear(self.constant, length - self.rest)
     }
+
+    /// The force over the length, which is the constant where the rest length is zero, N/m.
+    #[inline(always)]
+    pub(super) fn stress(&self, length: f64) -> f64 {
+        if self.rest == 0.0 { self.constant } else { self.constant * (length - self.rest) / length }
+    }
+
+    /// Whether the force has a direction, as it has at any length where the rest length is zero.
+    #[inline(always)]
+    pub(super) fn has_direction(&self, length: f64) -> bool {
+        length > 0.0 || self.rest == 0.0
+    }
 }
 
 /// A spring that measures something else of a few points, an angle, an area, a volume, a coupling, a user's measure, or one with
@@ -98,8 +110,8 @@ impl Network {
             let (xi, xj) = (&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d]);
             let length = distance(xi, xj);
             let n: Vec<f64> = xi.iter().zip(xj).map(|(a, b)| (b - a) / length).collect();
-            // (1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ: n nᵀ of springs that do not pull at rest.
-            let along = spring.rest / length;
+            // (1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ: n nᵀ of springs that do not pull at rest, I of those without a rest length.
+            let along = if spring.rest == 0.0 { 0.0 } else { spring.rest / length };
             for k in 0..d {
                 for l in 0..d {
                     let across = if k == l { 1.0 - along } else { 0.0 };
@@ -190,35 +202,38 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space")))
         }
     };
+    let at_point = |&q: &usize| (SpringKind::PointContent, &every, Measure::PointContent(block.element.clone(), q));
+    let points = springs.points().iter().map(at_point);
     let content = springs.content().map(|kind| (kind, &every, of_cell(kind)));
-    let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(content).collect();
+    let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(points).chain(content).collect();
     let mut all = Vec::new();
     if kinds.is_empty() {
         return all;
     }
-    let places = fit.force.places(springs.groups());
+    let places = fit.force.places(springs);
     let count = places[m];
     for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m)).enumerate() {
         for (s, (kind, own, measure)) in (first..).zip(&kinds) {
             let constant = constants[s];
             let parameters = &fit.parameters[cell * count..][places[s]..places[s + 1]];
-            let idle = match &fit.force {
-                Force::Laws(laws) => is_idle(&laws[springs.groups()[s]], parameters),
-                _ => constant == 0.0 && parameters.iter().all(|p| *p == 0.0),
+            let law = fit.force.law(springs, s);
+            let is_idle = match law {
+                Some(law) => is_idle(law, parameters),
+                None => constant == 0.0 && parameters.iter().all(|p| *p == 0.0),
             };
-            if idle {
+            if is_idle {
                 continue;
             }
             let points: Vec<usize> = own.iter().map(|&a| nodes[a]).collect();
             let mut x = vec![0.0; points.len() * d];
             gather(&mesh.points, d, &points, &mut x);
             let now = measure.value(&x, d);
-            let (law, rest) = match &fit.force {
-                Force::Linear => (None, now),
-                Force::FreeRest => (None, parameters[0] / constant),
-                Force::Laws(laws) => (Some(laws[springs.groups()[s]].clone()), now),
+            let rest = match &fit.force {
+                Force::FreeRest | Force::Exact { content: None } => parameters[0] / constant,
+                Force::Linear | Force::Laws(_) | Force::Exact { content: Some(_) } => now,
             };
             let parameters = if law.is_some() { parameters.to_vec() } else { Vec::new() };
+            let law = law.cloned();
             all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law, parameters });
         }
     }
@@ -233,7 +248,7 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
     for (block, fit) in mesh.blocks.iter().zip(fits) {
         let Force::Laws(laws) = &fit.force else { continue };
         let m = fit.springs.len();
-        let places = fit.force.places(fit.springs.groups());
+        let places = fit.force.places(&fit.springs);
         for (cell, nodes) in block.cells().enumerate() {
             for (s, &[a, b]) in fit.springs.pairs().iter().enumerate() {
                 let at = cell * m + s;
@@ -278,6 +293,7 @@ const CHUNK: usize = 2048;
 fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
     let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
     let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
+    let is_exact = !fits.is_empty() && fits.iter().all(|fit| matches!(fit.force, Force::Exact { .. }));
     let count = mesh.point_count();
     let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
     let part = |first: &usize| {
@@ -290,8 +306,11 @@ fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
             }
             neighbours.sort_unstable_by_key(|n| n.point);
             for n in neighbours.iter().filter(|n| n.constant != 0.0) {
+                if is_exact && n.constant.abs() <= ROUNDING * n.size {
+                    continue;
+                }
                 let length = distance(mesh.point(i), mesh.point(n.point));
-                let rest = length + n.slack / n.constant;
+                let rest = if is_exact { 0.0 } else { length + n.slack / n.constant };
                 springs.push(LengthSpring { points: [i, n.point], constant: n.constant, rest });
             }
         }
@@ -301,10 +320,15 @@ fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
     parts.concat()
 }
 
+/// The constants of an exact network that cancel to this share of their sizes are rounding: no spring is left.
+const ROUNDING: f64 = 1e-13;
+
 /// The springs from a point to another so far.
 struct Neighbour {
     point: usize,
     constant: f64,
+    /// `Σ |k|`.
+    size: f64,
     /// `Σ k (L₀ − ℓ)`, ℓ the distance: zero of springs at their rest length.
     slack: f64,
 }
@@ -362,9 +386,13 @@ impl<'a> Star<'a> {
                     match neighbours.iter_mut().find(|n| n.point == j) {
                         Some(n) => {
                             n.constant += constants[s];
+                            n.size += constants[s].abs();
                             n.slack += slack;
                         }
-                        None => neighbours.push(Neighbour { point: j, constant: constants[s], slack }),
+                        None => {
+                            let (constant, size) = (constants[s], constants[s].abs());
+                            neighbours.push(Neighbour { point: j, constant, size, slack });
+                        }
                     }
                 }
             }

@@ -20,6 +20,10 @@ pub enum SpringKind {
     Coupling,
     /// An expression of the nodes' coordinates.
     Measure,
+    /// The content of a cell that belongs to one point of its quadrature rule: of a line m, of an area m², of a volume m³.
+    /// Exact networks have such springs; no element file can ask for them.
+    #[serde(skip)]
+    PointContent,
 }
 
 crate::named!(SpringKind {
@@ -29,6 +33,7 @@ crate::named!(SpringKind {
     "volume" => Volume,
     "coupling" => Coupling,
     "measure" => Measure,
+    "point-content" => PointContent,
 });
 
 /// The longest list of nodes of a spring.
@@ -107,6 +112,14 @@ impl SpringKind {
                 formula: Some(|formula| format!("{} + {}", formula.distance(0, 1), formula.distance(2, 3))),
             },
             SpringKind::Measure => Kind {
+                nodes: 1..=MOST_NODES,
+                least_dimension: 1,
+                content: None,
+                symmetry: Symmetry::Ordered,
+                unit: "J per square of the unit of the measure",
+                formula: None,
+            },
+            SpringKind::PointContent => Kind {
                 nodes: 1..=MOST_NODES,
                 least_dimension: 1,
                 content: None,

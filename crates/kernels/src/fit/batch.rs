@@ -6,12 +6,13 @@ use super::delicate::DelicateCells;
 use super::least_squares::off_diagonal_equations;
 use super::method::{Certificate, Method, Verdict};
 use super::normal::{Normal, Rank};
+use super::packing::Packing;
 use super::settings::Fit;
 use crate::element::Element;
 use crate::material::Moduli;
 use crate::scalar::{Packed, PackedWork, widest};
 use crate::springs::Springs;
-use crate::stiffness::{Fault, Geometry, Placement, gather};
+use crate::stiffness::{Fault, Geometry, gather};
 
 /// The cells of one block and where their constants go.
 pub struct Batch<'a> {
@@ -87,17 +88,15 @@ impl PackedWork for Batch<'_> {
 struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
-    points: &'a [f64],
     moduli: Moduli,
     fit: Fit,
     /// Of the objectives that have a closed form.
     closed: Option<Closed<T>>,
     /// Of those that need the reduced element.
     method: Option<Method<T>>,
-    x: Vec<T>,
+    packing: Packing<'a, T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
     measured: Vec<T>,
-    placement: Placement,
     geometry: Geometry<T>,
 }
 
@@ -107,14 +106,12 @@ impl<'a, T: Packed> Workspace<'a, T> {
         Workspace {
             element,
             springs,
-            points,
             moduli,
             fit,
             closed: Closed::of(springs, &fit),
             method: Method::like(&zero, springs, &fit),
-            x: vec![zero.clone(); element.nodes() * element.dimension()],
+            packing: Packing::new(&zero, element, points),
             measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
-            placement: Placement::new(&element.tabulation),
             geometry: Geometry::like(&zero, &element.tabulation),
         }
     }
@@ -122,17 +119,17 @@ impl<'a, T: Packed> Workspace<'a, T> {
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
     /// Jacobian of one is not safely positive or its equations are not regular.
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
-        if (self.closed.is_none() && self.method.is_none()) || !self.gather(nodes) {
+        if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
             return false;
         }
         let Some(mut method) = self.method.take() else { return self.fit_closed(constants) };
-        let regular =
-            self.geometry.update(&self.element.tabulation, &self.x) && self.measure(nodes.len() / self.element.nodes());
+        let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
+            && self.measure(nodes.len() / self.element.nodes());
         if regular {
-            method.solve(self.springs, &self.x, &self.geometry, &self.moduli, &self.measured);
+            method.solve(self.springs, &self.packing.x, &self.geometry, &self.moduli, &self.measured);
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
-                let quality = || Geometry::quality(&self.element.tabulation, &self.lane(lane));
+                let quality = || Geometry::quality(&self.element.tabulation, &self.packing.lane(lane));
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
                 if verdict.delicate
                     && let Ok(delicate) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
@@ -150,7 +147,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
     fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
         let Workspace { element, springs, moduli, fit, .. } = *self;
         let Some(closed) = &mut self.closed else { return false };
-        if !closed.solve(&element.tabulation, springs, &self.x, &mut self.geometry, &moduli) {
+        if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, &moduli) {
             return false;
         }
         let m = springs.len();
@@ -163,7 +160,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
-        let Some(equations) = closed.equations(springs, &self.x, &self.geometry, &moduli) else {
+        let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, &moduli) else {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
@@ -180,8 +177,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
 
     /// A single cell; in twice the digits if it is delicate, or its shape is.
     fn fit_alone(&mut self, nodes: &[usize], constants: &mut [f64], is_delicate: bool) -> Result<Verdict, Fault> {
-        let mut x = vec![0.0; self.x.len()];
-        self.placement.place(&self.element.tabulation, self.points, nodes, &mut x)?;
+        let mut x = vec![0.0; self.packing.x.len()];
+        self.packing.place(nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
         geometry.set(&self.element.tabulation, &x)?;
         let mut measured = vec![0.0; self.measured.len()];
@@ -196,7 +193,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             let mut given = x.clone();
             if element.space() == d {
                 // As they are, for their differences are exact in more digits.
-                gather(self.points, d, nodes, &mut given);
+                gather(self.packing.points, d, nodes, &mut given);
             }
             if let Some(verdict) = delicate.constants(&given, (&x, &geometry), &measured, constants) {
                 return Ok(verdict);
@@ -216,11 +213,6 @@ impl<'a, T: Packed> Workspace<'a, T> {
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
-    /// The coordinates of the cell in this lane.
-    fn lane(&self, lane: usize) -> Vec<f64> {
-        self.x.iter().map(|x| x.as_slice()[lane]).collect()
-    }
-
     /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first. False if one is zero
     /// or not finite.
     fn measure(&mut self, cells: usize) -> bool {
@@ -230,7 +222,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         let mut regular = true;
         let mut rows = vec![0.0; self.measured.len()];
         for lane in 0..cells {
-            let x = self.lane(lane);
+            let x = self.packing.lane(lane);
             rows.fill(0.0);
             regular &= self.springs.function_gradients(&x, &mut rows);
             let last = if lane == 0 { T::COUNT } else { lane + 1 };
@@ -240,49 +232,5 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 .for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
         }
         regular
-    }
-
-    /// The coordinates of the cells' nodes from the first of each, as [`Placement`] has them, one cell per lane; lanes without a cell
-    /// repeat the first. False if a cell of a surface or curve has no tangents.
-    fn gather(&mut self, nodes: &[usize]) -> bool {
-        if self.element.space() > self.element.dimension() {
-            return self.lay_out(nodes);
-        }
-        match self.element.dimension() {
-            1 => self.gather_in::<1>(nodes),
-            2 => self.gather_in::<2>(nodes),
-            _ => self.gather_in::<3>(nodes),
-        }
-        true
-    }
-
-    /// The same for cells of surfaces and curves, in their own planes and lines; false if one has none.
-    fn lay_out(&mut self, nodes: &[usize]) -> bool {
-        let n = self.element.nodes();
-        let mut x = vec![0.0; self.x.len()];
-        for lane in 0..T::COUNT {
-            let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
-            if self.placement.place(&self.element.tabulation, self.points, cell, &mut x).is_err() {
-                return false;
-            }
-            self.x.iter_mut().zip(&x).for_each(|(lanes, x)| lanes.as_mut_slice()[lane] = *x);
-        }
-        true
-    }
-
-    fn gather_in<const D: usize>(&mut self, nodes: &[usize]) {
-        let n = self.x.len() / D;
-        let points = self.points.as_chunks::<D>().0;
-        let x = &mut self.x.as_chunks_mut::<D>().0[..n];
-        for lane in 0..T::COUNT {
-            let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
-            let first = &points[cell[0]];
-            for (x, &node) in x.iter_mut().zip(cell) {
-                let point = &points[node];
-                for k in 0..D {
-                    x[k].as_mut_slice()[lane] = point[k] - first[k];
-                }
-            }
-        }
     }
 }

@@ -9,7 +9,7 @@ use super::settings::Fit;
 use super::solver::Solver;
 use super::visit::{cell_fault, each_cell};
 use crate::element::Element;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// Cells that one thread fits in one go.
 pub(super) const CHUNK: usize = 512;
 /// Cells between two reports of progress.
-const ROUND: usize = 64 * CHUNK;
+pub(super) const ROUND: usize = 64 * CHUNK;
 
 /// The constants of all cells of one element type.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +88,9 @@ impl CellFits {
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
         check_fit(element, &self.springs, points, connectivity, &moduli)?;
+        if !self.springs.points.is_empty() {
+            return Err(Error::at("springs", "are those of an exact network, which is not fitted"));
+        }
         fit.solver.check(fit.objective)?;
         let (n, m) = (element.nodes(), self.springs.len());
         let cells = connectivity.len() / n;

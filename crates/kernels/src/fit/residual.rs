@@ -57,7 +57,7 @@ pub fn element_errors(
     let cells = connectivity.len() / element.nodes();
     check_length("constants", fits.constants.len(), cells * fits.springs.len())?;
     fits.force.check(fits.springs.names.len())?;
-    let parameters = fits.force.places(&fits.springs.groups).last().map_or(0, |count| cells * count);
+    let parameters = fits.force.places(&fits.springs).last().map_or(0, |count| cells * count);
     check_length("parameters", fits.parameters.len(), parameters)?;
     let (n, size) = (element.nodes(), element.nodes() * element.dimension());
     let m = fits.springs.len();
@@ -102,7 +102,7 @@ impl Pulls {
             Force::Linear => Vec::new(),
             _ => fits.springs.measures(&Arc::new(element.clone())),
         };
-        Pulls { measures, places: fits.force.places(&fits.springs.groups), dimension: element.dimension() }
+        Pulls { measures, places: fits.force.places(&fits.springs), dimension: element.dimension() }
     }
 
     fn subtract(&self, fits: &CellFits, cell: usize, x: &[f64], difference: &mut DMatrix<f64>) {
@@ -112,11 +112,8 @@ impl Pulls {
             let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
             let rest = measure.value(&at, d);
             let own = &fits.parameters[cell * count..][self.places[s]..self.places[s + 1]];
-            let pull = match &fits.force {
-                Force::Linear => 0.0,
-                Force::FreeRest => fits.constants[cell * self.measures.len() + s] * rest - own[0],
-                Force::Laws(laws) => laws[fits.springs.groups[s]].force(rest, rest, own),
-            };
+            let constant = fits.constants[cell * self.measures.len() + s];
+            let pull = fits.force.tension(&fits.springs, s, constant, own, [rest, rest]);
             if pull == 0.0 {
                 continue;
             }

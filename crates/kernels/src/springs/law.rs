@@ -1,5 +1,6 @@
 //! Laws of force: how hard a spring pulls when what it measures has changed, as an expression with parameters.
 
+use super::Springs;
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Program, Scope, variables_of};
 use gauss_quad::GaussLegendre;
@@ -116,6 +117,8 @@ pub enum Force {
     FreeRest,
     /// A law for each group, in the order of [`Springs::names`](super::Springs); the fit gives the parameters.
     Laws(Vec<Arc<Law>>),
+    /// `k ℓ` of lengths, whose rest length is zero. Of contents `k (c − L₀)`, with `k L₀` beside k, or the law.
+    Exact { content: Option<Arc<Law>> },
 }
 
 impl Force {
@@ -128,7 +131,7 @@ impl Force {
             Force::Laws(laws) if laws.len() != groups => {
                 Err(Error::expected("force", format!("a law for each of {groups} groups"), laws.len()))
             }
-            Force::Linear | Force::FreeRest | Force::Laws(_) => Ok(()),
+            Force::Linear | Force::FreeRest | Force::Laws(_) | Force::Exact { .. } => Ok(()),
         }
     }
 
@@ -137,20 +140,41 @@ impl Force {
         Force::Laws(std::iter::repeat_n(Arc::new(law), groups).collect())
     }
 
-    /// Numbers of a spring of the group beside its constant.
-    pub fn parameters(&self, group: usize) -> usize {
+    /// The law of spring s, where it has one.
+    pub fn law(&self, springs: &Springs, s: usize) -> Option<&Arc<Law>> {
         match self {
-            Force::Linear => 0,
-            Force::FreeRest => 1,
-            Force::Laws(laws) => laws[group].parameters.len(),
+            Force::Linear | Force::FreeRest => None,
+            Force::Laws(laws) => Some(&laws[springs.groups[s]]),
+            Force::Exact { content } => content.as_ref().filter(|_| s >= springs.pairs.len()),
+        }
+    }
+
+    /// Numbers of spring s beside its constant.
+    fn parameters(&self, springs: &Springs, s: usize) -> usize {
+        match (self, self.law(springs, s)) {
+            (_, Some(law)) => law.parameters.len(),
+            (Force::FreeRest, None) => 1,
+            (Force::Exact { .. }, None) => usize::from(s >= springs.pairs.len()),
+            (Force::Linear | Force::Laws(_), None) => 0,
         }
     }
 
     /// Where the numbers of each spring begin among those of a cell, and how many those are, `[springs + 1]`.
-    pub fn places(&self, groups: &[usize]) -> Vec<usize> {
+    pub fn places(&self, springs: &Springs) -> Vec<usize> {
         let mut places = vec![0];
-        groups.iter().for_each(|&group| places.push(places[places.len() - 1] + self.parameters(group)));
+        (0..springs.len()).for_each(|s| places.push(places[s] + self.parameters(springs, s)));
         places
+    }
+
+    /// The force `T` of spring s where it measures `c`, and `rest` on the undeformed cell; `parameters` are those of
+    /// the spring.
+    pub fn tension(&self, springs: &Springs, s: usize, constant: f64, parameters: &[f64], [c, rest]: [f64; 2]) -> f64 {
+        match (self, self.law(springs, s)) {
+            (_, Some(law)) => law.force(c, rest, parameters),
+            (Force::FreeRest, None) => constant * c - parameters[0],
+            (Force::Exact { .. }, None) => constant * c - parameters.first().unwrap_or(&0.0),
+            (Force::Linear | Force::Laws(_), None) => constant * (c - rest),
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! What a spring measures, c(x), with its first and second derivatives: all that its force and its tangent need.
 
-use crate::element::{Element, Formula, SpringKind, Tabulation, dot};
+use super::content::Content;
+use super::patch::Patch;
+use crate::element::{Element, Formula, SpringKind, dot};
 use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Jet};
 use std::sync::Arc;
@@ -12,6 +14,10 @@ pub enum Measure {
     Length,
     /// The area (m²) or volume (m³) of a cell, by its quadrature.
     Content(Arc<Element>),
+    /// The part of it that belongs to one point of the quadrature rule, `w |J|`.
+    PointContent(Arc<Element>, usize),
+    /// A weighted sum of such, over the cells of a patch.
+    Patch(Arc<Patch>),
     /// A function of the points' coordinates, in the order x₀, y₀, (z₀,) x₁, …
     Function(Arc<Expr>),
 }
@@ -75,7 +81,9 @@ impl Measure {
     pub fn jet(&self, x: &[f64], dimension: usize) -> Jet {
         match self {
             Measure::Length => length(x, dimension),
-            Measure::Content(element) => content(&element.tabulation, x),
+            Measure::Content(element) => Content::of_cell(&element.tabulation, x).jet(),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).jet(),
+            Measure::Patch(patch) => patch.jet(x, dimension),
             Measure::Function(function) => Jet::evaluate(function, x),
         }
     }
@@ -84,11 +92,9 @@ impl Measure {
     pub fn value(&self, x: &[f64], dimension: usize) -> f64 {
         match self {
             Measure::Length => super::distance(&x[..dimension], &x[dimension..]),
-            Measure::Content(element) => {
-                let table = &element.tabulation;
-                let jacobians = table.gradients.chunks_exact(x.len()).map(|dn| rows(dn, x, dimension));
-                jacobians.zip(&table.weights).map(|([a, b, c], w)| w * triple(a, b, c)).sum()
-            }
+            Measure::Content(element) => Content::of_cell(&element.tabulation, x).value(),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).value(),
+            Measure::Patch(patch) => patch.value(x, dimension),
             Measure::Function(function) => function.evaluate(x),
         }
     }
@@ -98,7 +104,9 @@ impl Measure {
         match self {
             Measure::Function(function) => Jet::gradient(function, x),
             Measure::Length => self.jet(x, dimension).gradient,
-            Measure::Content(element) => content_gradient(&element.tabulation, x),
+            Measure::Content(element) => Content::of_cell(&element.tabulation, x).gradient(),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).gradient(),
+            Measure::Patch(patch) => patch.gradient(x, dimension),
         }
     }
 
@@ -139,61 +147,4 @@ fn length(x: &[f64], d: usize) -> Jet {
         sign * (identity - n[row % d] * n[column % d]) / value
     };
     Jet { value, gradient, hessian: (0..4 * d * d).map(entry).collect() }
-}
-
-/// `Σ_q w_q det J_q`: a polynomial in the positions, of degree d; det is linear in each row J_k of the Jacobian, so that in
-/// its derivatives ∇N_a and ∇N_b take the places of J_k and J_m.
-fn content(table: &Tabulation, x: &[f64]) -> Jet {
-    let (size, d) = (x.len(), table.dimension);
-    let (mut value, mut hessian) = (0.0, vec![0.0; size * size]);
-    for (dn, w) in table.gradients.chunks_exact(size).zip(&table.weights) {
-        let j = rows(dn, x, d);
-        value += w * triple(j[0], j[1], j[2]);
-        for (i, row) in hessian.chunks_exact_mut(size).enumerate() {
-            let (k, a) = (i % d, node(dn, i / d, d));
-            let (second, third) = (j[(k + 1) % 3], j[(k + 2) % 3]);
-            for (m, entry) in row.iter_mut().enumerate() {
-                *entry += match (m % d + 3 - k) % 3 {
-                    1 => w * triple(a, node(dn, m / d, d), third),
-                    2 => w * triple(a, second, node(dn, m / d, d)),
-                    _ => 0.0,
-                };
-            }
-        }
-    }
-    Jet { value, gradient: content_gradient(table, x), hessian }
-}
-
-fn content_gradient(table: &Tabulation, x: &[f64]) -> Vec<f64> {
-    let (size, d) = (x.len(), table.dimension);
-    let mut gradient = vec![0.0; size];
-    for (dn, w) in table.gradients.chunks_exact(size).zip(&table.weights) {
-        let j = rows(dn, x, d);
-        for (i, entry) in gradient.iter_mut().enumerate() {
-            let k = i % d;
-            *entry += w * triple(node(dn, i / d, d), j[(k + 1) % 3], j[(k + 2) % 3]);
-        }
-    }
-    gradient
-}
-
-/// The rows `J_k = Σ_a x_ak ∇N_a` of the Jacobian, filled up with those of the identity to three dimensions.
-fn rows(dn: &[f64], x: &[f64], d: usize) -> [[f64; 3]; 3] {
-    let mut rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for (k, row) in rows.iter_mut().enumerate().take(d) {
-        for (l, entry) in row.iter_mut().enumerate().take(d) {
-            *entry = x.chunks_exact(d).zip(dn.chunks_exact(d)).map(|(x, dn)| x[k] * dn[l]).sum();
-        }
-    }
-    rows
-}
-
-/// `∇N_a` in three dimensions.
-fn node(dn: &[f64], a: usize, d: usize) -> [f64; 3] {
-    std::array::from_fn(|l| if l < d { dn[a * d + l] } else { 0.0 })
-}
-
-/// `a · (b × c)`.
-fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
-    (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
 }

@@ -2,12 +2,15 @@
 //!
 //! At rest the tangent stiffness is `K(k) = Σ_s k_s g_s g_sᵀ`, so a fit needs nothing of a spring but g.
 
+mod content;
 mod law;
 mod measure;
+mod patch;
 mod vector;
 
 pub use law::{Force, Law};
 pub use measure::{Measure, Response, linear};
+pub use patch::Patch;
 pub use vector::{distance, dot, norm, unit};
 
 use crate::element::{Element, SpringKind};
@@ -17,7 +20,7 @@ use crate::symbolic::{Expr, Jet};
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
-/// nodes, then at most one on the cell's content.
+/// nodes, then those on the content at quadrature points, then at most one on the cell's content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Springs {
     /// Of the cell.
@@ -29,6 +32,8 @@ pub struct Springs {
     pub(crate) pairs: Vec<[usize; 2]>,
     /// Angles, areas, volumes, couplings and users' own.
     pub(crate) functions: Vec<FunctionSpring>,
+    /// The quadrature points at which springs measure the content, as those of exact networks do.
+    pub(crate) points: Vec<usize>,
     /// Whether the last spring measures the cell's area or volume.
     pub(crate) content: Option<SpringKind>,
     /// The group of each spring, as an index into `names`.
@@ -66,6 +71,7 @@ impl Springs {
             nodes: element.nodes(),
             pairs: Vec::new(),
             functions: Vec::new(),
+            points: Vec::new(),
             content: None,
             groups: Vec::new(),
             names: chosen.iter().map(|g| g.name.clone()).collect(),
@@ -123,6 +129,7 @@ impl Springs {
         let mut springs = Springs {
             pairs: lengths.iter().map(|&s| self.pairs[s]).collect(),
             functions: Vec::new(),
+            points: Vec::new(),
             content: content.map(|(_, kind)| kind),
             groups: Vec::new(),
             names: Vec::new(),
@@ -145,12 +152,39 @@ impl Springs {
         springs
     }
 
-    /// Nodes and measure of every spring of the element.
+    /// The springs of an exact network: between all pairs of nodes, and on the content at the quadrature points. Where there is
+    /// one point alone, its content is that of the cell. With `whole`, one more measures the content of the cell.
+    pub(crate) fn exact(element: &Element, whole: bool) -> Springs {
+        let (table, dimension, nodes) = (&element.tabulation, element.dimension(), element.nodes());
+        let kind = [None, Some(SpringKind::Area), Some(SpringKind::Volume)][dimension - 1];
+        let pairs: Vec<[usize; 2]> = (0..nodes).flat_map(|a| (a + 1..nodes).map(move |b| [a, b])).collect();
+        let is_single = table.points() == 1 && kind.is_some();
+        let points: Vec<usize> = if is_single { Vec::new() } else { (0..table.points()).collect() };
+        let content = kind.filter(|_| is_single || whole);
+        let counts = [pairs.len(), points.len(), usize::from(content.is_some())];
+        Springs {
+            dimension,
+            space: element.space(),
+            nodes,
+            functions: Vec::new(),
+            content,
+            groups: (0..3).flat_map(|group| std::iter::repeat_n(group, counts[group])).collect(),
+            names: ["pairs", "points", "content"].map(String::from).to_vec(),
+            touching: sharing(&pairs, 1),
+            parallel: sharing(&pairs, 2),
+            pairs,
+            points,
+        }
+    }
+
+    /// Nodes and measure of every spring of the element, in its own plane or line.
     pub fn measures(&self, element: &Arc<Element>) -> Vec<(Vec<usize>, Measure)> {
+        let every = || (0..self.nodes).collect();
         let lengths = self.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
         let functions = self.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
-        let content = self.content.map(|_| ((0..self.nodes).collect(), Measure::Content(element.clone())));
-        lengths.chain(functions).chain(content).collect()
+        let points = self.points.iter().map(|&q| (every(), Measure::PointContent(element.clone(), q)));
+        let content = self.content.map(|_| (every(), Measure::Content(element.clone())));
+        lengths.chain(functions).chain(points).chain(content).collect()
     }
 
     /// That they are of this element, or of one with as many nodes and dimensions.
@@ -191,6 +225,11 @@ impl Springs {
     /// Angles, areas, volumes, couplings and users' own.
     pub fn functions(&self) -> &[FunctionSpring] {
         &self.functions
+    }
+
+    /// The quadrature points at which springs measure the content.
+    pub fn points(&self) -> &[usize] {
+        &self.points
     }
 
     /// What the last spring measures, where that is the cell's area or volume.
@@ -237,7 +276,10 @@ impl Springs {
                 row[j * d + k] = n;
             }
         }
-        self.function_gradients(x, &mut g[self.pairs.len() * size..]);
+        let first = self.pairs.len() * size;
+        self.function_gradients(x, &mut g[first..]);
+        let rows = g[first + self.functions.len() * size..].chunks_exact_mut(size);
+        rows.zip(&self.points).for_each(|(row, &q)| row.copy_from_slice(&geometry.point_content_gradient(q)));
         if self.content.is_some() {
             g[(self.len() - 1) * size..].copy_from_slice(&geometry.content_gradient());
         }

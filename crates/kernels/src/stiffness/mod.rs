@@ -123,6 +123,22 @@ impl<T: Scalar> Geometry<T> {
 }
 
 impl Geometry {
+    /// The content that a spring at quadrature point q measures: that of the weight of the point, or, where it has none,
+    /// of its weight in the term λ (div u)².
+    pub fn point_content(&self, q: usize) -> f64 {
+        match self.volumes[q] {
+            0.0 => self.volumetric.get(q).copied().unwrap_or(0.0),
+            volume => volume,
+        }
+    }
+
+    /// Its gradient `w_q |J_q| ∇N_a` with respect to the nodes, `[nodes × dimension]`.
+    pub fn point_content_gradient(&self, q: usize) -> Vec<f64> {
+        let size = self.nodes * self.dimension;
+        let volume = self.point_content(q);
+        self.gradients[q * size..(q + 1) * size].iter().map(|g| volume * g).collect()
+    }
+
     /// Room for any element of this tabulation; filled by [`Geometry::set`].
     pub fn new(table: &Tabulation) -> Geometry {
         Geometry::like(&0.0, table)

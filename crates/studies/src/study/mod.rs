@@ -27,10 +27,11 @@ pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
 pub use fits::{
-    CellMethod, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe, KindRecord, LoadSelection, NamedFit,
-    PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord,
-    SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task,
-    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
+    KindRecord, LoadSelection, NamedFit, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe, Reference,
+    SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord, Start,
+    StiffnessOutcome, StiffnessRecord, Task, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord,
+    WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
 pub use metrics::{DisplacementError, displacement_error};

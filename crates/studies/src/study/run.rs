@@ -1,6 +1,6 @@
 //! Runs a scene: fit each objective, solve each load with both models, compare.
 
-use super::body::{Gauged, LargeBody, LinearBody, load_cases};
+use super::body::{Case, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
 use super::fits::{Reference, WholeBody};
 use super::fitting::fit_mesh;
@@ -12,7 +12,7 @@ use super::stages::stages;
 use super::time::TimePlan;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::masses;
+use crate::model::{Support, masses};
 
 /// Runs the scene. Work is done only for what the scene names.
 ///
@@ -58,7 +58,8 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     whole.newton = large.as_ref().map(|_| scene.newton());
     whole.masses = masses.as_deref();
     whole.solved = body.as_ref().and_then(|body| body.held_by(&support, &cases));
-    let reference = Reference { large: large.as_ref(), whole: Some(&whole) };
+    let held = held_points(&mesh, &support, &cases);
+    let reference = Reference { large: large.as_ref(), whole: Some(&whole), held: &held };
     let mut fits = Vec::new();
     for fit in scene.fits() {
         let fitted = fit_mesh(&mesh, material, &reference, fit, progress);
@@ -121,6 +122,17 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         plan.follow(scene, energy.as_ref(), &mut outcome, progress)?;
     }
     Ok(outcome)
+}
+
+/// Whether each point is held in all directions under every load; without loads, by `[[fix]]`.
+fn held_points(mesh: &Mesh, support: &Support, cases: &[Case]) -> Vec<bool> {
+    let d = mesh.dimension;
+    let holds = |support: &Support, point: usize| (point * d..(point + 1) * d).all(|dof| support.is_fixed(dof));
+    let held = |point| match cases {
+        [] => holds(support, point),
+        _ => cases.iter().all(|case| holds(&case.support, point)),
+    };
+    (0..mesh.point_count()).map(held).collect()
 }
 
 /// Asked for before the work, not after it.

@@ -86,7 +86,7 @@ pub fn compare_stretches(
     let mut fits = Vec::new();
     for (done, named) in recipes.iter().enumerate() {
         progress(Event::stage(&named.name, done + 1, total));
-        let reference = Reference { large: Some(&pulled.large), whole: None };
+        let reference = Reference { large: Some(&pulled.large), ..Reference::default() };
         let fitted = fit_mesh(&pulled.mesh, material, &reference, named, &mut |_| {})?;
         let seconds = fitted.seconds / pulled.mesh.cell_count() as f64;
         let found = pulled.follow(&fitted.network)?;

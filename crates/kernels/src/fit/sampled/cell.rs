@@ -301,7 +301,9 @@ impl<'a> Cell<'a> {
         let own = self.of_spring(s, unknowns);
         match &self.fit.force {
             Force::Linear => slopes[0] = c - rest,
-            Force::FreeRest => slopes.iter_mut().zip(REST_RANGE).for_each(|(slope, share)| *slope = c - share * rest),
+            Force::FreeRest | Force::Exact { .. } => {
+                slopes.iter_mut().zip(REST_RANGE).for_each(|(slope, share)| *slope = c - share * rest);
+            }
             Force::Laws(laws) => {
                 let law = &laws[self.groups[s]];
                 law.by_parameter(c, rest, own, slopes);

@@ -153,7 +153,7 @@ impl SampledFit {
     fn columns(&self, group: usize) -> usize {
         match &self.force {
             Force::Linear => 1,
-            Force::FreeRest => REST_RANGE.len(),
+            Force::FreeRest | Force::Exact { .. } => REST_RANGE.len(),
             Force::Laws(laws) => laws[group].parameters.len(),
         }
     }
@@ -164,6 +164,9 @@ impl SampledFit {
         }
         if self.starts == 0 {
             return Err(Error::expected("starts", "at least one start", 0));
+        }
+        if let Force::Exact { .. } = self.force {
+            return Err(Error::at("force", "is that of exact networks, which are not fitted to samples"));
         }
         if let Norm::Huber { share } = self.norm
             && !(share > 0.0 && share.is_finite())
@@ -276,7 +279,7 @@ impl Cell<'_> {
             let (own, rest) = (self.of_spring(s, unknowns), self.rest(s));
             match &self.fit.force {
                 Force::Linear => constants.push(own[0]),
-                Force::FreeRest => {
+                Force::FreeRest | Force::Exact { .. } => {
                     constants.push(own.iter().sum());
                     parameters.push(own.iter().zip(REST_RANGE).map(|(k, share)| k * share * rest).sum());
                 }

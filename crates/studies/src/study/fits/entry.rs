@@ -1,5 +1,6 @@
 //! A `[[fit]]` as it is written.
 
+use super::exact::ExactEntry;
 use super::keys::keys;
 use super::named::NamedFit;
 use super::published::PublishedEntry;
@@ -40,6 +41,7 @@ enum Kind {
     Sampled,
     Whole,
     Published,
+    Exact,
 }
 
 crate::named!(Kind {
@@ -47,6 +49,7 @@ crate::named!(Kind {
     "sampled" => Sampled,
     "whole" => Whole,
     "published" => Published,
+    "exact" => Exact,
 });
 
 impl Kind {
@@ -66,6 +69,7 @@ impl Kind {
             Kind::Sampled => vec!["sampled"],
             Kind::Whole => vec!["whole"],
             Kind::Published => Method::ALL.map(Method::name).to_vec(),
+            Kind::Exact => vec!["exact"],
         }
     }
 
@@ -76,6 +80,7 @@ impl Kind {
             Kind::Sampled => keys::<SampledEntry>(),
             Kind::Whole => keys::<WholeEntry>(),
             Kind::Published => keys::<PublishedEntry>(),
+            Kind::Exact => keys::<ExactEntry>(),
         }
     }
 
@@ -119,6 +124,7 @@ impl FitEntry {
             Kind::Sampled => self.typed::<SampledEntry>().map(|_| ()),
             Kind::Whole => self.whole().map(|_| ()),
             Kind::Published => Ok(()),
+            Kind::Exact => self.typed::<ExactEntry>().map(|_| ()),
         });
         let line = |key: &str| {
             let top = key.split(['.', '[']).next().unwrap_or(key);
@@ -141,6 +147,7 @@ impl FitEntry {
             Kind::Stiffness => Recipe::Stiffness(self.typed::<StiffnessEntry>()?.fit(&self.objective)?),
             Kind::Sampled => Recipe::Sampled(Box::new(self.typed::<SampledEntry>()?.check(folder)?)),
             Kind::Published => Recipe::Published(Method::of_name(&self.objective)?),
+            Kind::Exact => Recipe::Exact(self.typed::<ExactEntry>()?.recipe(self.springs.as_deref())?),
             Kind::Whole => {
                 let (entry, sampled) = self.whole()?;
                 let recipes = entry.recipes(|| sampled.clone().check(folder))?;

@@ -1,5 +1,6 @@
 //! The springs of a fit, and what only its kind knows of them.
 
+use super::exact::ExactOutcome;
 use super::published::PublishedOutcome;
 use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
@@ -28,6 +29,7 @@ pub enum FittedKind {
     Sampled(SampledOutcome),
     Whole(WholeOutcome),
     Published(PublishedOutcome),
+    Exact(ExactOutcome),
 }
 
 impl Fitted {
@@ -47,6 +49,7 @@ impl FittedKind {
             FittedKind::Sampled(outcome) => outcome.notes(),
             FittedKind::Whole(outcome) => outcome.notes(),
             FittedKind::Published(outcome) => outcome.notes(cells, material),
+            FittedKind::Exact(outcome) => outcome.notes(),
         }
     }
 

@@ -81,6 +81,8 @@ pub struct Reference<'a> {
     pub large: Option<&'a LargeBody>,
     /// For whole-object fits.
     pub whole: Option<&'a WholeBody<'a>>,
+    /// Which points are held in all directions under every load, `[points]`; empty where nothing is known of that.
+    pub held: &'a [bool],
 }
 
 /// A body to be fitted.

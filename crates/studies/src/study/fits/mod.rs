@@ -1,6 +1,7 @@
 //! Kinds of fits, one folder each.
 
 mod entry;
+mod exact;
 mod facts;
 mod fitted;
 mod keys;
@@ -15,6 +16,7 @@ mod stiffness;
 mod whole;
 
 pub use entry::FitEntry;
+pub use exact::{ExactOutcome, ExactRecipe, ExactRecord};
 pub use facts::SceneFacts;
 pub use fitted::{Fitted, FittedKind};
 pub use kind::{CellMethod, FitKind, Reference, Task};

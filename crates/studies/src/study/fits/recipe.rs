@@ -1,5 +1,6 @@
 //! How the springs of a fit are found. The only file that tells kinds of fits apart.
 
+use super::exact::ExactRecipe;
 use super::kind::FitKind;
 use super::sampled::SampledRecipe;
 use super::whole::WholeRecipe;
@@ -17,6 +18,8 @@ pub enum Recipe {
     Whole(Box<WholeRecipe>),
     /// By a published formula.
     Published(Method),
+    /// The finite element itself.
+    Exact(ExactRecipe),
 }
 
 impl Recipe {
@@ -26,6 +29,7 @@ impl Recipe {
             Recipe::Sampled(recipe) => &**recipe,
             Recipe::Whole(recipe) => &**recipe,
             Recipe::Published(method) => method,
+            Recipe::Exact(recipe) => recipe,
         }
     }
 

@@ -1,5 +1,6 @@
 //! The settings of a fit, as a report has them.
 
+use super::exact::ExactRecord;
 use super::published::PublishedRecord;
 use super::sampled::SampledRecord;
 use super::stiffness::StiffnessRecord;
@@ -13,5 +14,6 @@ pub enum KindRecord {
     Sampled(Box<SampledRecord>),
     Whole(Box<WholeRecord>),
     Published(PublishedRecord),
+    Exact(ExactRecord),
     Stiffness(StiffnessRecord),
 }

@@ -1,0 +1,73 @@
+//! Springs on the content of patches of cells, which carry λ near the incompressible where single cells would lock.
+//!
+//! Each cell is shared among its points that are not held: patches of held points lock as cells do. A cell all of whose points
+//! are held is a patch of its own.
+
+use super::network::MeasureSpring;
+use crate::element::SpringKind;
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::{ExactEnergy, ExactFit};
+use crate::material::{Material, State};
+use crate::mesh::Mesh;
+use crate::springs::{Law, Measure, Patch};
+use crate::stiffness::gather;
+use std::sync::Arc;
+
+/// `T = λ ln J/(J V₀/b)`, of the energy `λ/2 ln² J`.
+const NEO_HOOKEAN: &str = "b*ln(c/c0)*c0/c";
+
+/// The energy `V_n λ/2 (J_n − 1)²`, or that of the fit, of the patch of every point, `J_n = Σ_c s_c V_c/Σ_c s_c V_c0`; `held`
+/// says of each point whether it is, or is empty.
+///
+/// # Errors
+/// The mesh has cells of several kinds or other cells than triangles of three and tetrahedra of four nodes in their own space, or
+/// the material is one in which no cell locks at large deformation (kind `Unsupported`).
+pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bool]) -> Result<Vec<MeasureSpring>> {
+    let expected =
+        "\"points\" or \"cells\": patches are for meshes of one kind of cells, tri3 or tet4, in their own space";
+    let unsupported = |found: String| {
+        Err(Error::expected("volume", expected, format!("\"patches\" with {found}")).of_kind(ErrorKind::Unsupported))
+    };
+    let [block] = &mesh.blocks[..] else {
+        let names: Vec<&str> = mesh.blocks.iter().map(|block| block.element.name.as_str()).collect();
+        return unsupported(format!("cells of {}", names.join(", ")));
+    };
+    let (element, d) = (&block.element, mesh.dimension);
+    let is_simplex = element.nodes() == d + 1 && element.tabulation.points() == 1;
+    if !is_simplex || mesh.cell_dimension() != d || d < 2 {
+        return unsupported(element.name.clone());
+    }
+    if fit.large && matches!(material.state(), State::PlaneStress { .. }) {
+        return unsupported("a law in plane stress, where no cell locks".into());
+    }
+    let (mut shares, mut alone) = (vec![Vec::new(); mesh.point_count()], Vec::new());
+    for nodes in block.cells() {
+        let free: Vec<usize> = nodes.iter().copied().filter(|&p| !held.get(p).is_some_and(|held| *held)).collect();
+        let share = 1.0 / free.len() as f64;
+        free.iter().for_each(|&point| shares[point].push((nodes, share)));
+        if free.is_empty() {
+            alone.push(vec![(nodes, 1.0)]);
+        }
+    }
+    let lambda = material.moduli().lambda;
+    let law = match fit.energy {
+        ExactEnergy::StableNeoHookean => None,
+        ExactEnergy::NeoHookean => Some(Arc::new(Law::parse(NEO_HOOKEAN)?)),
+    };
+    let kind = if d == 2 { SpringKind::Area } else { SpringKind::Volume };
+    let spring = |cells: &Vec<(&[usize], f64)>| {
+        let mut points: Vec<usize> = cells.iter().flat_map(|(nodes, _)| *nodes).copied().collect();
+        points.sort_unstable();
+        points.dedup();
+        let place = |node: &usize| points.binary_search(node).expect("the points of the patch are those of its cells");
+        let cells = cells.iter().map(|(nodes, share)| (nodes.iter().map(place).collect(), *share)).collect();
+        let measure = Measure::Patch(Arc::new(Patch { element: element.clone(), cells }));
+        let mut x = vec![0.0; points.len() * d];
+        gather(&mesh.points, d, &points, &mut x);
+        let rest = measure.value(&x, d);
+        let parameters = if law.is_some() { vec![lambda] } else { Vec::new() };
+        MeasureSpring { kind, points, constant: lambda / rest, rest, measure, law: law.clone(), parameters }
+    };
+    let patches = shares.iter().chain(&alone).filter(|cells| !cells.is_empty() && lambda != 0.0);
+    Ok(patches.map(spring).collect())
+}

@@ -1,0 +1,90 @@
+//! The energies whose bodies are networks, and the forces of their springs on content.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::{Material, Moduli, State};
+use crate::springs::Law;
+use std::sync::Arc;
+
+/// An energy `μ/2 (|F|² − d) + U(J)` with `U'(1) = −μ`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ExactEnergy {
+    /// `U = −μ (J − 1) + (λ + μ)/2 (J − 1)²`: springs on content are linear. Smith, De Goes, Kim (2018), Stable
+    /// neo-Hookean flesh simulation, (14), with their Lamé constants in place of the material's.
+    #[default]
+    StableNeoHookean,
+    /// `U = −μ ln J + λ/2 ln² J`. Bonet, Wood (2008), 6.4.3.
+    NeoHookean,
+}
+
+crate::named!(ExactEnergy {
+    "stable-neo-hookean" => StableNeoHookean,
+    "neo-hookean" => NeoHookean,
+});
+
+/// The numbers of an exact network per volume of the cell, thickness included.
+#[derive(Debug, Clone)]
+pub(super) struct Coefficients {
+    /// Of the springs between nodes, and their tension on the springs on content, `−U'(1)`.
+    pub mu: f64,
+    /// `U''(1) − μ`.
+    pub lambda: f64,
+    /// Of springs on content, where it is not linear. Its parameters are `a`, what μ is per content of the spring, and `b`, λ.
+    pub law: Option<Arc<Law>>,
+    /// The λ of the law.
+    pub law_lambda: f64,
+    /// Whether stretches across a plane or rod are in the law, which must have both terms then.
+    pub is_condensed: bool,
+}
+
+/// `T = U'(J)/c₀` of the compressible neo-Hookean energy.
+const NEO_HOOKEAN: &str = "(-a + b*ln(c/c0))*c0/c";
+
+/// The stable neo-Hookean energy with the stretch g across the plane that leaves no stress there,
+/// `g = (λ + 2 μ) J/(μ + (λ + μ) J²)`: the rest is a function of J alone, with the slope `g (−μ + (λ + μ) (J g − 1))`.
+const STABLE_IN_PLANE_STRESS: &str = "-(a - (a + b)*(c/c0*g - 1))*g";
+const ACROSS_PLANE: &str = "((b + 2*a)*c/c0/(a + (a + b)*(c/c0)^2))";
+
+/// The same with both stretches across a rod, `g² = ((λ + 2 μ) J − μ)/((λ + μ) J²)`, and the slope `−μ g²/J`.
+const STABLE_IN_ROD: &str = "-a*((b + 2*a)*c/c0 - a)/((a + b)*(c/c0)^3)";
+
+impl Coefficients {
+    /// Of a body at rest or at small deformation; with `is_large` at any.
+    ///
+    /// # Errors
+    /// The energy has no form of springs in this state; kind `Unsupported`.
+    pub fn of(energy: ExactEnergy, material: Material, is_large: bool) -> Result<Coefficients> {
+        let Moduli { lambda, mu } = material.moduli();
+        let (nu, t) = (material.poisson(), material.thickness());
+        let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
+        let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
+        let law = |text: &str| Some(Arc::new(Law::parse(text).expect("the laws of this file are expressions")));
+        let small = |law| Coefficients { mu, lambda, law, law_lambda: lambda, is_condensed: false };
+        let condensed = match material.state() {
+            State::PlaneStress { .. } if is_large => true,
+            State::Rod { .. } => is_large,
+            State::PlaneStress { .. } | State::PlaneStrain { .. } | State::Solid => false,
+        };
+        if !condensed {
+            return Ok(small(match energy {
+                ExactEnergy::StableNeoHookean => None,
+                ExactEnergy::NeoHookean => law(NEO_HOOKEAN),
+            }));
+        }
+        let text = match (energy, material.state()) {
+            (ExactEnergy::StableNeoHookean, State::Rod { .. }) => STABLE_IN_ROD.to_string(),
+            (ExactEnergy::StableNeoHookean, _) => STABLE_IN_PLANE_STRESS.replace('g', ACROSS_PLANE),
+            (ExactEnergy::NeoHookean, _) => {
+                let expected = "\"stable-neo-hookean\": the stretch across planes and rods without stress has no formula in others";
+                return Err(Error::expected("energy", expected, format!("\"{}\"", energy.name()))
+                    .of_kind(ErrorKind::Unsupported));
+            }
+        };
+        if nu == 0.5 {
+            let expected = "a ratio below 0.5 for exact networks at large deformation";
+            return Err(Error::expected("poisson", expected, nu));
+        }
+        // Of the linear body λ + 2 μ is what counts in a rod, where μ may be any.
+        let lambda = if let State::Rod { .. } = material.state() { 2.0 * mu - 2.0 * solid_mu } else { lambda };
+        Ok(Coefficients { mu: solid_mu, lambda, law: law(&text), law_lambda: solid_lambda, is_condensed: true })
+    }
+}

@@ -1,0 +1,176 @@
+//! The springs of exact networks, one cell per lane of the machine's registers.
+
+use super::Shares;
+use super::energy::Coefficients;
+use crate::element::Element;
+use crate::fit::packing::Packing;
+use crate::scalar::{Packed, PackedWork, Real, dot, widest};
+use crate::springs::Springs;
+use crate::stiffness::{Fault, Geometry};
+
+/// A constant below this share of the largest of its cell is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// The cells of one block and where their numbers go.
+pub struct ExactBatch<'a> {
+    pub element: &'a Element,
+    pub springs: &'a Springs,
+    /// `[points × space]`, m.
+    pub points: &'a [f64],
+    /// `[cells × nodes]`.
+    pub connectivity: &'a [usize],
+    pub coefficients: &'a Coefficients,
+    pub shares: Shares,
+    /// `[cells × springs]`.
+    pub constants: &'a mut [f64],
+    /// `[cells × parameters]`: of each content spring `k L₀`, or `a` and `b` of its law.
+    pub parameters: &'a mut [f64],
+}
+
+impl ExactBatch<'_> {
+    /// # Errors
+    /// The first cell that has no stiffness, from 0.
+    pub fn run(self) -> Result<(), (usize, Fault)> {
+        widest(self)
+    }
+
+    /// The number of a content spring in the order of [`ContentSpring`].
+    fn content(&self, shares: [f64; 2], content: f64, volume: f64, volumetric: f64) -> ContentSpring {
+        let Coefficients { mu, lambda, law, law_lambda, .. } = self.coefficients;
+        let (a, b) = (shares[0] * mu * volume, shares[1] * lambda * volumetric);
+        let constant = (a + b) / (content * content);
+        match law {
+            None => ContentSpring { constant, parameters: [(2.0 * a + b) / content, 0.0], count: 1 },
+            Some(_) => {
+                let b = shares[1] * law_lambda * volumetric;
+                ContentSpring { constant, parameters: [a / content, b / content], count: 2 }
+            }
+        }
+    }
+}
+
+/// What is stored of a spring on content.
+struct ContentSpring {
+    constant: f64,
+    parameters: [f64; 2],
+    count: usize,
+}
+
+impl PackedWork for ExactBatch<'_> {
+    type Output = Result<(), (usize, Fault)>;
+
+    fn run<T: Packed>(mut self, zero: T) -> Self::Output {
+        let (n, m) = (self.element.nodes(), self.springs.len());
+        let cells = self.connectivity.len() / n;
+        let p = self.parameters.len() / cells.max(1);
+        let table = &self.element.tabulation;
+        let mut packing = Packing::new(&zero, self.element, self.points);
+        let mut geometry = Geometry::like(&zero, table);
+        let mut pairs = vec![zero.clone(); self.springs.pairs.len()];
+        let mut plain = Geometry::new(table);
+        let mut x = vec![0.0; packing.x.len()];
+        let mut cell = 0;
+        while cell < cells {
+            let count = T::COUNT.min(cells - cell);
+            let nodes = &self.connectivity[cell * n..(cell + count) * n];
+            if packing.gather(nodes) && geometry.update(table, &packing.x) {
+                stiffen(&geometry, self.coefficients.mu, &mut pairs);
+                for lane in 0..count {
+                    let at = cell + lane;
+                    for (k, pair) in self.constants[at * m..].iter_mut().zip(&pairs) {
+                        *k = pair.as_slice()[lane];
+                    }
+                    let volume = |q: usize| geometry.volumes[q].as_slice()[lane];
+                    let volumetric = |q: usize| geometry.volumetric.get(q).map_or(volume(q), |v| v.as_slice()[lane]);
+                    self.contents(at, p, volume, volumetric);
+                }
+            } else {
+                // One by one: what is wrong with a cell, or nothing but the range of numbers.
+                for at in cell..cell + count {
+                    packing.place(&self.connectivity[at * n..(at + 1) * n], &mut x).map_err(|fault| (at, fault))?;
+                    plain.set(table, &x).map_err(|fault| (at, fault))?;
+                    stiffen(&plain, self.coefficients.mu, &mut self.constants[at * m..][..pairs.len()]);
+                    let volume = |q: usize| plain.volumes[q];
+                    let volumetric = |q: usize| plain.volumetric.get(q).map_or(volume(q), |v| *v);
+                    self.contents(at, p, volume, volumetric);
+                }
+            }
+            cell += count;
+        }
+        match self.constants.iter().position(|k| !k.is_finite()) {
+            Some(place) => Err((place / m, Fault::Unmeasured)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl ExactBatch<'_> {
+    /// Writes the springs on content of one cell; `volume(q)` and `volumetric(q)` are those of the two terms at a point.
+    #[inline(always)]
+    fn contents(&mut self, cell: usize, p: usize, volume: impl Fn(usize) -> f64, volumetric: impl Fn(usize) -> f64) {
+        let m = self.springs.len();
+        let (mut place, mut next) = (cell * m + self.springs.pairs.len(), cell * p);
+        let mut store = |batch: &mut Self, spring: ContentSpring| {
+            batch.constants[place] = spring.constant;
+            batch.parameters[next..next + spring.count].copy_from_slice(&spring.parameters[..spring.count]);
+            (place, next) = (place + 1, next + spring.count);
+        };
+        for &q in &self.springs.points {
+            let content = if volume(q) == 0.0 { volumetric(q) } else { volume(q) };
+            store(self, self.content(self.shares.points, content, volume(q), volumetric(q)));
+        }
+        if self.springs.content.is_some() {
+            let points = 0..self.element.tabulation.points();
+            let [content, whole] = points.fold([0.0; 2], |[v, w], q| [v + volume(q), w + volumetric(q)]);
+            store(self, self.content(self.shares.cell, content, content, whole));
+        }
+    }
+}
+
+/// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero.
+fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {
+    // A copy for each of the common sizes, in which the loops unroll: for few nodes they are all overhead.
+    macro_rules! of_size {
+        ($d:literal, $n:expr) => {
+            geometry.volumes[0].vectorize(
+                #[inline(always)]
+                || stiffen_in::<T, $d>($n, geometry, mu, pairs),
+            )
+        };
+    }
+    match (geometry.dimension, geometry.nodes) {
+        (2, 3) if T::UNROLLED => of_size!(2, 3),
+        (2, 4) if T::UNROLLED => of_size!(2, 4),
+        (3, 4) if T::UNROLLED => of_size!(3, 4),
+        (3, 8) if T::UNROLLED => of_size!(3, 8),
+        (1, n) => of_size!(1, n),
+        (2, n) => of_size!(2, n),
+        (_, n) => of_size!(3, n),
+    }
+}
+
+#[inline(always)]
+fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {
+    let zero = geometry.volumes[0].zero();
+    let pairs = &mut pairs[..n * (n - 1) / 2];
+    pairs.fill(zero.clone());
+    for (gradients, volume) in geometry.gradients.chunks_exact(n * D).zip(&geometry.volumes) {
+        let gradients = &gradients.as_chunks::<D>().0[..n];
+        let factor = volume.clone().scaled(&-mu);
+        let mut s = 0;
+        for a in 0..n {
+            for b in a + 1..n {
+                pairs[s] = pairs[s].clone().plus_product(&factor, &dot(&gradients[a], &gradients[b]));
+                s += 1;
+            }
+        }
+    }
+    let mut largest = zero.clone();
+    for k in pairs.iter() {
+        largest = largest.greatest(&k.magnitude());
+    }
+    let least = largest.scaled(&ROUNDING);
+    for k in pairs.iter_mut() {
+        *k = (k.magnitude() - &least).choose(k, &zero);
+    }
+}

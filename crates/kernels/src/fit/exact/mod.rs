@@ -1,0 +1,157 @@
+//! Networks that are the finite element: springs of rest length zero between all pairs of nodes, and springs on the content.
+//!
+//! With `L_ab = Σ_q w_q ∇N_a·∇N_b` and `Σ_a ∇N_a = 0`, for any element and any quadrature,
+//!
+//! ```text
+//! Σ_q w_q |F_q|² = −Σ_{a<b} L_ab |x_a − x_b|²
+//! ```
+//!
+//! so an energy `μ/2 (|F|² − d) + U(J)` is that of springs `½ k_ab |x_a − x_b|²`, `k_ab = −μ L_ab`, and of one spring on
+//! `J_q` at each quadrature point. Where `U'(1) = −μ` the nodes at rest feel no force, and the tangent is R with
+//! `λ = U''(1) − μ`.
+
+mod energy;
+mod kernel;
+
+pub use energy::ExactEnergy;
+
+use super::cells::{CHUNK, CellFits, ROUND};
+use super::input::check_cells;
+use super::visit::cell_fault;
+use crate::element::Element;
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::Material;
+use crate::springs::{Force, Springs};
+use crate::stiffness::Placement;
+use energy::Coefficients;
+use kernel::ExactBatch;
+use rayon::prelude::*;
+
+/// The content that the springs for λ measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum VolumeSprings {
+    /// That of each quadrature point: the network is the finite element with this quadrature.
+    #[default]
+    Points,
+    /// That of each cell: selective reduced integration, the mean dilatation of each cell (Nagtegaal, Parks, Rice 1974).
+    Cells,
+    /// That of a patch of cells around each node, whose springs a mesh adds.
+    Patches,
+}
+
+crate::named!(VolumeSprings {
+    "points" => Points,
+    "cells" => Cells,
+    "patches" => Patches,
+});
+
+/// How an exact network is made.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ExactFit {
+    pub energy: ExactEnergy,
+    pub volume: VolumeSprings,
+    /// Whether planes and rods without stress have the energy at any deformation, with the stretch across them. At small
+    /// deformation they need not: their content springs are simpler then.
+    pub large: bool,
+}
+
+/// Where content springs get their numbers from: of the first term a share of μ, of the second one of λ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shares {
+    points: [f64; 2],
+    cell: [f64; 2],
+}
+
+impl VolumeSprings {
+    /// A cell with a single spring on its content has it for both terms, but where patches have that for λ.
+    fn shares(self, is_single: bool) -> Shares {
+        match (self, is_single) {
+            (VolumeSprings::Points, _) => Shares { points: [1.0, 1.0], cell: [1.0, 1.0] },
+            (VolumeSprings::Cells, true) => Shares { points: [0.0, 0.0], cell: [1.0, 1.0] },
+            (VolumeSprings::Cells, false) => Shares { points: [1.0, 0.0], cell: [0.0, 1.0] },
+            (VolumeSprings::Patches, _) => Shares { points: [1.0, 0.0], cell: [1.0, 0.0] },
+        }
+    }
+}
+
+/// The springs of every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The result has
+/// [`Force::Exact`]; constants that are rounding, as at right angles, are zero.
+///
+/// `progress` is told the number of cells done, now and then.
+///
+/// # Errors
+/// An array has a wrong length or a number is not finite; a cell is reversed, tangled, flat or bent in space; or the energy has no
+/// form of springs in this state (kind `Unsupported`).
+pub fn fit_exact(
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    material: Material,
+    fit: &ExactFit,
+    progress: &mut dyn FnMut(usize),
+) -> Result<CellFits> {
+    material.state().check(element.dimension()).map_err(|e| e.at_key("state"))?;
+    check_cells(element, points, connectivity)?;
+    let coefficients = Coefficients::of(fit.energy, material, fit.large)?;
+    if coefficients.is_condensed && fit.volume != VolumeSprings::Points {
+        let expected = "\"points\" at large deformation without stress across a plane or rod";
+        return Err(
+            Error::expected("volume", expected, format!("\"{}\"", fit.volume.name())).of_kind(ErrorKind::Unsupported)
+        );
+    }
+    // A line has no volume apart from its length.
+    let volume = if element.dimension() == 1 { VolumeSprings::Points } else { fit.volume };
+    let springs = Springs::exact(element, volume == VolumeSprings::Cells);
+    let shares = volume.shares(springs.points.is_empty());
+    check_flat(element, points, connectivity)?;
+    let force = Force::Exact { content: coefficients.law.clone() };
+    let (n, m) = (element.nodes(), springs.len());
+    let p = force.places(&springs)[m];
+    let cells = connectivity.len() / n;
+    let (mut constants, mut parameters) = (vec![0.0; cells * m], vec![0.0; cells * p]);
+    let rounds =
+        connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m)).zip(parameters.chunks_mut(ROUND * p));
+    for (round, ((nodes, constants), parameters)) in rounds.enumerate() {
+        let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m));
+        let chunks = chunks.zip(parameters.par_chunks_mut(CHUNK * p)).enumerate();
+        chunks.try_for_each(|(i, ((connectivity, constants), parameters))| {
+            let (springs, coefficients) = (&springs, &coefficients);
+            let batch =
+                ExactBatch { element, springs, points, connectivity, coefficients, shares, constants, parameters };
+            let first = round * ROUND + i * CHUNK;
+            batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+        })?;
+        progress(((round + 1) * ROUND).min(cells));
+    }
+    Ok(CellFits { constants, parameters, force, ..CellFits::new(springs) })
+}
+
+/// Heights above its plane, as a share of the size of a cell, that are not told from rounding of coordinates.
+const FLAT: f64 = 1e-9;
+
+/// That cells of surfaces and curves are flat: the springs measure lengths in space, the finite elements in the mean plane.
+fn check_flat(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
+    let (d, space, n) = (element.dimension(), element.space(), element.nodes());
+    if d == space || n <= d + 1 {
+        return Ok(());
+    }
+    let mut placement = Placement::new(&element.tabulation);
+    let mut x = vec![0.0; n * d];
+    for (cell, nodes) in connectivity.chunks_exact(n).enumerate() {
+        placement
+            .place(&element.tabulation, points, nodes, &mut x)
+            .map_err(|fault| cell_fault(element, cell, fault))?;
+        let at = |a: usize, k: usize| points[nodes[a] * space + k] - points[nodes[0] * space + k];
+        let square = |a: usize| (0..space).map(|k| at(a, k) * at(a, k)).sum::<f64>();
+        let in_plane = |a: usize| x[a * d..(a + 1) * d].iter().map(|x| x * x).sum::<f64>();
+        let size = (0..n).map(square).fold(0.0, f64::max);
+        let height = (0..n).map(|a| square(a) - in_plane(a)).fold(0.0, f64::max);
+        if height > FLAT * size {
+            let expected = "flat cells for exact networks in space; triangles of three nodes always are";
+            let found = format!("one that is bent by {:.1e} of its size", (height / size).sqrt());
+            return Err(Error::expected(format!("{} cell {}", element.name, cell + 1), expected, found)
+                .of_kind(ErrorKind::Unsupported));
+        }
+    }
+    Ok(())
+}

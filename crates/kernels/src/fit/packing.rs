@@ -1,0 +1,79 @@
+//! The nodes of several cells side by side, one cell per lane.
+
+use crate::element::Element;
+use crate::scalar::Packed;
+use crate::stiffness::{Fault, Placement};
+
+/// Room for the nodes of as many cells as there are lanes.
+pub struct Packing<'a, T> {
+    element: &'a Element,
+    /// `[points × space]`, m.
+    pub points: &'a [f64],
+    placement: Placement,
+    /// The positions of the nodes from the first of each cell, as [`Placement`] has them, `[nodes × dimension]`, m.
+    pub x: Vec<T>,
+}
+
+impl<'a, T: Packed> Packing<'a, T> {
+    pub fn new(zero: &T, element: &'a Element, points: &'a [f64]) -> Packing<'a, T> {
+        let x = vec![zero.clone(); element.nodes() * element.dimension()];
+        Packing { element, points, placement: Placement::new(&element.tabulation), x }
+    }
+
+    /// Fills [`Packing::x`] with these cells, at most one per lane; lanes without a cell repeat the first. False if a cell of a
+    /// surface or curve has no tangents.
+    pub fn gather(&mut self, nodes: &[usize]) -> bool {
+        if self.element.space() > self.element.dimension() {
+            return self.lay_out(nodes);
+        }
+        match self.element.dimension() {
+            1 => self.gather_in::<1>(nodes),
+            2 => self.gather_in::<2>(nodes),
+            _ => self.gather_in::<3>(nodes),
+        }
+        true
+    }
+
+    /// The positions of a single cell.
+    ///
+    /// # Errors
+    /// A cell of a surface or curve has no tangents.
+    pub fn place(&mut self, nodes: &[usize], x: &mut [f64]) -> Result<(), Fault> {
+        self.placement.place(&self.element.tabulation, self.points, nodes, x)
+    }
+
+    /// The positions of the cell in this lane.
+    pub fn lane(&self, lane: usize) -> Vec<f64> {
+        self.x.iter().map(|x| x.as_slice()[lane]).collect()
+    }
+
+    /// Cells of surfaces and curves, in their own planes and lines; false if one has none.
+    fn lay_out(&mut self, nodes: &[usize]) -> bool {
+        let n = self.element.nodes();
+        let mut x = vec![0.0; self.x.len()];
+        for lane in 0..T::COUNT {
+            let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
+            if self.place(cell, &mut x).is_err() {
+                return false;
+            }
+            self.x.iter_mut().zip(&x).for_each(|(lanes, x)| lanes.as_mut_slice()[lane] = *x);
+        }
+        true
+    }
+
+    fn gather_in<const D: usize>(&mut self, nodes: &[usize]) {
+        let n = self.x.len() / D;
+        let points = self.points.as_chunks::<D>().0;
+        let x = &mut self.x.as_chunks_mut::<D>().0[..n];
+        for lane in 0..T::COUNT {
+            let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
+            let first = &points[cell[0]];
+            for (x, &node) in x.iter_mut().zip(cell) {
+                let point = &points[node];
+                for k in 0..D {
+                    x[k].as_mut_slice()[lane] = point[k] - first[k];
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The content of a cell at given positions, by its quadrature: `Σ_q w_q |J_q|`, whole or of single points.
+
+use super::vector::{dot, norm};
+use crate::element::Tabulation;
+use crate::symbolic::Jet;
+use std::ops::Range;
+
+/// The content at some points of the quadrature rule of a cell with its nodes at `x`, `[nodes × space]`.
+pub struct Content<'a> {
+    table: &'a Tabulation,
+    points: Range<usize>,
+    x: &'a [f64],
+    /// Coordinates of a node; more than the dimension for a cell of a surface or curve.
+    space: usize,
+}
+
+impl<'a> Content<'a> {
+    /// Of all points.
+    pub fn of_cell(table: &'a Tabulation, x: &'a [f64]) -> Content<'a> {
+        Content { table, points: 0..table.points(), x, space: x.len() / table.nodes }
+    }
+
+    /// Of point q alone.
+    pub fn of_point(table: &'a Tabulation, q: usize, x: &'a [f64]) -> Content<'a> {
+        Content { points: q..q + 1, ..Content::of_cell(table, x) }
+    }
+
+    /// Calls `visit(∂N_a/∂ξ, w)`. A point that serves the volumetric rule alone has the weight that it has there, unless
+    /// all points are asked for.
+    fn each_point(&self, mut visit: impl FnMut(&[f64], f64)) {
+        let size = self.table.nodes * self.table.dimension;
+        let is_single = self.points.len() == 1;
+        for q in self.points.clone() {
+            let weight = match (self.table.weights[q], self.table.volumetric.get(q)) {
+                (0.0, Some(volumetric)) if is_single => *volumetric,
+                (weight, _) => weight,
+            };
+            visit(&self.table.gradients[q * size..(q + 1) * size], weight);
+        }
+    }
+
+    fn is_embedded(&self) -> bool {
+        self.space > self.table.dimension
+    }
+
+    pub fn value(&self) -> f64 {
+        let mut total = 0.0;
+        self.each_point(|dn, w| {
+            total += w * if self.is_embedded() {
+                norm(&self.normal(dn).0)
+            } else {
+                let [a, b, c] = self.rows(dn);
+                triple(a, b, c)
+            }
+        });
+        total
+    }
+
+    /// `[nodes × space]`.
+    pub fn gradient(&self) -> Vec<f64> {
+        let (d, size) = (self.table.dimension, self.x.len());
+        let mut gradient = vec![0.0; size];
+        self.each_point(|dn, w| {
+            if self.is_embedded() {
+                let (normal, turns) = self.normal(dn);
+                let unit = scaled(normal, 1.0 / norm(&normal));
+                gradient.iter_mut().zip(&turns).for_each(|(entry, turn)| *entry += w * dot(&unit, turn));
+                return;
+            }
+            let j = self.rows(dn);
+            for (i, entry) in gradient.iter_mut().enumerate() {
+                let k = i % d;
+                *entry += w * triple(node(dn, i / d, d), j[(k + 1) % 3], j[(k + 2) % 3]);
+            }
+        });
+        gradient
+    }
+
+    /// The value with its first and second derivatives in the positions.
+    ///
+    /// In a cell that fills its space the content is a polynomial of degree d: det is linear in each row J_k of the Jacobian, so
+    /// that in its derivatives ∇N_a and ∇N_b take the places of J_k and J_m.
+    pub fn jet(&self) -> Jet {
+        let (d, size) = (self.table.dimension, self.x.len());
+        let mut hessian = vec![0.0; size * size];
+        self.each_point(|dn, w| {
+            if self.is_embedded() {
+                self.bend(dn, w, &mut hessian);
+                return;
+            }
+            let j = self.rows(dn);
+            for (i, row) in hessian.chunks_exact_mut(size).enumerate() {
+                let (k, a) = (i % d, node(dn, i / d, d));
+                let (second, third) = (j[(k + 1) % 3], j[(k + 2) % 3]);
+                for (m, entry) in row.iter_mut().enumerate() {
+                    *entry += match (m % d + 3 - k) % 3 {
+                        1 => w * triple(a, node(dn, m / d, d), third),
+                        2 => w * triple(a, second, node(dn, m / d, d)),
+                        _ => 0.0,
+                    };
+                }
+            }
+        });
+        Jet { value: self.value(), gradient: self.gradient(), hessian }
+    }
+
+    /// The rows `J_k = Σ_a x_ak ∇N_a` of the Jacobian, filled up with those of the identity to three dimensions.
+    fn rows(&self, dn: &[f64]) -> [[f64; 3]; 3] {
+        let d = self.table.dimension;
+        let mut rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for (k, row) in rows.iter_mut().enumerate().take(d) {
+            for (l, entry) in row.iter_mut().enumerate().take(d) {
+                *entry = self.x.chunks_exact(d).zip(dn.chunks_exact(d)).map(|(x, dn)| x[k] * dn[l]).sum();
+            }
+        }
+        rows
+    }
+
+    /// The tangent `∂x/∂ξ_l` in three dimensions.
+    fn tangent(&self, dn: &[f64], l: usize) -> [f64; 3] {
+        let d = self.table.dimension;
+        let mut tangent = [0.0; 3];
+        for (x, dn) in self.x.chunks_exact(self.space).zip(dn.chunks_exact(d)) {
+            tangent.iter_mut().zip(x).for_each(|(t, x)| *t += dn[l] * x);
+        }
+        tangent
+    }
+
+    /// The vector n whose length is the content, of a curve its tangent t, of a surface `t₁ × t₂`; and its derivatives in
+    /// the positions, `[nodes × space]`.
+    fn normal(&self, dn: &[f64]) -> ([f64; 3], Vec<[f64; 3]>) {
+        let (d, space) = (self.table.dimension, self.space);
+        let tangents = [self.tangent(dn, 0), if d == 2 { self.tangent(dn, 1) } else { [0.0; 3] }];
+        let turn = |i: usize| {
+            let (dn, e) = (&dn[i / space * d..][..d], axis(i % space));
+            match d {
+                1 => scaled(e, dn[0]),
+                _ => sum(scaled(cross(e, tangents[1]), dn[0]), scaled(cross(tangents[0], e), dn[1])),
+            }
+        };
+        let normal = if d == 1 { tangents[0] } else { cross(tangents[0], tangents[1]) };
+        (normal, (0..self.x.len()).map(turn).collect())
+    }
+
+    /// Adds `w ∇∇‖n‖ = w (N · ∇∇n + ∇n (I − N Nᵀ) ∇nᵀ/‖n‖)`, `N = n/‖n‖`.
+    fn bend(&self, dn: &[f64], w: f64, hessian: &mut [f64]) {
+        let (d, space, size) = (self.table.dimension, self.space, self.x.len());
+        let (normal, turns) = self.normal(dn);
+        let length = norm(&normal);
+        let unit = scaled(normal, 1.0 / length);
+        for (i, row) in hessian.chunks_exact_mut(size).enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                let (a, b) = (&dn[i / space * d..][..d], &dn[j / space * d..][..d]);
+                let turned = if d == 1 { 0.0 } else { a[0] * b[1] - a[1] * b[0] };
+                let across = dot(&turns[i], &turns[j]) - dot(&unit, &turns[i]) * dot(&unit, &turns[j]);
+                let second = turned * triple(unit, axis(i % space), axis(j % space));
+                *entry += w * (second + across / length);
+            }
+        }
+    }
+}
+
+/// `∇N_a` in three dimensions.
+fn node(dn: &[f64], a: usize, d: usize) -> [f64; 3] {
+    std::array::from_fn(|l| if l < d { dn[a * d + l] } else { 0.0 })
+}
+
+fn axis(k: usize) -> [f64; 3] {
+    std::array::from_fn(|l| f64::from(u8::from(k == l)))
+}
+
+fn scaled(a: [f64; 3], factor: f64) -> [f64; 3] {
+    a.map(|a| a * factor)
+}
+
+fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+}
+
+/// `a · (b × c)`.
+fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+    (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
+}

@@ -1,0 +1,30 @@
+//! The keys of a `[[fit]]` that is exact.
+
+use super::recipe::ExactRecipe;
+use crate::error::{Error, Result};
+use crate::fit::{ExactEnergy, VolumeSprings};
+use serde::Deserialize;
+
+/// The keys.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ExactEntry {
+    pub energy: Option<String>,
+    pub volume: Option<String>,
+}
+
+impl ExactEntry {
+    /// The fit with these spring groups.
+    ///
+    /// # Errors
+    /// An energy or a kind of volume springs is unknown, or spring groups are named.
+    pub fn recipe(&self, springs: Option<&[String]>) -> Result<ExactRecipe> {
+        if let Some(springs) = springs {
+            let expected = "no groups: an exact network joins all nodes of each cell and has springs on its content";
+            return Err(Error::expected("springs", expected, format!("{springs:?}")));
+        }
+        let energy = self.energy.as_deref().map(|name| ExactEnergy::named(name).map_err(|e| e.at_key("energy")));
+        let volume = self.volume.as_deref().map(|name| VolumeSprings::named(name).map_err(|e| e.at_key("volume")));
+        Ok(ExactRecipe { energy: energy.transpose()?, volume: volume.transpose()?.unwrap_or_default() })
+    }
+}

@@ -1,0 +1,89 @@
+//! Exact networks of bodies.
+
+use super::outcome::ExactOutcome;
+use super::recipe::ExactRecipe;
+use super::record::ExactRecord;
+use crate::element::Element;
+use crate::error::Result;
+use crate::fit::{CellFits, VolumeSprings, fit_exact};
+use crate::material::Material;
+use crate::model::{Network, patch_springs};
+use crate::springs::Springs;
+use crate::study::fits::fitted::{Fitted, FittedKind};
+use crate::study::fits::kind::{CellMethod, FitKind, Task};
+use crate::study::fits::record::KindRecord;
+use crate::study::progress::{Event, Progress};
+use std::time::Instant;
+
+impl FitKind for ExactRecipe {
+    fn title(&self, _groups: &str) -> String {
+        let energy = self.energy.map_or(String::new(), |energy| format!(" {}", energy.name()));
+        match self.volume {
+            VolumeSprings::Points => format!("exact{energy}"),
+            volume => format!("exact{energy} {}", volume.name()),
+        }
+    }
+
+    fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
+        let (mesh, material) = (task.mesh, task.material);
+        let law = task.reference.large.map(|large| large.energy.name.as_str());
+        let fit = self.resolve(law)?;
+        let start = Instant::now();
+        let mut patches = Vec::new();
+        if fit.volume == VolumeSprings::Patches {
+            patches = patch_springs(mesh, material, &fit, task.reference.held)?;
+        }
+        let total = mesh.cell_count();
+        let (mut done, mut cells) = (0, Vec::new());
+        for block in &mesh.blocks {
+            let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
+            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut watch)?);
+            done += block.cells().len();
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let mut network = Network::assemble(mesh, &cells);
+        let outcome = ExactOutcome {
+            energy: fit.energy,
+            volume: fit.volume,
+            is_other: law.is_some_and(|law| law != fit.energy.name()),
+            negative: [network.lengths.iter().filter(|s| s.constant < 0.0).count(), network.lengths.len()],
+            patches: patches.len(),
+            state: material.state(),
+        };
+        network.others.extend(patches);
+        let seconds_assembly = start.elapsed().as_secs_f64();
+        Ok(Fitted { cells, network, seconds, seconds_assembly, kind: FittedKind::Exact(outcome) })
+    }
+
+    fn cell_method(&self) -> Option<&dyn CellMethod> {
+        (self.volume != VolumeSprings::Patches).then_some(self)
+    }
+
+    fn record(&self) -> KindRecord {
+        KindRecord::Exact(ExactRecord::of(self))
+    }
+}
+
+impl CellMethod for ExactRecipe {
+    fn name(&self) -> String {
+        self.title("")
+    }
+
+    fn solver(&self) -> &'static str {
+        "formula"
+    }
+
+    /// Of the springs nothing is used: an exact network has its own.
+    fn fit_cells(
+        &self,
+        element: &Element,
+        _springs: &Springs,
+        points: &[f64],
+        cells: &[usize],
+        material: Material,
+    ) -> Result<CellFits> {
+        let fit = self.resolve(None)?;
+        fit_exact(element, points, cells, material, &fit, &mut |_| {})
+    }
+}

@@ -1,0 +1,42 @@
+//! What an exact network is equal to.
+
+use crate::fit::{ExactEnergy, VolumeSprings};
+use crate::material::State;
+
+/// The body that the network is equal to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExactOutcome {
+    pub energy: ExactEnergy,
+    pub volume: VolumeSprings,
+    /// Whether the material has another law.
+    pub is_other: bool,
+    /// Edges whose constant is below zero, and all edges.
+    pub negative: [usize; 2],
+    /// Patches that share cells with points that nothing holds.
+    pub patches: usize,
+    pub state: State,
+}
+
+impl ExactOutcome {
+    /// What a reader must know of it.
+    pub fn notes(&self) -> Vec<String> {
+        let other = self.is_other.then(|| {
+            format!(
+                "the network has the energy {}, which is not the material's law: equal at rest alone",
+                self.energy.name()
+            )
+        });
+        let volume = match self.volume {
+            VolumeSprings::Points => None,
+            VolumeSprings::Cells => Some(
+                "one volume spring in each cell: differs from the finite elements, which lock near nu = 0.5".into(),
+            ),
+            VolumeSprings::Patches => Some(format!(
+                "volume springs on {} patches of cells: differs from the finite elements, which lock near nu = 0.5; \
+                 they depend on which points are held",
+                self.patches
+            )),
+        };
+        other.into_iter().chain(volume).collect()
+    }
+}
