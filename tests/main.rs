@@ -13,6 +13,7 @@ mod dynamics;
 mod elements;
 mod energies;
 mod errors;
+mod exact;
 mod fields;
 mod fits;
 mod fraction;

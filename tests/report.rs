@@ -22,6 +22,10 @@ springs = ["edge", "diagonal"]
 [[fit]]
 objective = "baudet"
 [[fit]]
+objective = "exact"
+energy = "stable-mooney-rivlin"
+share = 0.5
+[[fit]]
 name = "whole"
 objective = "whole"
 start = ["offdiag", "equal"]
@@ -114,17 +118,18 @@ fn fits_have_the_records_of_their_kinds() {
         KindRecord::Sampled(_) => "sampled",
         KindRecord::Whole(_) => "whole",
         KindRecord::Published(_) => "published",
+        KindRecord::Exact(_) => "exact",
     };
     let kinds = |report: &Report| report.fits.iter().map(|fit| kind(&fit.kind)).collect::<Vec<_>>();
     let linear = reports(LINEAR).1;
-    assert_eq!(kinds(&linear), ["stiffness", "stiffness", "published", "whole", "whole"]);
+    assert_eq!(kinds(&linear), ["stiffness", "stiffness", "published", "exact", "whole", "whole"]);
     for fit in &linear.fits {
         assert_eq!(fit.whole.is_some(), matches!(fit.kind, KindRecord::Whole(_)), "{}", fit.name);
         assert_eq!(fit.unmet.is_some(), matches!(fit.kind, KindRecord::Published(_)), "{}", fit.name);
         assert!(fit.sampled.is_none() && fit.loads.len() == 2);
     }
     assert!(linear.fits[0].certificate_gap.is_some() && linear.fits[1].certificate_gap.is_none());
-    assert_eq!((linear.gauge.len(), linear.frequencies.len(), linear.motion.len()), (2, 6, 6));
+    assert_eq!((linear.gauge.len(), linear.frequencies.len(), linear.motion.len()), (2, 7, 7));
     let large = reports(LARGE).1;
     assert_eq!(kinds(&large), ["sampled", "sampled", "sampled", "whole"]);
     assert!(large.fits[0].sampled.is_some() && large.fits[3].sampled.is_none());

@@ -27,7 +27,8 @@ pub struct FitRecord {
     pub relative_spectral: SpreadRecord,
     pub negative_springs: usize,
     pub undetermined_elements: usize,
-    /// The least and the largest energy of the network over the body's.
+    /// The least and the largest energy of the network over the body's; of exact networks with volume springs on cells or patches,
+    /// over that of finite elements with λ at most 2 μ, which do not lock.
     pub energy_ratio: Option<[Option<f64>; 2]>,
     /// Points that move most in the softest motion, from 0.
     pub loose_nodes: Vec<usize>,

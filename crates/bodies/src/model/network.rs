@@ -2,7 +2,7 @@
 
 use super::Entries;
 use super::system::dofs;
-use crate::element::SpringKind;
+use crate::element::{SpringKind, Tabulation};
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::{Force, FunctionSpring, Law, Measure, distance, linear};
@@ -203,9 +203,11 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
         }
     };
     let at_point = |&q: &usize| (SpringKind::PointContent, &every, Measure::PointContent(block.element.clone(), q));
+    let of_area = |table: &Arc<Tabulation>| (SpringKind::PointArea, &every, Measure::PointArea(table.clone()));
+    let areas = springs.areas().iter().map(of_area);
     let points = springs.points().iter().map(at_point);
     let content = springs.content().map(|kind| (kind, &every, of_cell(kind)));
-    let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(points).chain(content).collect();
+    let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(areas).chain(points).chain(content).collect();
     let mut all = Vec::new();
     if kinds.is_empty() {
         return all;
@@ -229,8 +231,9 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             gather(&mesh.points, d, &points, &mut x);
             let now = measure.value(&x, d);
             let rest = match &fit.force {
-                Force::FreeRest | Force::Exact { content: None } => parameters[0] / constant,
-                Force::Linear | Force::Laws(_) | Force::Exact { content: Some(_) } => now,
+                Force::FreeRest => parameters[0] / constant,
+                Force::Exact { .. } if law.is_none() => parameters.first().map_or(0.0, |slack| slack / constant),
+                Force::Linear | Force::Laws(_) | Force::Exact { .. } => now,
             };
             let parameters = if law.is_some() { parameters.to_vec() } else { Vec::new() };
             let law = law.cloned();

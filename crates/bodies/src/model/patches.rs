@@ -51,7 +51,7 @@ pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bo
     }
     let lambda = material.moduli().lambda;
     let law = match fit.energy {
-        ExactEnergy::StableNeoHookean => None,
+        ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. } => None,
         ExactEnergy::NeoHookean => Some(Arc::new(Law::parse(NEO_HOOKEAN)?)),
     };
     let kind = if d == 2 { SpringKind::Area } else { SpringKind::Volume };

@@ -105,7 +105,7 @@ fn nodes_of(
             ));
         }
         (None, SpringKind::Length) => return Err(Error::expected(key("nodes"), "pairs of nodes", "none")),
-        (None, SpringKind::Angle | SpringKind::Coupling | SpringKind::Measure | SpringKind::PointContent) => {
+        (None, _) => {
             return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
         }
     };

@@ -24,6 +24,9 @@ pub enum SpringKind {
     /// Exact networks have such springs; no element file can ask for them.
     #[serde(skip)]
     PointContent,
+    /// The area of the parallelogram that two tangents of a cell span at a point of its quadrature rule, m². As before.
+    #[serde(skip)]
+    PointArea,
 }
 
 crate::named!(SpringKind {
@@ -34,6 +37,7 @@ crate::named!(SpringKind {
     "coupling" => Coupling,
     "measure" => Measure,
     "point-content" => PointContent,
+    "point-area" => PointArea,
 });
 
 /// The longest list of nodes of a spring.
@@ -119,7 +123,7 @@ impl SpringKind {
                 unit: "J per square of the unit of the measure",
                 formula: None,
             },
-            SpringKind::PointContent => Kind {
+            SpringKind::PointContent | SpringKind::PointArea => Kind {
                 nodes: 1..=MOST_NODES,
                 least_dimension: 1,
                 content: None,

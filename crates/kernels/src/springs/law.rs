@@ -10,6 +10,11 @@ use std::sync::{Arc, OnceLock};
 const VARIABLES: [&str; 3] = ["s", "c", "c0"];
 /// Points of the quadrature that integrates the force.
 const POINTS: usize = 16;
+/// A change of the measure by this share of that at rest needs no finer quadrature.
+const SMOOTH: f64 = 0.1;
+/// Agreement of a quadrature with that of its halves, and how often these are halved at most.
+const KNOWN: f64 = 1e-14;
+const HALVINGS: usize = 10;
 /// Strains at which a law must vanish with its parameters to count as linear in them.
 const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
 
@@ -97,13 +102,34 @@ impl Law {
         slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(&at));
     }
 
-    /// `∫ T dc` from rest.
+    /// `∫ T dc` from rest, by a quadrature that is refined until it agrees with its halves.
     pub fn energy(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
+        let whole = self.work([rest, c], rest, parameters);
+        if (c - rest).abs() <= SMOOTH * rest.abs() {
+            whole
+        } else {
+            self.refined([rest, c], whole, rest, parameters, HALVINGS)
+        }
+    }
+
+    fn refined(&self, [from, to]: [f64; 2], whole: f64, rest: f64, parameters: &[f64], halvings: usize) -> f64 {
+        let middle = from + (to - from) / 2.0;
+        let halves = [[from, middle], [middle, to]];
+        let works = halves.map(|half| self.work(half, rest, parameters));
+        let sum = works[0] + works[1];
+        if halvings == 0 || !sum.is_finite() || (sum - whole).abs() <= KNOWN * (works[0].abs() + works[1].abs()) {
+            return sum;
+        }
+        (0..2).map(|i| self.refined(halves[i], works[i], rest, parameters, halvings - 1)).sum()
+    }
+
+    /// `∫ T dc` by one rule.
+    fn work(&self, [from, to]: [f64; 2], rest: f64, parameters: &[f64]) -> f64 {
         static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
         let points = POINTS.try_into().expect("there are points");
         let rule = RULE.get_or_init(|| GaussLegendre::new(points).iter().map(|(x, w)| (*x, *w)).collect());
-        let half = (c - rest) / 2.0;
-        rule.iter().map(|(x, w)| w * half * self.force(rest + half * (1.0 + x), rest, parameters)).sum()
+        let half = (to - from) / 2.0;
+        rule.iter().map(|(x, w)| w * half * self.force(from + half * (1.0 + x), rest, parameters)).sum()
     }
 }
 
@@ -117,7 +143,7 @@ pub enum Force {
     FreeRest,
     /// A law for each group, in the order of [`Springs::names`](super::Springs); the fit gives the parameters.
     Laws(Vec<Arc<Law>>),
-    /// `k ℓ` of lengths, whose rest length is zero. Of contents `k (c − L₀)`, with `k L₀` beside k, or the law.
+    /// `k c` of lengths and areas, which are zero at rest. Of contents `k (c − L₀)`, with `k L₀` beside k, or the law.
     Exact { content: Option<Arc<Law>> },
 }
 
@@ -145,7 +171,7 @@ impl Force {
         match self {
             Force::Linear | Force::FreeRest => None,
             Force::Laws(laws) => Some(&laws[springs.groups[s]]),
-            Force::Exact { content } => content.as_ref().filter(|_| s >= springs.pairs.len()),
+            Force::Exact { content } => content.as_ref().filter(|_| springs.is_on_content(s)),
         }
     }
 
@@ -154,7 +180,7 @@ impl Force {
         match (self, self.law(springs, s)) {
             (_, Some(law)) => law.parameters.len(),
             (Force::FreeRest, None) => 1,
-            (Force::Exact { .. }, None) => usize::from(s >= springs.pairs.len()),
+            (Force::Exact { .. }, None) => usize::from(springs.is_on_content(s)),
             (Force::Linear | Force::Laws(_), None) => 0,
         }
     }

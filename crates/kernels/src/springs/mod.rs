@@ -13,14 +13,15 @@ pub use measure::{Measure, Response, linear};
 pub use patch::Patch;
 pub use vector::{distance, dot, norm, unit};
 
-use crate::element::{Element, SpringKind};
+use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
 use crate::symbolic::{Expr, Jet};
+use content::Content;
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
-/// nodes, then those on the content at quadrature points, then at most one on the cell's content.
+/// nodes, then those of exact networks on areas and contents at quadrature points, then at most one on the cell's content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Springs {
     /// Of the cell.
@@ -32,6 +33,8 @@ pub struct Springs {
     pub(crate) pairs: Vec<[usize; 2]>,
     /// Angles, areas, volumes, couplings and users' own.
     pub(crate) functions: Vec<FunctionSpring>,
+    /// What the area springs of exact networks measure: the single point of a table with two tangents.
+    pub(crate) areas: Vec<Arc<Tabulation>>,
     /// The quadrature points at which springs measure the content, as those of exact networks do.
     pub(crate) points: Vec<usize>,
     /// Whether the last spring measures the cell's area or volume.
@@ -71,6 +74,7 @@ impl Springs {
             nodes: element.nodes(),
             pairs: Vec::new(),
             functions: Vec::new(),
+            areas: Vec::new(),
             points: Vec::new(),
             content: None,
             groups: Vec::new(),
@@ -129,6 +133,7 @@ impl Springs {
         let mut springs = Springs {
             pairs: lengths.iter().map(|&s| self.pairs[s]).collect(),
             functions: Vec::new(),
+            areas: Vec::new(),
             points: Vec::new(),
             content: content.map(|(_, kind)| kind),
             groups: Vec::new(),
@@ -152,29 +157,37 @@ impl Springs {
         springs
     }
 
-    /// The springs of an exact network: between all pairs of nodes, and on the content at the quadrature points. Where there is
-    /// one point alone, its content is that of the cell. With `whole`, one more measures the content of the cell.
-    pub(crate) fn exact(element: &Element, whole: bool) -> Springs {
+    /// The springs of an exact network: between all pairs of nodes; with `areas`, on those that pairs of tangents span at the
+    /// quadrature points; and on the content there. Where there is one point alone, its content is that of the cell. With
+    /// `whole`, one more measures the content of the cell.
+    pub(crate) fn exact(element: &Element, areas: bool, whole: bool) -> Springs {
         let (table, dimension, nodes) = (&element.tabulation, element.dimension(), element.nodes());
         let kind = [None, Some(SpringKind::Area), Some(SpringKind::Volume)][dimension - 1];
         let pairs: Vec<[usize; 2]> = (0..nodes).flat_map(|a| (a + 1..nodes).map(move |b| [a, b])).collect();
         let is_single = table.points() == 1 && kind.is_some();
         let points: Vec<usize> = if is_single { Vec::new() } else { (0..table.points()).collect() };
         let content = kind.filter(|_| is_single || whole);
-        let counts = [pairs.len(), points.len(), usize::from(content.is_some())];
+        let areas = if areas { area_tables(table) } else { Vec::new() };
+        let counts = [pairs.len(), areas.len(), points.len(), usize::from(content.is_some())];
         Springs {
             dimension,
             space: element.space(),
             nodes,
             functions: Vec::new(),
             content,
-            groups: (0..3).flat_map(|group| std::iter::repeat_n(group, counts[group])).collect(),
-            names: ["pairs", "points", "content"].map(String::from).to_vec(),
+            groups: (0..4).flat_map(|group| std::iter::repeat_n(group, counts[group])).collect(),
+            names: ["pairs", "areas", "points", "content"].map(String::from).to_vec(),
             touching: sharing(&pairs, 1),
             parallel: sharing(&pairs, 2),
             pairs,
+            areas,
             points,
         }
+    }
+
+    /// Whether spring s of an exact network measures content.
+    pub(crate) fn is_on_content(&self, s: usize) -> bool {
+        s >= self.pairs.len() + self.functions.len() + self.areas.len()
     }
 
     /// Nodes and measure of every spring of the element, in its own plane or line.
@@ -182,9 +195,10 @@ impl Springs {
         let every = || (0..self.nodes).collect();
         let lengths = self.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
         let functions = self.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
+        let areas = self.areas.iter().map(|table| (every(), Measure::PointArea(table.clone())));
         let points = self.points.iter().map(|&q| (every(), Measure::PointContent(element.clone(), q)));
         let content = self.content.map(|_| (every(), Measure::Content(element.clone())));
-        lengths.chain(functions).chain(points).chain(content).collect()
+        lengths.chain(functions).chain(areas).chain(points).chain(content).collect()
     }
 
     /// That they are of this element, or of one with as many nodes and dimensions.
@@ -225,6 +239,11 @@ impl Springs {
     /// Angles, areas, volumes, couplings and users' own.
     pub fn functions(&self) -> &[FunctionSpring] {
         &self.functions
+    }
+
+    /// What area springs measure: the single point of a table with two tangents.
+    pub fn areas(&self) -> &[Arc<Tabulation>] {
+        &self.areas
     }
 
     /// The quadrature points at which springs measure the content.
@@ -278,7 +297,10 @@ impl Springs {
         }
         let first = self.pairs.len() * size;
         self.function_gradients(x, &mut g[first..]);
-        let rows = g[first + self.functions.len() * size..].chunks_exact_mut(size);
+        let mut rows = g[first + self.functions.len() * size..].chunks_exact_mut(size);
+        for (table, row) in self.areas.iter().zip(&mut rows) {
+            row.copy_from_slice(&Content::of_point(table, 0, x).gradient());
+        }
         rows.zip(&self.points).for_each(|(row, &q)| row.copy_from_slice(&geometry.point_content_gradient(q)));
         if self.content.is_some() {
             g[(self.len() - 1) * size..].copy_from_slice(&geometry.content_gradient());
@@ -304,6 +326,32 @@ impl Springs {
         let springs = rows[..self.functions.len() * size].chunks_exact(size);
         springs.map(|row| row.iter().map(|g| g * g).sum::<f64>()).all(|square| square > 0.0 && square.is_finite())
     }
+}
+
+/// The pairs of tangents, as sums of the columns t₁, t₂, t₃ of the Jacobian, that span the areas `|n_k|` and `|n_k + n_l|`,
+/// k < l, of the columns n of its cofactor matrix: on a tetrahedron, twice the areas of three faces and those of three pairs
+/// of opposite edges.
+const SPANS: [[[f64; 3]; 2]; 6] = [
+    [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+    [[-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0.0, 1.0, 0.0], [-1.0, 0.0, 1.0]],
+    [[1.0, 0.0, 0.0], [0.0, 1.0, -1.0]],
+];
+
+/// A table for each of the six areas at each quadrature point.
+fn area_tables(table: &Tabulation) -> Vec<Arc<Tabulation>> {
+    let size = table.nodes * table.dimension;
+    let at = |q: usize| Tabulation {
+        weights: vec![1.0],
+        volumetric: Vec::new(),
+        values: table.values[q * table.nodes..(q + 1) * table.nodes].to_vec(),
+        gradients: table.gradients[q * size..(q + 1) * size].to_vec(),
+        ..*table
+    };
+    let spanned = |q: usize| SPANS.map(|span| Arc::new(at(q).along(&span.map(|t| t.to_vec()))));
+    (0..table.points()).flat_map(spanned).collect()
 }
 
 /// The springs `(s, t)`, s < t, that have at least `nodes` nodes in common.

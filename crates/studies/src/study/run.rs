@@ -86,7 +86,8 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
             let body = body.map_or_else(|| linear(progress), Ok)?;
             for (done, fit) in fits.iter_mut().enumerate() {
                 progress(Event::stage("networks", done, count));
-                let answers = body.compare(&mesh, &cases, &fit.network)?;
+                let compared = fit.kind.compared(material.moduli());
+                let answers = body.compare(&mesh, &cases, &fit.network, compared)?;
                 (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
             }
             (body.displacements, vec![None; cases.len()], None)

@@ -5,8 +5,8 @@ use crate::material::{Material, Moduli, State};
 use crate::springs::Law;
 use std::sync::Arc;
 
-/// An energy `μ/2 (|F|² − d) + U(J)` with `U'(1) = −μ`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// An energy `μ/2 (|F|² − d) + U(J)` with `U'(1) = −μ`, and one with `|cof F|²` besides.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ExactEnergy {
     /// `U = −μ (J − 1) + (λ + μ)/2 (J − 1)²`: springs on content are linear. Smith, De Goes, Kim (2018), Stable
     /// neo-Hookean flesh simulation, (14), with their Lamé constants in place of the material's.
@@ -14,19 +14,51 @@ pub enum ExactEnergy {
     StableNeoHookean,
     /// `U = −μ ln J + λ/2 ln² J`. Bonet, Wood (2008), 6.4.3.
     NeoHookean,
+    /// `μ/2 ((1 − s) (|F|² − 3) + s (|cof F|² − 3)) + U(J)`, `U = −μ (1 + s) (J − 1) + (λ + μ (1 − s))/2 (J − 1)²`, after
+    /// Ciarlet, Geymonat (1982): springs on areas besides, all linear. In the plane without strain across it, it is the stable
+    /// neo-Hookean one.
+    StableMooneyRivlin {
+        /// The share s of the shear modulus, from 0 to 1, that goes to the second invariant.
+        share: f64,
+    },
 }
 
 crate::named!(ExactEnergy {
     "stable-neo-hookean" => StableNeoHookean,
     "neo-hookean" => NeoHookean,
+    "stable-mooney-rivlin" => StableMooneyRivlin { share: 0.25 },
 });
+
+impl ExactEnergy {
+    /// With this share of the second invariant.
+    ///
+    /// # Errors
+    /// The energy has no second invariant, or the share is not from 0 to 1.
+    pub fn with_share(self, share: f64) -> Result<ExactEnergy> {
+        match self {
+            ExactEnergy::StableMooneyRivlin { .. } if (0.0..=1.0).contains(&share) => {
+                Ok(ExactEnergy::StableMooneyRivlin { share })
+            }
+            ExactEnergy::StableMooneyRivlin { .. } => Err(Error::expected("share", "a share from 0 to 1", share)),
+            ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean => {
+                let found = format!("found with \"{}\"", self.name());
+                Err(Error::at("share", format!("belongs to the energy \"stable-mooney-rivlin\", {found}")))
+            }
+        }
+    }
+}
 
 /// The numbers of an exact network per volume of the cell, thickness included.
 #[derive(Debug, Clone)]
 pub(super) struct Coefficients {
-    /// Of the springs between nodes, and their tension on the springs on content, `−U'(1)`.
-    pub mu: f64,
-    /// `U''(1) − μ`.
+    /// Of `½ |F|²`, which is in the springs between nodes.
+    pub lengths: f64,
+    /// Of `½ |cof F|²`, in the springs on areas.
+    pub areas: f64,
+    /// `−U'(1)`: what springs on content pull at rest.
+    pub tension: f64,
+    /// `U''(1)` is the sum of both: what stays in the cells where others have λ, and λ.
+    pub slope: f64,
     pub lambda: f64,
     /// Of springs on content, where it is not linear. Its parameters are `a`, what μ is per content of the spring, and `b`, λ.
     pub law: Option<Arc<Law>>,
@@ -58,22 +90,38 @@ impl Coefficients {
         let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
         let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
         let law = |text: &str| Some(Arc::new(Law::parse(text).expect("the laws of this file are expressions")));
-        let small = |law| Coefficients { mu, lambda, law, law_lambda: lambda, is_condensed: false };
+        let neo_hookean = Coefficients {
+            lengths: mu,
+            areas: 0.0,
+            tension: mu,
+            slope: mu,
+            lambda,
+            law: None,
+            law_lambda: lambda,
+            is_condensed: false,
+        };
         let condensed = match material.state() {
             State::PlaneStress { .. } if is_large => true,
             State::Rod { .. } => is_large,
             State::PlaneStress { .. } | State::PlaneStrain { .. } | State::Solid => false,
         };
         if !condensed {
-            return Ok(small(match energy {
-                ExactEnergy::StableNeoHookean => None,
-                ExactEnergy::NeoHookean => law(NEO_HOOKEAN),
-            }));
+            return Ok(match (energy, material.state()) {
+                (ExactEnergy::NeoHookean, _) => Coefficients { law: law(NEO_HOOKEAN), ..neo_hookean },
+                (ExactEnergy::StableMooneyRivlin { share }, State::Solid) => Coefficients {
+                    lengths: mu * (1.0 - share),
+                    areas: mu * share,
+                    tension: mu * (1.0 + share),
+                    slope: mu * (1.0 - share),
+                    ..neo_hookean
+                },
+                (ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. }, _) => neo_hookean,
+            });
         }
         let text = match (energy, material.state()) {
             (ExactEnergy::StableNeoHookean, State::Rod { .. }) => STABLE_IN_ROD.to_string(),
             (ExactEnergy::StableNeoHookean, _) => STABLE_IN_PLANE_STRESS.replace('g', ACROSS_PLANE),
-            (ExactEnergy::NeoHookean, _) => {
+            (ExactEnergy::NeoHookean | ExactEnergy::StableMooneyRivlin { .. }, _) => {
                 let expected = "\"stable-neo-hookean\": the stretch across planes and rods without stress has no formula in others";
                 return Err(Error::expected("energy", expected, format!("\"{}\"", energy.name()))
                     .of_kind(ErrorKind::Unsupported));
@@ -85,6 +133,8 @@ impl Coefficients {
         }
         // Of the linear body λ + 2 μ is what counts in a rod, where μ may be any.
         let lambda = if let State::Rod { .. } = material.state() { 2.0 * mu - 2.0 * solid_mu } else { lambda };
-        Ok(Coefficients { mu: solid_mu, lambda, law: law(&text), law_lambda: solid_lambda, is_condensed: true })
+        let (lengths, tension, slope) = (solid_mu, solid_mu, solid_mu);
+        let (law, law_lambda) = (law(&text), solid_lambda);
+        Ok(Coefficients { lengths, tension, slope, lambda, law, law_lambda, is_condensed: true, ..neo_hookean })
     }
 }

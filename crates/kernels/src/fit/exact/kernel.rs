@@ -7,6 +7,7 @@ use crate::fit::packing::Packing;
 use crate::scalar::{Packed, PackedWork, Real, dot, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry};
+use nalgebra::Matrix3;
 
 /// A constant below this share of the largest of its cell is rounding.
 const ROUNDING: f64 = 1e-13;
@@ -36,14 +37,15 @@ impl ExactBatch<'_> {
 
     /// The number of a content spring in the order of [`ContentSpring`].
     fn content(&self, shares: [f64; 2], content: f64, volume: f64, volumetric: f64) -> ContentSpring {
-        let Coefficients { mu, lambda, law, law_lambda, .. } = self.coefficients;
-        let (a, b) = (shares[0] * mu * volume, shares[1] * lambda * volumetric);
-        let constant = (a + b) / (content * content);
+        let Coefficients { tension, slope, lambda, law, law_lambda, .. } = self.coefficients;
+        let pull = shares[0] * tension * volume;
+        let slope = shares[0] * slope * volume + shares[1] * lambda * volumetric;
+        let constant = slope / (content * content);
         match law {
-            None => ContentSpring { constant, parameters: [(2.0 * a + b) / content, 0.0], count: 1 },
+            None => ContentSpring { constant, parameters: [(slope + pull) / content, 0.0], count: 1 },
             Some(_) => {
                 let b = shares[1] * law_lambda * volumetric;
-                ContentSpring { constant, parameters: [a / content, b / content], count: 2 }
+                ContentSpring { constant, parameters: [pull / content, b / content], count: 2 }
             }
         }
     }
@@ -74,7 +76,7 @@ impl PackedWork for ExactBatch<'_> {
             let count = T::COUNT.min(cells - cell);
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             if packing.gather(nodes) && geometry.update(table, &packing.x) {
-                stiffen(&geometry, self.coefficients.mu, &mut pairs);
+                stiffen(&geometry, self.coefficients.lengths, &mut pairs);
                 for lane in 0..count {
                     let at = cell + lane;
                     for (k, pair) in self.constants[at * m..].iter_mut().zip(&pairs) {
@@ -83,16 +85,20 @@ impl PackedWork for ExactBatch<'_> {
                     let volume = |q: usize| geometry.volumes[q].as_slice()[lane];
                     let volumetric = |q: usize| geometry.volumetric.get(q).map_or(volume(q), |v| v.as_slice()[lane]);
                     self.contents(at, p, volume, volumetric);
+                    if !self.springs.areas.is_empty() {
+                        self.areas(at, &packing.lane(lane), volume);
+                    }
                 }
             } else {
                 // One by one: what is wrong with a cell, or nothing but the range of numbers.
                 for at in cell..cell + count {
                     packing.place(&self.connectivity[at * n..(at + 1) * n], &mut x).map_err(|fault| (at, fault))?;
                     plain.set(table, &x).map_err(|fault| (at, fault))?;
-                    stiffen(&plain, self.coefficients.mu, &mut self.constants[at * m..][..pairs.len()]);
+                    stiffen(&plain, self.coefficients.lengths, &mut self.constants[at * m..][..pairs.len()]);
                     let volume = |q: usize| plain.volumes[q];
                     let volumetric = |q: usize| plain.volumetric.get(q).map_or(volume(q), |v| *v);
                     self.contents(at, p, volume, volumetric);
+                    self.areas(at, &x, volume);
                 }
             }
             cell += count;
@@ -109,7 +115,8 @@ impl ExactBatch<'_> {
     #[inline(always)]
     fn contents(&mut self, cell: usize, p: usize, volume: impl Fn(usize) -> f64, volumetric: impl Fn(usize) -> f64) {
         let m = self.springs.len();
-        let (mut place, mut next) = (cell * m + self.springs.pairs.len(), cell * p);
+        let first = self.springs.pairs.len() + self.springs.areas.len();
+        let (mut place, mut next) = (cell * m + first, cell * p);
         let mut store = |batch: &mut Self, spring: ContentSpring| {
             batch.constants[place] = spring.constant;
             batch.parameters[next..next + spring.count].copy_from_slice(&spring.parameters[..spring.count]);
@@ -126,6 +133,39 @@ impl ExactBatch<'_> {
         }
     }
 }
+
+impl ExactBatch<'_> {
+    /// Writes the springs on areas of one cell with its nodes at `x`. With `N = [n₁ n₂ n₃]`, the cofactor matrix of the Jacobian J,
+    /// `cof F = N J₀ᵀ/det J₀`, so that `|cof F|² = Σ_kl M_kl n_k·n_l`, `M = J₀ᵀ J₀/det² J₀`, which is a sum of squares of `|n_k|` and
+    /// `|n_k + n_l|`.
+    fn areas(&mut self, cell: usize, x: &[f64], volume: impl Fn(usize) -> f64) {
+        let (m, table) = (self.springs.len(), &self.element.tabulation);
+        let size = table.nodes * table.dimension;
+        let first = cell * m + self.springs.pairs.len();
+        let all = self.constants[first..first + self.springs.areas.len()].chunks_exact_mut(AREAS);
+        for (q, constants) in all.enumerate() {
+            let j = Matrix3::from_fn(|k, l| {
+                let nodes = x.chunks_exact(3).zip(table.gradients[q * size..(q + 1) * size].chunks_exact(3));
+                nodes.map(|(x, dn)| x[k] * dn[l]).sum::<f64>()
+            });
+            let metric = j.transpose() * j * (self.coefficients.areas * volume(q) / j.determinant().powi(2));
+            let pairs = [(0, 1), (0, 2), (1, 2)];
+            let least = ROUNDING * metric.amax();
+            let mixed = pairs.map(|pair| if metric[pair].abs() > least { metric[pair] } else { 0.0 });
+            for k in 0..3 {
+                let others = pairs.iter().zip(mixed).filter(|((a, b), _)| *a == k || *b == k);
+                constants[k] = metric[(k, k)] - others.map(|(_, mixed)| mixed).sum::<f64>();
+                if constants[k].abs() <= least {
+                    constants[k] = 0.0;
+                }
+            }
+            constants[3..].copy_from_slice(&mixed);
+        }
+    }
+}
+
+/// Springs on areas at each quadrature point: of three columns of the cofactor matrix and of three sums of two.
+const AREAS: usize = 6;
 
 /// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero.
 fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {

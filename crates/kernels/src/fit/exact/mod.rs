@@ -101,7 +101,7 @@ pub fn fit_exact(
     }
     // A line has no volume apart from its length.
     let volume = if element.dimension() == 1 { VolumeSprings::Points } else { fit.volume };
-    let springs = Springs::exact(element, volume == VolumeSprings::Cells);
+    let springs = Springs::exact(element, coefficients.areas > 0.0, volume == VolumeSprings::Cells);
     let shares = volume.shares(springs.points.is_empty());
     check_flat(element, points, connectivity)?;
     let force = Force::Exact { content: coefficients.law.clone() };

@@ -17,6 +17,7 @@ const SOLVED: f64 = 1e-6;
 /// The finite element solutions, and what the comparison with a network reuses.
 pub struct LinearBody {
     pub displacements: Vec<Vec<f64>>,
+    moduli: Moduli,
     seconds: Vec<f64>,
     /// The equations and factor of each load, as an index into these: loads of equal support share them.
     systems: Vec<(System, Factor)>,
@@ -43,7 +44,8 @@ impl LinearBody {
     /// # Errors
     /// Some motion has no stiffness, or the equations do not fit into memory.
     pub fn solve(mesh: &Mesh, moduli: Moduli, cases: &[Case], progress: &mut Progress) -> Result<LinearBody> {
-        let mut body = LinearBody { displacements: vec![], seconds: vec![], systems: vec![], system_of: vec![] };
+        let (displacements, seconds, systems, system_of) = Default::default();
+        let mut body = LinearBody { displacements, moduli, seconds, systems, system_of };
         if cases.is_empty() {
             return Ok(body);
         }
@@ -93,11 +95,11 @@ impl LinearBody {
         Some(&self.systems[self.system_of[load]])
     }
 
-    /// Solves every load with the network.
+    /// Solves every load with the network, whose energies are compared with those of finite elements of the moduli `compared`.
     ///
     /// # Errors
     /// The equations do not fit into memory.
-    pub fn compare(&self, mesh: &Mesh, cases: &[Case], network: &Network) -> Result<NetworkAnswers> {
+    pub fn compare(&self, mesh: &Mesh, cases: &[Case], network: &Network, compared: Moduli) -> Result<NetworkAnswers> {
         let mut answers = NetworkAnswers::default();
         if cases.is_empty() {
             return Ok(answers);
@@ -105,6 +107,7 @@ impl LinearBody {
         let start = Instant::now();
         let entries = network.stiffness(&mesh.points);
         let assembly = start.elapsed().as_secs_f64();
+        let other = (compared != self.moduli).then(|| finite_elements(mesh, compared));
         let mut systems: Vec<(System, Option<Factor>, Stability, f64)> = Vec::new();
         for (i, case) in cases.iter().enumerate() {
             let index = self.system_of[i];
@@ -114,6 +117,9 @@ impl LinearBody {
                 let factor = system.factorize();
                 let seconds = start.elapsed().as_secs_f64();
                 let (body, body_factor) = &self.systems[index];
+                let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
+                let other = other.and_then(|body| body.cholesky().map(|factor| (body, factor)));
+                let (body, body_factor) = other.as_ref().map_or((body, body_factor), |(body, factor)| (body, factor));
                 let stability = compare_energies(&system, factor.as_ref(), body, body_factor);
                 systems.push((system, factor, stability, seconds));
             }

@@ -6,7 +6,7 @@ use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
 use crate::fit::CellFits;
-use crate::material::Material;
+use crate::material::{Material, Moduli};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use std::time::Instant;
@@ -51,6 +51,20 @@ impl FittedKind {
             FittedKind::Published(outcome) => outcome.notes(cells, material),
             FittedKind::Exact(outcome) => outcome.notes(),
         }
+    }
+
+    /// The moduli of the finite elements by whose energies the network's are measured.
+    pub fn compared(&self, moduli: Moduli) -> Moduli {
+        match self {
+            FittedKind::Exact(outcome) => outcome.compared(moduli),
+            FittedKind::Stiffness(_) | FittedKind::Sampled(_) | FittedKind::Whole(_) | FittedKind::Published(_) => {
+                moduli
+            }
+        }
+    }
+
+    pub fn exact(&self) -> Option<&ExactOutcome> {
+        if let FittedKind::Exact(outcome) = self { Some(outcome) } else { None }
     }
 
     pub fn stiffness(&self) -> Option<&StiffnessOutcome> {

@@ -11,6 +11,8 @@ use serde::Deserialize;
 pub struct ExactEntry {
     pub energy: Option<String>,
     pub volume: Option<String>,
+    /// Of the energy "stable-mooney-rivlin".
+    pub share: Option<f64>,
 }
 
 impl ExactEntry {
@@ -25,6 +27,10 @@ impl ExactEntry {
         }
         let energy = self.energy.as_deref().map(|name| ExactEnergy::named(name).map_err(|e| e.at_key("energy")));
         let volume = self.volume.as_deref().map(|name| VolumeSprings::named(name).map_err(|e| e.at_key("volume")));
-        Ok(ExactRecipe { energy: energy.transpose()?, volume: volume.transpose()?.unwrap_or_default() })
+        let energy = match (energy.transpose()?, self.share) {
+            (energy, None) => energy,
+            (energy, Some(share)) => Some(energy.unwrap_or_default().with_share(share)?),
+        };
+        Ok(ExactRecipe { energy, volume: volume.transpose()?.unwrap_or_default() })
     }
 }

@@ -1,7 +1,10 @@
 //! What an exact network is equal to.
 
 use crate::fit::{ExactEnergy, VolumeSprings};
-use crate::material::State;
+use crate::material::{Moduli, State};
+
+/// λ/μ of Poisson's ratio 1/3.
+const UNLOCKED: f64 = 2.0;
 
 /// The body that the network is equal to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +21,17 @@ pub struct ExactOutcome {
 }
 
 impl ExactOutcome {
+    /// The moduli of finite elements that do not lock: networks with volume springs on cells or patches are softer near the
+    /// incompressible than those of the material, as they are to be.
+    pub fn compared(&self, moduli: Moduli) -> Moduli {
+        match self.volume {
+            VolumeSprings::Points => moduli,
+            VolumeSprings::Cells | VolumeSprings::Patches => {
+                Moduli { lambda: moduli.lambda.min(UNLOCKED * moduli.mu), ..moduli }
+            }
+        }
+    }
+
     /// What a reader must know of it.
     pub fn notes(&self) -> Vec<String> {
         let other = self.is_other.then(|| {

@@ -11,6 +11,8 @@ pub struct ExactRecord {
     /// Null: that of the material's law, or the stable neo-Hookean one where it has none.
     pub energy: Option<String>,
     pub volume: String,
+    /// Of the second invariant, where the energy has one.
+    pub share: Option<f64>,
 }
 
 impl ExactRecord {
@@ -19,6 +21,10 @@ impl ExactRecord {
             objective: "exact".into(),
             energy: recipe.energy.as_ref().map(ExactEnergy::name).map(String::from),
             volume: recipe.volume.name().into(),
+            share: match recipe.energy {
+                Some(ExactEnergy::StableMooneyRivlin { share }) => Some(share),
+                Some(ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean) | None => None,
+            },
         }
     }
 }
