@@ -167,6 +167,13 @@ impl ExactBatch<'_> {
 /// Springs on areas at each quadrature point: of three columns of the cofactor matrix and of three sums of two.
 const AREAS: usize = 6;
 
+/// The springs between all pairs of nodes, see [`stiffen`].
+pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
+    let mut pairs = vec![geometry.volumes[0].zero(); geometry.nodes * (geometry.nodes - 1) / 2];
+    stiffen(geometry, mu, &mut pairs);
+    pairs
+}
+
 /// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero.
 fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {
     // A copy for each of the common sizes, in which the loops unroll: for few nodes they are all overhead.

@@ -14,6 +14,7 @@ mod energy;
 mod kernel;
 
 pub use energy::ExactEnergy;
+pub(super) use kernel::edges;
 
 use super::cells::{CHUNK, CellFits, ROUND};
 use super::input::check_cells;
