@@ -21,6 +21,7 @@ mod golden;
 mod large;
 mod laws;
 mod layering;
+mod locking;
 mod mesh_files;
 mod messages;
 mod modes;

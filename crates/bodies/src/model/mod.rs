@@ -7,6 +7,7 @@ mod load;
 mod lumping;
 mod network;
 mod patches;
+mod pressure;
 mod support;
 mod system;
 
@@ -16,6 +17,7 @@ pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses};
 pub use network::{LengthSpring, MeasureSpring, Network};
 pub use patches::patch_springs;
+pub use pressure::smoothed_pressure;
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};
 

@@ -8,6 +8,7 @@ mod measure;
 mod patch;
 mod vector;
 
+pub use content::Content;
 pub use law::{Force, Law};
 pub use measure::{Measure, Response, linear};
 pub use patch::Patch;
@@ -17,7 +18,6 @@ use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
 use crate::symbolic::{Expr, Jet};
-use content::Content;
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
