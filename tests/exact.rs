@@ -9,9 +9,12 @@ use springfit::fit::{CellFits, ExactEnergy, ExactFit, VolumeSprings, element_err
 use springfit::material::{Energy, Material, Moduli, Plane, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::{Body, Elastic, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs};
+use springfit::report::network_json;
 use springfit::solve::{System, lowest_modes};
 use springfit::springs::Measure;
 use springfit::stiffness::Geometry;
+use springfit::study::{Scene, run};
+use std::path::Path;
 use std::sync::Arc;
 
 const POINTS: ExactFit =
@@ -386,5 +389,128 @@ fn frequencies_and_motion_are_those_of_the_body() {
             println!("{element} {integrator:?}: largest displacement {size:e}, apart {:e}", apart / size);
             assert!(size > 1e-3 && apart < 1e-9 * size, "{element} {integrator:?}: {:e}", apart / size);
         }
+    }
+}
+
+/// What a program needs of an exact network is in its JSON: the energy at any positions, from the file alone.
+#[test]
+fn the_json_of_a_network_has_all_that_its_energy_needs() {
+    let material = Material::new(1e4, 0.4, State::Solid).unwrap();
+    for (element, energy, volume) in [
+        ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Points),
+        ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Patches),
+        ("hex8", ExactEnergy::StableMooneyRivlin { share: 0.4 }, VolumeSprings::Points),
+    ] {
+        let mesh = cube(element, [2, 1, 1], [0.02; 3]);
+        let fit = ExactFit { energy, volume, large: false };
+        let mut network = network(&mesh, material, fit);
+        if volume == VolumeSprings::Patches {
+            network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
+        }
+        let text = network_json(&mesh, None, &network);
+        let file: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let mut random = Random(38);
+        let x: Vec<[f64; 3]> =
+            mesh.points.chunks_exact(3).map(|x| [0, 1, 2].map(|k| x[k] * 1.2 + 0.001 * random.next())).collect();
+        let number = |value: &serde_json::Value| value.as_f64().unwrap();
+        let list = |value: &serde_json::Value| -> Vec<usize> {
+            value.as_array().unwrap().iter().map(|v| v.as_u64().unwrap() as usize).collect()
+        };
+        let determinant = |columns: [[f64; 3]; 3]| DMatrix::from_fn(3, 3, |k, l| columns[l][k]).determinant();
+        let volume_of = |points: &[usize]| {
+            let edge = |a: usize| [0, 1, 2].map(|k| x[points[a]][k] - x[points[0]][k]);
+            determinant([edge(1), edge(2), edge(3)]) / 6.0
+        };
+        let mut found = 0.0;
+        for spring in file["springs"].as_array().unwrap() {
+            let points = list(&spring["points"]);
+            let measure = match spring["kind"].as_str().unwrap() {
+                "length" => (0..3).map(|k| (x[points[1]][k] - x[points[0]][k]).powi(2)).sum::<f64>().sqrt(),
+                "volume" => volume_of(&points),
+                "patch" => {
+                    let cells = spring["cells"].as_array().unwrap().iter();
+                    let nodes =
+                        |cell: &serde_json::Value| list(&cell["nodes"]).iter().map(|&a| points[a]).collect::<Vec<_>>();
+                    cells.map(|cell| number(&cell["share"]) * volume_of(&nodes(cell))).sum()
+                }
+                "point-content" | "point-area" => {
+                    let gradients = spring["gradients"].as_array().unwrap();
+                    let column = |l: usize| {
+                        let entry =
+                            |k: usize| points.iter().zip(gradients).map(|(p, g)| x[*p][k] * number(&g[l])).sum::<f64>();
+                        [0, 1, 2].map(entry)
+                    };
+                    let weight = number(&spring["weight"]);
+                    if gradients[0].as_array().unwrap().len() == 3 {
+                        weight * determinant([column(0), column(1), column(2)])
+                    } else {
+                        let [a, b] = [column(0), column(1)].map(|c| nalgebra::Vector3::from(c));
+                        weight * a.cross(&b).norm()
+                    }
+                }
+                other => panic!("{other}"),
+            };
+            found += number(&spring["constant"]) * (measure - number(&spring["rest"])).powi(2) / 2.0;
+        }
+        let expected = Elastic::energy(&network, &x.concat()).unwrap();
+        assert!((found - expected).abs() < 1e-10 * expected, "{element} {energy:?} {volume:?}: {found} {expected}");
+    }
+}
+
+/// What no exact network can be is one line that says what is possible.
+#[test]
+fn what_cannot_be_exact_is_an_error() {
+    let scene = |mesh: &str, material: &str, fit: &str| {
+        let text = format!(
+            "[mesh]\nbox = {{ {mesh} }}\n[material]\nyoung = 1\npoisson = 0.3\n{material}\n[[fit]]\nobjective = \"exact\"\n{fit}\n"
+        );
+        Scene::parse(&text, Path::new("scene.toml")).and_then(|scene| run(&scene, &mut |_| {})).map(|_| ()).unwrap_err()
+    };
+    let solid = "element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1]";
+    let plane = "element = \"tri3\", size = [1, 1], cells = [1, 1]";
+    for (mesh, material, fit, start) in [
+        (
+            solid,
+            "law = \"yeoh\"",
+            "",
+            "scene.toml: fit[0].objective: expected a material with the law \"stable-neo-hookean\"",
+        ),
+        (
+            solid,
+            "",
+            "volume = \"nodes\"",
+            "scene.toml: fit[0].volume: expected one of points, cells, patches, found \"nodes\"",
+        ),
+        (solid, "", "energy = \"yeoh\"", "scene.toml: fit[0].energy: expected one of stable-neo-hookean, neo-hookean"),
+        (solid, "", "share = 0.5", "scene.toml: fit[0].share: belongs to the energy \"stable-mooney-rivlin\""),
+        (
+            solid,
+            "",
+            "energy = \"stable-mooney-rivlin\"\nshare = 1.5",
+            "scene.toml: fit[0].share: expected a share from 0 to 1, found 1.5",
+        ),
+        (solid, "", "springs = [\"edge\"]", "scene.toml: fit[0].springs: expected no groups"),
+        (solid, "", "weight = \"modal\"", "scene.toml: fit[0].weight: does not go with the objective \"exact\""),
+        (
+            "element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1]",
+            "",
+            "volume = \"patches\"",
+            "scene.toml: fit[0].volume: expected \"points\" or \"cells\": patches are for meshes of one kind of cells",
+        ),
+        (
+            plane,
+            "law = \"neo-hookean\"",
+            "",
+            "scene.toml: fit[0].energy: expected \"stable-neo-hookean\": the stretch across planes",
+        ),
+        (
+            plane,
+            "law = \"stable-neo-hookean\"",
+            "volume = \"cells\"",
+            "scene.toml: fit[0].volume: expected \"points\" at large deformation without stress",
+        ),
+    ] {
+        let error = scene(mesh, material, fit).to_string();
+        assert!(error.starts_with(start), "{fit}: {error}");
     }
 }
