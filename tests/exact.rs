@@ -8,7 +8,9 @@ use springfit::element::Element;
 use springfit::fit::{CellFits, ExactEnergy, ExactFit, VolumeSprings, element_errors, fit_exact};
 use springfit::material::{Energy, Material, Moduli, Plane, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Body, Elastic, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs};
+use springfit::model::{
+    Body, Elastic, Lumping, Network, Support, fibre_springs, finite_elements, lumped_masses, patch_springs,
+};
 use springfit::report::network_json;
 use springfit::solve::{System, lowest_modes};
 use springfit::springs::Measure;
@@ -240,7 +242,7 @@ fn measures_have_the_derivatives_of_differences() {
             let material = Material::new(1.0, 0.3, State::Solid).unwrap();
             let fit = ExactFit { energy: ExactEnergy::StableMooneyRivlin { share: 0.5 }, ..POINTS };
             for table in cells(&single(&flat, &x), material, fit).springs.areas() {
-                check(&Measure::PointArea(table.clone()), &x, d, &format!("{} area", element.name));
+                check(&Measure::Span(table.clone()), &x, d, &format!("{} area", element.name));
             }
         } else {
             // A surface or curve in space.
@@ -473,7 +475,7 @@ fn what_cannot_be_exact_is_an_error() {
             solid,
             "law = \"yeoh\"",
             "",
-            "scene.toml: fit[0].objective: expected a material with the law \"stable-neo-hookean\"",
+            "scene.toml: fit[0].objective: expected a law that is \"stable-neo-hookean\", \"neo-hookean\"",
         ),
         (
             solid,
@@ -495,7 +497,7 @@ fn what_cannot_be_exact_is_an_error() {
             "element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1]",
             "",
             "volume = \"patches\"",
-            "scene.toml: fit[0].volume: expected \"points\" or \"cells\": patches are for meshes of one kind of cells",
+            "scene.toml: fit[0].volume: expected \"points\" or \"cells\": patches are for meshes of linear triangles",
         ),
         (
             plane,
@@ -512,5 +514,44 @@ fn what_cannot_be_exact_is_an_error() {
     ] {
         let error = scene(mesh, material, fit).to_string();
         assert!(error.starts_with(start), "{fit}: {error}");
+    }
+}
+
+/// Fibres are springs on their stretch: energy, forces and tangent of a law with fibres, recognised by its values and not by its name.
+#[test]
+fn fibres_are_springs() {
+    let material = Material::new(1e4, 0.3, State::Solid).unwrap();
+    let shipped = Energy::load("fibre", material).unwrap();
+    let turned = "name = \"mine\"\ntitle = \"t\"\nfibre = [1, 2, -1]\nenergy = \"mu/2*(I1 - 3) - mu*ln(J) + lambda/2*ln(J)^2 \
+                  + 0.3*mu*(I4 - 1)^2\"";
+    let mine = Energy::parse(turned, material).unwrap();
+    for law in [shipped, mine] {
+        assert_eq!(ExactEnergy::of_law(&law), Some(ExactEnergy::NeoHookean));
+        for element in ["tet4", "hex8"] {
+            let element = Arc::new(Element::load(element).unwrap());
+            let mut random = Random(39);
+            let mesh = single(&element, &valid(&element, &mut random));
+            let fit = ExactFit { energy: ExactEnergy::NeoHookean, large: true, ..POINTS };
+            let mut network = network(&mesh, material, fit);
+            network.others.extend(fibre_springs(&mesh, material, &law).unwrap());
+            let body = Body { mesh: &mesh, energy: &law, state: State::Solid };
+            let rest = Elastic::energy(&network, &mesh.points).unwrap();
+            let x: Vec<f64> = mesh.points.iter().map(|x| 1.1 * x + 0.05 * random.next()).collect();
+            let (found, expected) = (network.respond(&x).unwrap(), body.respond(&x).unwrap());
+            let name = format!("{} {}", law.name, element.name);
+            assert!((found.energy - rest - expected.energy).abs() < 1e-12 * (rest + expected.energy), "{name}");
+            let norm = expected.force.iter().map(|f| f * f).sum::<f64>().sqrt();
+            assert!(found.force.iter().zip(&expected.force).all(|(a, b)| (a - b).abs() < 1e-11 * norm), "{name}");
+            let (k, t) = (dense(x.len(), &found.tangent), dense(x.len(), &expected.tangent));
+            assert!((&k - &t).norm() < 1e-11 * t.norm(), "{name}: {:e}", (&k - &t).norm() / t.norm());
+        }
+    }
+    let plane = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
+    let out_of_plane = Energy::parse(&turned.replace("ln(J)^2", "ln(J)^2 "), plane).unwrap();
+    let element = Arc::new(Element::load("tri3").unwrap());
+    let error = fibre_springs(&single(&element, &element.positions.clone()), plane, &out_of_plane).unwrap_err();
+    assert!(error.to_string().contains("in the plane of one without strain across it"), "{error}");
+    for (name, known) in [("neo-hookean", true), ("stable-mooney-rivlin", true), ("yeoh", false), ("ogden", false)] {
+        assert_eq!(ExactEnergy::of_law(&Energy::load(name, material).unwrap()).is_some(), known, "{name}");
     }
 }

@@ -95,7 +95,7 @@ impl<'a> MeasureRecord<'a> {
         match measure {
             Measure::Length | Measure::Content(_) | Measure::Function(_) => None,
             Measure::PointContent(element, q) => Some(of_point(&element.tabulation, *q)),
-            Measure::PointArea(table) => Some(of_point(table, 0)),
+            Measure::Span(table) => Some(of_point(table, 0)),
             Measure::Patch(patch) => {
                 let cells = patch.cells.iter().map(|(nodes, share)| ShareRecord { nodes, share: *share });
                 Some(MeasureRecord::Patch { cells: cells.collect() })

@@ -1,6 +1,7 @@
 //! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
 
 mod elastic;
+mod fibres;
 mod forces;
 mod linear;
 mod load;
@@ -12,6 +13,7 @@ mod support;
 mod system;
 
 pub use elastic::{Body, Elastic};
+pub use fibres::fibre_springs;
 pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses};

@@ -203,7 +203,7 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
         }
     };
     let at_point = |&q: &usize| (SpringKind::PointContent, &every, Measure::PointContent(block.element.clone(), q));
-    let of_area = |table: &Arc<Tabulation>| (SpringKind::PointArea, &every, Measure::PointArea(table.clone()));
+    let of_area = |table: &Arc<Tabulation>| (SpringKind::PointArea, &every, Measure::Span(table.clone()));
     let areas = springs.areas().iter().map(of_area);
     let points = springs.points().iter().map(at_point);
     let content = springs.content().map(|kind| (kind, &every, of_cell(kind)));

@@ -24,7 +24,7 @@ const NEO_HOOKEAN: &str = "b*ln(c/c0)*c0/c";
 /// the material is one in which no cell locks at large deformation (kind `Unsupported`).
 pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bool]) -> Result<Vec<MeasureSpring>> {
     let expected =
-        "\"points\" or \"cells\": patches are for meshes of one kind of cells, tri3 or tet4, in their own space";
+        "\"points\" or \"cells\": patches are for meshes of linear triangles or linear tetrahedra in their own space";
     let unsupported = |found: String| {
         Err(Error::expected("volume", expected, format!("\"patches\" with {found}")).of_kind(ErrorKind::Unsupported))
     };

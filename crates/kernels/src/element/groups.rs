@@ -112,7 +112,8 @@ fn nodes_of(
             | SpringKind::Measure
             | SpringKind::PointContent
             | SpringKind::PointArea
-            | SpringKind::Patch,
+            | SpringKind::Patch
+            | SpringKind::Fibre,
         ) => {
             return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
         }

@@ -30,6 +30,9 @@ pub enum SpringKind {
     /// A sum of shares of the contents of the cells around a point, m² or m³. As before.
     #[serde(skip)]
     Patch,
+    /// The stretch of fibres at a point of the quadrature rule of a cell. As before.
+    #[serde(skip)]
+    Fibre,
 }
 
 crate::named!(SpringKind {
@@ -42,6 +45,7 @@ crate::named!(SpringKind {
     "point-content" => PointContent,
     "point-area" => PointArea,
     "patch" => Patch,
+    "fibre" => Fibre,
 });
 
 /// The longest list of nodes of a spring.
@@ -127,7 +131,7 @@ impl SpringKind {
                 unit: "J per square of the unit of the measure",
                 formula: None,
             },
-            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch => Kind {
+            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => Kind {
                 nodes: 1..=MOST_NODES,
                 least_dimension: 1,
                 content: None,

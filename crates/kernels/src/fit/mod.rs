@@ -34,13 +34,13 @@ mod weight;
 
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
-pub use exact::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
+pub use exact::{ExactEnergy, ExactFit, VolumeSprings, exact_constants_of_kind, fit_exact};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use normal::Rank;
 pub use norms::Norm;
 pub use objective::{Balance, Choices, Objective};
-pub use precision::{condition, constants_of_kind, distance_from_optimum, exact_constants_of_kind};
+pub use precision::{condition, constants_of_kind, distance_from_optimum};
 pub use residual::{ElementErrors, Spread, element_errors};
 pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 pub use settings::Fit;
