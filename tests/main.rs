@@ -32,6 +32,7 @@ mod programs;
 mod published;
 mod quadrature;
 mod report;
+mod rest;
 mod sampled;
 mod sampling;
 mod searches;

@@ -8,6 +8,7 @@ mod lumping;
 mod network;
 mod support;
 mod system;
+mod tension;
 
 pub use elastic::{Body, Elastic};
 pub use linear::LinearElastic;
@@ -16,6 +17,7 @@ pub use lumping::{Lumping, lumped_masses};
 pub use network::{LengthSpring, MeasureSpring, Network};
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};
+pub use tension::RestTension;
 
 use faer::sparse::Triplet;
 

@@ -10,7 +10,7 @@ use crate::stiffness::gather;
 use faer::sparse::Triplet;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// A spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,8 +83,10 @@ impl Network {
     /// Adds up the springs of all cells; `fits` has one entry per block of the mesh.
     pub fn assemble(mesh: &Mesh, fits: &[CellFits]) -> Network {
         let mut network = Network { dimension: mesh.dimension, ..Network::default() };
-        network.lengths = merge(mesh, fits);
+        let (lengths, steady) = merge(mesh, fits);
+        network.lengths = lengths;
         network.others = lawful(mesh, fits);
+        network.others.extend(steady);
         network.others.extend(mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| others(mesh, block, fit)));
         network
     }
@@ -213,6 +215,11 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             let mut x = vec![0.0; points.len() * d];
             gather(&mesh.points, d, &points, &mut x);
             let now = measure.value(&x, d);
+            let pull = if matches!(fit.force, Force::FreeRest) { constant * now - parameters[0] } else { 0.0 };
+            if is_steady(constant, pull, now) {
+                all.push(steady(*kind, points, measure.clone(), now, constant, pull));
+                continue;
+            }
             let (law, rest) = match &fit.force {
                 Force::Linear => (None, now),
                 Force::FreeRest => (None, parameters[0] / constant),
@@ -270,18 +277,44 @@ fn is_idle(law: &Law, parameters: &[f64]) -> bool {
     law.is_linear() && parameters.iter().all(|p| *p == 0.0)
 }
 
+/// A rest measure so many times what is measured is none: the energy to there has no digits for its changes.
+const FARTHEST: f64 = 1e10;
+
+/// A rest length below this share of the length is zero.
+const NO_LENGTH: f64 = 1e-12;
+
+/// `ℓ + x`, and zero where that is rounding.
+fn rest_length(length: f64, x: f64) -> f64 {
+    let rest = length + x;
+    if rest.abs() > NO_LENGTH * length { rest } else { 0.0 }
+}
+
+/// Whether a spring that pulls at rest, where it measures c, has no rest measure `c − T/k` that could be written.
+fn is_steady(constant: f64, pull: f64, c: f64) -> bool {
+    pull != 0.0 && pull.abs() > FARTHEST * (constant * c).abs()
+}
+
+/// Such a spring: the same force and slope, with its energy from the mesh on.
+fn steady(kind: SpringKind, points: Vec<usize>, measure: Measure, c: f64, constant: f64, pull: f64) -> MeasureSpring {
+    static LAW: LazyLock<Arc<Law>> =
+        LazyLock::new(|| Arc::new(Law::parse("T + k*(c - c0)").expect("it is a law with parameters")));
+    let law = Some(LAW.clone());
+    MeasureSpring { kind, points, constant, rest: c, measure, law, parameters: vec![pull, constant] }
+}
+
 /// Points whose springs one thread merges in one go.
 const CHUNK: usize = 2048;
 
 /// Adds up the length springs between the same two points. Each point goes through the cells around it and gathers the
-/// springs to its higher neighbours in a list of its own, which is short: nothing is sorted or hashed as a whole.
-fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
+/// springs to its higher neighbours in a list of its own, which is short: nothing is sorted or hashed as a whole. Those whose sum
+/// has no rest length come apart from the others.
+fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<MeasureSpring>) {
     let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
     let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
     let count = mesh.point_count();
     let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
     let part = |first: &usize| {
-        let mut springs = Vec::new();
+        let (mut springs, mut others) = (Vec::new(), Vec::new());
         let mut neighbours: Vec<Neighbour> = Vec::new();
         for i in *first..(first + CHUNK).min(count) {
             neighbours.clear();
@@ -289,16 +322,22 @@ fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
                 star.gather(mesh, i, &mut neighbours);
             }
             neighbours.sort_unstable_by_key(|n| n.point);
-            for n in neighbours.iter().filter(|n| n.constant != 0.0) {
+            for n in neighbours.iter().filter(|n| n.constant != 0.0 || n.slack != 0.0) {
                 let length = distance(mesh.point(i), mesh.point(n.point));
-                let rest = length + n.slack / n.constant;
+                if is_steady(n.constant, -n.slack, length) {
+                    let points = vec![i, n.point];
+                    others.push(steady(SpringKind::Length, points, Measure::Length, length, n.constant, -n.slack));
+                    continue;
+                }
+                let rest = rest_length(length, n.slack / n.constant);
                 springs.push(LengthSpring { points: [i, n.point], constant: n.constant, rest });
             }
         }
-        springs
+        (springs, others)
     };
-    let parts: Vec<Vec<LengthSpring>> = firsts.par_iter().map(part).collect();
-    parts.concat()
+    let parts: Vec<(Vec<LengthSpring>, Vec<MeasureSpring>)> = firsts.par_iter().map(part).collect();
+    let (springs, others): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    (springs.concat(), others.concat())
 }
 
 /// The springs from a point to another so far.
