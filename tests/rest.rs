@@ -60,11 +60,16 @@ impl Pulling {
     /// k and T.
     fn solve(&self, fit: &Fit) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let fits = self.fits(fit)?;
-        let tension = |s: usize| fits.constants[s] * self.measures[s] - fits.parameters[s];
-        let tensions = match fits.force {
-            Force::FreeRest => (0..fits.constants.len()).map(tension).collect(),
-            Force::Linear | Force::Laws(_) => vec![0.0; fits.constants.len()],
+        let (k, count) = (&fits.constants, fits.constants.len());
+        let pull = |s: usize| match fits.force {
+            Force::FreeRest => k[s] * self.measures[s] - fits.parameters[s],
+            Force::Linear | Force::Laws(_) => 0.0,
         };
+        let largest =
+            |of: &dyn Fn(usize) -> f64| (0..count).map(|s| (of(s) * self.case.g[s].norm()).abs()).fold(0.0, f64::max);
+        // The measures here are from the origin, those of the fit from the first node: they differ by rounding.
+        let is_rounding = largest(&pull) <= 1e-13 * largest(&|s| k[s] * self.measures[s]);
+        let tensions = (0..count).map(|s| if is_rounding { 0.0 } else { pull(s) }).collect();
         Ok((fits.constants, tensions))
     }
 
@@ -158,14 +163,27 @@ fn norm(v: &[f64]) -> f64 {
     v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// Some materials of every element, with and without its optional springs.
+/// Some materials of every element at a random shape, with and without its optional springs; and of those that are not large the
+/// reference shape under a linear map, where springs of a group are alike.
 fn subjects() -> Vec<Pulling> {
-    cases(1)
-        .into_iter()
-        .enumerate()
-        .filter(|(i, c)| i % 3 == 0 || c.springs.len() > LARGE)
-        .map(|(_, c)| Pulling::of(c))
-        .collect()
+    let some = |(i, case): &(usize, Case)| i % 3 == 0 || case.springs.len() > LARGE;
+    let cases: Vec<Case> = cases(1).into_iter().enumerate().filter(some).map(|(_, case)| case).collect();
+    let mut random = Random(41);
+    let mapped = |of: &Case| {
+        let d = of.springs.dimension();
+        let map = DMatrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)) + 0.2 * random.next());
+        let place = |at: &[f64]| (&map * DVector::from_column_slice(at)).as_slice().to_vec();
+        let x: Vec<f64> = of.element.positions.chunks_exact(d).flat_map(place).collect();
+        case(&of.element, &of.springs, &x, of.moduli)
+    };
+    let regular: Vec<Case> = cases.iter().filter(|case| case.springs.len() <= LARGE).map(mapped).collect();
+    cases.into_iter().chain(regular).map(Pulling::of).collect()
+}
+
+/// Of large elements, whose matrices take a second to form here, two weights and no bounds.
+fn is_skipped(subject: &Pulling, fit: &Fit) -> bool {
+    let few = [Weight::None, Weight::OffDiagonal].map(Objective::Frobenius);
+    subject.case.springs.len() > LARGE && (fit.tied || fit.nonnegative || !few.contains(&fit.objective))
 }
 
 fn frobenius(weight: Weight, rest: Rest) -> Fit {
@@ -189,13 +207,12 @@ fn solved(subject: &Pulling, fit: &Fit) -> Option<(Vec<f64>, Vec<f64>)> {
 fn forces_at_rest_vanish_and_the_error_is_not_above_that_without_tension() {
     let (mut pulling, mut stuck) = (0, 0);
     for subject in subjects() {
-        let large = subject.case.springs.len() > LARGE;
         for (weight, bounds) in weights().into_iter().flat_map(|w| [0, 1, 2, 3].map(|bounds| (w, bounds))) {
-            if large && (bounds > 0 || weight == weights()[3]) {
-                continue;
-            }
             for rest in [Rest::Free, Rest::Zero] {
                 let fit = Fit { nonnegative: bounds & 1 > 0, tied: bounds & 2 > 0, ..frobenius(weight, rest) };
+                if is_skipped(&subject, &fit) {
+                    continue;
+                }
                 let Some((k, t)) = solved(&subject, &fit) else {
                     stuck += 1;
                     continue;
@@ -248,19 +265,23 @@ fn tied_springs_share_their_rest_ratio() {
 #[test]
 fn optima_are_stationary() {
     for subject in subjects() {
-        let large = subject.case.springs.len() > LARGE;
         for weight in weights() {
             for (rest, tied) in [(Rest::Free, false), (Rest::Free, true), (Rest::Zero, false), (Rest::Zero, true)] {
-                if large && (tied || weight == weights()[3]) {
+                let fit = Fit { tied, ..frobenius(weight, rest) };
+                if is_skipped(&subject, &fit) {
                     continue;
                 }
-                let fit = Fit { tied, ..frobenius(weight, rest) };
                 let Some((k, t)) = solved(&subject, &fit) else { continue };
                 let seen = subject.case.weighted(weight, &subject.residual(&k, &t));
                 let (a, c) = subject.columns(weight, &subject.unknowns(rest, tied));
                 let slopes = a.tr_mul(&DVector::from_column_slice(seen.as_slice()));
-                let y = c.transpose().svd(true, true).solve(&slopes, 1e-12 * c.amax()).unwrap();
-                let left = (&slopes - c.tr_mul(&y)).amax();
+                // Twice: what the first solution leaves of the slopes is solved again.
+                let svd = c.transpose().svd(true, true);
+                let rest_of = |slopes: DVector<f64>| {
+                    let y = svd.solve(&slopes, 1e-12 * c.amax()).unwrap();
+                    slopes - c.tr_mul(&y)
+                };
+                let left = rest_of(rest_of(slopes)).amax();
                 let size = subject.rhs(weight).norm();
                 assert!(left <= 1e-9 * size, "{} {fit:?}: {left} of {size}", subject.case.name);
             }
@@ -325,7 +346,8 @@ fn nonnegative_least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounded: &[bool
     u
 }
 
-/// The equilibrium as a penalty of weight ρ² makes the reference less by up to ‖y‖²/ρ², y the multipliers, of about the size of b.
+/// The equilibrium as a penalty of weight ρ² makes the reference less by up to ‖y‖²/ρ², y the multipliers, of about the size of b,
+/// to which forces are scaled.
 #[test]
 fn nonnegative_optima_are_those_of_an_active_set_method() {
     const PENALTY: f64 = 1e4;
@@ -340,7 +362,7 @@ fn nonnegative_optima_are_those_of_an_active_set_method() {
             let b = subject.rhs(weight);
             let mut rows = DMatrix::zeros(a.nrows() + c.nrows(), a.ncols());
             rows.view_mut((0, 0), a.shape()).copy_from(&a);
-            rows.view_mut((a.nrows(), 0), c.shape()).copy_from(&(PENALTY * &c));
+            rows.view_mut((a.nrows(), 0), c.shape()).copy_from(&(PENALTY / c.amax() * &c));
             let mut rhs = DVector::zeros(rows.nrows());
             rhs.rows_mut(0, b.len()).copy_from(&(&b / b.norm()));
             let bounded: Vec<bool> = unknowns.iter().map(|unknown| unknown.is_constant).collect();
@@ -609,6 +631,13 @@ fn what_cannot_have_tensions_is_refused() {
     // Springs of no length on the edges alone hold each other only without force.
     let error = refused(frobenius(Weight::None, Rest::Zero), &element, &x);
     assert!(error.to_string().contains("cell 1") && error.to_string().contains("content"), "{error}");
+    // Tensions also resist motions out of the plane of a surface, which its stiffness does not know.
+    let error = refused(
+        frobenius(Weight::None, Rest::Free),
+        &element.in_space(3),
+        &[0.0, 0.0, 0.0, 1.0, 0.0, 0.2, 0.2, 0.9, 0.1],
+    );
+    assert_eq!((error.key(), error.kind()), (Some("rest"), ErrorKind::Unsupported), "{error}");
 }
 
 const PLATE: &str = r#"

@@ -28,7 +28,7 @@ fn fits() {
                 modal,
                 "\"spectral\"\nrest = \"free\"",
                 "scene.toml: fit[0].rest",
-                "\"spectral\"…\"modal\", found \"free\"",
+                "\"offdiag\" and \"modal\", found \"free\"",
             ),
             (modal, "\"divergence\"\nrest = \"zero\"", "scene.toml: fit[0].rest", "found \"zero\""),
             (
@@ -40,7 +40,7 @@ fn fits() {
             (modal, "\"whole\"\nrest = \"free\"", "scene.toml: fit[0].rest", "the objective \"whole\""),
             (modal, "\"baudet\"\nrest = \"free\"", "scene.toml: fit[0].rest", "the objective \"baudet\""),
             (modal, "\"sampled\"\nrest = \"free\"", "scene.toml: fit[0].rest", "the objective \"sampled\""),
-            (modal, "\"modal\"\nrest = \"zero\"", "tet4 cell 1", "such as one on the content"),
+            (modal, "\"modal\"\nrest = \"zero\"", "scene.toml: fit[0].tet4 cell 1", "such as one on the content"),
             (modal, "\"modal\"\ntopology = true", "scene.toml: fit[0].topology", "found with \"native\""),
             (
                 modal,

@@ -6,6 +6,7 @@ mod linear;
 mod load;
 mod lumping;
 mod network;
+mod steady;
 mod support;
 mod system;
 mod tension;

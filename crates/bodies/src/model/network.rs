@@ -1,6 +1,7 @@
 //! The mass-spring model: the springs of all cells, those between the same two points added up.
 
 use super::Entries;
+use super::steady::{is_steady, rest_length, steady_law};
 use super::system::dofs;
 use crate::element::SpringKind;
 use crate::fit::CellFits;
@@ -10,7 +11,7 @@ use crate::stiffness::gather;
 use faer::sparse::Triplet;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 /// A spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +49,12 @@ pub struct MeasureSpring {
 }
 
 impl MeasureSpring {
+    /// One that measures c at rest, with the slope k and the force T there, for which [`is_steady`] holds.
+    fn steady(kind: SpringKind, points: Vec<usize>, measure: Measure, c: f64, [k, t]: [f64; 2]) -> MeasureSpring {
+        let (law, parameters) = (Some(steady_law()), vec![t, k]);
+        MeasureSpring { kind, points, constant: k, rest: c, measure, law, parameters }
+    }
+
     /// Energy, force and its slope where the measure is c.
     pub fn pull(&self, c: f64) -> [f64; 3] {
         match &self.law {
@@ -217,7 +224,7 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             let now = measure.value(&x, d);
             let pull = if matches!(fit.force, Force::FreeRest) { constant * now - parameters[0] } else { 0.0 };
             if is_steady(constant, pull, now) {
-                all.push(steady(*kind, points, measure.clone(), now, constant, pull));
+                all.push(MeasureSpring::steady(*kind, points, measure.clone(), now, [constant, pull]));
                 continue;
             }
             let (law, rest) = match &fit.force {
@@ -277,31 +284,6 @@ fn is_idle(law: &Law, parameters: &[f64]) -> bool {
     law.is_linear() && parameters.iter().all(|p| *p == 0.0)
 }
 
-/// A rest measure so many times what is measured is none: the energy to there has no digits for its changes.
-const FARTHEST: f64 = 1e10;
-
-/// A rest length below this share of the length is zero.
-const NO_LENGTH: f64 = 1e-12;
-
-/// `ℓ + x`, and zero where that is rounding.
-fn rest_length(length: f64, x: f64) -> f64 {
-    let rest = length + x;
-    if rest.abs() > NO_LENGTH * length { rest } else { 0.0 }
-}
-
-/// Whether a spring that pulls at rest, where it measures c, has no rest measure `c − T/k` that could be written.
-fn is_steady(constant: f64, pull: f64, c: f64) -> bool {
-    pull != 0.0 && pull.abs() > FARTHEST * (constant * c).abs()
-}
-
-/// Such a spring: the same force and slope, with its energy from the mesh on.
-fn steady(kind: SpringKind, points: Vec<usize>, measure: Measure, c: f64, constant: f64, pull: f64) -> MeasureSpring {
-    static LAW: LazyLock<Arc<Law>> =
-        LazyLock::new(|| Arc::new(Law::parse("T + k*(c - c0)").expect("it is a law with parameters")));
-    let law = Some(LAW.clone());
-    MeasureSpring { kind, points, constant, rest: c, measure, law, parameters: vec![pull, constant] }
-}
-
 /// Points whose springs one thread merges in one go.
 const CHUNK: usize = 2048;
 
@@ -326,7 +308,8 @@ fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<MeasureSprin
                 let length = distance(mesh.point(i), mesh.point(n.point));
                 if is_steady(n.constant, -n.slack, length) {
                     let points = vec![i, n.point];
-                    others.push(steady(SpringKind::Length, points, Measure::Length, length, n.constant, -n.slack));
+                    let numbers = [n.constant, -n.slack];
+                    others.push(MeasureSpring::steady(SpringKind::Length, points, Measure::Length, length, numbers));
                     continue;
                 }
                 let rest = rest_length(length, n.slack / n.constant);

@@ -12,9 +12,9 @@ const EXCESS: f64 = 1e-9;
 /// Below this share of the largest unknown a constant is zero.
 const ROUNDING: f64 = 1e-13;
 
-/// `min ‖b − A u‖` under `C u = 0` and `u_j ≥ 0` for j in `bounded`. The conic solver says which constants are zero, and the optimum
+/// `min ‖b − A u‖` under `C u = 0` and `u_j ≥ 0` for j in `bounded`; `free` is the optimum without bounds. The conic solver says which constants are zero, and the optimum
 /// over the others follows to rounding. False if the conic solver found less.
-pub fn solve_bounded(problem: &Problem, bounded: &[usize]) -> (Optimum, bool) {
+pub fn solve_bounded(problem: &Problem, bounded: &[usize], free: Optimum) -> (Optimum, bool) {
     let all: Vec<usize> = (0..problem.a.ncols()).collect();
     let below = |u: &DVector<f64>| -> Vec<usize> {
         let least = -ROUNDING * u.amax();
@@ -24,7 +24,6 @@ pub fn solve_bounded(problem: &Problem, bounded: &[usize]) -> (Optimum, bool) {
         bounded.iter().for_each(|&j| optimum.unknowns[j] = optimum.unknowns[j].max(0.0));
         optimum
     };
-    let free = problem.solve(&all);
     if below(&free.unknowns).is_empty() {
         return (clamped(free), true);
     }

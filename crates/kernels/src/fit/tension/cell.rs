@@ -2,10 +2,11 @@
 
 use super::bounded::solve_bounded;
 use super::problem::Problem;
-use super::unknowns::{Sizes, unknowns};
+use super::unknowns::{Sizes, Unknown, unknowns};
 use super::view::{View, deformations};
 use crate::element::Element;
 use crate::fit::objective::Objective;
+use crate::fit::rest::Rest;
 use crate::fit::settings::Fit;
 use crate::fit::weight::Weight;
 use crate::material::Moduli;
@@ -43,6 +44,8 @@ struct Spring {
     dofs: Vec<usize>,
     measure: f64,
     hessian: DMatrix<f64>,
+    /// `‖g‖`.
+    gradient: f64,
     /// `g/‖g‖`, `[nodes·dimension]`.
     direction: DVector<f64>,
 }
@@ -64,99 +67,128 @@ impl<'a> Cells<'a> {
     /// What a spring measures has no gradient, R is singular where the weight divides by it, or only springs of no force are in
     /// equilibrium.
     pub fn fit(&self, x: &[f64], geometry: &Geometry) -> Result<CellTension, String> {
-        let d = geometry.dimension;
-        let mut rows = Vec::new();
-        self.springs.gradients(x, geometry, &mut rows);
-        let gradients: Vec<f64> = rows.chunks_exact(x.len()).map(norm).collect();
-        let springs: Vec<Spring> =
-            self.measures.iter().zip(rows.chunks_exact(x.len())).map(|(m, g)| spring(m, g, x, d)).collect();
-        let is_measured = |(s, g): (&Spring, &f64)| {
-            *g > 0.0 && g.is_finite() && s.measure.is_finite() && s.hessian.iter().all(|h| h.is_finite())
+        let springs = self.springs_at(x, geometry)?;
+        let r = geometry.stiffness(self.moduli);
+        let sizes = Sizes {
+            stiffness: r.norm(),
+            extent: geometry.content().powf(1.0 / geometry.dimension as f64),
+            gradients: springs.iter().map(|s| s.gradient).collect(),
+            measures: springs.iter().map(|s| s.measure).collect(),
         };
-        if !springs.iter().zip(&gradients).all(is_measured) {
-            return Err(Fault::Unmeasured.to_string());
-        }
-        let basis = deformations(x, d);
-        let mut r = geometry.stiffness(self.moduli);
-        let size = r.norm();
-        r /= size;
-        let view = View::of(self.weight, x, d, &r, &basis).ok_or("its stiffness is not positive definite")?;
-        let measures: Vec<f64> = springs.iter().map(|s| s.measure).collect();
-        let extent = geometry.content().powf(1.0 / d as f64);
-        let sizes = Sizes { stiffness: size, extent, gradients: &gradients, measures: &measures };
+        let basis = deformations(x, geometry.dimension);
+        let r = r / sizes.stiffness;
+        let view = View::of(self.weight, x, geometry.dimension, &r, &basis);
+        let view = view.ok_or("its stiffness is not positive definite")?;
         let unknowns = unknowns(self.springs, self.fit.rest, self.fit.tied, &sizes);
+        let (problem, scales) = equations(&springs, &unknowns, &sizes, &view, &basis, &r);
 
-        // ‖g‖²/size · k g gᵀ/‖g‖² + ‖g‖/(size L) · T L ∇∇c/‖g‖ and the force T g/(size L), unknown by unknown.
-        let stretched: Vec<DVector<f64>> = springs.iter().map(|s| view.of_vector(&s.direction)).collect();
-        let bent: Vec<DVector<f64>> = springs
-            .iter()
-            .zip(&gradients)
-            .map(|(s, g)| view.of_matrix(&s.dofs, &(&s.hessian * (extent / g))))
-            .collect();
-        let forces: Vec<DVector<f64>> = springs.iter().map(|s| basis.tr_mul(&s.direction)).collect();
-        let mut a = DMatrix::zeros(view.rows(), unknowns.len());
-        let mut c = DMatrix::zeros(basis.ncols(), unknowns.len());
-        for (j, unknown) in unknowns.iter().enumerate() {
-            for term in &unknown.terms {
-                let (s, g) = (term.spring, gradients[term.spring]);
-                let pull = term.tension * g / (size * extent);
-                a.column_mut(j).axpy(term.constant * g * g / size, &stretched[s], 1.0);
-                a.column_mut(j).axpy(pull, &bent[s], 1.0);
-                c.column_mut(j).axpy(pull, &forces[s], 1.0);
-            }
-        }
-        let all: Vec<usize> = (0..r.nrows()).collect();
-        let b = view.of_matrix(&all, &r);
-        // Unknowns in the scaling in which each has a column of norm one.
-        let scales: Vec<f64> =
-            a.column_iter().map(|column| column.norm()).map(|n| if n > 0.0 { 1.0 / n } else { 1.0 }).collect();
-        a.column_iter_mut().zip(&scales).for_each(|(mut column, scale)| column *= *scale);
-        c.column_iter_mut().zip(&scales).for_each(|(mut column, scale)| column *= *scale);
-        let problem = Problem { a, b, c };
         let every: Vec<usize> = (0..unknowns.len()).collect();
-        if problem.basis(&every).ncols() == 0 {
-            let problem = "only springs without force are in equilibrium with these rest measures: expected more springs, such as one on the content";
-            return Err(problem.into());
+        let free = problem.solve(&every);
+        if free.freedom == 0 {
+            let problem = "only springs without force are in equilibrium with these rest measures";
+            return Err(format!("{problem}: expected more springs, such as one on the content"));
         }
         let bounded: Vec<usize> = every.iter().copied().filter(|&j| unknowns[j].is_constant).collect();
         let (mut optimum, reached) = match self.fit.nonnegative {
-            true => solve_bounded(&problem, &bounded),
-            false => (problem.solve(&every), true),
+            true => solve_bounded(&problem, &bounded, free),
+            false => (free, true),
         };
-        let u = &mut optimum.unknowns;
         for sort in [true, false] {
-            let own = || every.iter().copied().filter(|&j| unknowns[j].is_constant == sort);
-            let largest = own().map(|j| u[j].abs()).fold(0.0, f64::max);
-            own()
-                .filter(|&j| u[j].abs() <= ROUNDING * largest)
-                .collect::<Vec<_>>()
-                .into_iter()
-                .for_each(|j| u[j] = 0.0);
+            let own: Vec<usize> = every.iter().copied().filter(|&j| unknowns[j].is_constant == sort).collect();
+            let largest = own.iter().map(|&j| optimum.unknowns[j].abs()).fold(0.0, f64::max);
+            let rounding = own.iter().filter(|&&j| optimum.unknowns[j].abs() <= ROUNDING * largest);
+            rounding.copied().collect::<Vec<usize>>().iter().for_each(|&j| optimum.unknowns[j] = 0.0);
         }
-        let (mut constants, mut tensions) = (vec![0.0; springs.len()], vec![0.0; springs.len()]);
-        for (unknown, (u, scale)) in unknowns.iter().zip(u.iter().zip(&scales)) {
+        let u = optimum.unknowns.component_mul(&scales);
+        let (constants, parameters) = self.written(&unknowns, &u, &sizes);
+        Ok(CellTension { constants, parameters, deficient: optimum.deficient, reached })
+    }
+
+    fn springs_at(&self, x: &[f64], geometry: &Geometry) -> Result<Vec<Spring>, String> {
+        let mut rows = Vec::new();
+        self.springs.gradients(x, geometry, &mut rows);
+        let gradients = rows.chunks_exact(x.len());
+        let springs: Vec<Spring> =
+            self.measures.iter().zip(gradients).map(|(m, g)| Spring::of(m, g, x, geometry.dimension)).collect();
+        if springs.iter().all(Spring::is_measured) { Ok(springs) } else { Err(Fault::Unmeasured.to_string()) }
+    }
+
+    /// k and `k c₀ = k c − T` of all springs.
+    fn written(&self, unknowns: &[Unknown], u: &DVector<f64>, sizes: &Sizes) -> (Vec<f64>, Vec<f64>) {
+        let count = self.springs.len();
+        let (mut constants, mut tensions) = (vec![0.0; count], vec![0.0; count]);
+        for (unknown, u) in unknowns.iter().zip(u) {
             for term in &unknown.terms {
-                constants[term.spring] += term.constant * u * scale;
-                tensions[term.spring] += term.tension * u * scale;
+                constants[term.spring] += term.constant * u;
+                tensions[term.spring] += term.tension * u;
             }
         }
+        let whole = |s: usize| constants[s] * sizes.measures[s];
         let largest =
-            |of: &dyn Fn(usize) -> f64| (0..springs.len()).map(|s| of(s).abs() * gradients[s]).fold(0.0, f64::max);
-        if largest(&|s| tensions[s]) <= UNSTORED * largest(&|s| constants[s] * measures[s]) {
-            tensions.fill(0.0);
-        }
-        // T = k (c − c₀)
-        let parameters = (0..springs.len()).map(|s| constants[s] * measures[s] - tensions[s]).collect();
-        Ok(CellTension { constants, parameters, deficient: optimum.deficient, reached })
+            |of: &dyn Fn(usize) -> f64| (0..count).map(|s| of(s).abs() * sizes.gradients[s]).fold(0.0, f64::max);
+        let is_unstored = largest(&|s| tensions[s]) <= UNSTORED * largest(&whole);
+        let parameter = |s: usize| match self.fit.rest {
+            Rest::Zero if s < self.springs.pairs.len() => 0.0,
+            Rest::Mesh | Rest::Free | Rest::Zero => whole(s) - if is_unstored { 0.0 } else { tensions[s] },
+        };
+        let parameters = (0..count).map(parameter).collect();
+        (constants, parameters)
     }
 }
 
-fn spring((nodes, measure): &(Vec<usize>, Measure), g: &[f64], x: &[f64], d: usize) -> Spring {
-    let dofs: Vec<usize> = nodes.iter().flat_map(|&a| a * d..(a + 1) * d).collect();
-    let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
-    let hessian = DMatrix::from_vec(dofs.len(), dofs.len(), measure.jet(&at, d).hessian);
-    let direction = DVector::from_column_slice(g);
-    let size = direction.norm();
-    // As where the residual is measured, whose rounding must be the same.
-    Spring { measure: measure.value(&at, d), hessian, direction: direction / size, dofs }
+/// The columns of the unknowns, `‖g‖²/size · k g gᵀ/‖g‖² + ‖g‖/(size L) · T L ∇∇c/‖g‖`, and their forces `T g/(size L)`; and what
+/// each unknown is in the scaling in which its column has norm one.
+fn equations(
+    springs: &[Spring],
+    unknowns: &[Unknown],
+    sizes: &Sizes,
+    view: &View,
+    basis: &DMatrix<f64>,
+    r: &DMatrix<f64>,
+) -> (Problem, DVector<f64>) {
+    let extent = sizes.extent;
+    let stretched: Vec<DVector<f64>> = springs.iter().map(|s| view.of_vector(&s.direction)).collect();
+    let bent: Vec<DVector<f64>> =
+        springs.iter().map(|s| view.of_matrix(&s.dofs, &(&s.hessian * (extent / s.gradient)))).collect();
+    let forces: Vec<DVector<f64>> = springs.iter().map(|s| basis.tr_mul(&s.direction)).collect();
+    let mut a = DMatrix::zeros(view.rows(), unknowns.len());
+    let mut c = DMatrix::zeros(basis.ncols(), unknowns.len());
+    let mut scales = DVector::from_element(unknowns.len(), 1.0);
+    for (j, unknown) in unknowns.iter().enumerate() {
+        for term in &unknown.terms {
+            let (s, g) = (term.spring, springs[term.spring].gradient);
+            let pull = term.tension * g / (sizes.stiffness * extent);
+            a.column_mut(j).axpy(term.constant * g * g / sizes.stiffness, &stretched[s], 1.0);
+            a.column_mut(j).axpy(pull, &bent[s], 1.0);
+            c.column_mut(j).axpy(pull, &forces[s], 1.0);
+        }
+        let norm = a.column(j).norm();
+        if norm > 0.0 {
+            scales[j] = 1.0 / norm;
+        }
+        a.column_mut(j).scale_mut(scales[j]);
+        c.column_mut(j).scale_mut(scales[j]);
+    }
+    let all: Vec<usize> = (0..r.nrows()).collect();
+    (Problem { a, b: view.of_matrix(&all, r), c }, scales)
+}
+
+impl Spring {
+    /// Of a cell with nodes at `x`; g is that of [`Springs::gradients`].
+    fn of((nodes, measure): &(Vec<usize>, Measure), g: &[f64], x: &[f64], dimension: usize) -> Spring {
+        let dofs: Vec<usize> = nodes.iter().flat_map(|&a| a * dimension..(a + 1) * dimension).collect();
+        let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
+        let hessian = DMatrix::from_vec(dofs.len(), dofs.len(), measure.jet(&at, dimension).hessian);
+        let gradient = norm(g);
+        let direction = DVector::from_column_slice(g) / gradient;
+        // As where the residual is measured, whose rounding must be the same.
+        Spring { measure: measure.value(&at, dimension), hessian, gradient, direction, dofs }
+    }
+
+    fn is_measured(&self) -> bool {
+        self.gradient > 0.0
+            && self.gradient.is_finite()
+            && self.measure.is_finite()
+            && self.hessian.iter().all(|h| h.is_finite())
+    }
 }

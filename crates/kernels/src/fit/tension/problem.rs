@@ -15,6 +15,8 @@ pub struct Problem {
 /// An optimum over all unknowns.
 pub struct Optimum {
     pub unknowns: DVector<f64>,
+    /// The dimension of the space in equilibrium.
+    pub freedom: usize,
     /// Whether others do as well.
     pub deficient: bool,
 }
@@ -43,7 +45,7 @@ impl Problem {
     pub fn solve(&self, set: &[usize]) -> Optimum {
         let basis = self.basis(set);
         let (w, deficient) = least_squares(&self.a * &basis, &self.b);
-        Optimum { unknowns: basis * w, deficient }
+        Optimum { freedom: w.len(), unknowns: basis * w, deficient }
     }
 
     /// `‖b − A u‖²`.

@@ -1,8 +1,7 @@
 //! What is unknown of the springs of a cell.
 
 use crate::fit::rest::Rest;
-use crate::springs::Springs;
-use crate::springs::norm;
+use crate::springs::{Springs, norm};
 
 /// An unknown u without a unit, and what it adds to the springs.
 pub struct Unknown {
@@ -19,15 +18,15 @@ pub struct Term {
 }
 
 /// What gives a cell's unknowns their size.
-pub struct Sizes<'a> {
+pub struct Sizes {
     /// Of R, N/m.
     pub stiffness: f64,
     /// Of the cell, m.
     pub extent: f64,
     /// `‖g_s‖`.
-    pub gradients: &'a [f64],
+    pub gradients: Vec<f64>,
     /// `c_s` at rest.
-    pub measures: &'a [f64],
+    pub measures: Vec<f64>,
 }
 
 /// The unknowns of all springs: of each a constant, and of those whose rest measure is unknown a tension. Tied springs have one of
