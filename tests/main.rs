@@ -34,6 +34,7 @@ mod programs;
 mod published;
 mod quadrature;
 mod report;
+mod rest;
 mod sampled;
 mod sampling;
 mod searches;
