@@ -261,9 +261,11 @@ fn tied_springs_share_their_rest_ratio() {
 }
 
 /// The residual is orthogonal to every change of the unknowns that keeps the equilibrium: its products with their columns are the
-/// work of some displacement y against their forces.
+/// work of some displacement y against their forces. Changes that the weight hardly sees, less than 5e-7 of the others, count as
+/// unseen; the cell is reported as deficient then, and a slope of that size is left, over some ten unknowns.
 #[test]
 fn optima_are_stationary() {
+    let mut strict = 0;
     for subject in subjects() {
         for weight in weights() {
             for (rest, tied) in [(Rest::Free, false), (Rest::Free, true), (Rest::Zero, false), (Rest::Zero, true)] {
@@ -283,10 +285,14 @@ fn optima_are_stationary() {
                 };
                 let left = rest_of(rest_of(slopes)).amax();
                 let size = subject.rhs(weight).norm();
-                assert!(left <= 1e-9 * size, "{} {fit:?}: {left} of {size}", subject.case.name);
+                let is_deficient = subject.fits(&fit).unwrap().deficient > 0;
+                let most = if is_deficient { 5e-6 } else { 1e-9 };
+                assert!(left <= most * size, "{} {fit:?}: {left} of {size}", subject.case.name);
+                strict += usize::from(!is_deficient);
             }
         }
     }
+    assert!(strict > 500, "{strict}");
 }
 
 /// `[AᵀA Cᵀ; C 0] [u; y] = [Aᵀb; 0]` by the pseudo-inverse; normal equations keep half of the digits.
