@@ -286,6 +286,7 @@ fn optima_are_stationary() {
                 let left = rest_of(rest_of(slopes)).amax();
                 let size = subject.rhs(weight).norm();
                 let is_deficient = subject.fits(&fit).unwrap().deficient > 0;
+                // A direction that counts as dependent, below 5e-7 of the stiffest, keeps its slope.
                 let most = if is_deficient { 5e-6 } else { 1e-9 };
                 assert!(left <= most * size, "{} {fit:?}: {left} of {size}", subject.case.name);
                 strict += usize::from(!is_deficient);
