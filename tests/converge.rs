@@ -334,10 +334,14 @@ fn finite_elements_on_a_refined_disc_rise_to_the_truth_with_order_two() {
         "[mesh]\ndisc = {{ element = \"tri3\", radius = 1, rings = 2 }}\n{SHEET}[[fit]]\nobjective = \"offdiag\"\n\
          [[fix]]\ngroup = \"rim\"\n[[load]]\nbody = [100, 0]\n"
     );
-    let convergence = converged(&text, 4);
+    let convergence = converged(&text, 6);
     let load = &convergence.loads[0];
-    let order = load.truth.unwrap().order().unwrap();
-    assert!((1.85..2.15).contains(&order), "{order}");
+    let values: Vec<f64> = load.models[0].steps.iter().map(|step| step.compliance.unwrap()).collect();
+    let orders: Vec<f64> = values.windows(3).map(|v| ((v[1] - v[0]) / (v[2] - v[1])).log2()).collect();
+    // The corners of 150° slow the coarse levels down: orders rise from 1.2 to 1.8 on the way to 2.
+    assert!(orders.windows(2).all(|pair| pair[0] < pair[1]), "{orders:?}");
+    assert!((1.75..2.15).contains(&orders[3]), "{orders:?}");
+    assert!((load.truth.unwrap().order().unwrap() - orders[3]).abs() < 1e-9);
     let errors = load.of_truth(&load.models[0]);
     assert!(errors.iter().all(|e| e.unwrap() < 0.0), "{errors:?}");
 }
@@ -384,7 +388,7 @@ fn the_compliance_of_a_bar_is_known() {
 /// Small loads deform a body with a law as the linear theory says.
 #[test]
 fn a_law_under_small_loads_converges_like_the_linear_body() {
-    for load in ["traction = [0, 0.1]", "displacement = [0, 1e-5]"] {
+    for load in ["traction = [0, 0.1]", "displacement = [0, 1e-3]"] {
         let text = |law: &str| {
             format!(
                 "[mesh]\nbox = {{ element = \"quad4\", size = [1, 1], cells = [3, 3] }}\n{SHEET}{law}{FITS}\
@@ -395,7 +399,7 @@ fn a_law_under_small_loads_converges_like_the_linear_body() {
         assert!(linear.law.is_none() && large.law.is_some());
         for (linear, large) in linear.loads[0].models.iter().zip(&large.loads[0].models).take(1) {
             for (a, b) in linear.steps.iter().zip(&large.steps) {
-                // The theories differ by a share of the order of the strains, some 1e-5.
+                // The theories differ by a share of the order of the strains, 1e-3 at most.
                 let (a, b) = (a.compliance.unwrap(), b.compliance.unwrap());
                 assert!((a / b - 1.0).abs() < 1e-3, "{load}: {a} {b}");
             }
