@@ -4,6 +4,7 @@ mod bad_input;
 mod cases;
 mod catalogue;
 mod check;
+mod converge;
 mod corpora;
 mod covariance;
 mod crash;
