@@ -23,6 +23,7 @@ mod large;
 mod laws;
 mod layering;
 mod locking;
+mod material;
 mod mesh_files;
 mod messages;
 mod modes;

@@ -25,7 +25,9 @@ pub struct Fit {
     /// Poisson's ratio
     #[arg(long, allow_hyphen_values = true)]
     poisson: f64,
-    /// exact, frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: offdiag with --nonnegative]
+    /// exact, frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: exact]. For programs
+    /// with springs and volume constraints: exact. For those with classical springs alone, which rest at the lengths of the mesh:
+    /// divergence, or offdiag with --nonnegative
     #[arg(long)]
     objective: Option<String>,
     /// The body's energy: stable-neo-hookean or neo-hookean [default: stable-neo-hookean] (exact only)
@@ -152,9 +154,8 @@ impl Fit {
 
     /// What the options say of the fit.
     fn named_fit(&self) -> Result<NamedFit> {
-        // Of the fits that serve every element alike, the one with the least error among those that are always stable.
-        let objective = self.objective.clone().unwrap_or("offdiag".into());
-        let nonnegative = self.nonnegative || self.objective.is_none();
+        // The fit that gives the material itself; all others miss some of it on some meshes.
+        let objective = self.objective.clone().unwrap_or("exact".into());
         let mut shapes = toml::Table::new();
         shapes.extend(self.shapes.map(|count| ("count".into(), (count as i64).into())));
         shapes.extend(self.stretch.map(|stretch| ("stretch".into(), stretch.into())));
@@ -166,7 +167,7 @@ impl Fit {
             .with("higher", self.higher)
             .with("balance", self.balance)
             .with("tied", self.tied.then_some(true))
-            .with("nonnegative", nonnegative.then_some(true))
+            .with("nonnegative", self.nonnegative.then_some(true))
             .with("rest", self.rest.clone())
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))

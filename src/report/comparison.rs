@@ -87,7 +87,8 @@ impl Comparison {
         for load in &outcome.loads {
             columns.extend(["rms", "max"].map(|error| Heading::numbers(format!("{} %e_{error}", load.name))));
         }
-        columns.extend([Heading::numbers("springs"), Heading::numbers("k < 0"), Heading::words("network")]);
+        columns.extend(["springs", "k < 0", "tensor % off"].map(Heading::numbers));
+        columns.push(Heading::words("network"));
         let (mut rows, mut points) = (Vec::new(), Vec::new());
         for fit in &outcome.fits {
             let seconds = fit.seconds / elements;
@@ -98,6 +99,7 @@ impl Comparison {
             }
             row.push(fit.network.len().to_string());
             row.push(fit.network.negative().to_string());
+            row.push(format!("{:.1}", 100.0 * fit.as_material.distance));
             row.push(fit.status().into());
             rows.push(row);
             let errors: Option<Vec<f64>> = fit.loads.iter().map(|l| l.error.map(|e| e.rms)).collect();

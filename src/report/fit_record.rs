@@ -1,6 +1,7 @@
 //! Fits in `report.json`.
 
 use super::load_record::LoadRecord;
+use super::material_record::NetworkMaterialRecord;
 use super::number::finite;
 use crate::study::{
     FitOutcome, KindRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
@@ -42,7 +43,9 @@ pub struct FitRecord {
     /// Elements whose iteration stopped short of the optimum.
     pub unreached_elements: usize,
     pub energy_error_bound: Option<f64>,
-    /// Pa.
+    /// What the network is as a material, at rest.
+    pub as_material: NetworkMaterialRecord,
+    /// Of the whole network, where the scene asks for `moduli`; Pa.
     pub effective_young: Option<f64>,
     pub effective_poisson: Option<f64>,
     pub zener: Option<f64>,
@@ -82,6 +85,7 @@ impl FitRecord {
             ambiguous_elements: certificate.map_or(0, |certificate| certificate.ambiguous),
             unreached_elements: outcome.unreached,
             energy_error_bound: certificate.and_then(|certificate| certificate.energy_error),
+            as_material: NetworkMaterialRecord::of(&outcome.as_material),
             effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness)),
             effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
             zener: moduli.and_then(|moduli| finite(moduli.zener)),

@@ -3,6 +3,7 @@
 use super::agreement::{Agreement, SAME, agreements};
 use super::columns::{Heading, aligned};
 use super::frequencies::{frequency_notes, frequency_table};
+use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
 use crate::fit::Spread;
 use crate::mesh::Quality;
@@ -59,7 +60,7 @@ fn quality(quality: &Quality) -> Vec<String> {
     lines
 }
 
-/// One row per fit; then, where they were asked for, natural frequencies and motions, one row per model.
+/// One row per fit, and what each network is as a material; then, where they were asked for, natural frequencies and motions, one row per model.
 pub fn table(outcome: &Outcome) -> String {
     let mut header = vec![Heading::words("fit")];
     header.extend(
@@ -80,7 +81,8 @@ pub fn table(outcome: &Outcome) -> String {
         header.push(Heading::words("network"));
     }
     let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
-    let under = [times(outcome), gauge(outcome), frequency_table(outcome), motion_table(outcome)];
+    let under =
+        [material_table(outcome), times(outcome), gauge(outcome), frequency_table(outcome), motion_table(outcome)];
     aligned(&header, &rows) + &under.concat()
 }
 
@@ -191,10 +193,11 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     }
     let own = fit.kind.notes(outcome.mesh.cell_count(), outcome.material);
     notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
+    notes.extend(material_note(outcome, fit));
     if let Some(m) = &fit.moduli {
         let (young, thickness) = (outcome.material.young(), outcome.material.thickness());
         notes.push(format!(
-            "{name}: as a material E = {:.4e} Pa, nu = {:.3}, Zener {:.3}; asked {young:e} Pa, {}, 1",
+            "{name}: the whole network has E = {:.4e} Pa, nu = {:.3}, Zener {:.3}; asked {young:e} Pa, {}, 1",
             m.young / thickness,
             m.poisson,
             m.zener,

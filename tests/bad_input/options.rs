@@ -19,7 +19,8 @@ fn options_of_fit() {
         ("--scale", "0", "--scale", "found 0"),
         ("--scale", "inf", "--scale", "found inf"),
         ("--density", "0", "--density", "kg/m³, found 0"),
-        ("--springs", "edge,diagonal", "springs", "\"edge\", \"bulk\", found \"diagonal\""),
+        ("--springs", "edge", "--springs", "no groups"),
+        ("--weight", "modal", "--weight", "\"exact\""),
     ] {
         let mut arguments = vec!["fit".to_string(), "mesh.msh".to_string()];
         let others = given.iter().filter(|(other, _)| *other != key);
@@ -42,9 +43,10 @@ fn options_by_their_names() {
         ("1kPa", "0.3", &["--plane", "stress"], "--plane", "solid"),
         ("1kPa", "0.3", &["--thickness", "1"], "--thickness", "solid"),
         ("1kPa", "0.3", &["--objective", "least"], "--objective", "found \"least\""),
-        ("1kPa", "0.3", &["--rest", "long"], "--rest", "found \"long\""),
+        ("1kPa", "0.3", &["--rest", "long", "--objective", "offdiag"], "--rest", "found \"long\""),
         ("1kPa", "0.3", &["--rest", "free", "--objective", "spectral"], "--rest", "found \"free\""),
         ("1kPa", "0.3", &["--rest", "free", "--objective", "baudet"], "--rest", "\"baudet\""),
+        ("1kPa", "0.3", &["--objective", "offdiag", "--springs", "edge,diagonal"], "springs", "found \"diagonal\""),
         ("1kPa", "0.3", &["--scale", "-1"], "--scale", "found -1"),
         ("1kPa", "0.3", &["--density", "-1"], "--density", "kg/m³, found -1"),
         ("1kPa", "0.3", &["--element", "tet9"], "--element", "found \"tet9\""),

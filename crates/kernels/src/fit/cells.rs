@@ -76,6 +76,21 @@ impl CellFits {
         }
     }
 
+    /// Those of some of the cells, without what was counted or certified of all.
+    pub fn of_cells(&self, cells: &[usize]) -> CellFits {
+        let m = self.springs.len();
+        let p = self.force.places(&self.springs)[m];
+        let rows = |values: &[f64], width: usize| {
+            cells.iter().flat_map(|&cell| &values[cell * width..(cell + 1) * width]).copied().collect()
+        };
+        CellFits {
+            constants: rows(&self.constants, m),
+            parameters: rows(&self.parameters, p),
+            force: self.force.clone(),
+            ..CellFits::new(self.springs.clone())
+        }
+    }
+
     /// [`fit_cells`] into the memory of an earlier fit.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use super::fits::{NamedFit, Reference, Task};
 use super::outcome::FitOutcome;
 use super::progress::Progress;
+use super::tensor::network_material;
 use crate::error::Result;
 use crate::fit::{ElementErrors, Spread, element_errors};
 use crate::material::Material;
@@ -24,10 +25,12 @@ pub fn fit_mesh(
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let fitted = named.recipe.kind().fit(&task, progress)?;
     let mut errors = ElementErrors::default();
-    for (block, fit) in mesh.blocks.iter().zip(&fitted.cells) {
+    let of_cells = if fitted.kind.is_of_cells() { &fitted.cells[..] } else { &[] };
+    for (block, fit) in mesh.blocks.iter().zip(of_cells) {
         errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, material.moduli(), fit)?);
     }
-    let spread = |values: &[f64]| (!fitted.cells.is_empty()).then(|| Spread::of(values));
+    let spread = |values: &[f64]| (!of_cells.is_empty()).then(|| Spread::of(values));
+    let as_material = network_material(mesh, material, &fitted.cells, &fitted.network);
     Ok(FitOutcome {
         fit: named.clone(),
         seconds: fitted.seconds,
@@ -39,6 +42,7 @@ pub fn fit_mesh(
         spectral: spread(&errors.spectral),
         network: fitted.network,
         kind: fitted.kind,
+        as_material,
         moduli: None,
         stability: None,
         loose_points: Vec::new(),

@@ -21,6 +21,7 @@ mod shapes;
 mod stability;
 mod stages;
 mod stretches;
+mod tensor;
 mod time;
 
 pub use body::LargeBody;
@@ -58,3 +59,4 @@ pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, sweep, sweep_scene};
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
+pub use tensor::{NetworkMaterial, network_material};

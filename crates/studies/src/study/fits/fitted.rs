@@ -5,7 +5,7 @@ use super::published::PublishedOutcome;
 use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
-use crate::fit::CellFits;
+use crate::fit::{CellFits, VolumeSprings};
 use crate::material::{Material, Moduli};
 use crate::mesh::Mesh;
 use crate::model::Network;
@@ -51,6 +51,11 @@ impl FittedKind {
             FittedKind::Published(outcome) => outcome.notes(cells, material),
             FittedKind::Exact(outcome) => outcome.notes(),
         }
+    }
+
+    /// Whether the springs of each cell are its whole stiffness; those on the content of patches belong to several cells.
+    pub fn is_of_cells(&self) -> bool {
+        self.exact().is_none_or(|outcome| outcome.volume != VolumeSprings::Patches)
     }
 
     /// The moduli of the finite elements by whose energies the network's are measured.

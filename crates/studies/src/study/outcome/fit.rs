@@ -6,6 +6,7 @@ use crate::model::Network;
 use crate::solve::{Ending, Stability, Standing};
 use crate::study::fits::{FittedKind, NamedFit};
 use crate::study::moduli::EffectiveModuli;
+use crate::study::tensor::NetworkMaterial;
 
 /// A fit with its network.
 #[derive(Debug)]
@@ -24,7 +25,9 @@ pub struct FitOutcome {
     /// Of the elements' matrices; `None` for whole-object fits, whose springs belong to no element.
     pub frobenius: Option<Spread>,
     pub spectral: Option<Spread>,
-    /// What the network is as a material, where the scene asks for it: under linear displacements of its boundary.
+    /// What the network is as a material, from samples of its cells.
+    pub as_material: NetworkMaterial,
+    /// The moduli of the whole network, where the scene asks for them: under linear displacements of its boundary.
     pub moduli: Option<EffectiveModuli>,
     /// What only the kind of the fit knows.
     pub kind: FittedKind,

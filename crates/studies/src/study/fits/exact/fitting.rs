@@ -56,10 +56,6 @@ impl FitKind for ExactRecipe {
         };
         network.others.extend(patches);
         network.others.extend(fibres);
-        if fit.volume == VolumeSprings::Patches {
-            // Their springs belong to several cells: no cell has a stiffness to be compared.
-            cells.clear();
-        }
         let seconds_assembly = start.elapsed().as_secs_f64();
         Ok(Fitted { cells, network, seconds, seconds_assembly, kind: FittedKind::Exact(outcome) })
     }

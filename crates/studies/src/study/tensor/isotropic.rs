@@ -1,0 +1,68 @@
+//! Elasticity tensors as matrices in Kelvin's notation, whose norms are those of the tensors whatever the axes.
+
+use crate::material::{Material, State};
+use nalgebra::DMatrix;
+
+/// The orthonormal strains, `e_k e_k`, then `(e_k e_l + e_l e_k)/√2`, each `[d × d]`.
+pub(super) fn basis(d: usize) -> Vec<DMatrix<f64>> {
+    let unit = |k: usize, l: usize| {
+        let mut strain = DMatrix::zeros(d, d);
+        let value = if k == l { 1.0 } else { f64::sqrt(0.5) };
+        (strain[(k, l)], strain[(l, k)]) = (value, value);
+        strain
+    };
+    let shears = (0..d).flat_map(|k| (k + 1..d).map(move |l| (k, l)));
+    (0..d).map(|k| (k, k)).chain(shears).map(|(k, l)| unit(k, l)).collect()
+}
+
+/// `C₀ = λ I ⊗ I + 2μ`, Pa; in the plane times the thickness, of a rod times its cross-section.
+pub(super) fn of_material(material: Material) -> DMatrix<f64> {
+    let (moduli, d) = (material.moduli(), material.state().dimension());
+    let size = d * (d + 1) / 2;
+    let volumetric = |i: usize, j: usize| if i < d && j < d { moduli.lambda } else { 0.0 };
+    DMatrix::from_fn(size, size, |i, j| volumetric(i, j) + if i == j { 2.0 * moduli.mu } else { 0.0 })
+}
+
+/// `‖C − C₀‖/‖C₀‖`.
+pub(super) fn distance(stiffness: &DMatrix<f64>, asked: &DMatrix<f64>) -> f64 {
+    (stiffness - asked).norm() / asked.norm()
+}
+
+/// Young's modulus, Pa, and Poisson's ratio of a body in this state, means over all directions of tension: with
+/// `S = C⁻¹`, n and m orthogonal,
+///
+/// ```text
+/// 1/E = ⟨nn : S : nn⟩,   −ν/E = ⟨nn : S : mm⟩
+/// ```
+///
+/// `None` where some strain meets no resistance or the slope of a force is infinite; a rod has no Poisson's ratio.
+pub(super) fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, Option<f64>)> {
+    let (d, size) = (state.dimension(), stiffness.nrows());
+    if !stiffness.iter().all(|c| c.is_finite()) {
+        return None;
+    }
+    let eigenvalues = stiffness.clone().symmetric_eigenvalues();
+    if !(eigenvalues.min() > LEAST * eigenvalues.amax()) {
+        return None;
+    }
+    let compliance = stiffness.clone().try_inverse()?;
+    // The mean over all rotations has two eigenvalues, those of changes of volume and of shape.
+    let volume = compliance.view((0, 0), (d, d)).sum() / d as f64;
+    let shape = if d > 1 { (compliance.trace() - volume) / (size - 1) as f64 } else { 0.0 };
+    let d = d as f64;
+    let young = d / (volume + (d - 1.0) * shape);
+    let poisson = young * (shape - volume) / d;
+    let (young, poisson) = match state {
+        State::Rod { .. } => (young, None),
+        State::Solid | State::PlaneStress { .. } => (young, Some(poisson)),
+        // Plane strain is the plane stress of E/(1 − ν²), ν/(1 − ν).
+        State::PlaneStrain { .. } => {
+            let poisson = poisson / (1.0 + poisson);
+            (young * (1.0 - poisson * poisson), Some(poisson))
+        }
+    };
+    Some((young / state.thickness(), poisson))
+}
+
+/// The least eigenvalue as a share of the largest that is not taken for rounding.
+const LEAST: f64 = 1e-12;

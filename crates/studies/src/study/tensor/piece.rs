@@ -1,0 +1,118 @@
+//! The springs of a network that belong to a sample of its cells.
+
+use super::sample::{Sample, Stars};
+use crate::fit::CellFits;
+use crate::mesh::Mesh;
+use crate::model::{LengthSpring, MeasureSpring, Network};
+use crate::springs::{Measure, Patch};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Springs that belong to a sample, and those of its interior points that reach out of it.
+pub(super) struct Piece {
+    /// Its points are those of the sample, then those that springs reach outside.
+    pub(super) network: Network,
+    /// `[points × dimension]`, m.
+    pub(super) points: Vec<f64>,
+    /// What share of each spring belongs to the sample, lengths first.
+    pub(super) shares: Vec<f64>,
+    pub(super) patches: Vec<PatchSpring>,
+}
+
+/// A spring on the content of a patch of cells, which does not pull at rest: its stiffness is `k g gᵀ`.
+pub(super) struct PatchSpring {
+    /// The points of the piece that it measures.
+    pub(super) points: Vec<usize>,
+    /// g, `[points · dimension]`.
+    pub(super) gradient: Vec<f64>,
+    /// k, the slope of its force.
+    pub(super) slope: f64,
+    /// What share of it belongs to the sample.
+    pub(super) share: f64,
+}
+
+impl Piece {
+    /// The springs of the sample's cells. Of springs on the content of patches belongs to the sample what the sample has of that
+    /// content.
+    pub(super) fn of_cells(mesh: &Mesh, sample: &Sample, cells: &[CellFits], whole: &Network) -> Piece {
+        let fits: Vec<CellFits> = cells.iter().zip(&sample.cells).map(|(fits, cells)| fits.of_cells(cells)).collect();
+        let network = Network::assemble(&sample.mesh, &fits);
+        let shares = vec![1.0; network.len()];
+        let mut piece = Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() };
+        piece.add_patches(mesh, sample, whole);
+        piece
+    }
+
+    fn add_patches(&mut self, mesh: &Mesh, sample: &Sample, whole: &Network) {
+        let d = mesh.dimension;
+        let near = |spring: &&MeasureSpring| {
+            matches!(spring.measure, Measure::Patch(_)) && spring.points.iter().any(|p| sample.places.contains_key(p))
+        };
+        let springs: Vec<&MeasureSpring> = whole.others.iter().filter(near).collect();
+        if springs.is_empty() {
+            return;
+        }
+        let own: HashSet<Vec<usize>> = sample
+            .mesh
+            .blocks
+            .iter()
+            .flat_map(|block| block.cells())
+            .map(|nodes| nodes.iter().map(|&place| sample.points[place]).collect())
+            .collect();
+        let mut places = sample.places.clone();
+        for spring in springs {
+            let Measure::Patch(patch) = &spring.measure else { continue };
+            let is_own =
+                |nodes: &[usize]| own.contains(&nodes.iter().map(|&a| spring.points[a]).collect::<Vec<usize>>());
+            let cells = patch.cells.iter().filter(|(nodes, _)| is_own(nodes)).cloned().collect();
+            let x: Vec<f64> = spring.points.iter().flat_map(|&point| mesh.point(point)).copied().collect();
+            let part = Measure::Patch(Arc::new(Patch { element: patch.element.clone(), cells }));
+            let content = spring.measure.value(&x, d);
+            let [_, _, slope] = spring.pull(content);
+            let share = part.value(&x, d) / content;
+            let place = |point: &usize| {
+                *places.entry(*point).or_insert_with(|| {
+                    self.points.extend(mesh.point(*point));
+                    self.points.len() / d - 1
+                })
+            };
+            let points = spring.points.iter().map(place).collect();
+            let gradient = spring.measure.gradient(&x, d);
+            self.patches.push(PatchSpring { points, gradient, slope, share });
+        }
+    }
+
+    /// The springs of a network that belong to no cell: each is shared equally among the cells that have all its points.
+    pub(super) fn of_network(stars: &Stars, sample: &Sample, whole: &Network) -> Piece {
+        let has = |cell: usize, point: usize| stars.points(cell).contains(&point);
+        let share = |points: &[usize]| {
+            let all = stars.around(points[0]).iter().filter(|&&cell| points.iter().all(|&point| has(cell, point)));
+            let (mut own, mut count) = (0, 0);
+            for &cell in all {
+                count += 1;
+                own += usize::from(stars.is_in(cell, sample));
+            }
+            if count == 0 { 0.0 } else { own as f64 / count as f64 }
+        };
+        let place = |point: &usize| sample.places.get(point).copied();
+        let mut network = Network { dimension: whole.dimension, ..Network::default() };
+        let mut shares = Vec::new();
+        for &point in &sample.points {
+            let first = whole.lengths.partition_point(|spring| spring.points[0] < point);
+            for spring in whole.lengths[first..].iter().take_while(|spring| spring.points[0] == point) {
+                if let (Some(a), Some(b)) = (place(&spring.points[0]), place(&spring.points[1])) {
+                    shares.push(share(&spring.points));
+                    network.lengths.push(LengthSpring { points: [a, b], ..*spring });
+                }
+            }
+        }
+        for spring in &whole.others {
+            let points: Option<Vec<usize>> = spring.points.iter().map(place).collect();
+            if let Some(points) = points {
+                shares.push(share(&spring.points));
+                network.others.push(MeasureSpring { points, ..spring.clone() });
+            }
+        }
+        Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() }
+    }
+}

@@ -1,0 +1,156 @@
+//! Parts of a mesh: the cells around a few neighbouring points.
+
+use crate::mesh::{CellBlock, Mesh, Quality, Selection};
+use std::collections::{BTreeMap, HashMap, VecDeque};
+
+/// Points of a sample after which no more cells are taken: equations are solved densely.
+const ENOUGH: usize = 150;
+
+/// Which cells each point belongs to.
+pub(super) struct Stars<'a> {
+    mesh: &'a Mesh,
+    /// Where the cells of each point begin, `[points + 1]`.
+    starts: Vec<usize>,
+    /// Cells, counted through all blocks, grouped by the point.
+    cells: Vec<usize>,
+    /// The first cell of each block.
+    firsts: Vec<usize>,
+}
+
+/// A few cells of a mesh.
+pub(super) struct Sample {
+    /// With points of its own.
+    pub(super) mesh: Mesh,
+    /// The number of each of its points in the whole mesh.
+    pub(super) points: Vec<usize>,
+    /// The place of each of these points.
+    pub(super) places: HashMap<usize, usize>,
+    /// Its cells, in each block.
+    pub(super) cells: Vec<Vec<usize>>,
+    /// Its points all of whose cells are in it and that are not on the surface of the body.
+    pub(super) interior: Vec<usize>,
+}
+
+impl<'a> Stars<'a> {
+    pub(super) fn of(mesh: &'a Mesh) -> Stars<'a> {
+        let mut starts = vec![0; mesh.point_count() + 1];
+        mesh.blocks.iter().flat_map(|block| &block.connectivity).for_each(|&point| starts[point + 1] += 1);
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut cells = vec![0; starts[starts.len() - 1]];
+        let (mut firsts, mut cell) = (Vec::new(), 0);
+        for block in &mesh.blocks {
+            firsts.push(cell);
+            for nodes in block.cells() {
+                for &point in nodes {
+                    cells[next[point]] = cell;
+                    next[point] += 1;
+                }
+                cell += 1;
+            }
+        }
+        Stars { mesh, starts, cells, firsts }
+    }
+
+    /// The cells of a point.
+    pub(super) fn around(&self, point: usize) -> &[usize] {
+        &self.cells[self.starts[point]..self.starts[point + 1]]
+    }
+
+    /// The points of a cell.
+    pub(super) fn points(&self, cell: usize) -> &[usize] {
+        let (block, cell) = self.place(cell);
+        let CellBlock { element, connectivity } = &self.mesh.blocks[block];
+        &connectivity[cell * element.nodes()..(cell + 1) * element.nodes()]
+    }
+
+    /// Block and number in it.
+    fn place(&self, cell: usize) -> (usize, usize) {
+        let block = self.firsts.partition_point(|first| *first <= cell) - 1;
+        (block, cell - self.firsts[block])
+    }
+
+    /// Whether the sample has a cell.
+    pub(super) fn is_in(&self, cell: usize, sample: &Sample) -> bool {
+        let (block, cell) = self.place(cell);
+        sample.cells[block].binary_search(&cell).is_ok()
+    }
+
+    /// All cells around `count` points, the nearest to `seed` by the number of cells between; fewer where cells have many nodes.
+    pub(super) fn sample(&self, seed: usize, count: usize) -> Sample {
+        let mut queue = VecDeque::from([seed]);
+        let (mut places, mut points) = (HashMap::from([(seed, 0)]), vec![seed]);
+        let mut cells: Vec<usize> = Vec::new();
+        let mut closed = 0;
+        while let Some(point) = queue.pop_front().filter(|_| closed < count && (closed == 0 || points.len() < ENOUGH)) {
+            closed += 1;
+            for &cell in self.around(point) {
+                cells.push(cell);
+                for &p in self.points(cell) {
+                    places.entry(p).or_insert_with(|| {
+                        queue.push_back(p);
+                        points.push(p);
+                        points.len() - 1
+                    });
+                }
+            }
+        }
+        self.gather(cells, points, places)
+    }
+
+    /// One cell.
+    pub(super) fn single(&self, cell: usize) -> Sample {
+        let points = self.points(cell).to_vec();
+        let places = points.iter().enumerate().map(|(place, &point)| (point, place)).collect();
+        self.gather(vec![cell], points, places)
+    }
+
+    fn gather(&self, mut cells: Vec<usize>, points: Vec<usize>, places: HashMap<usize, usize>) -> Sample {
+        cells.sort_unstable();
+        cells.dedup();
+        let mut own = vec![Vec::new(); self.mesh.blocks.len()];
+        cells.iter().map(|&cell| self.place(cell)).for_each(|(block, cell)| own[block].push(cell));
+        let block = |(block, cells): (&CellBlock, &Vec<usize>)| {
+            let n = block.element.nodes();
+            let nodes = |&cell: &usize| &block.connectivity[cell * n..(cell + 1) * n];
+            let connectivity = cells.iter().flat_map(nodes).map(|point| places[point]).collect();
+            CellBlock { element: block.element.clone(), connectivity }
+        };
+        let mesh = Mesh {
+            dimension: self.mesh.dimension,
+            points: points.iter().flat_map(|&point| self.mesh.point(point)).copied().collect(),
+            blocks: self.mesh.blocks.iter().zip(&own).map(block).collect(),
+            groups: BTreeMap::new(),
+            reversed: 0,
+            unused_points: 0,
+            quality: Quality::default(),
+        };
+        let mut is_held: Vec<bool> =
+            points.iter().map(|&p| self.around(p).iter().any(|cell| cells.binary_search(cell).is_err())).collect();
+        for side in Selection::Everything.sides(&mesh).expect("everything is no group") {
+            let CellBlock { element, connectivity } = &mesh.blocks[side.cell.block];
+            let nodes = &connectivity[side.cell.cell * element.nodes()..];
+            element.sides()[side.side].nodes.iter().for_each(|&a| is_held[nodes[a]] = true);
+        }
+        for (end, is_single) in ends(&mesh) {
+            is_held[end] |= is_single;
+        }
+        let interior = (0..points.len()).filter(|&place| !is_held[place]).collect();
+        Sample { mesh, points, places, cells: own, interior }
+    }
+}
+
+/// The points at the ends of cells that are lines, which have no sides, and whether a single one of them ends there.
+fn ends(mesh: &Mesh) -> HashMap<usize, bool> {
+    let mut ends = HashMap::new();
+    for block in mesh.blocks.iter().filter(|block| block.element.dimension() == 1) {
+        for (nodes, corner) in block.cells().flat_map(|nodes| [(nodes, 0), (nodes, 1)]) {
+            if let Some(node) = block.element.corner_node(corner) {
+                ends.entry(nodes[node]).and_modify(|is_single| *is_single = false).or_insert(true);
+            }
+        }
+    }
+    ends
+}

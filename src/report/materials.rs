@@ -1,0 +1,58 @@
+//! What the networks are as materials, in words.
+
+use super::columns::{Heading, aligned};
+use crate::study::{FitOutcome, Outcome};
+
+/// The share by which a tensor or Young's modulus may be off before a network is warned of.
+const FAR: f64 = 0.1;
+
+/// One row per fit.
+pub(super) fn material_table(outcome: &Outcome) -> String {
+    let header = [
+        Heading::words("as a material"),
+        Heading::numbers("E Pa"),
+        Heading::numbers("nu"),
+        Heading::numbers("tensor\n% off"),
+    ];
+    let row = |fit: &FitOutcome| {
+        let m = &fit.as_material;
+        vec![
+            fit.fit.name.clone(),
+            m.young.map_or("-".into(), |young| format!("{young:.4e}")),
+            m.poisson.map_or("-".into(), |poisson| format!("{poisson:.3}")),
+            percent(m.distance).unwrap_or("-".into()),
+        ]
+    };
+    let rows: Vec<_> = outcome.fits.iter().map(row).collect();
+    if rows.is_empty() { String::new() } else { format!("\n{}", aligned(&header, &rows)) }
+}
+
+/// A warning of a network that is far from the material.
+pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<String> {
+    let (name, m) = (&fit.fit.name, &fit.as_material);
+    // Near the incompressible the tensor is nearly that of changes of volume: E says what it does not.
+    let is_modulus = m.young.is_some_and(|young| (young / outcome.material.young() - 1.0).abs() <= FAR);
+    if m.distance <= FAR && is_modulus {
+        return None;
+    }
+    let off = match percent(m.distance) {
+        Some(percent) => format!("its elasticity tensor is {percent} % off"),
+        None => "its elasticity tensor is not finite".into(),
+    };
+    let of = match (m.young, m.poisson) {
+        (Some(young), Some(poisson)) => format!("E = {young:.4e} Pa, nu = {poisson:.3}"),
+        (Some(young), None) => format!("E = {young:.4e} Pa"),
+        (None, _) => "some strain meets no resistance".into(),
+    };
+    let asked = outcome.material;
+    Some(format!(
+        "{name}: not the material asked for: {off} ({of}; asked {:e} Pa, {}). The objective \"exact\" gives the material",
+        asked.young(),
+        asked.poisson()
+    ))
+}
+
+/// In percent with a digit behind the point; rounding is zero.
+fn percent(share: f64) -> Option<String> {
+    share.is_finite().then(|| format!("{:.1}", 100.0 * share))
+}

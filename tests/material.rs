@@ -1,0 +1,281 @@
+//! What a network is as a material: the elasticity tensor from samples of its cells.
+
+use crate::shapes::{Random, distorted, elements, materials};
+use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
+use springfit::element::Element;
+use springfit::fit::{CellFits, ExactFit, fit_exact};
+use springfit::material::Material;
+use springfit::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit::model::Network;
+use springfit::report;
+use springfit::springs::Springs;
+use springfit::stiffness::Geometry;
+use springfit::study::{
+    FitEntry, FitOutcome, Lattice, NetworkMaterial, Outcome, Recipe, Reference, fit_mesh, network_material,
+};
+use std::path::Path;
+use std::sync::Arc;
+
+fn grid(element: &Arc<Element>, cells: usize) -> Option<Mesh> {
+    let d = element.dimension();
+    let (size, origin) = ([1.0, 1.3, 0.7][..d].to_vec(), vec![0.0; d]);
+    (element.space() == d).then_some(())?;
+    BoxMesh { element: element.clone(), size, cells: vec![cells; d], origin }.build().ok()
+}
+
+/// A rod of unit length.
+fn rod(element: &Arc<Element>, cells: usize) -> Mesh {
+    let points = (0..=cells).map(|i| i as f64 / cells as f64).collect();
+    let connectivity = (0..cells).flat_map(|i| [i, i + 1]).collect();
+    let blocks = vec![CellBlock { element: element.clone(), connectivity }];
+    Mesh { points, blocks, ..single(element, Vec::new()) }
+}
+
+fn shipped(name: &str) -> Arc<Element> {
+    Arc::new(Element::load(name).unwrap())
+}
+
+/// The points that are not on the boundary of a box, each moved by up to a fifth of the size of its cells.
+fn jittered(mut mesh: Mesh, cells: usize) -> Mesh {
+    let (d, mut random) = (mesh.dimension, Random(3));
+    let size = [1.0, 1.3, 0.7];
+    for point in mesh.points.chunks_exact_mut(d) {
+        let is_inside = point.iter().zip(size).all(|(x, size)| *x > 1e-9 && *x < size - 1e-9);
+        let moves: Vec<f64> = size[..d].iter().map(|size| 0.2 * size / cells as f64 * random.next()).collect();
+        point.iter_mut().zip(moves).filter(|_| is_inside).for_each(|(x, by)| *x += by);
+    }
+    mesh
+}
+
+/// The same mesh in a space of one more dimension, in which it is bent like a parabola, or flat in a plane at a slant.
+fn lifted(mesh: &Mesh, is_bent: bool) -> Mesh {
+    let d = mesh.dimension;
+    let element = Arc::new(mesh.blocks[0].element.as_ref().clone().in_space(d + 1));
+    let height = |x: &[f64]| if is_bent { x[0] * x[0] } else { 0.7 * x[0] };
+    let points = mesh.points.chunks_exact(d).flat_map(|x| x.iter().copied().chain([height(x)])).collect();
+    let blocks = vec![CellBlock { element, ..mesh.blocks[0].clone() }];
+    Mesh { dimension: d + 1, points, blocks, ..mesh.clone() }
+}
+
+/// A mesh of one cell with its nodes at `x`.
+fn single(element: &Arc<Element>, x: Vec<f64>) -> Mesh {
+    Mesh {
+        dimension: element.space(),
+        points: x,
+        blocks: vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
+        groups: Default::default(),
+        reversed: 0,
+        unused_points: 0,
+        quality: Default::default(),
+    }
+}
+
+fn fitted(mesh: &Mesh, material: Material, entry: FitEntry) -> FitOutcome {
+    let named = entry.fits(Path::new("")).unwrap().remove(0);
+    fit_mesh(mesh, material, &Reference::default(), &named, &mut |_| {}).unwrap()
+}
+
+fn solid(poisson: f64) -> Material {
+    Material::for_body(3, 1e4, poisson, None, None).unwrap()
+}
+
+/// Within a share of 1e-9: constants of some hundred springs are added up and a stiffness of a few hundred equations is solved.
+fn is_material(found: &NetworkMaterial, asked: Material, name: &str) {
+    assert!(found.largest_distance < 1e-9, "{name}: {found:?}");
+    assert!((found.young.unwrap() / asked.young() - 1.0).abs() < 1e-9, "{name}: {found:?}");
+    match found.poisson {
+        Some(poisson) => assert!((poisson - asked.poisson()).abs() < 1e-9, "{name}: {found:?}"),
+        None => assert_eq!(asked.state().dimension(), 1, "{name}"),
+    }
+}
+
+/// Of every element, in boxes where its cells fill them, and of one cell of any shape.
+#[test]
+fn exact_networks_are_the_material() {
+    let mut random = Random(11);
+    for element in elements().into_iter().map(Arc::new) {
+        let x = loop {
+            let x = distorted(&element, &mut random);
+            if Geometry::new(&element.tabulation).set(&element.tabulation, &x).is_ok() {
+                break x;
+            }
+        };
+        let meshes = grid(&element, 3).map(|mesh| jittered(mesh, 3)).into_iter();
+        // Moved points fold cells with nodes on their edges.
+        let meshes = meshes.filter(|_| element.nodes() == element.cell.corners().len());
+        for mesh in meshes.chain(grid(&element, 2)).chain([single(&element, x)]) {
+            // Cells of many nodes have many springs: one material will do.
+            let some = if element.nodes() > 9 { 2..3 } else { 0..usize::MAX };
+            for material in materials(element.dimension()).into_iter().skip(some.start).take(some.len()) {
+                is_material(&fitted(&mesh, material, FitEntry::new("exact")).as_material, material, &element.name);
+            }
+        }
+    }
+}
+
+/// Affine displacements have one volume ratio, whatever it is the mean of.
+#[test]
+fn volume_springs_on_cells_and_patches_are_the_material() {
+    let (tet4, hex8) =
+        (jittered(grid(&shipped("tet4"), 6).unwrap(), 6), jittered(grid(&shipped("hex8"), 4).unwrap(), 4));
+    let material = solid(0.49);
+    let exact = |volume: &str| FitEntry::new("exact").with("volume", Some(volume));
+    for volume in ["points", "cells", "patches"] {
+        is_material(&fitted(&tet4, material, exact(volume)).as_material, material, volume);
+    }
+    is_material(&fitted(&hex8, material, exact("cells")).as_material, material, "hex8");
+}
+
+/// Of bent surfaces every cell has its own tensor; in flat ones the points inside a sample move in its plane.
+#[test]
+fn exact_networks_of_surfaces_and_curves_are_the_material() {
+    for (name, is_bent) in [("tri3", true), ("tri3", false), ("quad4", false), ("bar2", true), ("bar2", false)] {
+        let element = shipped(name);
+        let mesh = if element.dimension() == 1 { rod(&element, 5) } else { grid(&element, 5).unwrap() };
+        let mesh = lifted(&jittered(mesh, 5), is_bent);
+        for material in materials(element.dimension()) {
+            is_material(&fitted(&mesh, material, FitEntry::new("exact")).as_material, material, name);
+        }
+    }
+}
+
+/// Constants 1.3 times too large are a modulus 1.3 times too large, and a tensor that is off by 30 %.
+#[test]
+fn wrong_constants_are_measured() {
+    let mesh = jittered(grid(&shipped("tet4"), 4).unwrap(), 4);
+    let material = solid(0.3);
+    let block = &mesh.blocks[0];
+    let fit = ExactFit::default();
+    let mut fits: CellFits =
+        fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
+    fits.constants.iter_mut().chain(&mut fits.parameters).for_each(|k| *k *= 1.3);
+    let network = Network::assemble(&mesh, std::slice::from_ref(&fits));
+    let found = network_material(&mesh, material, &[fits], &network);
+    for distance in [found.distance, found.mean_distance, found.largest_distance] {
+        assert!((distance - 0.3).abs() < 1e-9, "{found:?}");
+    }
+    assert!(
+        (found.young.unwrap() / 1.3e4 - 1.0).abs() < 1e-9 && (found.poisson.unwrap() - 0.3).abs() < 1e-9,
+        "{found:?}"
+    );
+}
+
+/// Equal cells in a row without end have no better places than those of an affine strain: every sample is the lattice, whose moduli
+/// are worked out by periodic displacements. The network without its cells, too: each spring belongs to its cells alike. Of the ways
+/// in which simplices lie in a box a sample does not have equally many: they are the lattice within a hundredth.
+#[test]
+fn boxes_of_equal_cells_are_their_lattices() {
+    for name in ["tri3", "quad4", "tet4", "hex8"] {
+        let element = shipped(name);
+        let d = element.dimension();
+        let mesh = grid(&element, 6).unwrap();
+        let material = materials(d)[2];
+        let named = FitEntry::new("frobenius").fits(Path::new("")).unwrap().remove(0);
+        let Recipe::Stiffness(fit) = &named.recipe else { unreachable!() };
+        let springs = Springs::select(&element, None).unwrap();
+        let size: Vec<f64> = [1.0, 1.3, 0.7][..d].iter().map(|size| size / 6.0).collect();
+        let known = Lattice::fit(&element, &springs, &size, material, fit).unwrap().of_springs().unwrap().stiffness;
+        let kelvin = |i: usize| if i < d { 1.0 } else { f64::sqrt(2.0) };
+        let known = DMatrix::from_fn(known.nrows(), known.ncols(), |i, j| kelvin(i) * kelvin(j) * known[(i, j)]);
+        let outcome = fitted(&mesh, material, FitEntry::new("frobenius"));
+        let whole = network_material(&mesh, material, &[], &outcome.network);
+        let off = |found: &NetworkMaterial| (&found.stiffness - &known).norm() / known.norm();
+        let is_simplex = element.nodes() == d + 1;
+        let tolerance = if is_simplex { 1e-2 } else { 1e-9 };
+        assert!(off(&outcome.as_material) < tolerance, "{name}: {known} {:?}", outcome.as_material);
+        assert!(is_simplex || off(&whole) < tolerance, "{name}: {known} {whole:?}");
+    }
+}
+
+/// A body that is turned is the same material.
+#[test]
+fn the_axes_do_not_matter() {
+    let mesh = jittered(grid(&shipped("tet4"), 6).unwrap(), 6);
+    let turn = Rotation3::from_scaled_axis(Vector3::new(0.4, -1.1, 0.7));
+    let mut turned = mesh.clone();
+    for point in turned.points.chunks_exact_mut(3) {
+        let x = turn * Vector3::new(point[0], point[1], point[2]);
+        point.copy_from_slice(DVector::from_column_slice(x.as_slice()).as_slice());
+    }
+    for objective in ["offdiag", "frobenius", "divergence"] {
+        let [a, b] = [&mesh, &turned].map(|mesh| fitted(mesh, solid(0.3), FitEntry::new(objective)).as_material);
+        let same = |a: f64, b: f64| assert!((a - b).abs() < 1e-9 * a.abs(), "{objective}: {a} {b}");
+        same(a.distance, b.distance);
+        same(a.largest_distance, b.largest_distance);
+        same(a.young.unwrap(), b.young.unwrap());
+        same(a.poisson.unwrap(), b.poisson.unwrap());
+    }
+}
+
+/// Squares of their four edges resist no shear.
+#[test]
+fn mechanisms_have_no_modulus() {
+    let mesh = grid(&shipped("quad4"), 4).unwrap();
+    let material = materials(2)[2];
+    let entry = FitEntry::new("offdiag").with_springs(Some(vec!["edge".into()]));
+    let outcome = fitted(&mesh, material, entry);
+    assert_eq!((outcome.as_material.young, outcome.as_material.poisson), (None, None));
+    assert!(outcome.as_material.distance > 0.1);
+    let outcome = Outcome::of_fit("squares".into(), mesh, material, None, outcome);
+    assert!(report::notes(&outcome).iter().any(|note| note.contains("some strain meets no resistance")));
+}
+
+/// The classical fit of a box of tetrahedra, every cube of which is cut alike, couples tension with shear.
+#[test]
+fn structured_tetrahedra_are_warned_of() {
+    for (objective, is_wrong) in [("offdiag", true), ("exact", false)] {
+        let mesh = grid(&shipped("tet4"), 6).unwrap();
+        let entry = FitEntry::new(objective).with("nonnegative", is_wrong.then_some(true));
+        let outcome = fitted(&mesh, solid(0.3), entry);
+        assert_eq!(outcome.as_material.distance > 0.3, is_wrong, "{:?}", outcome.as_material);
+        let outcome = Outcome::of_fit("box".into(), mesh, solid(0.3), None, outcome);
+        let notes = report::notes(&outcome);
+        assert_eq!(notes.iter().any(|note| note.contains("The objective \"exact\"")), is_wrong, "{notes:?}");
+        let table = report::table(&outcome);
+        let row = table.lines().skip_while(|line| !line.contains("as a material")).nth(3).unwrap();
+        let words: Vec<&str> = row.split_whitespace().collect();
+        assert_eq!(words[words.len() - 3..] == ["1.0000e4", "0.300", "0.0"], !is_wrong, "{table}");
+    }
+}
+
+/// The keys of the report, each with a finite number.
+#[test]
+fn the_report_has_the_material() {
+    let mesh = grid(&shipped("tet4"), 3).unwrap();
+    let outcome = fitted(&mesh, solid(0.3), FitEntry::new("exact"));
+    let outcome = Outcome::of_fit("box".into(), mesh, solid(0.3), None, outcome);
+    let report: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();
+    let record = report["fits"][0]["as_material"].as_object().unwrap();
+    let numbers = [
+        ("young", 1e4),
+        ("poisson", 0.3),
+        ("tensor_distance", 0.0),
+        ("mean_tensor_distance", 0.0),
+        ("largest_tensor_distance", 0.0),
+    ];
+    for (key, expected) in numbers {
+        assert!((record[key].as_f64().unwrap() - expected).abs() < 1e-9 * expected.max(1.0), "{key}: {record:?}");
+    }
+    let stiffness: Vec<Vec<f64>> = serde_json::from_value(record["stiffness"].clone()).unwrap();
+    // 2μ, twice the shear modulus, is the eigenvalue of shears.
+    assert!(stiffness.len() == 6 && (stiffness[5][5] - 1e4 / 1.3).abs() < 1e-5, "{stiffness:?}");
+    assert!(record["samples"].as_u64().unwrap() > 1 && record["seconds"].as_f64().unwrap() >= 0.0);
+    assert_eq!(record.len(), numbers.len() + 3);
+}
+
+/// On 100 000 tetrahedra it takes less than 50 ms, and less than a quarter of a second on a machine that has five times as much
+/// other work as cores.
+#[test]
+fn it_costs_next_to_nothing() {
+    let mesh = grid(&shipped("tet4"), 26).unwrap();
+    assert!(mesh.cell_count() > 100_000);
+    let material = solid(0.3);
+    let block = &mesh.blocks[0];
+    let fits =
+        fit_exact(&block.element, &mesh.points, &block.connectivity, material, &ExactFit::default(), &mut |_| {});
+    let fits = [fits.unwrap()];
+    let network = Network::assemble(&mesh, &fits);
+    let seconds = (0..10).map(|_| network_material(&mesh, material, &fits, &network).seconds);
+    let least = seconds.fold(f64::INFINITY, f64::min);
+    assert!(least < 0.25, "{least} s");
+}
