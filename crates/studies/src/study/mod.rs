@@ -28,10 +28,10 @@ pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
-    KindRecord, LoadSelection, NamedFit, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe, Reference,
-    SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord, Start,
-    StiffnessOutcome, StiffnessRecord, Task, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord,
-    WholeRecipe, WholeRecord,
+    KindRecord, LoadSelection, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord,
+    Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing,
+    SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, ValidationRecipe, WholeBody, WholeOutcome,
+    WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
 pub use metrics::{DisplacementError, displacement_error};
