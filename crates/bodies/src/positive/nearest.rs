@@ -193,8 +193,8 @@ fn check(mesh: &Mesh, network: &Network) -> Result<()> {
         return Err(Error::expected("network", expected, found));
     }
     if let Some(spring) = network.others.iter().find(|s| !(s.constant >= 0.0)) {
-        let expected = "springs on content whose constants are above zero: they cannot be changed";
-        let found = format!("{:e} of a spring on {}", spring.constant, spring.kind.name());
+        let expected = "no spring below zero but those between two points, which alone can be changed";
+        let found = format!("{:.4e} of a spring of the kind {}", spring.constant, spring.kind.name());
         return Err(Error::expected("nonnegative", expected, found).of_kind(ErrorKind::Unsupported));
     }
     Ok(())

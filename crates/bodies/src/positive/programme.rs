@@ -78,7 +78,7 @@ impl Programme<'_> {
     pub fn solve(&self) -> Result<Option<Changes>> {
         let (mesh, edges, contents) = (self.mesh, self.edges, self.contents);
         let (d, dofs) = (mesh.dimension, mesh.points.len());
-        let (count, tensions, modes) = (edges.len(), contents.places.len(), self.modes.len());
+        let (count, tensions) = (edges.len(), contents.places.len());
         let scales: Vec<f64> = (0..count).map(|edge| self.scale(edge)).collect();
         let volume: f64 = edges.volumes.iter().sum();
         let square = edges.lengths.iter().map(|l| l * l).sum::<f64>() / count as f64;
