@@ -72,6 +72,9 @@ pub struct Fit {
     /// Springs across the sides of cells where no others suffice (exact with --nonnegative only)
     #[arg(long)]
     across: bool,
+    /// Rest measures: mesh, free or zero (frobenius, offdiag and modal only) [default: mesh]
+    #[arg(long)]
+    rest: Option<String>,
     /// Plane mesh or surface: stress or strain [default: stress]
     #[arg(long)]
     plane: Option<State>,
@@ -171,6 +174,7 @@ impl Fit {
             .with("tied", self.tied.then_some(true))
             .with("nonnegative", nonnegative.then_some(true))
             .with("across", self.across.then_some(true))
+            .with("rest", self.rest.clone())
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
             .with("law", self.law.clone());

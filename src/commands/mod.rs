@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod converge;
 mod derive;
 mod fit;
 mod interrupt;
@@ -44,6 +45,7 @@ commands! {
     Check: check::Check,
     Derive: derive::Derive,
     Compare: compare::Compare,
+    Converge: converge::Converge,
     Paper: paper::Paper,
     Stability: stability::Stability,
 }

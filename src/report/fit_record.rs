@@ -3,7 +3,7 @@
 use super::load_record::LoadRecord;
 use super::number::finite;
 use crate::study::{
-    FitOutcome, KindRecord, PositiveRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord,
+    FitOutcome, KindRecord, PositiveRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
     WholeOutcomeRecord,
 };
 use serde::{Deserialize, Serialize};
@@ -55,6 +55,8 @@ pub struct FitRecord {
     pub sampled: Option<SampledOutcomeRecord>,
     /// Of an exact network that was to have no negative springs.
     pub positive: Option<PositiveRecord>,
+    /// Of a fit with rest measures of its own.
+    pub tension: Option<TensionRecord>,
 }
 
 impl FitRecord {
@@ -90,6 +92,7 @@ impl FitRecord {
             whole: outcome.kind.whole().map(WholeOutcomeRecord::of),
             sampled: outcome.kind.sampled().map(SampledOutcomeRecord::of),
             positive: outcome.kind.exact().and_then(|exact| exact.positive.as_ref()).map(PositiveRecord::of),
+            tension: certificate.and_then(|outcome| outcome.tension.as_ref()).map(TensionRecord::from),
         }
     }
 }

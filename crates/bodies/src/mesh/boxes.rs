@@ -1,5 +1,6 @@
 //! Rectangles and bricks filled with one element.
 
+use super::affine::Affine;
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::quality::Quality;
 use crate::element::{Cell, Element};
@@ -126,24 +127,8 @@ impl BoxMesh {
     }
 }
 
-/// An affine map of the reference cell into the unit cube: `origin + Σ_k ξ_k edges_k`.
-struct Part {
-    origin: Vec<f64>,
-    edges: Vec<Vec<f64>>,
-}
-
-impl Part {
-    fn place(&self, at: &[f64]) -> Vec<f64> {
-        let mut x = self.origin.clone();
-        for (xi, edge) in at.iter().zip(&self.edges) {
-            x.iter_mut().zip(edge).for_each(|(x, e)| *x += xi * e);
-        }
-        x
-    }
-}
-
-/// Cells that fill the unit cube; none for a cell that fills no box.
-fn parts(cell: Cell) -> Vec<Part> {
+/// Maps of reference cells that fill the unit cube; none for a cell that fills no box.
+fn parts(cell: Cell) -> Vec<Affine> {
     let d = cell.dimension();
     let unit = |k: usize, length: f64| (0..d).map(|i| if i == k { length } else { 0.0 }).collect::<Vec<_>>();
     // The simplex 0, e_p, e_p + e_q, … for an order p, q, … of the directions.
@@ -153,18 +138,18 @@ fn parts(cell: Cell) -> Vec<Part> {
             corner[k] = 1.0;
             corner.clone()
         };
-        Part { origin: vec![0.0; d], edges: order.iter().map(step).collect() }
+        Affine { origin: vec![0.0; d], edges: order.iter().map(step).collect() }
     };
     let plane: &[&[usize]] = &[&[0, 1], &[1, 0]];
     let space: &[&[usize]] = &[&[0, 1, 2], &[0, 2, 1], &[1, 0, 2], &[1, 2, 0], &[2, 0, 1], &[2, 1, 0]];
     match cell {
         Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron => {
-            vec![Part { origin: vec![0.5; d], edges: (0..d).map(|k| unit(k, 0.5)).collect() }]
+            vec![Affine { origin: vec![0.5; d], edges: (0..d).map(|k| unit(k, 0.5)).collect() }]
         }
         Cell::Triangle => plane.iter().map(walk).collect(),
         Cell::Tetrahedron => space.iter().map(walk).collect(),
         Cell::Wedge => {
-            let raise = |mut part: Part| {
+            let raise = |mut part: Affine| {
                 part.origin[2] = 0.5;
                 part.edges.push(unit(2, 0.5));
                 part
@@ -175,7 +160,7 @@ fn parts(cell: Cell) -> Vec<Part> {
         Cell::Pyramid => {
             let stand = |k: usize, at: f64| {
                 let origin: Vec<f64> = (0..3).map(|i| if i == k { at } else { 0.5 }).collect();
-                Part { origin, edges: vec![unit((k + 1) % 3, 0.5), unit((k + 2) % 3, 0.5), unit(k, 0.5 - at)] }
+                Affine { origin, edges: vec![unit((k + 1) % 3, 0.5), unit((k + 2) % 3, 0.5), unit(k, 0.5 - at)] }
             };
             (0..3).flat_map(|k| [stand(k, 0.0), stand(k, 1.0)]).collect()
         }

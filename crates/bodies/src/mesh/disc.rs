@@ -76,10 +76,10 @@ impl DiscMesh {
         let around: Vec<usize> = (total - rim..total).collect();
         let side = |i: usize| sorted(&[around[i], around[(i + 1) % rim]]);
         let sides = (0..rim).map(side).collect();
-        mesh.groups.insert("rim".into(), Group { points: around.clone(), sides, cells: Vec::new() });
+        mesh.groups.insert("rim".into(), Group { points: around.clone(), sides, ..Group::default() });
         mesh.groups.insert("middle".into(), Group { points: vec![0], ..Group::default() });
         let cells = (0..mesh.cell_count()).map(|cell| CellIndex { block: 0, cell }).collect();
-        mesh.groups.insert("body".into(), Group { points: (0..total).collect(), sides: Vec::new(), cells });
+        mesh.groups.insert("body".into(), Group { points: (0..total).collect(), cells, ..Group::default() });
         mesh.orient(false)?;
         mesh.reversed = 0;
         Ok(mesh)

@@ -30,13 +30,15 @@ pub struct CellBlock {
     pub connectivity: Vec<usize>,
 }
 
-/// Points, sides and cells that carry one name.
+/// Points, sides, edges and cells that carry one name.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Group {
     /// Sorted.
     pub points: Vec<usize>,
     /// Each side by its points, sorted.
     pub sides: Vec<Vec<usize>>,
+    /// Each edge of a curve in a solid by its points, sorted.
+    pub edges: Vec<Vec<usize>>,
     pub cells: Vec<CellIndex>,
 }
 
@@ -103,7 +105,7 @@ impl Mesh {
             };
             renumber(&mut group.points);
             group.points.dedup();
-            group.sides.iter_mut().for_each(renumber);
+            group.sides.iter_mut().chain(&mut group.edges).for_each(renumber);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Meshes of known elements: points, cells and named groups, in metres.
 
+mod affine;
 mod boxes;
 mod disc;
 mod field;
@@ -11,6 +12,7 @@ mod mesh;
 mod quality;
 mod reader;
 mod reading;
+mod refinement;
 mod resolution;
 mod selection;
 mod source;

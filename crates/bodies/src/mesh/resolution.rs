@@ -64,8 +64,11 @@ impl Mesh {
             for name in &block.groups {
                 let group = mesh.groups.entry(name.clone()).or_default();
                 group.points.extend(&block.connectivity);
-                if block.dimension + 1 == dimension {
-                    group.sides.extend(block.connectivity.chunks_exact(block.nodes_per_cell).map(sorted));
+                let parts = block.connectivity.chunks_exact(block.nodes_per_cell).map(sorted);
+                match (block.dimension, dimension - block.dimension) {
+                    (_, 1) => group.sides.extend(parts),
+                    (1, _) => group.edges.extend(parts),
+                    _ => {}
                 }
             }
         }

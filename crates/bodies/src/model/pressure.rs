@@ -5,12 +5,12 @@ use crate::material::{Material, State};
 use crate::mesh::Mesh;
 use crate::springs::{Content, Measure, Patch};
 use crate::stiffness::gather;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// The mean pressure `−(σ₁ + σ₂ + σ₃)/3` under the displacements u, `[points]`, Pa; `None` of networks without patches.
 ///
 /// That of the patches alternates from point to point: displacements and pressures of this pair are not stable in the sense of
-/// Babuška and Brezzi. It is averaged twice, from patches to cells and from cells to their points, which takes the alternating part
+/// Babuška and Brezzi. It is averaged twice from points to cells and from cells to their points, which takes the alternating part
 /// away. With `linear`, changes of volume are those of the linear theory.
 pub fn smoothed_pressure(
     mesh: &Mesh,
@@ -20,26 +20,33 @@ pub fn smoothed_pressure(
     linear: bool,
 ) -> Option<Vec<f64>> {
     let bulk = bulk_modulus(material);
-    let mut cells: HashMap<Vec<usize>, (f64, f64)> = HashMap::new();
+    let mut cells: BTreeMap<Vec<usize>, [f64; 2]> = BTreeMap::new();
     for spring in &network.others {
         let Measure::Patch(patch) = &spring.measure else { continue };
         let pressure = -bulk * dilatation(mesh, spring, u, linear);
         for (nodes, share, content) in contents(mesh, spring, patch) {
-            let cell = cells.entry(nodes).or_insert((content, 0.0));
-            cell.1 += share * pressure;
+            cells.entry(nodes).or_insert([content, 0.0])[1] += share * pressure;
         }
     }
     if cells.is_empty() {
         return None;
     }
+    let cells: Vec<(Vec<usize>, [f64; 2])> = cells.into_iter().collect();
+    let once = of_points(mesh, cells.iter().map(|(nodes, [content, pressure])| (&nodes[..], *content, *pressure)));
+    let mean = |nodes: &[usize]| nodes.iter().map(|&point| once[point]).sum::<f64>() / nodes.len() as f64;
+    Some(of_points(mesh, cells.iter().map(|(nodes, [content, _])| (&nodes[..], *content, mean(nodes)))))
+}
+
+/// The mean over the cells around each point, by their contents; cells have nodes, content and value.
+fn of_points<'a>(mesh: &Mesh, cells: impl Iterator<Item = (&'a [usize], f64, f64)>) -> Vec<f64> {
     let (mut sums, mut weights) = (vec![0.0; mesh.point_count()], vec![0.0; mesh.point_count()]);
-    for (nodes, (content, pressure)) in &cells {
+    for (nodes, content, value) in cells {
         for &point in nodes {
-            sums[point] += content * pressure;
+            sums[point] += content * value;
             weights[point] += content;
         }
     }
-    Some(sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect())
+    sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect()
 }
 
 /// K in `p = −K (J − 1)`, J the change of volume, or of the area in a plane.

@@ -111,7 +111,9 @@ fn nodes_of(
             | SpringKind::Coupling
             | SpringKind::Measure
             | SpringKind::PointContent
-            | SpringKind::PointArea,
+            | SpringKind::PointArea
+            | SpringKind::Patch
+            | SpringKind::Fibre,
         ) => {
             return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
         }

@@ -1,6 +1,5 @@
 //! One element in another kind of number: in twice the digits, to tell what rounding did, or in half of them.
 
-use super::exact::edges;
 use super::input::{check_finite, check_length, check_moduli, check_nodes};
 use super::least_squares::constants_in;
 use super::least_squares::normal_equations;
@@ -22,7 +21,7 @@ use crate::stiffness::Geometry;
 ///
 /// # Errors
 /// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, the
-/// Jacobian is not positive everywhere, the springs are linearly dependent, or the objective needs what is known in `f64` alone.
+/// Jacobian is not positive everywhere, the springs are linearly dependent or pull at rest, or the objective needs what is known in `f64` alone.
 pub fn constants_of_kind<T: Real>(
     any: &T,
     element: &Element,
@@ -32,6 +31,7 @@ pub fn constants_of_kind<T: Real>(
     fit: &Fit,
 ) -> Result<Vec<T>> {
     check(element, springs, x, moduli)?;
+    fit.check_constants_alone()?;
     let x = differences(any, element.dimension(), x);
     let constants = match fit.objective {
         Objective::Frobenius(weight) if matches!(weight.route(!springs.functions.is_empty()), Route::Closed(_)) => {
@@ -45,24 +45,8 @@ pub fn constants_of_kind<T: Real>(
     finite.ok_or_else(|| no_answer("the springs do not have one optimum, or the element has no stiffness"))
 }
 
-/// The springs between nodes of the exact network of one element in numbers of the kind of `any`, `[pairs]`, N/m, with this shear
-/// modulus (times the thickness); nodes at `x`, `[nodes × dimension]`, m.
-///
-/// # Errors
-/// An array has a wrong length, a number is not finite, or the Jacobian is not positive everywhere.
-pub fn exact_constants_of_kind<T: Real>(any: &T, element: &Element, x: &[f64], mu: f64) -> Result<Vec<T>> {
-    check_nodes(element, element.dimension(), x)?;
-    check_finite("mu", &[mu])?;
-    let x = differences(any, element.dimension(), x);
-    let mut geometry = Geometry::like(any, &element.tabulation);
-    if !geometry.update(&element.tabulation, &x) {
-        return Err(no_answer("the element has no stiffness"));
-    }
-    Ok(edges(&geometry, mu))
-}
-
 /// What has no answer in this kind of number.
-fn no_answer(problem: &str) -> Error {
+pub(super) fn no_answer(problem: &str) -> Error {
     Error::new(problem).of_kind(ErrorKind::Infeasible)
 }
 

@@ -14,7 +14,7 @@ use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
 use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors, fit_exact};
-use crate::material::Material;
+use crate::material::{Energy, Material};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::patch_springs;
 use crate::springs::Springs;
@@ -134,10 +134,10 @@ pub fn measure_recipes(
 }
 
 /// The exact networks that the body has: with volume springs at points and on cells, and on patches where these can be.
-fn exact_fits(scene: &Scene, mesh: &Mesh, material: Material) -> Vec<NamedFit> {
+fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<NamedFit> {
     let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
     let serves = |recipe: &ExactRecipe| {
-        let Ok(fit) = recipe.resolve(scene.law()) else { return false };
+        let Ok(fit) = recipe.resolve(law) else { return false };
         let block = |b: &CellBlock| {
             let cell = &b.connectivity[..b.element.nodes()];
             fit_exact(&b.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
@@ -168,6 +168,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
     let whole = scene.law().is_none() && body.held("loads").is_ok();
+    let law = scene.energy(material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {
@@ -180,7 +181,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
         let of_whole = whole.then(|| NamedFit::of(Recipe::Whole(Box::default()), None));
         let mut fits: Vec<NamedFit> = at_rest.chain(of_whole).collect();
         if groups.is_none() {
-            fits.splice(0..0, exact_fits(scene, &mesh, material));
+            fits.splice(0..0, exact_fits(law.as_ref(), &mesh, material));
             let published = Method::ALL.into_iter().filter(serves_all);
             fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }

@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod choice;
 mod comparison;
+mod convergence;
 mod fits;
 mod fitting;
 mod metrics;
@@ -26,12 +27,16 @@ pub use body::LargeBody;
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
+pub use convergence::{
+    Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, limit_of,
+    most_unknowns, rates,
+};
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
     KindRecord, LoadSelection, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord,
     Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing,
-    SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, ValidationRecipe, WholeBody, WholeOutcome,
-    WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, TensionOutcome, TensionRecord, ValidationRecipe,
+    WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
 pub use metrics::{DisplacementError, displacement_error};

@@ -80,7 +80,7 @@ pub fn compare_stretches(
     let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
     let pulled = Pulled { mesh, material, large: LargeBody::at_rest(energy, material.state()) };
     let exact = ExactRecipe::default();
-    let exact = exact.resolve(Some(&pulled.large.energy.name)).and_then(|fit| {
+    let exact = exact.resolve(Some(&pulled.large.energy)).and_then(|fit| {
         let block = &pulled.mesh.blocks[0];
         fit_exact(element, &pulled.mesh.points, &block.connectivity, material, &fit, &mut |_| {}).map(|_| exact)
     });

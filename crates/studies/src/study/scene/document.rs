@@ -177,6 +177,12 @@ impl Scene {
         Scene { motion: None, ..self }
     }
 
+    /// The same scene with the edges of all cells halved so many times more.
+    pub fn halved(mut self, times: u32) -> Scene {
+        self.mesh.halvings += times;
+        self
+    }
+
     /// The same scene with a mesh `factor` times as large.
     pub fn with_lengths_times(mut self, factor: f64) -> Scene {
         self.mesh.scale *= factor;

@@ -23,6 +23,9 @@ pub struct MeshInput {
     pub elements: Vec<String>,
     /// Of the cells of a file.
     pub quality: Option<QualityEntry>,
+    /// How often the edges of all cells are halved.
+    #[serde(skip)]
+    pub halvings: u32,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -132,11 +135,21 @@ impl DiscEntry {
 }
 
 impl MeshInput {
-    /// Reads or generates the mesh of the scene at `scene`.
+    /// Reads or generates the mesh of the scene at `scene`. A box is halved by its numbers of cells, any other mesh cell by cell.
     ///
     /// # Errors
-    /// The file or an element is wrong, or a cell has no volume.
+    /// The file or an element is wrong, or a cell has no volume or cannot be divided.
     pub fn build(&self, scene: &Path) -> Result<Mesh> {
+        let mut mesh = self.build_coarse(scene)?;
+        if self.generated.is_none() {
+            for _ in 0..self.halvings {
+                mesh = mesh.refined().map_err(|e| e.in_file(scene))?;
+            }
+        }
+        Ok(mesh)
+    }
+
+    fn build_coarse(&self, scene: &Path) -> Result<Mesh> {
         let folder = scene.parent().unwrap_or(Path::new(""));
         let at = |key: &'static str| move |e: Error| e.placed(|e| e.under(key).in_file(scene));
         if let Some(file) = &self.file {
@@ -153,7 +166,9 @@ impl MeshInput {
         let element = load_element(&entry.element, folder).map_err(at("mesh.box"))?;
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
-        let spec = BoxMesh { element, size: scaled(&entry.size), cells: entry.cells.clone(), origin: scaled(&origin) };
+        let factor = 1usize.checked_shl(self.halvings).unwrap_or(usize::MAX);
+        let cells = entry.cells.iter().map(|n| n.saturating_mul(factor)).collect();
+        let spec = BoxMesh { element, size: scaled(&entry.size), cells, origin: scaled(&origin) };
         spec.build().map_err(at("mesh.box"))
     }
 }

@@ -1,0 +1,101 @@
+//! Which groups the cells, sides and edges of a mesh belong to.
+
+use super::super::mesh::{CellIndex, Group, Mesh};
+use crate::error::{Error, Result};
+use std::collections::{BTreeMap, HashMap};
+
+/// The groups of a mesh by what they hold, and those of the divided mesh as they grow.
+pub struct Memberships<'a> {
+    names: Vec<&'a String>,
+    cells: HashMap<CellIndex, Vec<usize>>,
+    sides: HashMap<Vec<usize>, Vec<usize>>,
+    edges: HashMap<Vec<usize>, Vec<usize>>,
+    /// Those of `sides` and `edges` that a cell has.
+    met: [std::collections::HashSet<Vec<usize>>; 2],
+    groups: Vec<Group>,
+}
+
+impl<'a> Memberships<'a> {
+    pub fn of(mesh: &'a Mesh) -> Memberships<'a> {
+        let mut all = Memberships {
+            names: mesh.groups.keys().collect(),
+            cells: HashMap::new(),
+            sides: HashMap::new(),
+            edges: HashMap::new(),
+            met: Default::default(),
+            groups: Vec::new(),
+        };
+        for (index, group) in mesh.groups.values().enumerate() {
+            group.cells.iter().for_each(|&cell| all.cells.entry(cell).or_default().push(index));
+            group.sides.iter().for_each(|side| all.sides.entry(side.clone()).or_default().push(index));
+            group.edges.iter().for_each(|edge| all.edges.entry(edge.clone()).or_default().push(index));
+            all.groups.push(Group { points: group.points.clone(), ..Group::default() });
+        }
+        all
+    }
+
+    /// The cells into which a cell is divided, with their points.
+    pub fn divide_cell(&mut self, cell: CellIndex, parts: &[CellIndex], points: &[usize]) {
+        for &group in self.cells.get(&cell).into_iter().flatten() {
+            self.groups[group].cells.extend(parts);
+            self.groups[group].points.extend(points);
+        }
+    }
+
+    /// The sides into which the side with these points is divided.
+    pub fn divide_side(&mut self, side: Vec<usize>, parts: impl Iterator<Item = Vec<usize>> + Clone) {
+        for &group in self.sides.get(&side).into_iter().flatten() {
+            self.groups[group].points.extend(parts.clone().flatten());
+            self.groups[group].sides.extend(parts.clone());
+        }
+        if self.sides.contains_key(&side) {
+            self.met[0].insert(side);
+        }
+    }
+
+    /// The edges into which the edge with these points is divided.
+    pub fn divide_edge(&mut self, edge: Vec<usize>, parts: impl Iterator<Item = Vec<usize>> + Clone) {
+        for &group in self.edges.get(&edge).into_iter().flatten() {
+            self.groups[group].points.extend(parts.clone().flatten());
+            self.groups[group].edges.extend(parts.clone());
+        }
+        if self.edges.contains_key(&edge) {
+            self.met[1].insert(edge);
+        }
+    }
+
+    /// Whether any group has sides.
+    pub fn has_sides(&self) -> bool {
+        !self.sides.is_empty()
+    }
+
+    /// Whether any group has edges.
+    pub fn has_edges(&self) -> bool {
+        !self.edges.is_empty()
+    }
+
+    /// The groups of the divided mesh.
+    ///
+    /// # Errors
+    /// A group has a side or an edge that no cell has: it has no parts.
+    pub fn into_groups(self) -> Result<BTreeMap<String, Group>> {
+        for (what, listed, met) in [("sides", &self.sides, &self.met[0]), ("edges", &self.edges, &self.met[1])] {
+            let lost: Vec<_> = listed.iter().filter(|(points, _)| !met.contains(*points)).collect();
+            if let Some(group) = lost.iter().flat_map(|(_, groups)| groups.iter()).min() {
+                let count = lost.iter().filter(|(_, groups)| groups.contains(group)).count();
+                let expected = format!("{what} of cells in group \"{}\"", self.names[*group]);
+                return Err(Error::expected("mesh", expected, format!("{count} {what} that no cell has")));
+            }
+        }
+        let sorted = |mut group: Group| {
+            group.points.sort_unstable();
+            group.points.dedup();
+            for parts in [&mut group.sides, &mut group.edges] {
+                parts.sort_unstable();
+                parts.dedup();
+            }
+            group
+        };
+        Ok(self.names.into_iter().cloned().zip(self.groups.into_iter().map(sorted)).collect())
+    }
+}

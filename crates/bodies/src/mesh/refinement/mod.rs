@@ -1,0 +1,158 @@
+//! Uniform refinement: every cell is divided so that all edges are halved.
+
+mod children;
+mod filling;
+mod memberships;
+mod pattern;
+
+use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
+use super::quality::{Below, Gate};
+use crate::element::{Cell, Element};
+use crate::error::Result;
+use crate::springs::distance;
+use children::DIAGONALS;
+use filling::filling;
+use memberships::Memberships;
+use pattern::Pattern;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Lengths that differ by less than this share are equal.
+const TIE: f64 = 1e-9;
+
+impl Mesh {
+    /// The same body with cells of half the size: an interval is divided into two, a triangle or quadrilateral into four, a
+    /// tetrahedron, hexahedron or wedge into eight, a pyramid into six pyramids and four tetrahedra.
+    ///
+    /// New points are where the shape functions of the cell put them, `x = Σ_a N_a x_a`. The geometry is kept: curved cells stay
+    /// curved where the shape functions of the parts can follow, and polygons stay polygons. A tetrahedron is divided along the
+    /// shortest diagonal. The sides, edges and cells of a group are divided with the cells, and their new points belong to the
+    /// group. Points of a group that are on none of them stay in it as they are. Old points keep their numbers.
+    ///
+    /// # Errors
+    /// A cell cannot be divided, a group has sides that no cell has, or a part of a curved cell has no volume.
+    pub fn refined(&self) -> Result<Mesh> {
+        let mut fine = Mesh { blocks: Vec::new(), ..self.clone() };
+        let mut elements: Vec<Arc<Element>> = self.blocks.iter().map(|block| block.element.clone()).collect();
+        let divisions: Vec<Division> =
+            self.blocks.iter().map(|block| Division::of(&block.element, &mut elements)).collect::<Result<_>>()?;
+        fine.blocks.extend(elements.into_iter().map(|element| CellBlock { element, connectivity: Vec::new() }));
+        let mut memberships = Memberships::of(self);
+        let mut glue = Glue::default();
+        for (index, (block, division)) in self.blocks.iter().zip(&divisions).enumerate() {
+            for (cell, nodes) in block.cells().enumerate() {
+                let pattern = division.pattern(self, nodes);
+                let points: Vec<usize> =
+                    pattern.points.iter().map(|values| glue.point(values, nodes, &mut fine)).collect();
+                let mut parts = Vec::new();
+                for (kind, places) in &pattern.cells {
+                    let block = if *kind == self.blocks[index].element.cell { index } else { division.filling };
+                    let target = &mut fine.blocks[block];
+                    parts.push(CellIndex { block, cell: target.cells().len() });
+                    target.connectivity.extend(places.iter().map(|&p| points[p]));
+                }
+                memberships.divide_cell(CellIndex { block: index, cell }, &parts, &points);
+                let own = |places: &[usize]| sorted(&places.iter().map(|&p| points[p]).collect::<Vec<_>>());
+                if memberships.has_sides() {
+                    for (side, parts) in block.element.sides().iter().zip(&pattern.sides) {
+                        memberships.divide_side(own(&side.nodes), parts.iter().map(|part| own(part)));
+                    }
+                }
+                if memberships.has_edges() {
+                    for (edge, parts) in &pattern.edges {
+                        memberships.divide_edge(own(edge), parts.iter().map(|part| own(part)));
+                    }
+                }
+            }
+        }
+        fine.groups = memberships.into_groups()?;
+        fine.drop_unused_points();
+        fine.unused_points = self.unused_points;
+        fine.orient(false).map_err(|e| e.followed_by(" after the cells were divided"))?;
+        fine.reversed = self.reversed;
+        if self.quality.worst.is_some() {
+            fine.pass(Gate { least: self.quality.least, below: Below::Warn })?;
+        }
+        Ok(fine)
+    }
+}
+
+/// The ways to divide the cells of one element.
+struct Division {
+    /// One, or one for each diagonal of a tetrahedron.
+    patterns: Vec<Pattern>,
+    /// For each diagonal, its ends as points of the first pattern's middles.
+    diagonals: Vec<[Vec<(usize, f64)>; 2]>,
+    /// The block of the parts that are of another kind.
+    filling: usize,
+}
+
+impl Division {
+    /// `elements` are those of the blocks; one that is needed besides is added.
+    fn of(element: &Arc<Element>, elements: &mut Vec<Arc<Element>>) -> Result<Division> {
+        let other = children::children(element.cell, 0).iter().map(|part| part.cell).find(|cell| *cell != element.cell);
+        let mut filling_block = 0;
+        if let Some(cell) = other {
+            let filling = filling(element, cell, elements)?;
+            let place = elements.iter().position(|known| known.name == filling.name);
+            filling_block = place.unwrap_or(elements.len());
+            if place.is_none() {
+                elements.push(filling);
+            }
+        }
+        let filling = elements[filling_block].clone();
+        let element_of = |cell: Cell| Ok(if cell == element.cell { &**element } else { &*filling });
+        let is_tetrahedron = element.cell == Cell::Tetrahedron;
+        let ways = if is_tetrahedron { DIAGONALS.len() } else { 1 };
+        let patterns = (0..ways).map(|way| Pattern::of(element, way, &element_of)).collect::<Result<Vec<_>>>()?;
+        let end = |pair: [usize; 2]| -> Vec<(usize, f64)> {
+            let corners = element.cell.corners();
+            let at: Vec<f64> = corners[pair[0]].iter().zip(corners[pair[1]]).map(|(a, b)| (a + b) / 2.0).collect();
+            element.functions.values.iter().map(|n| n.evaluate(&at)).enumerate().collect()
+        };
+        let diagonals = if is_tetrahedron { DIAGONALS.map(|ends| ends.map(end)).to_vec() } else { Vec::new() };
+        Ok(Division { patterns, diagonals, filling: filling_block })
+    }
+
+    /// The way to divide the cell with these nodes: along its shortest diagonal, the first of equal ones.
+    fn pattern(&self, mesh: &Mesh, nodes: &[usize]) -> &Pattern {
+        let mut shortest = (0, f64::INFINITY);
+        for (way, ends) in self.diagonals.iter().enumerate() {
+            let [from, to] = [0, 1].map(|end| place(mesh, nodes, &ends[end]));
+            let length = distance(&from, &to);
+            if length < shortest.1 * (1.0 - TIE) {
+                shortest = (way, length);
+            }
+        }
+        &self.patterns[shortest.0]
+    }
+}
+
+/// `x = Σ_a N_a x_a`.
+fn place(mesh: &Mesh, nodes: &[usize], values: &[(usize, f64)]) -> Vec<f64> {
+    (0..mesh.dimension).map(|k| values.iter().map(|&(a, n)| n * mesh.point(nodes[a])[k]).sum()).collect()
+}
+
+/// The new points. Neighbours share the shape functions on the side between them, and all others vanish there. So the nodes whose
+/// functions do not vanish, with the values in 2⁻³⁰, identify a point, also where points of two bodies coincide.
+#[derive(Default)]
+struct Glue {
+    known: HashMap<Vec<(usize, i64)>, usize>,
+}
+
+impl Glue {
+    /// The point where the shape functions of a cell have these values.
+    fn point(&mut self, values: &[(usize, f64)], nodes: &[usize], fine: &mut Mesh) -> usize {
+        if let [(a, _)] = values {
+            return nodes[*a];
+        }
+        let mut key: Vec<(usize, i64)> =
+            values.iter().map(|&(a, n)| (nodes[a], (n * (1u64 << 30) as f64).round() as i64)).collect();
+        key.sort_unstable();
+        *self.known.entry(key).or_insert_with(|| {
+            let at = place(fine, nodes, values);
+            fine.points.extend(at);
+            fine.point_count() - 1
+        })
+    }
+}

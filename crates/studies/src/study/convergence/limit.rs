@@ -1,0 +1,78 @@
+//! The limit of a sequence of values on meshes whose cells are halved from one to the next.
+
+/// Values that differ by less than this share are equal: solutions are not more accurate.
+const EQUAL: f64 = 1e-9;
+/// The slowest order from which a limit is extrapolated. At ½ the extrapolation adds 2.4 times the last difference.
+const SLOWEST: f64 = 0.5;
+
+/// What a sequence tends to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    pub value: f64,
+    /// How far the value may be off: what one level more has changed in it, or else what extrapolation has added to the finest
+    /// value; for the value of the finest level, its distance from the level before.
+    pub uncertainty: f64,
+    pub kind: LimitKind,
+}
+
+/// How a limit was found; if it was not extrapolated, it is the value of the finest level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LimitKind {
+    /// From the three finest levels, with this order in the size of the cells.
+    Extrapolated(f64),
+    /// The two finest levels agree to rounding.
+    Constant,
+    /// There are fewer than three levels.
+    TooFew,
+    /// The differences from level to level change their sign or grow.
+    NotMonotonic,
+    /// The order is below ½: extrapolation would add more than is known.
+    TooSlow(f64),
+}
+
+impl Limit {
+    /// The order of convergence, where the limit was extrapolated.
+    pub fn order(&self) -> Option<f64> {
+        match self.kind {
+            LimitKind::Extrapolated(order) => Some(order),
+            LimitKind::Constant | LimitKind::TooFew | LimitKind::NotMonotonic | LimitKind::TooSlow(_) => None,
+        }
+    }
+}
+
+/// The limit of values on levels of cell size `h, h/2, h/4, …`; `None` without values.
+///
+/// For `v(h) = v₀ + c hᵖ` the differences `d₁`, `d₂` of the three finest values give `q = d₂/d₁ = 2⁻ᵖ` and
+/// `v₀ = v₃ + d₂ q/(1 − q)` (Aitken 1926; Richardson 1911 with the observed order). All differences must have one sign and the
+/// last two must decrease; otherwise the finest value is taken for the limit.
+pub fn limit_of(values: &[f64]) -> Option<Limit> {
+    let finest = *values.last()?;
+    let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let last = differences.last().copied().unwrap_or(0.0);
+    let of_finest = |kind| Some(Limit { value: finest, uncertainty: last.abs(), kind });
+    if !differences.is_empty() && last.abs() <= EQUAL * finest.abs() {
+        return of_finest(LimitKind::Constant);
+    }
+    if values.len() < 3 {
+        return of_finest(LimitKind::TooFew);
+    }
+    let one_sign = differences.iter().all(|d| d * last > 0.0);
+    let Some((q, correction)) = aitken(&differences).filter(|_| one_sign) else {
+        return of_finest(LimitKind::NotMonotonic);
+    };
+    let order = -q.log2();
+    if order < SLOWEST {
+        return of_finest(LimitKind::TooSlow(order));
+    }
+    let value = finest + correction;
+    let coarser = aitken(&differences[..differences.len() - 1]).map(|(_, correction)| finest - last + correction);
+    let uncertainty = coarser.map_or(correction.abs(), |coarser| (value - coarser).abs());
+    Some(Limit { value, uncertainty, kind: LimitKind::Extrapolated(order) })
+}
+
+/// `q` and `d₂ q/(1 − q)` of the last two differences, if 0 < q < 1.
+fn aitken(differences: &[f64]) -> Option<(f64, f64)> {
+    let [.., first, second] = differences else { return None };
+    let q = second / first;
+    (q > 0.0 && q < 1.0).then_some((q, second * q / (1.0 - q)))
+}

@@ -1,0 +1,12 @@
+//! How finite elements and networks converge as the mesh of a scene is refined.
+
+mod levels;
+mod limit;
+mod outcome;
+mod quantities;
+mod run;
+
+pub use levels::most_unknowns;
+pub use limit::{Limit, LimitKind, limit_of};
+pub use outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step, rates};
+pub use run::{MOST_LEVELS, converge};

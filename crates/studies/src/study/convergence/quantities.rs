@@ -1,0 +1,79 @@
+//! What of a solution is followed from mesh to mesh: the work of the load, and the mean displacement of the loaded part.
+
+use crate::error::Result;
+use crate::material::Material;
+use crate::mesh::Mesh;
+use crate::model::{Action, Entries, nodal_forces};
+use crate::scalar::Sum;
+use crate::study::body::load_cases;
+use crate::study::scene::{LoadCase, Scene};
+
+/// A load on a mesh, as what measures displacements.
+pub struct Quantities {
+    /// Nodal forces, `[points · dimension]`, N.
+    forces: Vec<f64>,
+    /// `∫ N_a dA` of the loaded part, or dV, or 1 for each of its points; `[points]`. None where displacements are prescribed.
+    weights: Option<Vec<f64>>,
+    dimension: usize,
+}
+
+impl Quantities {
+    /// One for each load of the scene.
+    ///
+    /// # Errors
+    /// Those of a run of the scene.
+    pub fn of(scene: &Scene, mesh: &Mesh, material: Material) -> Result<Vec<Quantities>> {
+        let (_, cases) = load_cases(scene, mesh, material)?;
+        let weigh = |load: &LoadCase| -> Result<Option<Vec<f64>>> {
+            let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
+            let unit = match load.action {
+                Action::Displacement(_) => return Ok(None),
+                Action::Traction(_) | Action::Force(_) => Action::Force(along_x),
+                Action::Body(_) => Action::body(&along_x),
+            };
+            let forces = nodal_forces(mesh, &load.part.selection(mesh.dimension)?, &unit, 1.0)?;
+            Ok(Some(forces.chunks_exact(mesh.dimension).map(|f| f[0]).collect()))
+        };
+        let pairs = scene.loads().iter().zip(cases);
+        let quantities = pairs.map(|(load, case)| {
+            let weights = weigh(load)?;
+            Ok(Quantities { forces: case.forces, weights, dimension: mesh.dimension })
+        });
+        quantities.collect()
+    }
+
+    /// Whether the load prescribes displacements: its work is that of the forces which hold them.
+    pub fn is_prescribed(&self) -> bool {
+        self.weights.is_none()
+    }
+
+    /// `f·u`, J: the work of the final nodal forces along the final displacements.
+    pub fn work(&self, u: &[f64]) -> f64 {
+        product(&self.forces, u)
+    }
+
+    /// `|∫ u dA| / A`, m; `None` where displacements are prescribed.
+    pub fn mean_displacement(&self, u: &[f64]) -> Option<f64> {
+        let weights = self.weights.as_ref()?;
+        let total = weights.iter().copied().collect::<Sum>().value();
+        let along = |k: usize| {
+            let terms = weights.iter().zip(u.chunks_exact(self.dimension)).map(|(w, u)| w * u[k]);
+            terms.collect::<Sum>().value() / total
+        };
+        Some((0..self.dimension).map(|k| along(k).powi(2)).sum::<f64>().sqrt())
+    }
+}
+
+/// `Σ f_i u_i`.
+pub fn product(f: &[f64], u: &[f64]) -> f64 {
+    f.iter().zip(u).map(|(f, u)| f * u).collect::<Sum>().value()
+}
+
+/// `uᵀ K u` of a symmetric matrix by its lower triangle.
+pub fn square(stiffness: &Entries, u: &[f64]) -> f64 {
+    let term = |entry: &faer::sparse::Triplet<usize, usize, f64>| {
+        let both = if entry.row == entry.col { 1.0 } else { 2.0 };
+        both * entry.val * u[entry.row] * u[entry.col]
+    };
+    stiffness.iter().map(term).collect::<Sum>().value()
+}

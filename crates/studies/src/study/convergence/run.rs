@@ -1,0 +1,137 @@
+//! Runs a scene on a sequence of meshes.
+
+use super::levels::plan;
+use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step};
+use super::quantities::{Quantities, product, square};
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
+use crate::solve::Ending;
+use crate::study::metrics::displacement_error;
+use crate::study::outcome::Outcome;
+use crate::study::progress::{Event, Progress};
+use crate::study::run::run;
+use crate::study::scene::{Output, Scene};
+use std::time::Instant;
+
+/// The most levels that may be asked for.
+pub const MOST_LEVELS: usize = 8;
+/// The levels where no number is asked for, if there is room for them.
+const USUAL_LEVELS: usize = 4;
+/// The name of the first model.
+const BODY: &str = "finite elements";
+
+/// Runs the scene on its mesh and on meshes with cells of half the size each, and follows the compliance of every load.
+///
+/// A box has twice as many cells in each direction from level to level; the cells of any other mesh are divided as in
+/// [`Mesh::refined`], so that its body stays the one of the first mesh. Only fits and loads are run: no motion, gauge or output.
+///
+/// # Errors
+/// `levels` is not from 2 to [`MOST_LEVELS`] or the finest mesh is too large; the scene has no loads; those of a run on any level.
+pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -> Result<Convergence> {
+    if let Some(levels) = levels.filter(|levels| !(2..=MOST_LEVELS).contains(levels)) {
+        return Err(Error::expected("levels", format!("a number from 2 to {MOST_LEVELS}"), levels));
+    }
+    if scene.loads().is_empty() {
+        let problem = "expected at least one [[load]] to converge under, found none";
+        return Err(Error::at("load", problem).in_file(scene.path()));
+    }
+    let scene = scene.clone().without_motion().without_gauge().with_output(Output::default());
+    let count = plan(&scene, levels, USUAL_LEVELS)?;
+    if levels.is_none() && count < USUAL_LEVELS {
+        progress(Event::Note(&format!("{count} levels are run, for one more would take long; --levels asks for more")));
+    }
+    let mut convergence = Convergence { scene: scene.title().into(), law: None, levels: vec![], loads: vec![] };
+    let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
+    for level in 0..count {
+        let number = format!("level {} of {count}", level + 1);
+        let start = Instant::now();
+        let mut staged = |event: Event| match event {
+            Event::Stage { name, done, total } => progress(Event::stage(&format!("{number}: {name}"), done, total)),
+            Event::Note(_) => progress(event),
+        };
+        let in_level = |e: Error| e.followed_by(format!(" ({number})"));
+        let refined = scene.clone().halved(level as u32);
+        let outcome = run(&refined, &mut staged).map_err(in_level)?;
+        let steps = steps(&refined, &outcome).map_err(in_level)?;
+        for (load, steps) in steps.into_iter().enumerate() {
+            if level == 0 {
+                let names = std::iter::once(BODY).chain(outcome.fits.iter().map(|fit| fit.fit.name.as_str()));
+                models.push(names.map(|name| ModelConvergence { name: name.into(), steps: Vec::new() }).collect());
+            }
+            models[load].iter_mut().zip(steps).for_each(|(model, step)| model.steps.push(step));
+        }
+        let mesh = &outcome.mesh;
+        let size =
+            convergence.levels.first().map_or_else(|| cell_size(mesh), |first| first.size / 2f64.powi(level as i32));
+        let seconds = start.elapsed().as_secs_f64();
+        let (cells, points, unknowns) = (mesh.cell_count(), mesh.point_count(), mesh.points.len());
+        convergence.levels.push(Level { size, cells, points, unknowns, seconds });
+        progress(Event::Note(&format!("{number}: {cells} cells, {unknowns} unknowns, {seconds:.1} s")));
+        convergence.law = outcome.law;
+    }
+    let loads = scene.loads().iter().zip(models);
+    convergence.loads = loads.map(|(load, models)| LoadConvergence::new(load.name.clone(), models)).collect();
+    Ok(convergence)
+}
+
+/// The edge of a cube, square or interval of the mean content of the cells, m.
+fn cell_size(mesh: &Mesh) -> f64 {
+    let content: f64 = masses(mesh, 1.0, 1.0).iter().sum();
+    (content / mesh.cell_count().max(1) as f64).powf(1.0 / mesh.cell_dimension() as f64)
+}
+
+/// For each load, the finite elements and each fit.
+fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
+    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let quantities = Quantities::of(scene, mesh, material)?;
+    let prescribed = quantities.iter().any(Quantities::is_prescribed);
+    // Forces at the points under given displacements, only where they do work.
+    let energy = scene.energy(material)?;
+    let stiffness =
+        |linear: &dyn Fn() -> Entries| if prescribed && energy.is_none() { linear() } else { Entries::new() };
+    let body = energy.as_ref().map(|energy| Body { mesh, energy, state: material.state() });
+    let body_stiffness = stiffness(&|| finite_elements(mesh, material.moduli()));
+    let mut steps: Vec<Vec<Step>> = Vec::new();
+    let compliance = |quantity: &Quantities, u: &[f64], stiffness: &Entries, large: Option<&dyn Elastic>| {
+        let value = match large {
+            _ if !quantity.is_prescribed() => quantity.work(u),
+            Some(model) => {
+                let mut force = vec![0.0; u.len()];
+                let known = model.forces(&displaced(&mesh.points, u), &mut force);
+                return known.then(|| product(&force, u)).filter(|value| value.is_finite());
+            }
+            None => square(stiffness, u),
+        };
+        Some(value).filter(|value| value.is_finite())
+    };
+    for (load, quantity) in outcome.loads.iter().zip(&quantities) {
+        let reached = load.followed.is_none_or(|followed| followed.ending == Ending::Converged);
+        let fem = Some(&load.fem).filter(|_| reached);
+        let large = body.as_ref().map(|body| body as &dyn Elastic);
+        steps.push(vec![Step {
+            compliance: fem.and_then(|u| compliance(quantity, u, &body_stiffness, large)),
+            mean_displacement: fem.and_then(|u| quantity.mean_displacement(u)),
+            rms: None,
+            status: if reached { "solved" } else { "stalled" },
+        }]);
+    }
+    for fit in &outcome.fits {
+        let network_stiffness = stiffness(&|| fit.network.stiffness(&mesh.points));
+        let large = energy.as_ref().map(|_| &fit.network as &dyn Elastic);
+        for (i, (load, quantity)) in fit.loads.iter().zip(&quantities).enumerate() {
+            let u = load.displacement.as_ref();
+            let body = &outcome.loads[i].fem;
+            let against =
+                |u: &Vec<f64>| steps[i][0].compliance.and_then(|_| displacement_error(body, u, mesh.dimension));
+            let rms = u.and_then(against).map(|error| error.rms);
+            steps[i].push(Step {
+                compliance: u.and_then(|u| compliance(quantity, u, &network_stiffness, large)),
+                mean_displacement: u.and_then(|u| quantity.mean_displacement(u)),
+                rms,
+                status: fit.status(),
+            });
+        }
+    }
+    Ok(steps)
+}

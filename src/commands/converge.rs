@@ -1,0 +1,37 @@
+//! `springfit converge`.
+
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::study::{self, Event, Scene};
+use springfit::{check_folder, report};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Refine the mesh of a scene, and report how finite elements and networks converge
+#[derive(Args)]
+pub struct Converge {
+    /// The scene file
+    scene: PathBuf,
+    /// Meshes, from 2 to 8: that of the scene, and others with cells of half the size each [default: 4, or fewer if they would take long]
+    #[arg(long, allow_hyphen_values = true)]
+    levels: Option<usize>,
+    /// Where the table and the plot go [default: out/converge-NAME]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Converge {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let scene = Scene::load(&self.scene)?;
+        let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
+        check_folder(&folder)?;
+        let convergence = study::converge(&scene, self.levels, &mut |event: Event| terminal.show(event))
+            .map_err(|e| e.placed(Error::of_option))?;
+        let paths = report::write_convergence(&convergence, &folder);
+        terminal.print(&report::convergence_text(&convergence))?;
+        terminal.written(&paths?)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

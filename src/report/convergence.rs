@@ -1,0 +1,183 @@
+//! A convergence study as tables, as CSV and as a plot of errors against cell size.
+
+use super::columns::{Heading, aligned};
+use super::convergence_plot::plot;
+use super::rows::csv;
+use super::write_files;
+use crate::error::Result;
+use crate::study::{Convergence, Limit, LimitKind, LoadConvergence, ModelConvergence, rates};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// One table for each load, with what its errors refer to.
+pub fn convergence_text(convergence: &Convergence) -> String {
+    let columns = [
+        Heading::words("model"),
+        Heading::numbers("level"),
+        Heading::numbers("h\nmm"),
+        Heading::numbers("cells"),
+        Heading::numbers("unknowns"),
+        Heading::numbers("compliance\nJ"),
+        Heading::numbers("of finite\nelements %"),
+        Heading::numbers("of the\ntruth %"),
+        Heading::numbers("rate"),
+        Heading::numbers("displacements\n%e_rms"),
+        Heading::words("network"),
+    ];
+    let mut text = format!("{}\n", convergence.scene);
+    for load in &convergence.loads {
+        let rows: Vec<Vec<String>> =
+            load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect();
+        let truth = truth_text(load.truth.as_ref());
+        write!(text, "\n{}: {truth}\n\n{}", load.name, aligned(&columns, &rows)).expect("a String grows");
+    }
+    text
+}
+
+/// One row per level, and one for the limit where it is extrapolated.
+fn rows(convergence: &Convergence, load: &LoadConvergence, model: &ModelConvergence, body: bool) -> Vec<Vec<String>> {
+    let (of_body, of_truth) = (load.of_body(model), load.of_truth(model));
+    let rates = rates(&of_truth);
+    let words = |status: &str| if body && status == "solved" { String::new() } else { status.to_string() };
+    let row = |(i, step): (usize, &crate::study::Step)| {
+        let level = &convergence.levels[i];
+        vec![
+            if i == 0 { model.name.clone() } else { String::new() },
+            (i + 1).to_string(),
+            format!("{:.4}", 1e3 * level.size),
+            level.cells.to_string(),
+            level.unknowns.to_string(),
+            step.compliance.map_or("-".into(), |value| format!("{value:.6e}")),
+            if body { String::new() } else { share(of_body[i]) },
+            share(of_truth[i]),
+            rates[i].map_or(String::new(), |rate| format!("{rate:.2}")),
+            if body { String::new() } else { share(step.rms) },
+            words(step.status),
+        ]
+    };
+    let mut rows: Vec<Vec<String>> = model.steps.iter().enumerate().map(row).collect();
+    if let Some((limit, order)) = model.limit().and_then(|limit| Some((limit, limit.order()?))) {
+        let of_truth = load.truth.map(|truth| 100.0 * (limit.value / truth.value - 1.0)).filter(|_| !body);
+        let mut row = vec![String::new(); rows[0].len()];
+        row[1] = "limit".into();
+        row[5] = format!("{:.6e}", limit.value);
+        row[7] = if body { String::new() } else { share(of_truth) };
+        row[8] = format!("{order:.2}");
+        rows.push(row);
+    }
+    rows
+}
+
+/// Signed, with two digits behind the point or two in all where that says nothing.
+fn share(percent: Option<f64>) -> String {
+    match percent {
+        None => "-".into(),
+        Some(0.0) => "0".into(),
+        Some(value) if value.abs() < 0.01 => format!("{value:.1e}"),
+        Some(value) => format!("{value:.2}"),
+    }
+}
+
+/// What the errors refer to, and how far that is to be trusted.
+fn truth_text(truth: Option<&Limit>) -> String {
+    let Some(limit) = truth else {
+        return "no truth, for the finite elements do not reach the load on every level".into();
+    };
+    let finest = format!("the truth is taken to be {:.6e} J of the finest finite elements", limit.value);
+    let uncertain = format!("{} %", share(Some(100.0 * (limit.uncertainty / limit.value).abs())));
+    match limit.kind {
+        LimitKind::Extrapolated(order) => format!(
+            "the truth is {:.6e} J, extrapolated from the finite elements with order {order:.2}, uncertain by {uncertain}",
+            limit.value
+        ),
+        LimitKind::Constant => format!("{finest}: the two finest levels agree to rounding"),
+        LimitKind::TooFew => {
+            format!("{finest}, which differ by {uncertain} from the level before: an extrapolation needs three levels")
+        }
+        LimitKind::NotMonotonic => {
+            format!(
+                "{finest}, which differ by {uncertain} from the level before: the levels do not converge monotonically"
+            )
+        }
+        LimitKind::TooSlow(order) => format!(
+            "{finest}, which differ by {uncertain} from the level before: they converge with order {order:.2} only, \
+             too slowly to extrapolate"
+        ),
+    }
+}
+
+/// The one word for how the truth was found, in the CSV file.
+fn truth_word(kind: LimitKind) -> &'static str {
+    match kind {
+        LimitKind::Extrapolated(_) => "extrapolated",
+        LimitKind::Constant => "constant",
+        LimitKind::TooFew => "finest-of-two",
+        LimitKind::NotMonotonic => "finest-not-monotonic",
+        LimitKind::TooSlow(_) => "finest-too-slow",
+    }
+}
+
+/// One row for each load, model and level.
+pub fn convergence_csv(convergence: &Convergence) -> String {
+    let header = [
+        "load",
+        "model",
+        "level",
+        "h_m",
+        "cells",
+        "points",
+        "unknowns",
+        "compliance_J",
+        "of_finite_elements_percent",
+        "of_truth_percent",
+        "rate",
+        "e_rms_percent",
+        "mean_displacement_m",
+        "mean_displacement_of_truth_percent",
+        "status",
+        "truth_J",
+        "truth",
+        "truth_uncertainty_percent",
+    ];
+    let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+    let mut rows = Vec::new();
+    for load in &convergence.loads {
+        for model in &load.models {
+            let (of_body, of_truth, mean) = (load.of_body(model), load.of_truth(model), load.mean_of_truth(model));
+            let rates = rates(&of_truth);
+            for (i, (level, step)) in convergence.levels.iter().zip(&model.steps).enumerate() {
+                rows.push(vec![
+                    load.name.clone(),
+                    model.name.clone(),
+                    (i + 1).to_string(),
+                    format!("{:e}", level.size),
+                    level.cells.to_string(),
+                    level.points.to_string(),
+                    level.unknowns.to_string(),
+                    full(step.compliance),
+                    full(of_body[i]),
+                    full(of_truth[i]),
+                    full(rates[i]),
+                    full(step.rms),
+                    full(step.mean_displacement),
+                    full(mean[i]),
+                    step.status.into(),
+                    full(load.truth.map(|truth| truth.value)),
+                    load.truth.map_or("none", |truth| truth_word(truth.kind)).into(),
+                    full(load.truth.map(|truth| 100.0 * (truth.uncertainty / truth.value).abs())),
+                ]);
+            }
+        }
+    }
+    csv(&header, &rows)
+}
+
+/// Writes `converge.csv` and, where any error is above zero, `converge.svg` into `folder`, and returns the paths.
+///
+/// # Errors
+/// The plot cannot be drawn; the folder or a file cannot be written.
+pub fn write_convergence(convergence: &Convergence, folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = vec![("converge.csv", convergence_csv(convergence))];
+    files.extend(plot(convergence)?.map(|text| ("converge.svg", text)));
+    write_files(folder, &files)
+}
