@@ -30,6 +30,7 @@ mod modes;
 mod moduli;
 mod motion;
 mod nonlinear;
+mod nonnegative;
 mod outputs;
 mod paper;
 mod programs;

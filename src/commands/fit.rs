@@ -9,7 +9,9 @@ use springfit::material::{Material, parse_pressure};
 use springfit::mesh::{Gate, Mesh, MeshSource, Selection};
 use springfit::model::{self, Support};
 use springfit::report::{NetworkFile, NetworkFormat};
-use springfit::study::{Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, fit_mesh, load_elements};
+use springfit::study::{
+    Controls, Event, FitEntry, NamedFit, Outcome, Recipe, Reference, WholeBody, fit_mesh, load_elements,
+};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -69,6 +71,9 @@ pub struct Fit {
     /// No constant below zero
     #[arg(long)]
     nonnegative: bool,
+    /// Springs across the sides of cells where no others suffice (exact with --nonnegative only)
+    #[arg(long)]
+    across: bool,
     /// Rest measures: mesh, free or zero (frobenius, offdiag and modal only) [default: mesh]
     #[arg(long)]
     rest: Option<String>,
@@ -110,6 +115,7 @@ impl Fit {
         self.check()?;
         let whole = named.recipe.whole().is_some();
         let sampled = !whole && named.recipe.sampled().is_some();
+        let exact = matches!(named.recipe, Recipe::Exact(_));
         if whole == self.fix.is_empty() {
             let problem = "goes with the objective \"whole\", and that with it: a group of the mesh that is held";
             return Err(Error::at("--fix", problem));
@@ -131,7 +137,7 @@ impl Fit {
         let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
-        let fit = fit.map_err(|e| if sampled || whole { e.placed(Error::of_option) } else { e })?;
+        let fit = fit.map_err(|e| if sampled || whole || exact { e.placed(Error::of_option) } else { e })?;
         let masses = self.density.map(|density| model::masses(&mesh, density, material.thickness()));
         // The file first: who reads the table may have gone away.
         let file = NetworkFile { mesh: &mesh, masses: masses.as_deref(), fit: &fit, loads: &[] };
@@ -168,6 +174,7 @@ impl Fit {
             .with("balance", self.balance)
             .with("tied", self.tied.then_some(true))
             .with("nonnegative", self.nonnegative.then_some(true))
+            .with("across", self.across.then_some(true))
             .with("rest", self.rest.clone())
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))

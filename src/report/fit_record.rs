@@ -4,7 +4,7 @@ use super::load_record::LoadRecord;
 use super::material_record::NetworkMaterialRecord;
 use super::number::finite;
 use crate::study::{
-    FitOutcome, KindRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
+    FitOutcome, KindRecord, PositiveRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
     WholeOutcomeRecord,
 };
 use serde::{Deserialize, Serialize};
@@ -56,6 +56,8 @@ pub struct FitRecord {
     pub whole: Option<WholeOutcomeRecord>,
     /// Of a sampled fit.
     pub sampled: Option<SampledOutcomeRecord>,
+    /// Of an exact network that was to have no negative springs.
+    pub positive: Option<PositiveRecord>,
     /// Of a fit with rest measures of its own.
     pub tension: Option<TensionRecord>,
 }
@@ -93,6 +95,7 @@ impl FitRecord {
             unmet: outcome.kind.published().map(|published| PublishedOutcomeRecord::of(&published.unmet)),
             whole: outcome.kind.whole().map(WholeOutcomeRecord::of),
             sampled: outcome.kind.sampled().map(SampledOutcomeRecord::of),
+            positive: outcome.kind.exact().and_then(|exact| exact.positive.as_ref()).map(PositiveRecord::of),
             tension: certificate.and_then(|outcome| outcome.tension.as_ref()).map(TensionRecord::from),
         }
     }

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 20] = [
+const LAYERS: [&str; 21] = [
     "shipped",
     "error",
     "named",
@@ -25,6 +25,7 @@ const LAYERS: [&str; 20] = [
     "mesh",
     "model",
     "solve",
+    "positive",
     "dynamics",
     "whole",
     "study",

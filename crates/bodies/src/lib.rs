@@ -5,6 +5,7 @@
 pub mod dynamics;
 pub mod mesh;
 pub mod model;
+pub mod positive;
 pub mod solve;
 pub mod whole;
 

@@ -16,7 +16,7 @@ mod stiffness;
 mod whole;
 
 pub use entry::FitEntry;
-pub use exact::{ExactOutcome, ExactRecipe, ExactRecord};
+pub use exact::{ExactOutcome, ExactRecipe, ExactRecord, PositiveRecord};
 pub use facts::SceneFacts;
 pub use fitted::{Fitted, FittedKind};
 pub use kind::{CellMethod, FitKind, Reference, Task};

@@ -3,6 +3,7 @@
 use super::recipe::ExactRecipe;
 use crate::error::{Error, Result};
 use crate::fit::{ExactEnergy, VolumeSprings};
+use crate::positive::PositiveFit;
 use serde::Deserialize;
 
 /// The keys.
@@ -13,13 +14,17 @@ pub struct ExactEntry {
     pub volume: Option<String>,
     /// Of the energy "stable-mooney-rivlin".
     pub share: Option<f64>,
+    /// Whether no spring may push: the nearest network then.
+    pub nonnegative: bool,
+    /// Whether springs across the sides of cells may help with that.
+    pub across: bool,
 }
 
 impl ExactEntry {
     /// The fit with these spring groups.
     ///
     /// # Errors
-    /// An energy or a kind of volume springs is unknown, or spring groups are named.
+    /// An energy or a kind of volume springs is unknown, spring groups are named, or `across` has no `nonnegative`.
     pub fn recipe(&self, springs: Option<&[String]>) -> Result<ExactRecipe> {
         if let Some(springs) = springs {
             let expected = "no groups: an exact network joins all nodes of each cell and has springs on its content";
@@ -31,6 +36,10 @@ impl ExactEntry {
             (energy, None) => energy,
             (energy, Some(share)) => Some(energy.unwrap_or_default().with_share(share)?),
         };
-        Ok(ExactRecipe { energy, volume: volume.transpose()?.unwrap_or_default() })
+        if self.across && !self.nonnegative {
+            return Err(Error::at("across", "belongs to nonnegative = true"));
+        }
+        let positive = self.nonnegative.then(|| PositiveFit { across: self.across, ..PositiveFit::default() });
+        Ok(ExactRecipe { energy, volume: volume.transpose()?.unwrap_or_default(), positive })
     }
 }

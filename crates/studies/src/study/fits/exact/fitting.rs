@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::fit::{CellFits, ExactEnergy, VolumeSprings, fit_exact};
 use crate::material::{Energy, Material};
 use crate::model::{Network, fibre_springs, patch_springs};
+use crate::positive::{PositiveFit, Route, nearest_positive};
 use crate::springs::Springs;
 use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::fits::kind::{CellMethod, FitKind, Task};
@@ -18,10 +19,16 @@ use std::time::Instant;
 impl FitKind for ExactRecipe {
     fn title(&self, _groups: &str) -> String {
         let energy = self.energy.map_or(String::new(), |energy| format!(" {}", energy.name()));
-        match self.volume {
-            VolumeSprings::Points => format!("exact{energy}"),
-            volume => format!("exact{energy} {}", volume.name()),
-        }
+        let volume = match self.volume {
+            VolumeSprings::Points => String::new(),
+            VolumeSprings::Cells | VolumeSprings::Patches => format!(" {}", self.volume.name()),
+        };
+        let positive = match self.positive {
+            None => "",
+            Some(PositiveFit { across: false, .. }) => " k>=0",
+            Some(PositiveFit { across: true, .. }) => " k>=0 across",
+        };
+        format!("exact{energy}{volume}{positive}")
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
@@ -43,25 +50,36 @@ impl FitKind for ExactRecipe {
             cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut watch)?);
             done += block.cells().len();
         }
-        let seconds = start.elapsed().as_secs_f64();
+        let mut seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let mut network = Network::assemble(mesh, &cells);
-        let outcome = ExactOutcome {
+        let mut outcome = ExactOutcome {
             energy: fit.energy,
             volume: fit.volume,
             is_other: law.is_some_and(|law| self.energy.is_some() && !is_all_of(&fit.energy, law)),
             negative: [network.lengths.iter().filter(|s| s.constant < 0.0).count(), network.lengths.len()],
             patches: patches.len(),
             state: material.state(),
+            positive: None,
         };
         network.others.extend(patches);
         network.others.extend(fibres);
         let seconds_assembly = start.elapsed().as_secs_f64();
+        if let Some(positive) = &self.positive {
+            let start = Instant::now();
+            let (nearest, found) = nearest_positive(mesh, &network, positive)?;
+            if found.route != Route::Unchanged {
+                // Its springs belong to the whole body.
+                cells.clear();
+            }
+            (network, outcome.positive) = (nearest, Some(found));
+            seconds += start.elapsed().as_secs_f64();
+        }
         Ok(Fitted { cells, network, seconds, seconds_assembly, kind: FittedKind::Exact(outcome) })
     }
 
     fn cell_method(&self) -> Option<&dyn CellMethod> {
-        (self.volume != VolumeSprings::Patches).then_some(self)
+        (self.volume != VolumeSprings::Patches && self.positive.is_none()).then_some(self)
     }
 
     fn record(&self) -> KindRecord {

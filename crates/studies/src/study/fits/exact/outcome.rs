@@ -1,7 +1,9 @@
 //! What an exact network is equal to.
 
+use super::positive::positive_note;
 use crate::fit::{ExactEnergy, VolumeSprings};
 use crate::material::{Moduli, State};
+use crate::positive::PositiveOutcome;
 
 /// λ/μ of Poisson's ratio 1/3.
 const UNLOCKED: f64 = 2.0;
@@ -18,6 +20,8 @@ pub struct ExactOutcome {
     /// Patches that share cells with points that nothing holds.
     pub patches: usize,
     pub state: State,
+    /// How far the nearest network without negative springs is from it.
+    pub positive: Option<PositiveOutcome>,
 }
 
 impl ExactOutcome {
@@ -51,6 +55,6 @@ impl ExactOutcome {
                 self.patches
             )),
         };
-        other.into_iter().chain(volume).collect()
+        other.into_iter().chain(volume).chain(self.positive.as_ref().map(positive_note)).collect()
     }
 }

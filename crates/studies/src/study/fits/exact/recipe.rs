@@ -3,6 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, VolumeSprings};
 use crate::material::Energy;
+use crate::positive::PositiveFit;
 
 /// An exact network before the material is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -10,6 +11,8 @@ pub struct ExactRecipe {
     /// That of the material's law, or the stable neo-Hookean one where it has none, if absent.
     pub energy: Option<ExactEnergy>,
     pub volume: VolumeSprings,
+    /// The nearest network without negative springs instead.
+    pub positive: Option<PositiveFit>,
 }
 
 impl ExactRecipe {

@@ -13,6 +13,8 @@ pub struct ExactRecord {
     pub volume: String,
     /// Of the second invariant, where the energy has one.
     pub share: Option<f64>,
+    pub nonnegative: bool,
+    pub across: bool,
 }
 
 impl ExactRecord {
@@ -21,6 +23,8 @@ impl ExactRecord {
             objective: "exact".into(),
             energy: recipe.energy.as_ref().map(ExactEnergy::name).map(String::from),
             volume: recipe.volume.name().into(),
+            nonnegative: recipe.positive.is_some(),
+            across: recipe.positive.is_some_and(|positive| positive.across),
             share: match recipe.energy {
                 Some(ExactEnergy::StableMooneyRivlin { share }) => Some(share),
                 Some(ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean) | None => None,

@@ -1,0 +1,94 @@
+//! The springs on content of an exact network, whose tensions may change.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::Mesh;
+use crate::model::{MeasureSpring, Network};
+use crate::springs::Measure;
+use crate::stiffness::gather;
+
+/// Of a law, how far its force at rest may be from minus its first parameter, as a share of it.
+const ROUNDING: f64 = 1e-12;
+
+/// The springs that push at rest.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Contents {
+    /// Their places in the network.
+    pub places: Vec<usize>,
+    /// What they measure at rest.
+    pub rests: Vec<f64>,
+    /// Their gradients at rest, `[points × dimension]` each.
+    pub gradients: Vec<Vec<f64>>,
+}
+
+impl Contents {
+    /// # Errors
+    /// A law is none of the exact energies'; kind `Unsupported`.
+    pub fn new(mesh: &Mesh, network: &Network) -> Result<Contents> {
+        let mut contents = Contents::default();
+        for (place, spring) in network.others.iter().enumerate() {
+            let x = positions(mesh, spring);
+            let c = spring.measure.value(&x, mesh.dimension);
+            let tension = spring.tension(c);
+            let is_content = match spring.measure {
+                Measure::Content(_) | Measure::PointContent(..) | Measure::Function(_) => true,
+                Measure::Length | Measure::Patch(_) | Measure::Span(_) => false,
+            };
+            if !is_content || tension >= 0.0 {
+                continue;
+            }
+            let is_known = spring.law.as_ref().is_none_or(|law| {
+                law.parameters.first().is_some_and(|name| name == "a")
+                    && (tension + spring.parameters[0]).abs() <= -ROUNDING * tension
+            });
+            if !is_known {
+                let expected = "springs on content whose law at rest is minus its parameter a";
+                let found = spring.law.as_ref().map_or("", |law| &law.text);
+                return Err(Error::expected("nonnegative", expected, found).of_kind(ErrorKind::Unsupported));
+            }
+            contents.places.push(place);
+            contents.rests.push(c);
+            contents.gradients.push(spring.measure.gradient(&x, mesh.dimension));
+        }
+        Ok(contents)
+    }
+
+    /// What a unit of tension more does to twice the energy of small displacements u, while λ stays: `uᵀ H u − (g·u)²/c`.
+    pub fn energies(&self, mesh: &Mesh, network: &Network, u: &[f64]) -> Vec<f64> {
+        let energy = |(place, rest): (&usize, &f64)| {
+            let spring = &network.others[*place];
+            let jet = spring.measure.jet(&positions(mesh, spring), mesh.dimension);
+            let mut local = vec![0.0; jet.gradient.len()];
+            gather(u, mesh.dimension, &spring.points, &mut local);
+            let along: f64 = jet.gradient.iter().zip(&local).map(|(g, u)| g * u).sum();
+            let rows = jet.hessian.chunks_exact(local.len()).zip(&local);
+            let bend: f64 = rows.map(|(row, u)| u * row.iter().zip(&local).map(|(h, u)| h * u).sum::<f64>()).sum();
+            bend - along * along / rest
+        };
+        self.places.iter().zip(&self.rests).map(energy).collect()
+    }
+}
+
+/// The spring with so much more tension at rest, where it measures c, and the same λ; `None` if its stiffness is not above zero.
+pub(super) fn tightened(spring: &MeasureSpring, c: f64, more: f64) -> Option<MeasureSpring> {
+    let mut spring = spring.clone();
+    let tension = spring.tension(c) + more;
+    match &spring.law {
+        None => {
+            // T = −μ V/c and the constant (μ + λ) V/c², V the content: λ stays.
+            spring.constant -= more / c;
+            spring.rest = c - tension / spring.constant;
+        }
+        Some(law) => {
+            spring.parameters[0] -= more;
+            spring.constant = law.slope(c, spring.rest, &spring.parameters);
+        }
+    }
+    (spring.constant > 0.0 && spring.constant.is_finite()).then_some(spring)
+}
+
+/// Of the spring's points, `[points × dimension]`.
+pub(super) fn positions(mesh: &Mesh, spring: &MeasureSpring) -> Vec<f64> {
+    let mut x = vec![0.0; spring.points.len() * mesh.dimension];
+    gather(&mesh.points, mesh.dimension, &spring.points, &mut x);
+    x
+}

@@ -1,0 +1,83 @@
+//! The lowest vibrations of a free body, whose energies a network should have.
+
+use crate::error::Result;
+use crate::mesh::Mesh;
+use crate::model::{Entries, Lumping, Support, lumped_masses, unheld_bodies};
+use crate::solve::{System, lowest_modes};
+use faer::sparse::Triplet;
+
+/// Bodies apart from each other have rigid motions of their own; of more than this the modes are not worth their time.
+const BODIES: usize = 20;
+/// An ω² below this share of the shift is a rigid motion, or that of a hinge.
+const RIGID: f64 = 1e-7;
+/// A network is not stable if it has an ω² below zero by this share of the body's least one.
+const UNSTABLE: f64 = 1e-4;
+
+/// The lowest vibrations of a free body with unit density.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Vibrations {
+    /// Displacements, `[points × dimension]`.
+    pub shapes: Vec<Vec<f64>>,
+    /// The least ω² that is no rigid motion.
+    least: Option<f64>,
+    masses: Vec<f64>,
+}
+
+impl Vibrations {
+    /// The `count` lowest of a body with this stiffness; `modulus` is a typical one, Pa. A surface or curve in space has none, as
+    /// its membrane meets no resistance across.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory, or the modes are not found.
+    pub fn new(mesh: &Mesh, stiffness: &Entries, modulus: f64, count: usize) -> Result<Vibrations> {
+        let d = mesh.dimension;
+        let masses = lumped_masses(mesh, 1.0, 1.0, Lumping::Hrz);
+        let support = Support::free(mesh);
+        let unheld = unheld_bodies(mesh, &support);
+        if mesh.cell_dimension() < d || unheld.len() > BODIES {
+            return Ok(Vibrations { masses, ..Vibrations::default() });
+        }
+        let size = extent(mesh);
+        let shift = modulus / (size * size);
+        let system = System::new(&raised(stiffness, &masses, d, shift), &support)?;
+        let rigid: usize = unheld.iter().map(|body| body.motions).sum();
+        let Some(factor) = system.cholesky() else { return Ok(Vibrations { masses, ..Vibrations::default() }) };
+        let modes = lowest_modes(&system, &factor, &masses, d, (rigid + count).min(system.size()))?;
+        let (mut shapes, mut least) = (Vec::new(), None);
+        for (square, shape) in modes.squares.iter().zip(modes.shapes) {
+            if square - shift > RIGID * shift {
+                least.get_or_insert(square - shift);
+                shapes.push(shape);
+            }
+        }
+        Ok(Vibrations { shapes, least, masses })
+    }
+
+    /// Whether a network with this stiffness, free of supports, has no motion that releases energy.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn are_stable(&self, mesh: &Mesh, stiffness: &Entries) -> Result<bool> {
+        let Some(least) = self.least else { return Ok(true) };
+        let raised = raised(stiffness, &self.masses, mesh.dimension, UNSTABLE * least);
+        Ok(System::new(&raised, &Support::free(mesh))?.cholesky().is_some())
+    }
+}
+
+/// `K + σ M`.
+fn raised(stiffness: &Entries, masses: &[f64], dimension: usize, shift: f64) -> Entries {
+    let mut entries = stiffness.clone();
+    let dofs = masses.iter().enumerate().flat_map(|(p, m)| (0..dimension).map(move |k| (p * dimension + k, *m)));
+    entries.extend(dofs.map(|(dof, m)| Triplet::new(dof, dof, shift * m)));
+    entries
+}
+
+/// The largest side of the box around the mesh, m.
+fn extent(mesh: &Mesh) -> f64 {
+    let d = mesh.dimension;
+    let side = |k: usize| {
+        let x = || mesh.points.iter().skip(k).step_by(d).copied();
+        x().fold(f64::NEG_INFINITY, f64::max) - x().fold(f64::INFINITY, f64::min)
+    };
+    (0..d).map(side).fold(0.0, f64::max)
+}

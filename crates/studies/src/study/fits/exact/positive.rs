@@ -1,0 +1,68 @@
+//! A network without negative springs, as a report has it.
+
+use crate::positive::{PositiveOutcome, Route};
+use serde::{Deserialize, Serialize};
+
+/// How far it is from the exact network. Errors of energies are shares of the exact ones.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PositiveRecord {
+    /// What was changed: `unchanged`, `springs`, `across` or `tensions`.
+    pub route: String,
+    /// Of the exact network.
+    pub negative_springs: usize,
+    pub dropped_springs: usize,
+    pub springs_across: usize,
+    /// The least and the largest of a spring on content, as a multiple of the exact one.
+    pub tensions: [f64; 2],
+    /// The largest error of the energy of a homogeneous strain.
+    pub affine_energy_error: f64,
+    pub modes: usize,
+    /// The least and the largest error of the energy of a mode.
+    pub mode_energy_errors: [f64; 2],
+    /// The largest force on a point at rest, as a share of the largest force of a spring.
+    pub rest_force: f64,
+    pub iterations: u32,
+}
+
+impl PositiveRecord {
+    pub fn of(outcome: &PositiveOutcome) -> PositiveRecord {
+        PositiveRecord {
+            route: outcome.route.name().into(),
+            negative_springs: outcome.negative,
+            dropped_springs: outcome.dropped,
+            springs_across: outcome.across,
+            tensions: outcome.tensions,
+            affine_energy_error: outcome.affine,
+            modes: outcome.modes,
+            mode_energy_errors: outcome.mode_errors,
+            rest_force: outcome.rest_force,
+            iterations: outcome.iterations,
+        }
+    }
+}
+
+/// What a reader must know of it.
+pub(super) fn positive_note(outcome: &PositiveOutcome) -> String {
+    let PositiveOutcome { negative, modes, mode_errors: [low, high], .. } = outcome;
+    let affine = 100.0 * outcome.affine;
+    let homogeneous = match outcome.route {
+        Route::Unchanged if *negative == 0 => return "the exact network has no negative springs".into(),
+        Route::Unchanged => return format!("{negative} negative springs of the exact network were rounding"),
+        Route::Springs => "equal under homogeneous deformations".to_string(),
+        Route::Across => format!("equal under homogeneous deformations, with {} springs across sides", outcome.across),
+        Route::Tensions => {
+            let [least, largest] = outcome.tensions;
+            let across =
+                if outcome.across > 0 { format!(", {} springs across sides", outcome.across) } else { "".into() };
+            format!(
+                "energies of homogeneous strains within {affine:.1e} %, springs on content with {least:.2} to {largest:.2} times \
+                 their tension{across}"
+            )
+        }
+    };
+    let modes = match modes {
+        0 => String::new(),
+        modes => format!("; energies of the {modes} lowest free modes {:+.2} to {:+.2} %", 100.0 * low, 100.0 * high),
+    };
+    format!("without the {negative} negative springs of the exact network it is the nearest one: {homogeneous}{modes}")
+}

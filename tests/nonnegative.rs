@@ -1,0 +1,249 @@
+//! The nearest network without negative springs to an exact one.
+
+use crate::shapes::Random;
+use nalgebra::{DMatrix, DVector};
+use springfit::element::Element;
+use springfit::error::ErrorKind;
+use springfit::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
+use springfit::material::Material;
+use springfit::mesh::{BoxMesh, Mesh, MeshSource};
+use springfit::model::{Elastic, LengthSpring, Network, Support};
+use springfit::positive::{PositiveFit, PositiveOutcome, Route, nearest_positive};
+use springfit::solve::System;
+use springfit::study::{FittedKind, Scene, run};
+use std::path::Path;
+use std::sync::Arc;
+
+const EXACT: ExactFit = ExactFit { energy: ExactEnergy::StableNeoHookean, volume: VolumeSprings::Points, large: false };
+
+/// A mesh of tetrahedra made by gmsh.
+fn gmsh(name: &str) -> Mesh {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/meshes/{name}.msh"));
+    Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 0.01).unwrap()
+}
+
+fn grid(element: &str, cells: &[usize]) -> Mesh {
+    let element = Arc::new(Element::load(element).unwrap());
+    let size = vec![1.0; cells.len()];
+    BoxMesh { element, origin: vec![0.0; size.len()], size, cells: cells.to_vec() }.build().unwrap()
+}
+
+/// Leans along the first axis: the angles of Kuhn's tetrahedra become obtuse, all in the same way.
+fn sheared(mut mesh: Mesh, shear: f64) -> Mesh {
+    let d = mesh.dimension;
+    mesh.points.chunks_exact_mut(d).for_each(|x| x[0] += shear * x[d - 1]);
+    mesh
+}
+
+fn material(d: usize) -> Material {
+    Material::for_body(d, 1e4, 0.3, None, None).unwrap()
+}
+
+fn exact(mesh: &Mesh, fit: ExactFit) -> Network {
+    let block = &mesh.blocks[0];
+    let material = material(mesh.dimension);
+    let cells = fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
+    Network::assemble(mesh, &[cells])
+}
+
+fn nearest(mesh: &Mesh, network: &Network) -> (Network, PositiveOutcome) {
+    nearest_positive(mesh, network, &PositiveFit::default()).unwrap()
+}
+
+fn forces(network: &Network, x: &[f64]) -> Vec<f64> {
+    let mut force = vec![0.0; x.len()];
+    assert!(network.forces(x, &mut force));
+    force
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0f64, |a, x| a.max(x.abs()))
+}
+
+/// The largest force of a spring at rest.
+fn pull(network: &Network, mesh: &Mesh) -> f64 {
+    let length = |s: &LengthSpring| springfit::springs::distance(mesh.point(s.points[0]), mesh.point(s.points[1]));
+    network.lengths.iter().map(|s| s.constant.abs() * length(s)).fold(0.0, f64::max)
+}
+
+/// The compliance `fᵀ K⁻¹ f` with the points of least z held, under equal forces along `axis` on those of largest z.
+fn compliance(mesh: &Mesh, network: &Network, axis: usize) -> f64 {
+    let d = mesh.dimension;
+    let heights = || mesh.points.iter().skip(d - 1).step_by(d);
+    let [low, high] = heights().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(*z), b.max(*z)]);
+    let at = |height: f64| {
+        let near = move |z: &f64| (z - height).abs() < 1e-6 * (high - low);
+        heights().enumerate().filter(move |(_, z)| near(z)).map(|(p, _)| p)
+    };
+    let mut support = Support::free(mesh);
+    support.fix(&at(low).collect::<Vec<_>>(), &(0..d).collect::<Vec<_>>(), d);
+    let mut load = vec![0.0; mesh.points.len()];
+    at(high).for_each(|p| load[p * d + axis] = 1.0);
+    let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
+    let factor = system.cholesky().expect("the network is positive definite with supports");
+    let (u, residual) = system.solve(&factor, &load);
+    assert!(residual < 1e-8, "{residual:e}");
+    u.iter().zip(&load).map(|(u, f)| u * f).sum()
+}
+
+/// No angle of Kuhn's tetrahedra, of half squares or of bricks near cubes is obtuse.
+#[test]
+fn exact_networks_without_negative_springs_stay_as_they_are() {
+    for (element, cells) in [("tet4", &[3, 2, 2][..]), ("tri3", &[3, 2]), ("quad4", &[3, 3]), ("hex8", &[2, 2, 2])] {
+        let mesh = grid(element, cells);
+        let network = exact(&mesh, EXACT);
+        let (found, outcome) = nearest(&mesh, &network);
+        assert_eq!(network.negative(), 0, "{element}");
+        assert_eq!((outcome.route, outcome.negative, outcome.dropped), (Route::Unchanged, 0, 0), "{element}");
+        assert_eq!(found.lengths, network.lengths, "{element}");
+    }
+}
+
+/// On meshes of gmsh, of which 17 to 18 % of the edges have negative constants: constants above zero, no force at rest, and the
+/// forces of the exact network, hence of the finite elements, under any homogeneous deformation and any law.
+#[test]
+fn the_nearest_network_equals_the_exact_one_under_homogeneous_deformations() {
+    for name in ["cube_tet", "cylinder_tet"] {
+        let mesh = gmsh(name);
+        for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
+            let network = exact(&mesh, ExactFit { energy, ..EXACT });
+            assert!(network.negative() > network.lengths.len() / 7, "{name}");
+            let (found, outcome) = nearest(&mesh, &network);
+            assert_eq!((outcome.route, found.negative(), outcome.modes), (Route::Springs, 0, 10), "{name}");
+            assert!(found.lengths.iter().all(|s| s.constant > 0.0 && s.rest == 0.0), "{name}");
+            let left = largest(&forces(&found, &mesh.points)) / pull(&found, &mesh);
+            // The correction ends at 1e-14; sums of some twenty forces round to that as well.
+            assert!(left < 1e-12 && outcome.rest_force < 1e-12, "{name}: {left:e} {}", outcome.rest_force);
+            let mut random = Random(7);
+            for _ in 0..5 {
+                let f = DMatrix::from_fn(3, 3, |i, j| f64::from(u8::from(i == j)) + 0.4 * random.next());
+                let place = |x: &[f64]| (&f * DVector::from_column_slice(x)).as_slice().to_vec();
+                let x: Vec<f64> = mesh.points.chunks_exact(3).flat_map(place).collect();
+                let (ours, theirs) = (forces(&found, &x), forces(&network, &x));
+                let apart: Vec<f64> = ours.iter().zip(&theirs).map(|(a, b)| a - b).collect();
+                assert!(largest(&apart) < 1e-11 * pull(&found, &mesh), "{name}: {:e}", largest(&apart));
+            }
+            // Homogeneous strains keep their energies to rounding.
+            assert!(outcome.affine < 1e-10, "{name}: {:e}", outcome.affine);
+        }
+    }
+}
+
+/// Where clamping negative constants at zero leaves a force at rest, the nearest network is within 2 % under tension and shear.
+#[test]
+fn the_nearest_network_answers_like_the_finite_elements() {
+    for name in ["cube_tet", "cylinder_tet"] {
+        let mesh = gmsh(name);
+        let network = exact(&mesh, EXACT);
+        let (found, outcome) = nearest(&mesh, &network);
+        for axis in [0, 2] {
+            let error = compliance(&mesh, &found, axis) / compliance(&mesh, &network, axis) - 1.0;
+            assert!(error.abs() < 0.02, "{name}: {error}");
+        }
+        let [low, high] = outcome.mode_errors;
+        assert!(-0.01 < low && high < 0.01, "{name}: {low} {high}");
+        let mut clamped = network.clone();
+        clamped.lengths.retain(|s| s.constant > 0.0);
+        let left = largest(&forces(&clamped, &mesh.points)) / pull(&clamped, &mesh);
+        assert!(left > 0.05, "{name}: {left}");
+    }
+}
+
+/// The same network for other units of length and modulus, whose constants scale alike.
+#[test]
+fn the_nearest_network_has_no_unit() {
+    let mesh = gmsh("cylinder_tet");
+    let (found, _) = nearest(&mesh, &exact(&mesh, EXACT));
+    let mut large = mesh.clone();
+    large.points.iter_mut().for_each(|x| *x = *x * 1e3 + 5.0);
+    let (scaled, _) = nearest(&large, &exact(&large, EXACT));
+    assert_eq!(found.lengths.len(), scaled.lengths.len());
+    let size = found.lengths.iter().map(|s| s.constant).fold(0.0, f64::max);
+    for (a, b) in found.lengths.iter().zip(&scaled.lengths) {
+        // Both are solved to 1e-8 of an objective whose least curvature is about 1e-2.
+        assert!(a.points == b.points && (a.constant - b.constant / 1e3).abs() < 1e-4 * size, "{a:?} {b:?}");
+    }
+}
+
+/// All obtuse angles of a sheared box of Kuhn's tetrahedra face the same way: no positive springs between points of one cell are
+/// in balance. Springs across faces repair it.
+#[test]
+fn a_sheared_box_has_the_zero_network_alone_until_springs_go_across_faces() {
+    let mesh = sheared(grid("tet4", &[3, 3, 3]), 0.5);
+    let network = exact(&mesh, EXACT);
+    let error = nearest_positive(&mesh, &network, &PositiveFit::default()).unwrap_err();
+    assert_eq!((error.kind(), error.key()), (ErrorKind::Infeasible, Some("nonnegative")));
+    assert!(error.problem().contains("only the zero network") && error.problem().contains("across"), "{error}");
+    let (found, outcome) = nearest_positive(&mesh, &network, &PositiveFit { across: true, modes: 10 }).unwrap();
+    assert!(outcome.route == Route::Across && outcome.across > 0 && found.negative() == 0, "{outcome:?}");
+    assert!(largest(&forces(&found, &mesh.points)) < 1e-12 * pull(&found, &mesh));
+    for axis in [0, 2] {
+        let error = compliance(&mesh, &found, axis) / compliance(&mesh, &network, axis) - 1.0;
+        assert!(error.abs() < 0.1, "{error}");
+    }
+}
+
+/// This mesh has corners that no positive springs balance while all cells push alike.
+#[test]
+fn tensions_of_volume_springs_change_where_springs_alone_do_not_suffice() {
+    let mesh = gmsh("specimen_tet");
+    for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
+        let network = exact(&mesh, ExactFit { energy, ..EXACT });
+        let (found, outcome) = nearest(&mesh, &network);
+        assert!(outcome.route == Route::Tensions && found.negative() == 0, "{outcome:?}");
+        assert!(largest(&forces(&found, &mesh.points)) < 1e-12 * pull(&found, &mesh));
+        let [least, most] = outcome.tensions;
+        assert!(least < 0.9 && most > 1.1, "{outcome:?}");
+        assert!(outcome.affine < 0.01 && outcome.mode_errors.iter().all(|e| e.abs() < 0.02), "{outcome:?}");
+        assert!(found.stiffness(&mesh.points).iter().all(|e| e.val.is_finite()));
+    }
+}
+
+/// Whatever is wrong with the mesh, the network or both is an error; none is a network.
+#[test]
+fn wrong_networks_are_refused() {
+    let mesh = sheared(grid("tet4", &[2, 2, 2]), 0.5);
+    let network = exact(&mesh, EXACT);
+    let refused = |change: &dyn Fn(&mut Network)| {
+        let mut network = network.clone();
+        change(&mut network);
+        nearest_positive(&mesh, &network, &PositiveFit::default()).unwrap_err()
+    };
+    assert_eq!(refused(&|n| n.dimension = 2).key(), Some("network"));
+    assert_eq!(refused(&|n| n.lengths[0].points[1] = 1000).key(), Some("network"));
+    assert_eq!(refused(&|n| n.lengths[0].rest = 0.1).key(), Some("network"));
+    assert_eq!(refused(&|n| n.lengths[0].constant = f64::NAN).key(), Some("network"));
+    assert_eq!(refused(&|n| n.lengths[0].constant = f64::INFINITY).key(), Some("network"));
+    assert_eq!(refused(&|n| n.lengths.reverse()).key(), Some("network"));
+    assert_eq!(refused(&|n| n.lengths.iter_mut().for_each(|s| s.constant = -1.0)).key(), Some("nonnegative"));
+    assert_eq!(refused(&|n| n.others[0].constant = -1.0).kind(), ErrorKind::Unsupported);
+    assert_eq!(refused(&|n| n.others[0].points[0] = 1000).key(), Some("network"));
+    // Without the springs on content the others pull at rest and nothing pushes.
+    assert_eq!(refused(&|n| n.others.clear()).kind(), ErrorKind::Infeasible);
+    let bricks = sheared(grid("hex8", &[2, 2, 2]), 1.5);
+    let across = PositiveFit { across: true, ..PositiveFit::default() };
+    let error = nearest_positive(&bricks, &exact(&bricks, EXACT), &across).unwrap_err();
+    assert_eq!((error.kind(), error.key()), (ErrorKind::Unsupported, Some("across")), "{error}");
+}
+
+fn scene(fit: &str) -> springfit::error::Result<Scene> {
+    let text = format!(
+        "[mesh]\nfile = \"cylinder_tet.msh\"\nscale = 0.01\n[material]\nyoung = 1e4\npoisson = 0.3\n[[fit]]\n\
+         objective = \"exact\"\n{fit}\n[[fix]]\ngroup = \"fixed\"\n[[load]]\ngroup = \"load\"\ntraction = [1000, 0, 1000]\n"
+    );
+    Scene::parse(&text, &Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/scene.toml"))
+}
+
+/// A scene has the network, its notes and a sound answer.
+#[test]
+fn scenes_ask_for_networks_without_negative_springs() {
+    let outcome = run(&scene("nonnegative = true").unwrap(), &mut |_| {}).unwrap();
+    let fit = &outcome.fits[0];
+    assert_eq!((fit.network.negative(), fit.status(), fit.fit.name.as_str()), (0, "sound", "exact k>=0"));
+    let FittedKind::Exact(exact) = &fit.kind else { panic!("an exact fit") };
+    let positive = exact.positive.unwrap();
+    assert!(positive.route == Route::Springs && positive.negative > 50, "{positive:?}");
+    assert!(exact.notes().iter().any(|note| note.contains("nearest")), "{:?}", exact.notes());
+    let error = scene("across = true").unwrap_err();
+    assert_eq!(error.key(), Some("fit[0].across"), "{error}");
+}
