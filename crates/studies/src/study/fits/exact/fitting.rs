@@ -57,9 +57,7 @@ impl FitKind for ExactRecipe {
             energy: fit.energy,
             volume: fit.volume,
             is_other: law.is_some_and(|law| self.energy.is_some() && !is_all_of(&fit.energy, law)),
-            negative: [network.lengths.iter().filter(|s| s.constant < 0.0).count(), network.lengths.len()],
             patches: patches.len(),
-            state: material.state(),
             positive: None,
         };
         network.others.extend(patches);

@@ -2,7 +2,7 @@
 
 use super::positive::positive_note;
 use crate::fit::{ExactEnergy, VolumeSprings};
-use crate::material::{Moduli, State};
+use crate::material::Moduli;
 use crate::positive::PositiveOutcome;
 
 /// λ/μ of Poisson's ratio 1/3.
@@ -15,11 +15,8 @@ pub struct ExactOutcome {
     pub volume: VolumeSprings,
     /// Whether the material has another law.
     pub is_other: bool,
-    /// Edges whose constant is below zero, and all edges.
-    pub negative: [usize; 2],
     /// Patches that share cells with points that nothing holds.
     pub patches: usize,
-    pub state: State,
     /// How far the nearest network without negative springs is from it.
     pub positive: Option<PositiveOutcome>,
 }
