@@ -446,7 +446,7 @@ fn the_json_of_a_network_has_all_that_its_energy_needs() {
                     if gradients[0].as_array().unwrap().len() == 3 {
                         weight * determinant([column(0), column(1), column(2)])
                     } else {
-                        let [a, b] = [column(0), column(1)].map(|c| nalgebra::Vector3::from(c));
+                        let [a, b] = [column(0), column(1)].map(nalgebra::Vector3::from);
                         weight * a.cross(&b).norm()
                     }
                 }
