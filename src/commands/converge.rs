@@ -16,6 +16,9 @@ pub struct Converge {
     /// Meshes, from 2 to 8: that of the scene, and others with cells of half the size each [default: 4, or fewer if they would take long]
     #[arg(long, allow_hyphen_values = true)]
     levels: Option<usize>,
+    /// A scene of the same body and loads whose finite elements give the truth, such as one of quadratic cells [default: the scene itself]
+    #[arg(long)]
+    truth: Option<PathBuf>,
     /// Where the table and the plot go [default: out/converge-NAME]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -27,8 +30,12 @@ impl Converge {
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
         check_folder(&folder)?;
-        let convergence = study::converge(&scene, self.levels, &mut |event: Event| terminal.show(event))
-            .map_err(|e| e.placed(Error::of_option))?;
+        let mut show = |event: Event| terminal.show(event);
+        let convergence = match &self.truth {
+            None => study::converge(&scene, self.levels, &mut show),
+            Some(path) => study::converge_to(&scene, &Scene::load(path)?, self.levels, &mut show),
+        };
+        let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         let paths = report::write_convergence(&convergence, &folder);
         terminal.print(&report::convergence_text(&convergence))?;
         terminal.written(&paths?)?;

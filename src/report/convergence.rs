@@ -28,7 +28,7 @@ pub fn convergence_text(convergence: &Convergence) -> String {
     for load in &convergence.loads {
         let rows: Vec<Vec<String>> =
             load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect();
-        let truth = truth_text(load.truth.as_ref());
+        let truth = truth_text(load.truth.as_ref(), convergence.reference.as_deref());
         write!(text, "\n{}: {truth}\n\n{}", load.name, aligned(&columns, &rows)).expect("a String grows");
     }
     text
@@ -57,11 +57,12 @@ fn rows(convergence: &Convergence, load: &LoadConvergence, model: &ModelConverge
     };
     let mut rows: Vec<Vec<String>> = model.steps.iter().enumerate().map(row).collect();
     if let Some((limit, order)) = model.limit().and_then(|limit| Some((limit, limit.order()?))) {
-        let of_truth = load.truth.map(|truth| 100.0 * (limit.value / truth.value - 1.0)).filter(|_| !body);
+        let of_truth = load.truth.map(|truth| 100.0 * (limit.value / truth.value - 1.0));
         let mut row = vec![String::new(); rows[0].len()];
         row[1] = "limit".into();
         row[5] = format!("{:.6e}", limit.value);
-        row[7] = if body { String::new() } else { share(of_truth) };
+        let is_truth = body && convergence.reference.is_none();
+        row[7] = if is_truth { String::new() } else { share(of_truth) };
         row[8] = format!("{order:.2}");
         rows.push(row);
     }
@@ -79,15 +80,16 @@ fn share(percent: Option<f64>) -> String {
 }
 
 /// What the errors refer to, and how far that is to be trusted.
-fn truth_text(truth: Option<&Limit>) -> String {
+fn truth_text(truth: Option<&Limit>, reference: Option<&str>) -> String {
+    let of = reference.map_or(String::new(), |title| format!(" of \"{title}\""));
     let Some(limit) = truth else {
         return "no truth, for the finite elements do not reach the load on every level".into();
     };
-    let finest = format!("the truth is taken to be {:.6e} J of the finest finite elements", limit.value);
+    let finest = format!("the truth is taken to be {:.6e} J of the finest finite elements{of}", limit.value);
     let uncertain = format!("{} %", share(Some(100.0 * (limit.uncertainty / limit.value).abs())));
     match limit.kind {
         LimitKind::Extrapolated(order) => format!(
-            "the truth is {:.6e} J, extrapolated from the finite elements with order {order:.2}, uncertain by {uncertain}",
+            "the truth is {:.6e} J, extrapolated from the finite elements{of} with order {order:.2}, uncertain by {uncertain}",
             limit.value
         ),
         LimitKind::Constant => format!("{finest}: the two finest levels agree to rounding"),

@@ -29,8 +29,8 @@ pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
 pub use convergence::{
-    Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, limit_of,
-    most_unknowns, rates,
+    Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
+    limit_of, most_unknowns, rates,
 };
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,

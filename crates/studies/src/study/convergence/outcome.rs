@@ -11,6 +11,8 @@ pub struct Convergence {
     pub scene: String,
     /// The title of the material's law; `None` at small deformation.
     pub law: Option<String>,
+    /// The scene whose finite elements give the truth, where they are not those of the scene itself.
+    pub reference: Option<String>,
     /// From the mesh of the scene on.
     pub levels: Vec<Level>,
     pub loads: Vec<LoadConvergence>,

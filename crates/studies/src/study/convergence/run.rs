@@ -41,7 +41,8 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     if levels.is_none() && count < USUAL_LEVELS {
         progress(Event::Note(&format!("{count} levels are run, for one more would take long; --levels asks for more")));
     }
-    let mut convergence = Convergence { scene: scene.title().into(), law: None, levels: vec![], loads: vec![] };
+    let title = scene.title().into();
+    let mut convergence = Convergence { scene: title, law: None, reference: None, levels: vec![], loads: vec![] };
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
@@ -72,6 +73,37 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     }
     let loads = scene.loads().iter().zip(models);
     convergence.loads = loads.map(|(load, models)| LoadConvergence::new(load.name.clone(), models)).collect();
+    Ok(convergence)
+}
+
+/// As [`converge`], with the truth from the finite elements of another scene of the same body and loads, such as one of quadratic
+/// cells: where those of the scene lock, their limit is far off.
+///
+/// # Errors
+/// Those of [`converge`] for each scene; a load has no namesake in the reference.
+pub fn converge_to(
+    scene: &Scene,
+    reference: &Scene,
+    levels: Option<usize>,
+    progress: &mut Progress,
+) -> Result<Convergence> {
+    let names: Vec<&str> = reference.loads().iter().map(|load| load.name.as_str()).collect();
+    if let Some(load) = scene.loads().iter().find(|load| !names.contains(&load.name.as_str())) {
+        let expected = format!("a load \"{}\" as in the scene", load.name);
+        return Err(Error::expected("load", expected, names.join(", ")).in_file(reference.path()));
+    }
+    let body = reference.clone().with_fits(Vec::new());
+    let known = converge(&body, None, &mut |event: Event| match event {
+        Event::Stage { name, done, total } => progress(Event::stage(&format!("reference, {name}"), done, total)),
+        Event::Note(note) => progress(Event::Note(&format!("reference, {note}"))),
+    })?;
+    let mut convergence = converge(scene, levels, progress)?;
+    for load in &mut convergence.loads {
+        if let Some(found) = known.loads.iter().find(|found| found.name == load.name) {
+            (load.truth, load.mean_truth) = (found.truth, found.mean_truth);
+        }
+    }
+    convergence.reference = Some(known.scene);
     Ok(convergence)
 }
 
