@@ -165,7 +165,7 @@ impl Springs {
         let kind = [None, Some(SpringKind::Area), Some(SpringKind::Volume)][dimension - 1];
         let pairs: Vec<[usize; 2]> = (0..nodes).flat_map(|a| (a + 1..nodes).map(move |b| [a, b])).collect();
         let is_single = table.points() == 1 && kind.is_some();
-        let points: Vec<usize> = if is_single { Vec::new() } else { (0..table.points()).collect() };
+        let points = (0..table.points()).filter(|&q| !is_single && table.point_weight(q) != 0.0).collect::<Vec<_>>();
         let content = kind.filter(|_| is_single || whole);
         let areas = if areas { area_tables(table) } else { Vec::new() };
         let counts = [pairs.len(), areas.len(), points.len(), usize::from(content.is_some())];
