@@ -512,7 +512,7 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
         ))
     };
     for poisson in [0.49, 0.4999] {
-        let truth = cantilever("quad9", poisson, "");
+        let truth = cantilever("quad9", poisson, FITS);
         for (element, volume) in [("tri3", "patches"), ("quad4", "cells")] {
             let fit = format!("[[fit]]\nobjective = \"exact\"\nvolume = \"{volume}\"\n");
             let study = converge_to(&cantilever(element, poisson, &fit), &truth, Some(4), &mut |_| {}).unwrap();
@@ -532,8 +532,8 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
     }
     let other = scene(
         "[mesh]\nbox = { element = \"quad9\", size = [4, 1], cells = [2, 1] }\n[material]\nyoung = 1\npoisson = 0.3\n\
-         [[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [1, 0]\n",
+         [[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [1, 0]\n",
     );
-    let error = converge_to(&cantilever("tri3", 0.3, ""), &other, None, &mut |_| {}).unwrap_err().to_string();
+    let error = converge_to(&cantilever("tri3", 0.3, FITS), &other, None, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("load: expected a load \"shear\" as in the scene, found pull"), "{error}");
 }
