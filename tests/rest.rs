@@ -277,13 +277,7 @@ fn optima_are_stationary() {
                 let seen = subject.case.weighted(weight, &subject.residual(&k, &t));
                 let (a, c) = subject.columns(weight, &subject.unknowns(rest, tied));
                 let slopes = a.tr_mul(&DVector::from_column_slice(seen.as_slice()));
-                // Twice: what the first solution leaves of the slopes is solved again.
-                let svd = c.transpose().svd(true, true);
-                let rest_of = |slopes: DVector<f64>| {
-                    let y = svd.solve(&slopes, 1e-12 * c.amax()).unwrap();
-                    slopes - c.tr_mul(&y)
-                };
-                let left = rest_of(rest_of(slopes)).amax();
+                let left = beyond_rows(&c, slopes).amax();
                 let size = subject.rhs(weight).norm();
                 let is_deficient = subject.fits(&fit).unwrap().deficient > 0;
                 // A direction that counts as dependent, below 5e-7 of the stiffest, keeps its slope.
@@ -294,6 +288,25 @@ fn optima_are_stationary() {
         }
     }
     assert!(strict > 500, "{strict}");
+}
+
+/// What of v is no combination of the rows of C: Gram and Schmidt's method with pivoting, each product subtracted twice.
+fn beyond_rows(c: &DMatrix<f64>, mut v: DVector<f64>) -> DVector<f64> {
+    let mut rows: Vec<DVector<f64>> = c.row_iter().map(|row| row.transpose()).collect();
+    let largest = rows.iter().map(|row| row.norm()).fold(0.0, f64::max);
+    while let Some(pivot) = (0..rows.len()).max_by(|&i, &j| rows[i].norm().total_cmp(&rows[j].norm())) {
+        let row = rows.swap_remove(pivot);
+        if row.norm() <= 1e-12 * largest {
+            break;
+        }
+        let q = row.normalize();
+        for other in rows.iter_mut().chain([&mut v]) {
+            for _ in 0..2 {
+                other.axpy(-q.dot(other), &q, 1.0);
+            }
+        }
+    }
+    v
 }
 
 /// `[AᵀA Cᵀ; C 0] [u; y] = [Aᵀb; 0]` by the pseudo-inverse; normal equations keep half of the digits.
