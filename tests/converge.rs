@@ -537,3 +537,27 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
     let error = converge_to(&cantilever("tri3", 0.3, FITS), &other, None, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("load: expected a load \"shear\" as in the scene, found pull"), "{error}");
 }
+
+/// The figures of docs/exact-networks.md: tetrahedra at ν = 0.4999 against the limit of quadratic hexahedra, and classical springs on a
+/// structured block, which do not converge.
+#[test]
+fn the_figures_of_the_page_on_exact_networks() {
+    let load = |name: &str| {
+        Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/converge/{name}.toml"))).unwrap()
+    };
+    let near =
+        |found: Option<f64>, printed: f64| assert!((found.unwrap() - printed).abs() < 0.06, "{found:?} {printed}");
+    let study = converge_to(&load("cantilever_tet"), &load("cantilever_truth"), Some(3), &mut |_| {}).unwrap();
+    for (model, printed) in study.loads[0].models.iter().zip([-93.6, -93.6, -20.8, -99.9, -90.4]) {
+        println!("{}: {:?}", model.name, study.loads[0].of_truth(model));
+        near(study.loads[0].of_truth(model)[2], printed);
+    }
+    let block = load("block_tet");
+    let offdiag = block.fits()[1].clone();
+    let study = converge(&block.with_fits(vec![offdiag]), Some(4), &mut |_| {}).unwrap();
+    for (load, [finest, limit]) in study.loads.iter().zip([[-25.5, -25.5], [29.0, 31.2]]) {
+        let model = &load.models[1];
+        near(load.of_truth(model)[3], finest);
+        near(Some(100.0 * (model.limit().unwrap().value / load.truth.unwrap().value - 1.0)), limit);
+    }
+}
