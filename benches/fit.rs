@@ -3,7 +3,8 @@
 
 use springfit::element::{Element, SHIPPED};
 use springfit::fit::{
-    Balance, CellFits, Fit, Higher, MotionWeight, Objective, SampledFit, Sampling, Weight, fit_cells, fit_sampled,
+    Balance, CellFits, ExactFit, Fit, Higher, MotionWeight, Objective, SampledFit, Sampling, VolumeSprings, Weight,
+    fit_cells, fit_exact, fit_sampled,
 };
 use springfit::material::{Energy, Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
@@ -53,6 +54,25 @@ fn timed(mesh: &Mesh, fit: Fit) -> (CellFits, f64) {
     (fits, runs[2])
 }
 
+/// The median seconds of five exact networks of the cells, after a first; each asks for its memory anew.
+fn timed_exact(mesh: &Mesh, volume: VolumeSprings) -> f64 {
+    let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
+    let material = Material::for_body(mesh.dimension, 1e4, 0.3, None, None).expect("it is valid");
+    let fit = ExactFit { volume, ..ExactFit::default() };
+    let mut runs: Vec<f64> = (0..6)
+        .map(|_| {
+            let start = Instant::now();
+            let cells = fit_exact(element, &mesh.points, connectivity, material, &fit, &mut |_| {});
+            let seconds = start.elapsed().as_secs_f64();
+            cells.expect("every cell has a volume");
+            seconds
+        })
+        .skip(1)
+        .collect();
+    runs.sort_by(f64::total_cmp);
+    runs[2]
+}
+
 fn main() {
     // `cargo bench -- tet4` times that element alone.
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
@@ -78,6 +98,10 @@ fn main() {
                 let name = format!("{}{}", objective.title(), if nonnegative { ", k >= 0" } else { "" });
                 println!("{:10} {name:28} {:14.0} {:16.0}", element.name, 1e9 * each, 1.0 / each);
             }
+        }
+        for (volume, name) in [(VolumeSprings::Points, "exact"), (VolumeSprings::Cells, "exact, volume of cells")] {
+            let each = one.install(|| timed_exact(&mesh, volume)) / mesh.cell_count() as f64;
+            println!("{:10} {name:28} {:14.0} {:16.0}", element.name, 1e9 * each, 1.0 / each);
         }
     }
     sampled();

@@ -29,6 +29,7 @@ mod motion;
 mod nonlinear;
 mod outputs;
 mod paper;
+mod prepared;
 mod programs;
 mod published;
 mod quadrature;

@@ -6,7 +6,9 @@ mod linear;
 mod load;
 mod lumping;
 mod network;
+mod numbering;
 mod patches;
+mod prepared;
 mod support;
 mod system;
 
@@ -15,7 +17,9 @@ pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses};
 pub use network::{LengthSpring, MeasureSpring, Network};
+pub(crate) use numbering::places;
 pub use patches::patch_springs;
+pub use prepared::PreparedNetwork;
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};
 

@@ -85,21 +85,23 @@ impl Law {
 
     /// `T(c)`.
     pub fn force(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        self.force.evaluate(&at(c, rest, parameters))
+        at(c, rest, parameters, |at| self.force.evaluate(at))
     }
 
     /// `∂T/∂c = (∂T/∂s)/c₀ + ∂T/∂c`.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        let at = at(c, rest, parameters);
-        // Where the measure at rest is zero there is no strain.
-        let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(&at) / rest };
-        by_strain + self.slope_in_measure.evaluate(&at)
+        at(c, rest, parameters, |at| {
+            // Where the measure at rest is zero there is no strain.
+            let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(at) / rest };
+            by_strain + self.slope_in_measure.evaluate(at)
+        })
     }
 
     /// `∂T/∂p`, `[parameters]`.
     pub fn by_parameter(&self, c: f64, rest: f64, parameters: &[f64], slopes: &mut [f64]) {
-        let at = at(c, rest, parameters);
-        slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(&at));
+        at(c, rest, parameters, |at| {
+            slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(at))
+        })
     }
 
     /// `∫ T dc` from rest, by a quadrature that is refined until it agrees with its halves.
@@ -204,6 +206,18 @@ impl Force {
     }
 }
 
-fn at(c: f64, rest: f64, parameters: &[f64]) -> Vec<f64> {
-    [(c - rest) / rest, c, rest].into_iter().chain(parameters.iter().copied()).collect()
+/// Values of a law that need no memory of their own.
+const ROOM: usize = 12;
+
+/// Calls `work` with the values of the variables and parameters.
+fn at<R>(c: f64, rest: f64, parameters: &[f64], work: impl FnOnce(&[f64]) -> R) -> R {
+    let variables = [(c - rest) / rest, c, rest];
+    let count = variables.len() + parameters.len();
+    if count > ROOM {
+        return work(&[&variables, parameters].concat());
+    }
+    let mut values = [0.0; ROOM];
+    values[..variables.len()].copy_from_slice(&variables);
+    values[variables.len()..count].copy_from_slice(parameters);
+    work(&values[..count])
 }
