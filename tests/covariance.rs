@@ -54,7 +54,9 @@ fn measured(springs: &Springs, s: usize) -> i32 {
             SpringKind::Area => 2,
             SpringKind::Volume => 4,
             SpringKind::Length | SpringKind::Coupling | SpringKind::Measure => 0,
-            SpringKind::PointContent | SpringKind::PointArea => unreachable!("no fit has them"),
+            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => {
+                unreachable!("no fit has them")
+            }
         },
         Some(_) => 2 * (d - 1),
     }

@@ -4,8 +4,8 @@ use crate::shapes::elements;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use springfit::element::Element;
-use springfit::fit::{ClosedForm, Fit, Higher, Objective, Weight, fit_element};
-use springfit::material::Moduli;
+use springfit::fit::{ClosedForm, ExactFit, Fit, Higher, Objective, Weight, fit_element, fit_exact};
+use springfit::material::{Material, Moduli};
 use springfit::springs::Springs;
 use std::process::Command;
 
@@ -203,4 +203,56 @@ fn the_command_prints_formulas_and_refuses_what_has_none() {
         let (code, _, error) = derive(&[&format!("{example}{file}.toml")]);
         assert_eq!((code, error), (Some(2), format!("error: {file} has no closed form: {why}\n")));
     }
+}
+
+/// The closed forms of exact networks are those that the numerical network has on the stretched cell, and their sum with the
+/// content is known: on a rectangle a × b, `μ (b/(3 a) − a/(6 b))` along a.
+#[test]
+fn formulas_of_exact_networks_agree_with_their_numbers() {
+    let lengths = [ratio(7, 5), ratio(9, 4), ratio(4, 7), ratio(1, 3)];
+    for name in ["bar2", "tri3", "tri6", "quad4", "tet4", "hex8", "wedge6"] {
+        let element = Element::load(name).unwrap();
+        let d = element.dimension();
+        let form = form(name, None, true);
+        let at = [&lengths[..d], &lengths[3..]].concat();
+        let number = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
+        let x: Vec<f64> = form.positions.iter().map(number).collect();
+        let exact = form.exact();
+        let material = Material::for_body(d, 2.0, 0.25, None, None).unwrap();
+        let mu = material.moduli().mu;
+        let cell: Vec<usize> = (0..element.nodes()).collect();
+        let fits = fit_exact(&element, &x, &cell, material, &ExactFit::default(), &mut |_| {}).unwrap();
+        let mut pairs = 0;
+        for (class, constant) in &exact.pairs {
+            for nodes in &class.springs {
+                let spring = fits.springs.pairs().iter().position(|pair| pair[..] == nodes[..]).unwrap();
+                let found = fits.constants[spring];
+                assert!((mu * number(constant) - found).abs() < 1e-13 * mu, "{name} {nodes:?}: {found}");
+                pairs += 1;
+            }
+        }
+        assert_eq!(pairs, fits.springs.pairs().len(), "{name}");
+        if name == "quad4" {
+            let (a, b) = (7.0 / 5.0, 9.0 / 4.0);
+            assert!((number(&exact.pairs[0].1) - (b / (3.0 * a) - a / (6.0 * b))).abs() < 1e-15);
+            assert!((number(&exact.content) - a * b).abs() < 1e-14);
+        }
+    }
+    let (code, text, _) = derive(&["quad4", "--objective", "exact"]);
+    assert_eq!(code, Some(0));
+    for line in [
+        "    k = 1/6*mu",
+        "    k = 1/3*mu",
+        "  area V_q = w_q |J_q| at each of 4 quadrature points, 4 in all",
+        "    k = (lambda + mu)/V_q, rest area (1 + mu/(lambda + mu))*V_q",
+    ] {
+        assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+    }
+    assert!(!text.contains("frobenius"), "{text}");
+    let (_, text, _) = derive(&["tet4", "--objective", "exact", "--latex"]);
+    assert!(text.contains("k_{\\text{content}} &= \\frac{\\lambda + \\mu}{V}, \\quad V = \\frac{1}{6}"), "{text}");
+    let (code, _, error) = derive(&["tet4", "--objective", "modal"]);
+    let expected =
+        "error: --objective: expected exact, frobenius or offdiag, which have closed forms, found \"modal\"\n";
+    assert_eq!((code, error.as_str()), (Some(2), expected));
 }

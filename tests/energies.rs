@@ -150,6 +150,11 @@ fn principal_stresses_are_the_closed_forms() {
                         let along = 0.5 * mu * (x * x).exp() * x * 2.0 * l[0];
                         logarithmic + if i == 0 { along } else { 0.0 }
                     }
+                    "stable-neo-hookean" => mu * l[i] + ((lambda + mu) * (j - 1.0) - mu) * j / l[i],
+                    "stable-mooney-rivlin" => {
+                        let pull = (lambda + 0.75 * mu) * (j - 1.0) - 1.25 * mu;
+                        mu * l[i] * (0.75 + 0.25 * (i1 - l[i] * l[i])) + pull * j / l[i]
+                    }
                     other => panic!("no closed form of {other} is written down"),
                 };
                 assert!(

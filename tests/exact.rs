@@ -8,10 +8,15 @@ use springfit::element::Element;
 use springfit::fit::{CellFits, ExactEnergy, ExactFit, VolumeSprings, element_errors, fit_exact};
 use springfit::material::{Energy, Material, Moduli, Plane, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Body, Elastic, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs};
+use springfit::model::{
+    Body, Elastic, Lumping, Network, Support, fibre_springs, finite_elements, lumped_masses, patch_springs,
+};
+use springfit::report::network_json;
 use springfit::solve::{System, lowest_modes};
 use springfit::springs::Measure;
 use springfit::stiffness::Geometry;
+use springfit::study::{Scene, run};
+use std::path::Path;
 use std::sync::Arc;
 
 const POINTS: ExactFit =
@@ -237,7 +242,7 @@ fn measures_have_the_derivatives_of_differences() {
             let material = Material::new(1.0, 0.3, State::Solid).unwrap();
             let fit = ExactFit { energy: ExactEnergy::StableMooneyRivlin { share: 0.5 }, ..POINTS };
             for table in cells(&single(&flat, &x), material, fit).springs.areas() {
-                check(&Measure::PointArea(table.clone()), &x, d, &format!("{} area", element.name));
+                check(&Measure::Span(table.clone()), &x, d, &format!("{} area", element.name));
             }
         } else {
             // A surface or curve in space.
@@ -386,5 +391,167 @@ fn frequencies_and_motion_are_those_of_the_body() {
             println!("{element} {integrator:?}: largest displacement {size:e}, apart {:e}", apart / size);
             assert!(size > 1e-3 && apart < 1e-9 * size, "{element} {integrator:?}: {:e}", apart / size);
         }
+    }
+}
+
+/// What a program needs of an exact network is in its JSON: the energy at any positions, from the file alone.
+#[test]
+fn the_json_of_a_network_has_all_that_its_energy_needs() {
+    let material = Material::new(1e4, 0.4, State::Solid).unwrap();
+    for (element, energy, volume) in [
+        ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Points),
+        ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Patches),
+        ("hex8", ExactEnergy::StableMooneyRivlin { share: 0.4 }, VolumeSprings::Points),
+    ] {
+        let mesh = cube(element, [2, 1, 1], [0.02; 3]);
+        let fit = ExactFit { energy, volume, large: false };
+        let mut network = network(&mesh, material, fit);
+        if volume == VolumeSprings::Patches {
+            network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
+        }
+        let text = network_json(&mesh, None, &network);
+        let file: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let mut random = Random(38);
+        let x: Vec<[f64; 3]> =
+            mesh.points.chunks_exact(3).map(|x| [0, 1, 2].map(|k| x[k] * 1.2 + 0.001 * random.next())).collect();
+        let number = |value: &serde_json::Value| value.as_f64().unwrap();
+        let list = |value: &serde_json::Value| -> Vec<usize> {
+            value.as_array().unwrap().iter().map(|v| v.as_u64().unwrap() as usize).collect()
+        };
+        let determinant = |columns: [[f64; 3]; 3]| DMatrix::from_fn(3, 3, |k, l| columns[l][k]).determinant();
+        let volume_of = |points: &[usize]| {
+            let edge = |a: usize| [0, 1, 2].map(|k| x[points[a]][k] - x[points[0]][k]);
+            determinant([edge(1), edge(2), edge(3)]) / 6.0
+        };
+        let mut found = 0.0;
+        for spring in file["springs"].as_array().unwrap() {
+            let points = list(&spring["points"]);
+            let measure = match spring["kind"].as_str().unwrap() {
+                "length" => (0..3).map(|k| (x[points[1]][k] - x[points[0]][k]).powi(2)).sum::<f64>().sqrt(),
+                "volume" => volume_of(&points),
+                "patch" => {
+                    let cells = spring["cells"].as_array().unwrap().iter();
+                    let nodes =
+                        |cell: &serde_json::Value| list(&cell["nodes"]).iter().map(|&a| points[a]).collect::<Vec<_>>();
+                    cells.map(|cell| number(&cell["share"]) * volume_of(&nodes(cell))).sum()
+                }
+                "point-content" | "point-area" => {
+                    let gradients = spring["gradients"].as_array().unwrap();
+                    let column = |l: usize| {
+                        let entry =
+                            |k: usize| points.iter().zip(gradients).map(|(p, g)| x[*p][k] * number(&g[l])).sum::<f64>();
+                        [0, 1, 2].map(entry)
+                    };
+                    let weight = number(&spring["weight"]);
+                    if gradients[0].as_array().unwrap().len() == 3 {
+                        weight * determinant([column(0), column(1), column(2)])
+                    } else {
+                        let [a, b] = [column(0), column(1)].map(|c| nalgebra::Vector3::from(c));
+                        weight * a.cross(&b).norm()
+                    }
+                }
+                other => panic!("{other}"),
+            };
+            found += number(&spring["constant"]) * (measure - number(&spring["rest"])).powi(2) / 2.0;
+        }
+        let expected = Elastic::energy(&network, &x.concat()).unwrap();
+        assert!((found - expected).abs() < 1e-10 * expected, "{element} {energy:?} {volume:?}: {found} {expected}");
+    }
+}
+
+/// What no exact network can be is one line that says what is possible.
+#[test]
+fn what_cannot_be_exact_is_an_error() {
+    let scene = |mesh: &str, material: &str, fit: &str| {
+        let text = format!(
+            "[mesh]\nbox = {{ {mesh} }}\n[material]\nyoung = 1\npoisson = 0.3\n{material}\n[[fit]]\nobjective = \"exact\"\n{fit}\n"
+        );
+        Scene::parse(&text, Path::new("scene.toml")).and_then(|scene| run(&scene, &mut |_| {})).map(|_| ()).unwrap_err()
+    };
+    let solid = "element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1]";
+    let plane = "element = \"tri3\", size = [1, 1], cells = [1, 1]";
+    for (mesh, material, fit, start) in [
+        (
+            solid,
+            "law = \"yeoh\"",
+            "",
+            "scene.toml: fit[0].objective: expected a law that is \"stable-neo-hookean\", \"neo-hookean\"",
+        ),
+        (
+            solid,
+            "",
+            "volume = \"nodes\"",
+            "scene.toml: fit[0].volume: expected one of points, cells, patches, found \"nodes\"",
+        ),
+        (solid, "", "energy = \"yeoh\"", "scene.toml: fit[0].energy: expected one of stable-neo-hookean, neo-hookean"),
+        (solid, "", "share = 0.5", "scene.toml: fit[0].share: belongs to the energy \"stable-mooney-rivlin\""),
+        (
+            solid,
+            "",
+            "energy = \"stable-mooney-rivlin\"\nshare = 1.5",
+            "scene.toml: fit[0].share: expected a share from 0 to 1, found 1.5",
+        ),
+        (solid, "", "springs = [\"edge\"]", "scene.toml: fit[0].springs: expected no groups"),
+        (solid, "", "weight = \"modal\"", "scene.toml: fit[0].weight: does not go with the objective \"exact\""),
+        (
+            "element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1]",
+            "",
+            "volume = \"patches\"",
+            "scene.toml: fit[0].volume: expected \"points\" or \"cells\": patches are for meshes of linear triangles",
+        ),
+        (
+            plane,
+            "law = \"neo-hookean\"",
+            "",
+            "scene.toml: fit[0].energy: expected \"stable-neo-hookean\": the stretch across planes",
+        ),
+        (
+            plane,
+            "law = \"stable-neo-hookean\"",
+            "volume = \"cells\"",
+            "scene.toml: fit[0].volume: expected \"points\" at large deformation without stress",
+        ),
+    ] {
+        let error = scene(mesh, material, fit).to_string();
+        assert!(error.starts_with(start), "{fit}: {error}");
+    }
+}
+
+/// Fibres are springs on their stretch: energy, forces and tangent of a law with fibres, recognised by its values and not by its name.
+#[test]
+fn fibres_are_springs() {
+    let material = Material::new(1e4, 0.3, State::Solid).unwrap();
+    let shipped = Energy::load("fibre", material).unwrap();
+    let turned = "name = \"mine\"\ntitle = \"t\"\nfibre = [1, 2, -1]\nenergy = \"mu/2*(I1 - 3) - mu*ln(J) + lambda/2*ln(J)^2 \
+                  + 0.3*mu*(I4 - 1)^2\"";
+    let mine = Energy::parse(turned, material).unwrap();
+    for law in [shipped, mine] {
+        assert_eq!(ExactEnergy::of_law(&law), Some(ExactEnergy::NeoHookean));
+        for element in ["tet4", "hex8"] {
+            let element = Arc::new(Element::load(element).unwrap());
+            let mut random = Random(39);
+            let mesh = single(&element, &valid(&element, &mut random));
+            let fit = ExactFit { energy: ExactEnergy::NeoHookean, large: true, ..POINTS };
+            let mut network = network(&mesh, material, fit);
+            network.others.extend(fibre_springs(&mesh, material, &law).unwrap());
+            let body = Body { mesh: &mesh, energy: &law, state: State::Solid };
+            let rest = Elastic::energy(&network, &mesh.points).unwrap();
+            let x: Vec<f64> = mesh.points.iter().map(|x| 1.1 * x + 0.05 * random.next()).collect();
+            let (found, expected) = (network.respond(&x).unwrap(), body.respond(&x).unwrap());
+            let name = format!("{} {}", law.name, element.name);
+            assert!((found.energy - rest - expected.energy).abs() < 1e-12 * (rest + expected.energy), "{name}");
+            let norm = expected.force.iter().map(|f| f * f).sum::<f64>().sqrt();
+            assert!(found.force.iter().zip(&expected.force).all(|(a, b)| (a - b).abs() < 1e-11 * norm), "{name}");
+            let (k, t) = (dense(x.len(), &found.tangent), dense(x.len(), &expected.tangent));
+            assert!((&k - &t).norm() < 1e-11 * t.norm(), "{name}: {:e}", (&k - &t).norm() / t.norm());
+        }
+    }
+    let plane = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
+    let out_of_plane = Energy::parse(&turned.replace("ln(J)^2", "ln(J)^2 "), plane).unwrap();
+    let element = Arc::new(Element::load("tri3").unwrap());
+    let error = fibre_springs(&single(&element, &element.positions.clone()), plane, &out_of_plane).unwrap_err();
+    assert!(error.to_string().contains("in the plane of one without strain across it"), "{error}");
+    for (name, known) in [("neo-hookean", true), ("stable-mooney-rivlin", true), ("yeoh", false), ("ogden", false)] {
+        assert_eq!(ExactEnergy::of_law(&Energy::load(name, material).unwrap()).is_some(), known, "{name}");
     }
 }

@@ -13,7 +13,7 @@ use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
 
-fn weights() -> [Weight; 5] {
+pub fn weights() -> [Weight; 5] {
     [
         Weight::None,
         Weight::OffDiagonal,
@@ -24,20 +24,20 @@ fn weights() -> [Weight; 5] {
 }
 
 /// Springs of an element that counts as large.
-const LARGE: usize = 40;
+pub const LARGE: usize = 40;
 
 /// R and the rows g_s of one element.
-struct Case {
-    name: String,
-    element: Arc<Element>,
-    springs: Springs,
-    x: Vec<f64>,
-    moduli: Moduli,
-    r: DMatrix<f64>,
-    g: Vec<DVector<f64>>,
+pub struct Case {
+    pub name: String,
+    pub element: Arc<Element>,
+    pub springs: Springs,
+    pub x: Vec<f64>,
+    pub moduli: Moduli,
+    pub r: DMatrix<f64>,
+    pub g: Vec<DVector<f64>>,
 }
 
-fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
+pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
     let mut geometry = Geometry::new(&element.tabulation);
     geometry.set(&element.tabulation, x).unwrap();
     let mut rows = Vec::new();
@@ -49,7 +49,7 @@ fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) ->
 }
 
 /// Every element, with and without its optional springs, at random shapes, for every material.
-fn cases(shapes: usize) -> Vec<Case> {
+pub fn cases(shapes: usize) -> Vec<Case> {
     let mut all = Vec::new();
     for element in elements().into_iter().map(Arc::new) {
         let mut random = Random(11);
@@ -75,7 +75,7 @@ impl Case {
     }
 
     /// `W A W`, or A without its diagonal blocks; the constant-strain motions here from an orthonormal basis.
-    fn weighted(&self, weight: Weight, a: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn weighted(&self, weight: Weight, a: &DMatrix<f64>) -> DMatrix<f64> {
         let d = self.springs.dimension();
         match weight {
             Weight::None => a.clone(),

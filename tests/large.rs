@@ -121,7 +121,7 @@ fn the_study_of_stretches_has_all_its_parts() {
     let exact = study.fits.iter().find(|fit| fit.name == "sampled k c, volume").unwrap();
     assert_eq!(exact.errors.len(), STRETCHES.len());
     assert!(exact.errors.iter().chain(&exact.excess).all(|e| e.unwrap().abs() < 1e-5), "{exact:?}");
-    let others = study.fits.iter().filter(|fit| fit.name != exact.name);
+    let others = study.fits.iter().filter(|fit| fit.name != exact.name && fit.name != "exact");
     assert!(others.flat_map(|fit| &fit.errors).all(|e| e.unwrap() > 0.1));
     let text = report::stretches_text(&study);
     assert!(text.contains("sampled cubic") && text.contains("100000") && text.contains("Force at the pulled end"));

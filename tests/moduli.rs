@@ -13,6 +13,7 @@ const FROBENIUS: Fit = Fit {
     tied: false,
     nonnegative: false,
     solver: springfit::fit::Solver::Native,
+    rest: springfit::fit::Rest::Mesh,
 };
 
 fn lattice(name: &str, material: Material) -> Lattice {

@@ -146,7 +146,11 @@ fn the_stable_keys_are_there() {
     };
     has(&value, &["version", "scene", "nodes", "elements", "springs", "left_out", "fits"]);
     for fit in value["fits"].as_array().unwrap() {
-        let kind = if fit["objective"] == "baudet" { "source" } else { "solver" };
+        let kind = match fit["objective"].as_str().unwrap() {
+            "baudet" => "source",
+            "exact" => "volume",
+            _ => "solver",
+        };
         has(fit, &["objective", kind, "status", "seconds_per_element", "seconds", "negative_springs"]);
         has(fit, &["relative_frobenius", "relative_spectral", "certificate_gap", "loads"]);
         has(&fit["relative_frobenius"], &["mean", "max"]);

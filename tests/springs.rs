@@ -71,7 +71,9 @@ fn forces_and_tangents_are_those_of_differences() {
         }
     }
     // Those of exact networks are tested with them.
-    let own = |kind: &SpringKind| !matches!(kind, SpringKind::PointContent | SpringKind::PointArea);
+    let own = |kind: &SpringKind| {
+        !matches!(kind, SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre)
+    };
     for kind in SpringKind::all().filter(own) {
         assert!(kinds.contains(&kind), "{kind:?}");
     }

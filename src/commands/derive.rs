@@ -26,6 +26,9 @@ pub struct Derive {
     /// Spring groups to use, separated by commas [default: all that are not optional]
     #[arg(long, value_delimiter = ',')]
     springs: Option<Vec<String>>,
+    /// exact, frobenius or offdiag [default: all three]
+    #[arg(long)]
+    objective: Option<String>,
     /// Print the stiffness matrix as well
     #[arg(long)]
     matrix: bool,
@@ -36,6 +39,7 @@ pub struct Derive {
 
 impl Derive {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let (exact, weights) = self.forms()?;
         let element = Element::load(&self.element)?;
         let plane = match (element.dimension(), self.plane) {
             (2, plane) => Some(plane.map_or(Plane::Stress, Into::into)),
@@ -47,9 +51,25 @@ impl Derive {
         let springs = Springs::select(&element, self.springs.as_deref()).map_err(Error::of_option)?;
         terminal.show(Event::stage("closed form", 0, 1));
         let form = ClosedForm::new(&element, &springs, self.sides)?;
-        let fits = [Weight::None, Weight::OffDiagonal].map(|weight| form.fit(weight));
-        let derivation = Derivation { element: &element, form: &form, fits: &fits, plane, matrix: self.matrix };
+        let fits: Vec<_> = weights.iter().map(|weight| form.fit(*weight)).collect();
+        let exact = exact.then(|| form.exact());
+        let (exact, matrix) = (exact.as_ref(), self.matrix);
+        let derivation = Derivation { element: &element, form: &form, exact, fits: &fits, plane, matrix };
         terminal.print(&if self.latex { derivation.latex() } else { derivation.text() })?;
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// Whether the exact network is derived, and the weights of the fits that are.
+    fn forms(&self) -> Result<(bool, Vec<Weight>)> {
+        match self.objective.as_deref() {
+            None => Ok((true, vec![Weight::None, Weight::OffDiagonal])),
+            Some("exact") => Ok((true, Vec::new())),
+            Some("frobenius") => Ok((false, vec![Weight::None])),
+            Some("offdiag") => Ok((false, vec![Weight::OffDiagonal])),
+            Some(other) => {
+                let expected = "exact, frobenius or offdiag, which have closed forms";
+                Err(Error::expected("--objective", expected, format!("\"{other}\"")))
+            }
+        }
     }
 }

@@ -67,6 +67,9 @@ pub struct Fit {
     /// No constant below zero
     #[arg(long)]
     nonnegative: bool,
+    /// Rest measures: mesh, free or zero (frobenius, offdiag and modal only) [default: mesh]
+    #[arg(long)]
+    rest: Option<String>,
     /// Plane mesh or surface: stress or strain [default: stress]
     #[arg(long)]
     plane: Option<State>,
@@ -164,6 +167,7 @@ impl Fit {
             .with("balance", self.balance)
             .with("tied", self.tied.then_some(true))
             .with("nonnegative", nonnegative.then_some(true))
+            .with("rest", self.rest.clone())
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
             .with("law", self.law.clone());

@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{ClosedFit, ClosedForm};
+use crate::fit::{ClosedFit, ClosedForm, ExactForm};
 use crate::material::Plane;
 use crate::symbolic::{Fraction, Polynomial};
 use num_rational::BigRational;
@@ -13,6 +13,8 @@ use std::fmt::Write;
 pub struct Derivation<'a> {
     pub element: &'a Element,
     pub form: &'a ClosedForm,
+    /// The exact network, where it is asked for.
+    pub exact: Option<&'a ExactForm>,
     pub fits: &'a [Result<ClosedFit>],
     /// Of plane elements: what E and ν mean.
     pub plane: Option<Plane>,
@@ -44,6 +46,9 @@ impl Derivation<'_> {
             text.push('\n');
         }
         writeln!(text, "|R|^2 = {}\n", self.square(&self.form.norm, Notation::Text)).expect("a String grows");
+        if let Some(exact) = self.exact {
+            self.exact_text(exact, &mut text);
+        }
         for fit in self.fits {
             match fit {
                 Ok(fit) => self.fit_text(fit, &mut text),
@@ -64,6 +69,9 @@ impl Derivation<'_> {
             });
             text += "\\end{align*}\n";
         }
+        if let Some(exact) = self.exact {
+            self.exact_latex(exact, &mut text);
+        }
         for fit in self.fits.iter().flatten() {
             writeln!(text, "% {}\n\\begin{{align*}}", objective(fit)).expect("a String grows");
             for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
@@ -75,6 +83,65 @@ impl Derivation<'_> {
             text += "\\end{align*}\n";
         }
         text
+    }
+
+    fn exact_text(&self, exact: &ExactForm, text: &mut String) {
+        let zero = exact.content.clone() - &exact.content;
+        *text += "exact: springs of rest length zero between all nodes, and springs on the content; K = R\n";
+        for (class, constant) in &exact.pairs {
+            let count = class.springs.len();
+            let like = if count > 1 { format!(" and {} more like it", count - 1) } else { String::new() };
+            writeln!(text, "  {} {}{like}", class.group, nodes(&class.springs[0])).expect("a String grows");
+            let constants = [zero.clone(), constant.clone()];
+            writeln!(text, "    k = {}", self.pair(&constants, Notation::Text)).expect("a String grows");
+            if !constant.is_zero() {
+                writeln!(text, "      = {}", self.engineering(&constants, Notation::Text)).expect("a String grows");
+            }
+        }
+        let names = self.names(Notation::Text);
+        let (what, size) = (self.content_name(), exact.content.text(&names));
+        match self.element.tabulation.points() {
+            1 => writeln!(text, "  {what} V = {size}"),
+            points => writeln!(text, "  {what} V_q = w_q |J_q| at each of {points} quadrature points, {size} in all"),
+        }
+        .expect("a String grows");
+        let index = if self.element.tabulation.points() == 1 { "" } else { "_q" };
+        writeln!(text, "    k = (lambda + mu)/V{index}, rest {what} (1 + mu/(lambda + mu))*V{index}\n")
+            .expect("a String grows");
+    }
+
+    fn exact_latex(&self, exact: &ExactForm, text: &mut String) {
+        let zero = exact.content.clone() - &exact.content;
+        *text +=
+            "% exact: springs of rest length zero between all nodes, and springs on the content\n\\begin{align*}\n";
+        for (class, constant) in &exact.pairs {
+            let constants = [zero.clone(), constant.clone()];
+            let name = format!("k_{{\\text{{{} {}}}}}", class.group, nodes(&class.springs[0]));
+            let plain = self.pair(&constants, Notation::Latex);
+            let value = if constant.is_zero() {
+                plain
+            } else {
+                format!("{plain} = {}", self.engineering(&constants, Notation::Latex))
+            };
+            writeln!(text, "  {name} &= {value} \\\\").expect("a String grows");
+        }
+        let content = exact.content.latex(&self.names(Notation::Latex));
+        let (volume, sum) = match self.element.tabulation.points() {
+            1 => ("V", format!("V = {content}")),
+            _ => ("V_q", format!("V_q = w_q \\lvert J_q\\rvert, \\quad \\textstyle\\sum_q V_q = {content}")),
+        };
+        writeln!(text, "  k_{{\\text{{content}}}} &= \\frac{{\\lambda + \\mu}}{{{volume}}}, \\quad {sum} \\\\")
+            .expect("a String grows");
+        writeln!(
+            text,
+            "  {volume}^{{\\text{{rest}}}} &= \\left(1 + \\frac{{\\mu}}{{\\lambda + \\mu}}\\right) {volume} \\\\"
+        )
+        .expect("a String grows");
+        *text += "\\end{align*}\n";
+    }
+
+    fn content_name(&self) -> &'static str {
+        ["length", "area", "volume"][self.element.dimension() - 1]
     }
 
     fn fit_text(&self, fit: &ClosedFit, text: &mut String) {

@@ -3,7 +3,8 @@
 use super::load_record::LoadRecord;
 use super::number::finite;
 use crate::study::{
-    FitOutcome, KindRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, WholeOutcomeRecord,
+    FitOutcome, KindRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
+    WholeOutcomeRecord,
 };
 use serde::{Deserialize, Serialize};
 
@@ -52,6 +53,8 @@ pub struct FitRecord {
     pub whole: Option<WholeOutcomeRecord>,
     /// Of a sampled fit.
     pub sampled: Option<SampledOutcomeRecord>,
+    /// Of a fit with rest measures of its own.
+    pub tension: Option<TensionRecord>,
 }
 
 impl FitRecord {
@@ -86,6 +89,7 @@ impl FitRecord {
             unmet: outcome.kind.published().map(|published| PublishedOutcomeRecord::of(&published.unmet)),
             whole: outcome.kind.whole().map(WholeOutcomeRecord::of),
             sampled: outcome.kind.sampled().map(SampledOutcomeRecord::of),
+            tension: certificate.and_then(|outcome| outcome.tension.as_ref()).map(TensionRecord::from),
         }
     }
 }

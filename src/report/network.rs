@@ -1,15 +1,18 @@
 //! Networks for simulators.
 
 use super::rows::csv;
-use crate::element::SpringKind;
+use crate::element::{SpringKind, Tabulation};
 use crate::mesh::Mesh;
 use crate::model::Network;
-use crate::springs::Law;
+use crate::springs::{Law, Measure};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// One spring per line: `kind,points,constant,rest`. Points count from 0. A length spring has N/m and m, a spring on
 /// an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
+///
+/// A spring of the kinds `point-content`, `point-area` and `patch`, which exact networks have, measures what the columns do not tell:
+/// [`network_json`] does.
 ///
 /// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
 /// rest then.
@@ -47,7 +50,7 @@ struct NetworkRecord<'a> {
     springs: Vec<SpringRecord<'a>>,
 }
 
-/// A spring; only one with a law of force has the last two keys.
+/// A spring; only one with a law of force has the keys of the law, and only one of a kind of exact networks those of its measure.
 #[derive(Debug, Serialize)]
 struct SpringRecord<'a> {
     kind: &'static str,
@@ -60,6 +63,45 @@ struct SpringRecord<'a> {
     /// Of the law, by name.
     #[serde(skip_serializing_if = "Option::is_none")]
     parameters: Option<BTreeMap<&'a str, f64>>,
+    #[serde(flatten)]
+    measure: Option<MeasureRecord<'a>>,
+}
+
+/// What a spring measures, where its kind and points do not tell.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum MeasureRecord<'a> {
+    /// `weight` times the content of `Σ_a x_a ⊗ gradients_a`: its determinant, or of two columns in three dimensions the area that
+    /// they span, of one column its length.
+    Gradients { weight: f64, gradients: Vec<&'a [f64]> },
+    /// `Σ share · content` of simplices, whose nodes are places in `points`.
+    Patch { cells: Vec<ShareRecord<'a>> },
+}
+
+/// A cell of a patch.
+#[derive(Debug, Serialize)]
+struct ShareRecord<'a> {
+    nodes: &'a [usize],
+    share: f64,
+}
+
+impl<'a> MeasureRecord<'a> {
+    fn of(measure: &'a Measure) -> Option<MeasureRecord<'a>> {
+        let of_point = |table: &'a Tabulation, q: usize| {
+            let size = table.nodes * table.dimension;
+            let gradients = table.gradients[q * size..(q + 1) * size].chunks_exact(table.dimension).collect();
+            MeasureRecord::Gradients { weight: table.point_weight(q), gradients }
+        };
+        match measure {
+            Measure::Length | Measure::Content(_) | Measure::Function(_) => None,
+            Measure::PointContent(element, q) => Some(of_point(&element.tabulation, *q)),
+            Measure::Span(table) => Some(of_point(table, 0)),
+            Measure::Patch(patch) => {
+                let cells = patch.cells.iter().map(|(nodes, share)| ShareRecord { nodes, share: *share });
+                Some(MeasureRecord::Patch { cells: cells.collect() })
+            }
+        }
+    }
 }
 
 /// Of lengths, masses and the constants of each kind of springs.
@@ -77,6 +119,7 @@ pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a 
         rest: s.rest,
         law: None,
         parameters: None,
+        measure: None,
     });
     let others = network.others.iter().map(|s| {
         let parameters =
@@ -88,6 +131,7 @@ pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a 
             rest: s.rest,
             law: s.law.as_deref().map(|law| law.text.as_str()),
             parameters: s.law.as_deref().map(parameters),
+            measure: MeasureRecord::of(&s.measure),
         }
     });
     let record = NetworkRecord {

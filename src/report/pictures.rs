@@ -2,7 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::mesh::vtk::{Array, Grid};
-use crate::model::{LengthSpring, MeasureSpring, Network};
+use crate::model::{LengthSpring, MeasureSpring, Network, smoothed_pressure};
 use crate::study::{BodyLoad, FitOutcome, Outcome};
 
 const LINE: u8 = 3;
@@ -19,6 +19,10 @@ pub fn displacement_grid(outcome: &Outcome) -> Grid {
         for load in &fit.loads {
             if let Some(u) = &load.displacement {
                 grid.point_data.push(vectors(format!("u {} {} (m)", fit.fit.name, load.name), u, mesh.dimension));
+                let linear = outcome.law.is_none();
+                let pressure = smoothed_pressure(mesh, &fit.network, outcome.material, u, linear);
+                let name = || format!("pressure, smoothed, {} {} (Pa)", fit.fit.name, load.name);
+                grid.point_data.extend(pressure.map(|values| scalar(&name(), values)));
             }
         }
     }

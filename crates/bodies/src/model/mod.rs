@@ -1,6 +1,8 @@
 //! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
 
+mod assembly;
 mod elastic;
+mod fibres;
 mod forces;
 mod linear;
 mod load;
@@ -9,10 +11,14 @@ mod network;
 mod numbering;
 mod patches;
 mod prepared;
+mod pressure;
+mod steady;
 mod support;
 mod system;
+mod tension;
 
 pub use elastic::{Body, Elastic};
+pub use fibres::fibre_springs;
 pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses};
@@ -20,8 +26,10 @@ pub use network::{LengthSpring, MeasureSpring, Network};
 pub(crate) use numbering::places;
 pub use patches::patch_springs;
 pub use prepared::PreparedNetwork;
+pub use pressure::smoothed_pressure;
 pub use support::{Support, Unheld, unheld_bodies};
 pub use system::{finite_elements, masses};
+pub use tension::RestTension;
 
 use faer::sparse::Triplet;
 

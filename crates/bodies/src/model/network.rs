@@ -1,15 +1,12 @@
-//! The mass-spring model: the springs of all cells, those between the same two points added up.
+//! The mass-spring model: springs on the points of a mesh.
 
 use super::Entries;
+use super::steady::steady_law;
 use super::system::dofs;
-use crate::element::{SpringKind, Tabulation};
-use crate::fit::CellFits;
-use crate::mesh::{CellBlock, Mesh};
-use crate::springs::{Force, FunctionSpring, Law, Measure, distance, linear};
+use crate::element::SpringKind;
+use crate::springs::{Law, Measure, distance, linear};
 use crate::stiffness::gather;
 use faer::sparse::Triplet;
-use rayon::prelude::*;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A spring between two points.
@@ -60,6 +57,18 @@ pub struct MeasureSpring {
 }
 
 impl MeasureSpring {
+    /// One that measures c at rest, with the slope k and the force T there, for which [`is_steady`] holds.
+    pub(super) fn steady(
+        kind: SpringKind,
+        points: Vec<usize>,
+        measure: Measure,
+        c: f64,
+        [k, t]: [f64; 2],
+    ) -> MeasureSpring {
+        let (law, parameters) = (Some(steady_law()), vec![t, k]);
+        MeasureSpring { kind, points, constant: k, rest: c, measure, law, parameters }
+    }
+
     /// Energy, force and its slope where the measure is c.
     pub fn pull(&self, c: f64) -> [f64; 3] {
         match &self.law {
@@ -92,15 +101,6 @@ pub struct Network {
 }
 
 impl Network {
-    /// Adds up the springs of all cells; `fits` has one entry per block of the mesh.
-    pub fn assemble(mesh: &Mesh, fits: &[CellFits]) -> Network {
-        let mut network = Network { dimension: mesh.dimension, ..Network::default() };
-        network.lengths = merge(mesh, fits);
-        network.others = lawful(mesh, fits);
-        network.others.extend(mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| others(mesh, block, fit)));
-        network
-    }
-
     /// The tangent stiffness at rest, `Σ_s k_s g_s g_sᵀ`, N/m; `points` as in the mesh, `[points × dimension]`.
     pub fn stiffness(&self, points: &[f64]) -> Entries {
         let d = self.dimension;
@@ -185,220 +185,5 @@ impl Network {
     fn negative_springs(&self) -> impl Iterator<Item = (&[usize], f64)> {
         let lengths = self.lengths.iter().map(|s| (&s.points[..], s.constant));
         lengths.chain(self.others.iter().map(|s| (&s.points[..], s.constant))).filter(|(_, k)| *k < 0.0)
-    }
-}
-
-/// The springs of one block that measure more than a length, each cell's for itself.
-fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> {
-    let (d, springs) = (mesh.dimension, &fit.springs);
-    let (m, first) = (springs.len(), springs.pairs().len());
-    let every: Vec<usize> = (0..springs.nodes()).collect();
-    let function = |f: &FunctionSpring| Measure::Function(f.in_space.as_ref().unwrap_or(&f.function).clone());
-    let functions = springs.functions().iter().map(|f| (f.kind, &f.nodes, function(f)));
-    let of_cell = |kind: SpringKind| match springs.space() == springs.dimension() {
-        true => Measure::Content(block.element.clone()),
-        false => {
-            let formula = Measure::of_kind(kind, springs.nodes(), d);
-            Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space")))
-        }
-    };
-    let at_point = |&q: &usize| (SpringKind::PointContent, &every, Measure::PointContent(block.element.clone(), q));
-    let of_area = |table: &Arc<Tabulation>| (SpringKind::PointArea, &every, Measure::PointArea(table.clone()));
-    let areas = springs.areas().iter().map(of_area);
-    let points = springs.points().iter().map(at_point);
-    let content = springs.content().map(|kind| (kind, &every, of_cell(kind)));
-    let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(areas).chain(points).chain(content).collect();
-    let mut all = Vec::new();
-    if kinds.is_empty() {
-        return all;
-    }
-    let places = fit.force.places(springs);
-    let count = places[m];
-    for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m)).enumerate() {
-        for (s, (kind, own, measure)) in (first..).zip(&kinds) {
-            let constant = constants[s];
-            let parameters = &fit.parameters[cell * count..][places[s]..places[s + 1]];
-            let law = fit.force.law(springs, s);
-            let is_idle = match law {
-                Some(law) => is_idle(law, parameters),
-                None => constant == 0.0 && parameters.iter().all(|p| *p == 0.0),
-            };
-            if is_idle {
-                continue;
-            }
-            let points: Vec<usize> = own.iter().map(|&a| nodes[a]).collect();
-            let mut x = vec![0.0; points.len() * d];
-            gather(&mesh.points, d, &points, &mut x);
-            let now = measure.value(&x, d);
-            let rest = match &fit.force {
-                Force::FreeRest => parameters[0] / constant,
-                Force::Exact { .. } if law.is_none() => parameters.first().map_or(0.0, |slack| slack / constant),
-                Force::Linear | Force::Laws(_) | Force::Exact { .. } => now,
-            };
-            let parameters = if law.is_some() { parameters.to_vec() } else { Vec::new() };
-            let law = law.cloned();
-            all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law, parameters });
-        }
-    }
-    all
-}
-
-/// The length springs of the blocks whose force is a law, those between the same two points added up where the law is linear in
-/// its parameters.
-fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
-    let mut all: Vec<MeasureSpring> = Vec::new();
-    let mut known: HashMap<([usize; 2], &str), usize> = HashMap::new();
-    for (block, fit) in mesh.blocks.iter().zip(fits) {
-        let Force::Laws(laws) = &fit.force else { continue };
-        let m = fit.springs.len();
-        let places = fit.force.places(&fit.springs);
-        for (cell, nodes) in block.cells().enumerate() {
-            for (s, &[a, b]) in fit.springs.pairs().iter().enumerate() {
-                let at = cell * m + s;
-                let parameters = &fit.parameters[cell * places[m]..][places[s]..places[s + 1]];
-                let law = &laws[fit.springs.groups()[s]];
-                if is_idle(law, parameters) {
-                    continue;
-                }
-                let points = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
-                let next = all.len();
-                let place = if law.is_linear() { *known.entry((points, &law.text)).or_insert(next) } else { next };
-                if place < next {
-                    all[place].constant += fit.constants[at];
-                    all[place].parameters.iter_mut().zip(parameters).for_each(|(sum, p)| *sum += p);
-                    continue;
-                }
-                all.push(MeasureSpring {
-                    kind: SpringKind::Length,
-                    points: points.to_vec(),
-                    constant: fit.constants[at],
-                    rest: distance(mesh.point(points[0]), mesh.point(points[1])),
-                    measure: Measure::Length,
-                    law: Some(law.clone()),
-                    parameters: parameters.to_vec(),
-                });
-            }
-        }
-    }
-    all
-}
-
-/// Whether a law never pulls with these parameters.
-fn is_idle(law: &Law, parameters: &[f64]) -> bool {
-    law.is_linear() && parameters.iter().all(|p| *p == 0.0)
-}
-
-/// Points whose springs one thread merges in one go.
-const CHUNK: usize = 2048;
-
-/// Adds up the length springs between the same two points. Each point goes through the cells around it and gathers the
-/// springs to its higher neighbours in a list of its own, which is short: nothing is sorted or hashed as a whole.
-fn merge(mesh: &Mesh, fits: &[CellFits]) -> Vec<LengthSpring> {
-    let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
-    let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
-    let is_exact = !fits.is_empty() && fits.iter().all(|fit| matches!(fit.force, Force::Exact { .. }));
-    let count = mesh.point_count();
-    let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
-    let part = |first: &usize| {
-        let mut springs = Vec::new();
-        let mut neighbours: Vec<Neighbour> = Vec::new();
-        for i in *first..(first + CHUNK).min(count) {
-            neighbours.clear();
-            for star in &stars {
-                star.gather(mesh, i, &mut neighbours);
-            }
-            neighbours.sort_unstable_by_key(|n| n.point);
-            for n in neighbours.iter().filter(|n| n.constant != 0.0) {
-                if is_exact && n.constant.abs() <= ROUNDING * n.size {
-                    continue;
-                }
-                let length = distance(mesh.point(i), mesh.point(n.point));
-                let rest = if is_exact { 0.0 } else { length + n.slack / n.constant };
-                springs.push(LengthSpring { points: [i, n.point], constant: n.constant, rest });
-            }
-        }
-        springs
-    };
-    let parts: Vec<Vec<LengthSpring>> = firsts.par_iter().map(part).collect();
-    parts.concat()
-}
-
-/// The constants of an exact network that cancel to this share of their sizes are rounding: no spring is left.
-const ROUNDING: f64 = 1e-13;
-
-/// The springs from a point to another so far.
-struct Neighbour {
-    point: usize,
-    constant: f64,
-    /// `Σ |k|`.
-    size: f64,
-    /// `Σ k (L₀ − ℓ)`, ℓ the distance: zero of springs at their rest length.
-    slack: f64,
-}
-
-/// The cells of one block around each point.
-struct Star<'a> {
-    block: &'a CellBlock,
-    fit: &'a CellFits,
-    /// Where the places of each point begin, `[points + 1]`.
-    starts: Vec<usize>,
-    /// Positions in the connectivity, grouped by the point that stands there.
-    places: Vec<usize>,
-    /// For each node of the cell its length springs: spring and node at the other end.
-    springs: Vec<Vec<(usize, usize)>>,
-}
-
-impl<'a> Star<'a> {
-    fn new(mesh: &Mesh, block: &'a CellBlock, fit: &'a CellFits) -> Star<'a> {
-        let mut starts = vec![0; mesh.point_count() + 1];
-        block.connectivity.iter().for_each(|&point| starts[point + 1] += 1);
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut next = starts.clone();
-        let mut places = vec![0; block.connectivity.len()];
-        for (place, &point) in block.connectivity.iter().enumerate() {
-            places[next[point]] = place;
-            next[point] += 1;
-        }
-        let mut springs = vec![Vec::new(); block.element.nodes()];
-        for (s, &[a, b]) in fit.springs.pairs().iter().enumerate() {
-            springs[a].push((s, b));
-            springs[b].push((s, a));
-        }
-        Star { block, fit, starts, places, springs }
-    }
-
-    /// Adds the springs from point i to higher points; each point appears once in `neighbours`.
-    fn gather(&self, mesh: &Mesh, i: usize, neighbours: &mut Vec<Neighbour>) {
-        let (n, m) = (self.springs.len(), self.fit.springs.len());
-        for &place in &self.places[self.starts[i]..self.starts[i + 1]] {
-            let (cell, node) = (place / n, place % n);
-            let nodes = &self.block.connectivity[cell * n..(cell + 1) * n];
-            let constants = &self.fit.constants[cell * m..(cell + 1) * m];
-            for &(s, other) in &self.springs[node] {
-                let j = nodes[other];
-                if j > i {
-                    let slack = match self.fit.force {
-                        Force::FreeRest => {
-                            let length = distance(mesh.point(i), mesh.point(j));
-                            self.fit.parameters[cell * m + s] - constants[s] * length
-                        }
-                        _ => 0.0,
-                    };
-                    match neighbours.iter_mut().find(|n| n.point == j) {
-                        Some(n) => {
-                            n.constant += constants[s];
-                            n.size += constants[s].abs();
-                            n.slack += slack;
-                        }
-                        None => {
-                            let (constant, size) = (constants[s], constants[s].abs());
-                            neighbours.push(Neighbour { point: j, constant, size, slack });
-                        }
-                    }
-                }
-            }
-        }
     }
 }

@@ -24,7 +24,7 @@ const NEO_HOOKEAN: &str = "b*ln(c/c0)*c0/c";
 /// the material is one in which no cell locks at large deformation (kind `Unsupported`).
 pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bool]) -> Result<Vec<MeasureSpring>> {
     let expected =
-        "\"points\" or \"cells\": patches are for meshes of one kind of cells, tri3 or tet4, in their own space";
+        "\"points\" or \"cells\": patches are for meshes of linear triangles or linear tetrahedra in their own space";
     let unsupported = |found: String| {
         Err(Error::expected("volume", expected, format!("\"patches\" with {found}")).of_kind(ErrorKind::Unsupported))
     };
@@ -54,7 +54,6 @@ pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bo
         ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. } => None,
         ExactEnergy::NeoHookean => Some(Arc::new(Law::parse(NEO_HOOKEAN)?)),
     };
-    let kind = if d == 2 { SpringKind::Area } else { SpringKind::Volume };
     let spring = |cells: &Vec<(&[usize], f64)>| {
         let mut points: Vec<usize> = cells.iter().flat_map(|(nodes, _)| *nodes).copied().collect();
         points.sort_unstable();
@@ -66,7 +65,15 @@ pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bo
         gather(&mesh.points, d, &points, &mut x);
         let rest = measure.value(&x, d);
         let parameters = if law.is_some() { vec![lambda] } else { Vec::new() };
-        MeasureSpring { kind, points, constant: lambda / rest, rest, measure, law: law.clone(), parameters }
+        MeasureSpring {
+            kind: SpringKind::Patch,
+            points,
+            constant: lambda / rest,
+            rest,
+            measure,
+            law: law.clone(),
+            parameters,
+        }
     };
     let patches = shares.iter().chain(&alone).filter(|cells| !cells.is_empty() && lambda != 0.0);
     Ok(patches.map(spring).collect())

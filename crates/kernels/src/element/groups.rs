@@ -105,7 +105,16 @@ fn nodes_of(
             ));
         }
         (None, SpringKind::Length) => return Err(Error::expected(key("nodes"), "pairs of nodes", "none")),
-        (None, _) => {
+        (
+            None,
+            SpringKind::Angle
+            | SpringKind::Coupling
+            | SpringKind::Measure
+            | SpringKind::PointContent
+            | SpringKind::PointArea
+            | SpringKind::Patch
+            | SpringKind::Fibre,
+        ) => {
             return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
         }
     };

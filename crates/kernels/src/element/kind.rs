@@ -27,6 +27,12 @@ pub enum SpringKind {
     /// The area of the parallelogram that two tangents of a cell span at a point of its quadrature rule, m². As before.
     #[serde(skip)]
     PointArea,
+    /// A sum of shares of the contents of the cells around a point, m² or m³. As before.
+    #[serde(skip)]
+    Patch,
+    /// The stretch of fibres at a point of the quadrature rule of a cell. As before.
+    #[serde(skip)]
+    Fibre,
 }
 
 crate::named!(SpringKind {
@@ -38,6 +44,8 @@ crate::named!(SpringKind {
     "measure" => Measure,
     "point-content" => PointContent,
     "point-area" => PointArea,
+    "patch" => Patch,
+    "fibre" => Fibre,
 });
 
 /// The longest list of nodes of a spring.
@@ -123,7 +131,7 @@ impl SpringKind {
                 unit: "J per square of the unit of the measure",
                 formula: None,
             },
-            SpringKind::PointContent | SpringKind::PointArea => Kind {
+            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => Kind {
                 nodes: 1..=MOST_NODES,
                 least_dimension: 1,
                 content: None,

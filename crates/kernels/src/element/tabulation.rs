@@ -80,6 +80,16 @@ impl<C> Tabulation<C> {
     }
 }
 
+impl Tabulation {
+    /// The weight of point q, or, where it has none, that in the term λ (div u)².
+    pub fn point_weight(&self, q: usize) -> f64 {
+        match (self.weights[q], self.volumetric.get(q)) {
+            (0.0, Some(volumetric)) => *volumetric,
+            (weight, _) => weight,
+        }
+    }
+}
+
 /// Shape functions and their symbolic gradients.
 #[derive(Debug, Clone)]
 pub struct ShapeFunctions {

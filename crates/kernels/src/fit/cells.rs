@@ -5,8 +5,10 @@ use super::congruence::Congruence;
 use super::descent;
 use super::input::{check_fit, check_nodes};
 use super::method::Certificate;
+use super::rest::Rest;
 use super::settings::Fit;
 use super::solver::Solver;
+use super::tension::fit_tensions;
 use super::visit::{cell_fault, each_cell};
 use crate::element::Element;
 use crate::error::{Error, Result};
@@ -91,13 +93,22 @@ impl CellFits {
         if !self.springs.points.is_empty() {
             return Err(Error::at("springs", "are those of an exact network, which is not fitted"));
         }
-        fit.solver.check(fit.objective)?;
+        fit.check()?;
         let (n, m) = (element.nodes(), self.springs.len());
         let cells = connectivity.len() / n;
         self.constants.resize(cells * m, 0.0);
         (self.deficient, self.unreached, self.reused) = (0, 0, 0);
         self.certificates.clear();
+        self.force = Force::Linear;
+        self.parameters.clear();
         if m == 0 {
+            return Ok(());
+        }
+        if fit.rest != Rest::Mesh {
+            let found = fit_tensions(element, &self.springs, points, connectivity, moduli, fit, progress)?;
+            self.force = Force::FreeRest;
+            (self.constants, self.parameters) = (found.constants, found.parameters);
+            (self.deficient, self.unreached, self.reused) = (found.deficient, found.unreached, found.reused);
             return Ok(());
         }
         if fit.is_costly() && cells > 1 {
@@ -190,9 +201,10 @@ impl CellFits {
 /// The constants of a single element with nodes at `x`, `[nodes × space]`, m; `[springs]`.
 ///
 /// # Errors
-/// Those of [`fit_cells`].
+/// Those of [`fit_cells`], and the springs pull at rest: constants alone do not describe them.
 pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
     check_nodes(element, element.space(), x)?;
+    fit.check_constants_alone()?;
     let connectivity: Vec<usize> = (0..element.nodes()).collect();
     Ok(fit_cells(element, springs, x, &connectivity, moduli, fit, &mut |_| {})?.constants)
 }

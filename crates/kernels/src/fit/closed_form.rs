@@ -29,6 +29,8 @@ pub struct ClosedForm {
     pub classes: Vec<SymmetryClass>,
     /// `‖R‖²` as coefficients of λ², λμ, μ².
     pub norm: [Fraction; 3],
+    /// The springs between all pairs of nodes of the exact network, as [`ClosedForm::exact`] has them.
+    exact: Vec<SymmetryClass>,
     springs: Springs,
     plain: [Normal<Fraction>; 2],
     geometry: Geometry<Fraction>,
@@ -40,6 +42,15 @@ pub struct SymmetryClass {
     pub group: String,
     /// The nodes of its springs; all nodes for the spring on the content.
     pub springs: Vec<Vec<usize>>,
+}
+
+/// The exact network: springs of rest length zero, and springs on content.
+#[derive(Debug)]
+pub struct ExactForm {
+    /// Pairs of nodes that a symmetry of the shape takes into each other, and the constant of each spring for μ = 1, N/m.
+    pub pairs: Vec<(SymmetryClass, Fraction)>,
+    /// Length, area or volume V of the cell, that of all quadrature points together.
+    pub content: Fraction,
 }
 
 /// The constants of one objective.
@@ -105,7 +116,27 @@ impl ClosedForm {
         let plain = units().map(equations);
         let stiffness = units().map(|moduli| stiffness(&geometry, &moduli));
         let norm = quadratic(&stiffness, |a, b| sum(a.iter().zip(b).map(|(a, b)| a.clone() * b), &x[0]));
-        Ok(ClosedForm { variables, positions: x, stiffness, classes, norm, springs: springs.clone(), plain, geometry })
+        let mut exact = self::classes(element, &Springs::exact(element, false, false), &x);
+        exact.retain(|class| class.springs[0].len() == 2);
+        let springs = springs.clone();
+        Ok(ClosedForm { variables, positions: x, stiffness, classes, norm, exact, springs, plain, geometry })
+    }
+
+    /// `k_ab = −μ ∫ ∇N_a·∇N_b dV` of every pair of nodes, and the content.
+    pub fn exact(&self) -> ExactForm {
+        let (n, d) = (self.geometry.nodes, self.geometry.dimension);
+        let constant = |class: &SymmetryClass| {
+            let (a, b) = (class.springs[0][0], class.springs[0][1]);
+            let points = self.geometry.gradients.chunks_exact(n * d).zip(&self.geometry.volumes);
+            let product = points.map(|(grad, volume)| {
+                let dot = (0..d).map(|k| grad[a * d + k].clone() * &grad[b * d + k]);
+                sum(dot, volume) * volume
+            });
+            let zero = self.positions[0].zero();
+            zero.clone() - &sum(product, &zero)
+        };
+        let pairs = self.exact.iter().map(|class| (class.clone(), constant(class))).collect();
+        ExactForm { pairs, content: self.geometry.content() }
     }
 
     /// The constants under this weight.

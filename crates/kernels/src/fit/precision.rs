@@ -21,7 +21,7 @@ use crate::stiffness::Geometry;
 ///
 /// # Errors
 /// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, the
-/// Jacobian is not positive everywhere, the springs are linearly dependent, or the objective needs what is known in `f64` alone.
+/// Jacobian is not positive everywhere, the springs are linearly dependent or pull at rest, or the objective needs what is known in `f64` alone.
 pub fn constants_of_kind<T: Real>(
     any: &T,
     element: &Element,
@@ -31,6 +31,7 @@ pub fn constants_of_kind<T: Real>(
     fit: &Fit,
 ) -> Result<Vec<T>> {
     check(element, springs, x, moduli)?;
+    fit.check_constants_alone()?;
     let x = differences(any, element.dimension(), x);
     let constants = match fit.objective {
         Objective::Frobenius(weight) if matches!(weight.route(!springs.functions.is_empty()), Route::Closed(_)) => {
@@ -45,7 +46,7 @@ pub fn constants_of_kind<T: Real>(
 }
 
 /// What has no answer in this kind of number.
-fn no_answer(problem: &str) -> Error {
+pub(super) fn no_answer(problem: &str) -> Error {
     Error::new(problem).of_kind(ErrorKind::Infeasible)
 }
 

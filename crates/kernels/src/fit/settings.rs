@@ -1,7 +1,9 @@
 //! What a fit of each element is asked for.
 
 use super::objective::Objective;
+use super::rest::Rest;
 use super::solver::Solver;
+use crate::error::{Error, Result};
 use crate::springs::Springs;
 
 /// How the constants of each element are chosen.
@@ -13,11 +15,35 @@ pub struct Fit {
     /// No constant below zero.
     pub nonnegative: bool,
     pub solver: Solver,
+    pub rest: Rest,
 }
 
 impl Fit {
     pub fn new(objective: Objective) -> Fit {
-        Fit { objective, tied: false, nonnegative: false, solver: Solver::Native }
+        Fit { objective, tied: false, nonnegative: false, solver: Solver::Native, rest: Rest::Mesh }
+    }
+
+    /// That its parts go together.
+    ///
+    /// # Errors
+    /// They do not.
+    pub(super) fn check(&self) -> Result<()> {
+        self.solver.check(self.objective)?;
+        self.rest.check(self.objective, self.solver)
+    }
+
+    /// That its springs do not pull at rest.
+    ///
+    /// # Errors
+    /// They do.
+    pub(super) fn check_constants_alone(&self) -> Result<()> {
+        match self.rest {
+            Rest::Mesh => Ok(()),
+            Rest::Free | Rest::Zero => {
+                let expected = "\"mesh\" where constants alone are asked for";
+                Err(Error::expected("rest", expected, format!("\"{}\"", self.rest.name())))
+            }
+        }
     }
 
     /// Whether a cell takes microseconds instead of nanoseconds.

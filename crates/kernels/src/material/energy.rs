@@ -1,7 +1,7 @@
 //! Hyperelastic materials: an energy per volume at rest as an expression of the deformation's invariants.
 
 use super::Material;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::symbolic::{Expr, Jet, Program, Scope};
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -15,6 +15,8 @@ pub type Tangent = SMatrix<f64, 9, 9>;
 
 /// What the energy may be a function of, beside the moduli and its own parameters.
 const INVARIANTS: [&str; 7] = ["I1", "I2", "J", "I4", "l1", "l2", "l3"];
+/// The place of `I4`.
+const FIBRES: usize = 3;
 /// What follows from Young's modulus and Poisson's ratio.
 const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
 /// Principal stretches that differ by less than this share are the same: the divided difference has rounding of 1e-10
@@ -154,6 +156,30 @@ impl Energy {
 
     pub fn poisson(&self) -> f64 {
         self.constants[1]
+    }
+
+    /// W as a function of `I1`, `I2` and `J` alone, with fibres that are not stretched; `None` of energies of the stretches.
+    pub fn of_invariants(&self, invariants: [f64; 3]) -> Option<f64> {
+        let [i1, i2, j] = invariants;
+        let at: Vec<f64> = [i1, i2, j, 1.0, 1.0, 1.0, 1.0].into_iter().chain(self.constants.iter().copied()).collect();
+        (!self.by_stretches).then(|| self.expression.evaluate(&at))
+    }
+
+    /// The direction of the fibres at rest and the force of a spring that measures their stretch c, per volume, as an
+    /// expression with the parameter `a`: `a ∂W/∂c`, `I4 = c²`. `None` without fibres.
+    ///
+    /// # Errors
+    /// What the fibres do depends on more than their stretch; kind `Unsupported`.
+    pub fn fibre_law(&self) -> Result<Option<(Vector3<f64>, String)>> {
+        let Some(direction) = self.fibre else { return Ok(None) };
+        let slope = self.expression.derivative(FIBRES);
+        if (0..INVARIANTS.len()).any(|v| v != FIBRES && slope.uses(v)) {
+            let problem = "the energy of the fibres depends on more than their stretch";
+            return Err(Error::at("energy", problem).of_kind(ErrorKind::Unsupported));
+        }
+        let values: Vec<String> = self.constants.iter().map(|value| format!("({value:?})")).collect();
+        let names: Vec<&str> = INVARIANTS.iter().map(|_| "(c^2)").chain(values.iter().map(String::as_str)).collect();
+        Ok(Some((direction, format!("a*2*c*({})", slope.text(&names)))))
     }
 
     /// `W`, `P = ∂W/∂F` (the first Piola-Kirchhoff stress, Pa) and `∂P/∂F` at the deformation gradient F. Not finite where

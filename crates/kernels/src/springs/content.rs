@@ -31,10 +31,7 @@ impl<'a> Content<'a> {
         let size = self.table.nodes * self.table.dimension;
         let is_single = self.points.len() == 1;
         for q in self.points.clone() {
-            let weight = match (self.table.weights[q], self.table.volumetric.get(q)) {
-                (0.0, Some(volumetric)) if is_single => *volumetric,
-                (weight, _) => weight,
-            };
+            let weight = if is_single { self.table.point_weight(q) } else { self.table.weights[q] };
             visit(&self.table.gradients[q * size..(q + 1) * size], weight);
         }
     }

@@ -16,8 +16,8 @@ pub enum Measure {
     Content(Arc<Element>),
     /// The part of it that belongs to one point of the quadrature rule, `w |J|`.
     PointContent(Arc<Element>, usize),
-    /// The area that two tangents span at the single point of this table.
-    PointArea(Arc<Tabulation>),
+    /// The area or the length that two tangents or one span at the single point of this table.
+    Span(Arc<Tabulation>),
     /// A weighted sum of contents, over the cells of a patch.
     Patch(Arc<Patch>),
     /// A function of the points' coordinates, in the order x₀, y₀, (z₀,) x₁, …
@@ -85,7 +85,7 @@ impl Measure {
             Measure::Length => length(x, dimension),
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).jet(),
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).jet(),
-            Measure::PointArea(table) => Content::of_point(table, 0, x).jet(),
+            Measure::Span(table) => Content::of_point(table, 0, x).jet(),
             Measure::Patch(patch) => patch.jet(x, dimension),
             Measure::Function(function) => Jet::evaluate(function, x),
         }
@@ -97,7 +97,7 @@ impl Measure {
             Measure::Length => super::distance(&x[..dimension], &x[dimension..]),
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).value(),
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).value(),
-            Measure::PointArea(table) => Content::of_point(table, 0, x).value(),
+            Measure::Span(table) => Content::of_point(table, 0, x).value(),
             Measure::Patch(patch) => patch.value(x, dimension),
             Measure::Function(function) => function.evaluate(x),
         }
@@ -110,7 +110,7 @@ impl Measure {
             Measure::Length => self.jet(x, dimension).gradient,
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).gradient(),
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).gradient(),
-            Measure::PointArea(table) => Content::of_point(table, 0, x).gradient(),
+            Measure::Span(table) => Content::of_point(table, 0, x).gradient(),
             Measure::Patch(patch) => patch.gradient(x, dimension),
         }
     }

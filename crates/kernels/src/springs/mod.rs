@@ -8,6 +8,7 @@ mod measure;
 mod patch;
 mod vector;
 
+pub use content::Content;
 pub use law::{Force, Law};
 pub use measure::{Measure, Response, linear};
 pub use patch::Patch;
@@ -17,7 +18,6 @@ use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
 use crate::symbolic::{Expr, Jet};
-use content::Content;
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
@@ -195,7 +195,7 @@ impl Springs {
         let every = || (0..self.nodes).collect();
         let lengths = self.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
         let functions = self.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
-        let areas = self.areas.iter().map(|table| (every(), Measure::PointArea(table.clone())));
+        let areas = self.areas.iter().map(|table| (every(), Measure::Span(table.clone())));
         let points = self.points.iter().map(|&q| (every(), Measure::PointContent(element.clone(), q)));
         let content = self.content.map(|_| (every(), Measure::Content(element.clone())));
         lengths.chain(functions).chain(areas).chain(points).chain(content).collect()

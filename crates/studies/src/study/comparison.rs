@@ -2,7 +2,7 @@
 
 use super::body::load_cases;
 use super::checkpoint::Controls;
-use super::fits::{NamedFit, Recipe, WholeBody};
+use super::fits::{ExactRecipe, NamedFit, Recipe, WholeBody};
 use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
 use super::progress::{Event, Progress};
@@ -13,9 +13,10 @@ use super::stretches::sampled_fits;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
-use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, element_errors};
-use crate::material::Material;
-use crate::mesh::CellBlock;
+use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors, fit_exact};
+use crate::material::{Energy, Material};
+use crate::mesh::{CellBlock, Mesh};
+use crate::model::patch_springs;
 use crate::springs::Springs;
 use std::sync::Arc;
 use std::time::Instant;
@@ -44,7 +45,7 @@ pub struct MethodOutcome {
     pub moduli: Option<EffectiveModuli>,
 }
 
-/// Fits `shapes` random shapes of the element with every objective, the spectral one with every solver, and by the published
+/// Makes `shapes` random shapes of the element exact, and fits them with every objective, the spectral one with every solver, and by the published
 /// formulas that it has; on one thread.
 ///
 /// # Errors
@@ -56,8 +57,8 @@ pub fn compare_element(
     iterations: u64,
     progress: &mut Progress,
 ) -> Result<Vec<MethodOutcome>> {
-    let mut recipes: Vec<Recipe> =
-        Objective::all(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))).collect();
+    let mut recipes = vec![Recipe::Exact(ExactRecipe::default())];
+    recipes.extend(Objective::all(element.has_higher_modes()).into_iter().map(|o| Recipe::Stiffness(Fit::new(o))));
     for method in [Search::NelderMead, Search::ParticleSwarm, Search::SimulatedAnnealing] {
         let solver = Solver::General { method, iterations, topology: None };
         recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(MotionWeight::None)) }));
@@ -132,6 +133,22 @@ pub fn measure_recipes(
     Ok(outcomes)
 }
 
+/// The exact networks that the body has: with volume springs at points and on cells, and on patches where these can be.
+fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<NamedFit> {
+    let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
+    let serves = |recipe: &ExactRecipe| {
+        let Ok(fit) = recipe.resolve(law) else { return false };
+        let block = |b: &CellBlock| {
+            let cell = &b.connectivity[..b.element.nodes()];
+            fit_exact(&b.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
+        };
+        let patches = fit.volume == VolumeSprings::Patches;
+        mesh.blocks.iter().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
+    };
+    let recipes = VolumeSprings::all().map(recipe).filter(serves);
+    recipes.map(|recipe| NamedFit::of(Recipe::Exact(recipe), None)).collect()
+}
+
 /// Runs the scene with every objective in place of its own fits; with the content spring where the elements have one.
 ///
 /// # Errors
@@ -151,6 +168,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
     let whole = scene.law().is_none() && body.held("loads").is_ok();
+    let law = scene.energy(material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {
@@ -163,6 +181,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
         let of_whole = whole.then(|| NamedFit::of(Recipe::Whole(Box::default()), None));
         let mut fits: Vec<NamedFit> = at_rest.chain(of_whole).collect();
         if groups.is_none() {
+            fits.splice(0..0, exact_fits(law.as_ref(), &mesh, material));
             let published = Method::ALL.into_iter().filter(serves_all);
             fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }

@@ -30,8 +30,8 @@ pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
     KindRecord, LoadSelection, NamedFit, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe, Reference,
     SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord, Start,
-    StiffnessOutcome, StiffnessRecord, Task, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord,
-    WholeRecipe, WholeRecord,
+    StiffnessOutcome, StiffnessRecord, Task, TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome,
+    WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
 pub use metrics::{DisplacementError, displacement_error};

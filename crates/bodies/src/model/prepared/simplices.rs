@@ -107,7 +107,7 @@ impl Simplices {
                 patch.element.dimension() == dimension
                     && patch.cells.iter().all(|(nodes, _)| nodes.len() == dimension + 1)
             }
-            Measure::Length | Measure::PointArea(_) | Measure::Function(_) => false,
+            Measure::Length | Measure::Span(_) | Measure::Function(_) => false,
         }
     }
 

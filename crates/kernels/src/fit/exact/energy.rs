@@ -1,7 +1,7 @@
 //! The energies whose bodies are networks, and the forces of their springs on content.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Material, Moduli, State};
+use crate::material::{Energy, Material, Moduli, State};
 use crate::springs::Law;
 use std::sync::Arc;
 
@@ -29,7 +29,42 @@ crate::named!(ExactEnergy {
     "stable-mooney-rivlin" => StableMooneyRivlin { share: 0.25 },
 });
 
+/// Deformations at which energies are compared: `I1`, `I2`, `J` of some that are no rotation.
+const DEFORMATIONS: [[f64; 3]; 4] = [[3.4, 3.7, 1.1], [2.8, 2.7, 0.9], [4.1, 5.0, 1.3], [3.3, 3.2, 0.7]];
+/// What rounding may leave of their difference, relative to the moduli.
+const SAME: f64 = 1e-10;
+
 impl ExactEnergy {
+    /// The one that a law is, apart from its fibres.
+    pub fn of_law(law: &Energy) -> Option<ExactEnergy> {
+        let [_, mu] = lame(law);
+        let [a, b] = [[3.0, 3.0, 1.0], [3.0, 4.0, 1.0]].map(|at| law.of_invariants(at));
+        let share = (b? - a?) / (mu / 2.0);
+        let candidates = ExactEnergy::all().map(|energy| energy.with_share(share).unwrap_or(energy));
+        candidates.into_iter().find(|energy| energy.is_that_of(law))
+    }
+
+    /// Whether a law is this energy, apart from its fibres.
+    pub fn is_that_of(&self, law: &Energy) -> bool {
+        let [lambda, mu] = lame(law);
+        let size = SAME * (lambda.abs() + mu);
+        let value = |at: [f64; 3]| law.of_invariants(at).map(|value| value - self.value(at, [lambda, mu]));
+        DEFORMATIONS.iter().all(|at| value(*at).is_some_and(|difference| difference.abs() <= size))
+    }
+
+    /// W of the invariants `I1`, `I2`, `J`, with λ and μ.
+    fn value(&self, [i1, i2, j]: [f64; 3], [lambda, mu]: [f64; 2]) -> f64 {
+        let square = (j - 1.0) * (j - 1.0);
+        match self {
+            ExactEnergy::StableNeoHookean => mu / 2.0 * (i1 - 3.0) - mu * (j - 1.0) + (lambda + mu) / 2.0 * square,
+            ExactEnergy::NeoHookean => mu / 2.0 * (i1 - 3.0) - mu * j.ln() + lambda / 2.0 * j.ln() * j.ln(),
+            ExactEnergy::StableMooneyRivlin { share } => {
+                mu / 2.0 * ((1.0 - share) * (i1 - 3.0) + share * (i2 - 3.0)) - mu * (1.0 + share) * (j - 1.0)
+                    + (lambda + mu * (1.0 - share)) / 2.0 * square
+            }
+        }
+    }
+
     /// With this share of the second invariant.
     ///
     /// # Errors
@@ -46,6 +81,12 @@ impl ExactEnergy {
             }
         }
     }
+}
+
+/// λ and μ of the material of a law.
+fn lame(law: &Energy) -> [f64; 2] {
+    let (young, nu) = (law.young(), law.poisson());
+    [young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), young / (2.0 * (1.0 + nu))]
 }
 
 /// The numbers of an exact network per volume of the cell, thickness included.

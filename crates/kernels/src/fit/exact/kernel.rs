@@ -1,15 +1,16 @@
 //! The springs of exact networks, one cell per lane of the machine's registers.
 
-use super::Shares;
 use super::energy::Coefficients;
+use super::volume::Shares;
 use crate::element::Element;
 use crate::fit::packing::Packing;
-use crate::scalar::{Packed, PackedWork, Real, dot, widest};
+use crate::fit::precision::differences;
+use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, widest};
 use crate::springs::Springs;
-use crate::stiffness::{Fault, Geometry};
+use crate::stiffness::{Fault, Geometry, gather};
 use nalgebra::Matrix3;
 
-/// A constant below this share of the largest of its cell is rounding.
+/// A product of gradients below this share of that of their lengths is rounding.
 const ROUNDING: f64 = 1e-13;
 
 /// The cells of one block and where their numbers go.
@@ -69,14 +70,15 @@ impl PackedWork for ExactBatch<'_> {
         let mut packing = Packing::new(&zero, self.element, self.points);
         let mut geometry = Geometry::like(&zero, table);
         let mut pairs = vec![zero.clone(); self.springs.pairs.len()];
-        let mut plain = Geometry::new(table);
+        let mut own = vec![zero.clone(); n];
+        let (mut plain, mut plain_own) = (Geometry::new(table), vec![0.0; n]);
         let mut x = vec![0.0; packing.x.len()];
         let mut cell = 0;
         while cell < cells {
             let count = T::COUNT.min(cells - cell);
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             if packing.gather(nodes) && geometry.update(table, &packing.x) {
-                stiffen(&geometry, self.coefficients.lengths, &mut pairs);
+                stiffen(&geometry, self.coefficients.lengths, &mut pairs, &mut own);
                 for lane in 0..count {
                     let at = cell + lane;
                     for (k, pair) in self.constants[at * m..].iter_mut().zip(&pairs) {
@@ -90,11 +92,18 @@ impl PackedWork for ExactBatch<'_> {
                     }
                 }
             } else {
-                // One by one: what is wrong with a cell, or nothing but the range of numbers.
+                // One by one: what is wrong with a cell, or how many digits it takes, or nothing but the range of numbers.
                 for at in cell..cell + count {
-                    packing.place(&self.connectivity[at * n..(at + 1) * n], &mut x).map_err(|fault| (at, fault))?;
+                    let nodes = &self.connectivity[at * n..(at + 1) * n];
+                    packing.place(nodes, &mut x).map_err(|fault| (at, fault))?;
                     plain.set(table, &x).map_err(|fault| (at, fault))?;
-                    stiffen(&plain, self.coefficients.lengths, &mut self.constants[at * m..][..pairs.len()]);
+                    if Geometry::quality(table, &x) <= T::delicate()
+                        && let Some(precise) = self.precise(nodes, &x)
+                    {
+                        plain = precise;
+                    }
+                    let edges = &mut self.constants[at * m..][..pairs.len()];
+                    stiffen(&plain, self.coefficients.lengths, edges, &mut plain_own);
                     let volume = |q: usize| plain.volumes[q];
                     let volumetric = |q: usize| plain.volumetric.get(q).map_or(volume(q), |v| *v);
                     self.contents(at, p, volume, volumetric);
@@ -111,6 +120,26 @@ impl PackedWork for ExactBatch<'_> {
 }
 
 impl ExactBatch<'_> {
+    /// The geometry of a needle or a sliver, worked out in twice the digits and rounded; `x` are the positions in its own plane or line.
+    fn precise(&self, nodes: &[usize], x: &[f64]) -> Option<Geometry> {
+        let (table, d) = (&self.element.tabulation, self.element.dimension());
+        let mut given = x.to_vec();
+        if self.element.space() == d {
+            // As they are, for their differences are exact in more digits.
+            gather(self.points, d, nodes, &mut given);
+        }
+        let any = DoubleDouble::from(0.0);
+        let mut geometry = Geometry::like(&any, table);
+        let rounded = |values: &[DoubleDouble]| values.iter().map(Real::rounded).collect();
+        geometry.update(table, &differences(&any, d, &given)).then(|| Geometry {
+            dimension: geometry.dimension,
+            nodes: geometry.nodes,
+            gradients: rounded(&geometry.gradients),
+            volumes: rounded(&geometry.volumes),
+            volumetric: rounded(&geometry.volumetric),
+        })
+    }
+
     /// Writes the springs on content of one cell; `volume(q)` and `volumetric(q)` are those of the two terms at a point.
     #[inline(always)]
     fn contents(&mut self, cell: usize, p: usize, volume: impl Fn(usize) -> f64, volumetric: impl Fn(usize) -> f64) {
@@ -167,14 +196,22 @@ impl ExactBatch<'_> {
 /// Springs on areas at each quadrature point: of three columns of the cofactor matrix and of three sums of two.
 const AREAS: usize = 6;
 
-/// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero.
-fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {
+/// The springs between all pairs of nodes, see [`stiffen`].
+pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
+    let mut pairs = vec![geometry.volumes[0].zero(); geometry.nodes * (geometry.nodes - 1) / 2];
+    let mut own = vec![geometry.volumes[0].zero(); geometry.nodes];
+    stiffen(geometry, mu, &mut pairs, &mut own);
+    pairs
+}
+
+/// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero. `own` has room for the same of each node with itself.
+fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T], own: &mut [T]) {
     // A copy for each of the common sizes, in which the loops unroll: for few nodes they are all overhead.
     macro_rules! of_size {
         ($d:literal, $n:expr) => {
             geometry.volumes[0].vectorize(
                 #[inline(always)]
-                || stiffen_in::<T, $d>($n, geometry, mu, pairs),
+                || stiffen_in::<T, $d>($n, geometry, mu, pairs, own),
             )
         };
     }
@@ -190,27 +227,31 @@ fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {
 }
 
 #[inline(always)]
-fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64, pairs: &mut [T]) {
+fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64, pairs: &mut [T], own: &mut [T]) {
     let zero = geometry.volumes[0].zero();
     let pairs = &mut pairs[..n * (n - 1) / 2];
     pairs.fill(zero.clone());
+    let own = &mut own[..n];
+    own.fill(zero.clone());
     for (gradients, volume) in geometry.gradients.chunks_exact(n * D).zip(&geometry.volumes) {
         let gradients = &gradients.as_chunks::<D>().0[..n];
         let factor = volume.clone().scaled(&-mu);
         let mut s = 0;
         for a in 0..n {
+            own[a] = own[a].clone().plus_product(&factor, &dot(&gradients[a], &gradients[a]));
             for b in a + 1..n {
                 pairs[s] = pairs[s].clone().plus_product(&factor, &dot(&gradients[a], &gradients[b]));
                 s += 1;
             }
         }
     }
-    let mut largest = zero.clone();
-    for k in pairs.iter() {
-        largest = largest.greatest(&k.magnitude());
-    }
-    let least = largest.scaled(&ROUNDING);
-    for k in pairs.iter_mut() {
-        *k = (k.magnitude() - &least).choose(k, &zero);
+    // Gradients at right angles: their product against that of their lengths, by squares.
+    let mut s = 0;
+    for a in 0..n {
+        for b in a + 1..n {
+            let least = (own[a].clone() * &own[b]).scaled(&(ROUNDING * ROUNDING));
+            pairs[s] = (pairs[s].clone().squared() - &least).choose(&pairs[s], &zero);
+            s += 1;
+        }
     }
 }

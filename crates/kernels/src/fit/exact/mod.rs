@@ -12,8 +12,12 @@
 
 mod energy;
 mod kernel;
+mod precision;
+mod volume;
 
 pub use energy::ExactEnergy;
+pub use precision::exact_constants_of_kind;
+pub use volume::VolumeSprings;
 
 use super::cells::{CHUNK, CellFits, ROUND};
 use super::input::check_cells;
@@ -27,24 +31,6 @@ use energy::Coefficients;
 use kernel::ExactBatch;
 use rayon::prelude::*;
 
-/// The content that the springs for λ measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum VolumeSprings {
-    /// That of each quadrature point: the network is the finite element with this quadrature.
-    #[default]
-    Points,
-    /// That of each cell: selective reduced integration, the mean dilatation of each cell (Nagtegaal, Parks, Rice 1974).
-    Cells,
-    /// That of a patch of cells around each node, whose springs a mesh adds.
-    Patches,
-}
-
-crate::named!(VolumeSprings {
-    "points" => Points,
-    "cells" => Cells,
-    "patches" => Patches,
-});
-
 /// How an exact network is made.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ExactFit {
@@ -53,25 +39,6 @@ pub struct ExactFit {
     /// Whether planes and rods without stress have the energy at any deformation, with the stretch across them. At small
     /// deformation they need not: their content springs are simpler then.
     pub large: bool,
-}
-
-/// Where content springs get their numbers from: of the first term a share of μ, of the second one of λ.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Shares {
-    points: [f64; 2],
-    cell: [f64; 2],
-}
-
-impl VolumeSprings {
-    /// A cell with a single spring on its content has it for both terms, but where patches have that for λ.
-    fn shares(self, is_single: bool) -> Shares {
-        match (self, is_single) {
-            (VolumeSprings::Points, _) => Shares { points: [1.0, 1.0], cell: [1.0, 1.0] },
-            (VolumeSprings::Cells, true) => Shares { points: [0.0, 0.0], cell: [1.0, 1.0] },
-            (VolumeSprings::Cells, false) => Shares { points: [1.0, 0.0], cell: [0.0, 1.0] },
-            (VolumeSprings::Patches, _) => Shares { points: [1.0, 0.0], cell: [1.0, 0.0] },
-        }
-    }
 }
 
 /// The springs of every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The result has

@@ -1,16 +1,51 @@
-//! The springs of an element: mechanisms, the condition of their equations, the moduli they give.
+//! The springs of an element: its exact network, mechanisms, the condition of their equations, the moduli they give.
 
 use super::property::Property;
 use super::shape::{ASKED, geometry, shapes};
 use crate::element::Element;
-use crate::fit::{Fit, Objective, Weight};
+use crate::fit::{ExactFit, Fit, Objective, Weight, element_errors, fit_exact};
 use crate::material::Material;
 use crate::springs::Springs;
 use crate::study::moduli::Lattice;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
+/// `‖R − K‖/‖R‖` that rounding may leave of an exact network.
+const EXACT: f64 = 1e-10;
+
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {
+    let mut properties = vec![exact(element)];
+    properties.extend(selected(element));
+    properties
+}
+
+/// The network that is the finite element: its tangent at rest against R, over all shapes.
+fn exact(element: &Element) -> Property {
+    let (young, poisson) = ASKED;
+    let cell: Vec<usize> = (0..element.nodes()).collect();
+    let (mut worst, mut negative, mut pairs) = (0.0f64, 0, 0);
+    for x in shapes(element) {
+        let found = Material::for_body(element.dimension(), young, poisson, None, None).and_then(|material| {
+            let fits = fit_exact(element, &x, &cell, material, &ExactFit::default(), &mut |_| {})?;
+            let errors = element_errors(element, &x, &cell, material.moduli(), &fits)?;
+            Ok((fits, errors.frobenius[0]))
+        });
+        match found {
+            Ok((fits, error)) => {
+                let edges = &fits.constants[..fits.springs.pairs().len()];
+                worst = worst.max(error);
+                negative += edges.iter().filter(|k| **k < 0.0).count();
+                pairs += edges.len();
+            }
+            Err(error) => return Property::new("exact network", false, error.to_string()),
+        }
+    }
+    let finding = format!("largest |R - K|/|R| {worst:.1e}, {negative} of {pairs} edges with k < 0");
+    Property::new("exact network", worst <= EXACT, finding).with(worst)
+}
+
+/// Of the groups that are not optional.
+fn selected(element: &Arc<Element>) -> Vec<Property> {
     let springs = match Springs::select(element, None) {
         Ok(springs) if springs.is_empty() => return vec![Property::noted("springs", "none that are not optional")],
         Ok(springs) => springs,

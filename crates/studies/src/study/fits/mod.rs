@@ -26,7 +26,7 @@ pub use recipe::Recipe;
 pub use record::KindRecord;
 pub use sampled::{ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, law_at};
 pub use spread::SpreadRecord;
-pub use stiffness::{StiffnessOutcome, StiffnessRecord};
+pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
 pub use whole::{
     FittedLoad, LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord,
     WholeRecipe, WholeRecord,

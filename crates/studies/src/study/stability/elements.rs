@@ -5,7 +5,8 @@ use super::shapes::{ShapeCase, shape_cases};
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{
-    CellFits, Fit, Objective, Weight, condition, constants_of_kind, distance_from_optimum, fit_cells, fit_element,
+    CellFits, ExactFit, Fit, Objective, Weight, condition, constants_of_kind, distance_from_optimum,
+    exact_constants_of_kind, fit_cells, fit_element, fit_exact,
 };
 use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
@@ -36,7 +37,8 @@ pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
     let springs = Springs::select(element, None)?;
     let rows = shape_cases(element)?.into_par_iter().flat_map_iter(|case| {
         let subject = Subject { element, springs: &springs, case: &case };
-        Objective::all(element.has_higher_modes()).into_iter().map(|o| subject.row(o)).collect::<Vec<_>>()
+        let fits = Objective::all(element.has_higher_modes()).into_iter().map(|o| subject.row(o));
+        std::iter::once(subject.exact_row()).chain(fits).collect::<Vec<_>>()
     });
     Ok(rows.collect())
 }
@@ -58,6 +60,7 @@ impl Subject<'_> {
             Err(e) => return of(Verdict::Refused(e.problem().into())),
         };
         let k = &fits.constants;
+        let constants = |x: &[f64]| fit_element(element, springs, x, moduli, &fit).ok();
         let reference = constants_of_kind(&DoubleDouble::from(0.0), element, springs, &case.x, &moduli, &fit).ok();
         let mut row = match (objective, &reference) {
             _ if k.iter().any(|k| !k.is_finite()) => of(Verdict::Lost).with_error(f64::INFINITY, PROMISED),
@@ -68,11 +71,11 @@ impl Subject<'_> {
             (Objective::Spectral(_), _) => {
                 let said = (&k[..], fits.certificates[0].value);
                 match distance_from_optimum(element, springs, &case.x, &moduli, &fit, said) {
-                    Ok(distance) => self.judged(of, distance, GAP, objective),
+                    Ok(distance) => self.judged(of, distance, GAP, constants),
                     Err(_) => of(Verdict::Lost).with_error(f64::INFINITY, GAP),
                 }
             }
-            (_, Some(reference)) => self.judged(of, distance(k, reference), PROMISED, objective),
+            (_, Some(reference)) => self.judged(of, distance(k, reference), PROMISED, constants),
             (_, None) => of(Verdict::Told("twice the digits find no answer to compare with".into())),
         };
         let single = constants_of_kind(&0f32, element, springs, &case.x, &moduli, &fit).ok();
@@ -89,28 +92,49 @@ impl Subject<'_> {
         row
     }
 
+    /// The exact network: its springs between nodes against twice the digits.
+    fn exact_row(&self) -> StabilityRow {
+        let Subject { element, case, .. } = self;
+        let of = |verdict| StabilityRow::new(&element.name, case.family, &case.name, "exact", verdict);
+        let (material, moduli) = (case.material, case.material.moduli());
+        let cell: Vec<usize> = (0..element.nodes()).collect();
+        let made = |x: &[f64]| fit_exact(element, x, &cell, material, &ExactFit::default(), &mut |_| {});
+        let fits = match made(&case.x) {
+            Ok(fits) => fits,
+            Err(e) => return of(Verdict::Refused(e.problem().into())),
+        };
+        let pairs = |fits: &CellFits| fits.constants[..fits.springs.pairs().len()].to_vec();
+        let k = pairs(&fits);
+        let mut row = match exact_constants_of_kind(&DoubleDouble::from(0.0), element, &case.x, moduli.mu) {
+            Ok(reference) => {
+                self.judged(of, distance(&k, &reference), PROMISED, |x| made(x).ok().map(|fits| pairs(&fits)))
+            }
+            Err(_) => of(Verdict::Told("twice the digits find no answer to compare with".into())),
+        };
+        row.negative = Some([k.iter().filter(|k| **k < 0.0).count(), fits.constants.len()]);
+        row
+    }
+
     /// A verdict on an error that may be so large, or what rounding the places of the nodes costs.
     fn judged(
         &self,
         of: impl Fn(Verdict) -> StabilityRow,
         error: f64,
         promised: f64,
-        objective: Objective,
+        constants: impl Fn(&[f64]) -> Option<Vec<f64>>,
     ) -> StabilityRow {
         if error <= promised {
             return of(Verdict::Accurate).with_error(error, promised);
         }
-        let allowed = self.unavoidable(objective).max(promised);
+        let allowed = self.unavoidable(constants).max(promised);
         of(if error <= allowed { Verdict::InputLimited } else { Verdict::Lost }).with_error(error, allowed)
     }
 
     /// The relative change of the constants when each node moves by some roundings of the element's size.
-    fn unavoidable(&self, objective: Objective) -> f64 {
-        let Subject { element, springs, case } = self;
+    fn unavoidable(&self, of: impl Fn(&[f64]) -> Option<Vec<f64>>) -> f64 {
+        let Subject { element, case, .. } = self;
         let d = element.dimension();
         let size = (0..case.x.len()).map(|i| (case.x[i] - case.x[i % d]).abs()).fold(0.0, f64::max);
-        let moduli = case.material.moduli();
-        let of = |x: &[f64]| fit_element(element, springs, x, moduli, &Fit::new(objective)).ok();
         let Some(k) = of(&case.x) else { return 0.0 };
         let mut largest = 0.0f64;
         for pattern in 0..PATTERNS {

@@ -5,9 +5,9 @@ use super::recipe::ExactRecipe;
 use super::record::ExactRecord;
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{CellFits, VolumeSprings, fit_exact};
-use crate::material::Material;
-use crate::model::{Network, patch_springs};
+use crate::fit::{CellFits, ExactEnergy, VolumeSprings, fit_exact};
+use crate::material::{Energy, Material};
+use crate::model::{Network, fibre_springs, patch_springs};
 use crate::springs::Springs;
 use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::fits::kind::{CellMethod, FitKind, Task};
@@ -26,13 +26,16 @@ impl FitKind for ExactRecipe {
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let (mesh, material) = (task.mesh, task.material);
-        let law = task.reference.large.map(|large| large.energy.name.as_str());
+        let law = task.reference.large.map(|large| &large.energy);
         let fit = self.resolve(law)?;
         let start = Instant::now();
         let mut patches = Vec::new();
         if fit.volume == VolumeSprings::Patches {
             patches = patch_springs(mesh, material, &fit, task.reference.held)?;
         }
+        // A fit that names an energy is that of a body without fibres.
+        let fibres = law.filter(|_| self.energy.is_none()).map(|law| fibre_springs(mesh, material, law));
+        let fibres = fibres.transpose()?.unwrap_or_default();
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
         for block in &mesh.blocks {
@@ -46,12 +49,13 @@ impl FitKind for ExactRecipe {
         let outcome = ExactOutcome {
             energy: fit.energy,
             volume: fit.volume,
-            is_other: law.is_some_and(|law| law != fit.energy.name()),
+            is_other: law.is_some_and(|law| self.energy.is_some() && !is_all_of(&fit.energy, law)),
             negative: [network.lengths.iter().filter(|s| s.constant < 0.0).count(), network.lengths.len()],
             patches: patches.len(),
             state: material.state(),
         };
         network.others.extend(patches);
+        network.others.extend(fibres);
         if fit.volume == VolumeSprings::Patches {
             // Their springs belong to several cells: no cell has a stiffness to be compared.
             cells.clear();
@@ -67,6 +71,11 @@ impl FitKind for ExactRecipe {
     fn record(&self) -> KindRecord {
         KindRecord::Exact(ExactRecord::of(self))
     }
+}
+
+/// Whether a law is this energy and has no fibres besides.
+fn is_all_of(energy: &ExactEnergy, law: &Energy) -> bool {
+    energy.is_that_of(law) && matches!(law.fibre_law(), Ok(None))
 }
 
 impl CellMethod for ExactRecipe {

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, VolumeSprings};
+use crate::material::Energy;
 
 /// An exact network before the material is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -16,13 +17,13 @@ impl ExactRecipe {
     ///
     /// # Errors
     /// The law is no energy of springs and no other is named.
-    pub fn resolve(&self, law: Option<&str>) -> Result<ExactFit> {
-        let of_law = |law: &str| {
-            ExactEnergy::named(law).map_err(|_| {
-                let names = ExactEnergy::NAMES.join("\" or \"");
+    pub fn resolve(&self, law: Option<&Energy>) -> Result<ExactFit> {
+        let of_law = |law: &Energy| {
+            ExactEnergy::of_law(law).ok_or_else(|| {
+                let names = ExactEnergy::NAMES.join("\", \"");
                 let expected =
-                    format!("a material with the law \"{names}\", or one of them as the key \"energy\" of the fit");
-                Error::expected("objective", expected, format!("the law \"{law}\"")).of_kind(ErrorKind::Unsupported)
+                    format!("a law that is \"{names}\", with fibres or without, or one of these as the key \"energy\"");
+                Error::expected("objective", expected, format!("\"{}\"", law.name)).of_kind(ErrorKind::Unsupported)
             })
         };
         let energy = match (self.energy, law) {

@@ -1,7 +1,7 @@
 //! The keys of a `[[fit]]` to the stiffness at rest.
 
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective, Solver, Topology};
+use crate::fit::{Choices, Fit, Objective, Rest, Solver, Topology};
 use serde::Deserialize;
 
 /// The keys.
@@ -18,13 +18,14 @@ pub struct StiffnessEntry {
     pub iterations: Option<u64>,
     pub topology: bool,
     pub sparsity: Option<f64>,
+    pub rest: Option<String>,
 }
 
 impl StiffnessEntry {
     /// The fit by the objective of this name.
     ///
     /// # Errors
-    /// The objective or the solver is unknown, a number is out of its range, or choices contradict each other.
+    /// The objective, the solver or the rest measure is unknown, a number is out of its range, or choices contradict each other.
     pub fn fit(&self, objective: &str) -> Result<Fit> {
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         let objective = Objective::named(objective, choices)?;
@@ -33,6 +34,8 @@ impl StiffnessEntry {
             return Err(Error::at("sparsity", "belongs to topology = true"));
         }
         let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations, topology)?;
-        Ok(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver })
+        let rest = self.rest.as_deref().map_or(Ok(Rest::Mesh), Rest::named).map_err(|e| e.at_key("rest"))?;
+        rest.check(objective, solver)?;
+        Ok(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver, rest })
     }
 }

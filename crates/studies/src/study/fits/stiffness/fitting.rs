@@ -2,9 +2,10 @@
 
 use super::outcome::StiffnessOutcome;
 use super::record::StiffnessRecord;
+use super::tension::TensionOutcome;
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{CellFits, Fit, Solver, fit_cells};
+use crate::fit::{CellFits, Fit, Rest, Solver, fit_cells};
 use crate::material::Material;
 use crate::springs::Springs;
 use crate::study::fits::fitted::{Fitted, FittedKind};
@@ -19,6 +20,7 @@ impl FitKind for Fit {
         if self.solver != Solver::Native {
             title += &format!(" by {}", self.solver.title());
         }
+        title += self.rest.title();
         if self.tied {
             title += " tied";
         }
@@ -31,8 +33,13 @@ impl FitKind for Fit {
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let start = Instant::now();
         let cells = fit_at_rest(self, task, progress)?;
+        let seconds = start.elapsed().as_secs_f64();
         let kind = FittedKind::Stiffness(StiffnessOutcome::of(self, &cells));
-        Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
+        let mut fitted = Fitted::assembled(task.mesh, cells, seconds, kind);
+        if let (Rest::Free | Rest::Zero, FittedKind::Stiffness(outcome)) = (self.rest, &mut fitted.kind) {
+            outcome.tension = Some(TensionOutcome::of(&fitted.cells, &fitted.network, &task.mesh.points));
+        }
+        Ok(fitted)
     }
 
     fn cell_method(&self) -> Option<&dyn CellMethod> {

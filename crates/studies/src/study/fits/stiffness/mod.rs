@@ -4,8 +4,10 @@ mod entry;
 mod fitting;
 mod outcome;
 mod record;
+mod tension;
 
 pub use entry::StiffnessEntry;
 pub use fitting::fit_at_rest;
 pub use outcome::StiffnessOutcome;
 pub use record::StiffnessRecord;
+pub use tension::{TensionOutcome, TensionRecord};

@@ -1,8 +1,9 @@
-//! What is certified of a fit to the stiffness at rest.
+//! What is known of a fit to the stiffness at rest.
 
+use super::tension::TensionOutcome;
 use crate::fit::{CellFits, Fit, MotionWeight, Objective};
 
-/// The certificates of a fit to the stiffness at rest.
+/// The certificates of a fit to the stiffness at rest, and how its springs pull there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StiffnessOutcome {
     /// Cells whose spectral optimum is not unique.
@@ -11,6 +12,8 @@ pub struct StiffnessOutcome {
     pub gap: Option<f64>,
     /// The relative error of the energy: ε if `(1 − ε) R ⪯ K ⪯ (1 + ε) R` in every cell with ε < 1.
     pub energy_error: Option<f64>,
+    /// `None` if no spring pulls at rest.
+    pub tension: Option<TensionOutcome>,
 }
 
 impl StiffnessOutcome {
@@ -22,6 +25,7 @@ impl StiffnessOutcome {
             ambiguous: certificates().filter(|c| c.ambiguous).count(),
             gap: certificates().map(|c| c.gap()).reduce(f64::max),
             energy_error: largest.filter(|epsilon| relative && *epsilon < 1.0),
+            tension: None,
         }
     }
 
@@ -38,6 +42,7 @@ impl StiffnessOutcome {
         let energy = self
             .energy_error
             .map(|epsilon| format!("the energy of every deformation is within {:.1} % of the body's", 100.0 * epsilon));
-        gap.into_iter().chain(energy).collect()
+        let tension = self.tension.iter().flat_map(TensionOutcome::notes);
+        gap.into_iter().chain(energy).chain(tension).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! The settings of a fit to the stiffness at rest, as a report has them.
 
-use crate::fit::{Fit, Objective, Solver};
+use crate::fit::{Fit, Objective, Rest, Solver};
 use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults resolved; what the objective does not have is null.
@@ -18,12 +18,21 @@ pub struct StiffnessRecord {
     pub solver: String,
     /// Price of a spring, as a share of the objective at the start.
     pub sparsity: Option<f64>,
+    /// `mesh`, `free` or `zero`.
+    pub rest: String,
 }
 
 impl StiffnessRecord {
     pub(super) fn of(fit: &Fit) -> StiffnessRecord {
         let solver = match (fit.solver, fit.objective, fit.nonnegative) {
             (Solver::General { .. }, ..) => fit.solver.name(),
+            (Solver::Native, Objective::Frobenius(_), bounded) if fit.rest != Rest::Mesh => {
+                if bounded {
+                    "interior point"
+                } else {
+                    "orthogonal least squares"
+                }
+            }
             (Solver::Native, Objective::Frobenius(_), false) => "normal equations",
             (Solver::Native, Objective::Frobenius(_), true) => "block principal pivoting",
             (Solver::Native, Objective::Spectral(_), _) => "barrier",
@@ -38,6 +47,7 @@ impl StiffnessRecord {
             nonnegative: fit.nonnegative,
             solver: solver.into(),
             sparsity: fit.solver.topology().map(|topology| topology.sparsity),
+            rest: fit.rest.name().into(),
         }
     }
 }

@@ -1,0 +1,54 @@
+//! Springs on the stretch of fibres: `I4 = |F a|²` is a quadratic form of the nodes, so that a law of fibres is one of springs.
+
+use super::network::MeasureSpring;
+use super::system::each_cell;
+use crate::element::{SpringKind, Tabulation};
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::{Energy, Material, State};
+use crate::mesh::Mesh;
+use crate::springs::{Law, Measure};
+use std::sync::Arc;
+
+/// A spring at each quadrature point that measures `c = |Σ_a x_a (∇N_a·a)|`, with the force `v ∂W/∂c` of the law's fibres of
+/// direction a; none where the law has no fibres.
+///
+/// # Errors
+/// The fibres depend on more than their stretch, or point out of a plane (kind `Unsupported`).
+pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Vec<MeasureSpring>> {
+    let Some((direction, text)) = law.fibre_law()? else { return Ok(Vec::new()) };
+    let d = mesh.dimension;
+    let is_in_space = matches!(material.state(), State::Solid | State::PlaneStrain { .. });
+    if !is_in_space || mesh.cell_dimension() != d || direction.iter().skip(d).any(|a| *a != 0.0) {
+        let expected = "fibres in a solid, or in the plane of one without strain across it";
+        return Err(Error::expected("objective", expected, format!("those of the law \"{}\"", law.name))
+            .of_kind(ErrorKind::Unsupported));
+    }
+    let law = Arc::new(Law::parse(&text)?);
+    let mut springs = Vec::new();
+    each_cell(mesh, |_, nodes, geometry| {
+        let size = nodes.len() * d;
+        for (gradients, volume) in geometry.gradients.chunks_exact(size).zip(&geometry.volumes) {
+            let along = gradients.chunks_exact(d).map(|g| g.iter().zip(&direction).map(|(g, a)| g * a).sum());
+            let table = Tabulation {
+                nodes: nodes.len(),
+                dimension: 1,
+                space: d,
+                weights: vec![1.0],
+                volumetric: Vec::new(),
+                values: Vec::new(),
+                gradients: along.collect(),
+            };
+            let parameters = vec![volume * material.thickness()];
+            springs.push(MeasureSpring {
+                kind: SpringKind::Fibre,
+                points: nodes.to_vec(),
+                constant: law.slope(1.0, 1.0, &parameters),
+                rest: 1.0,
+                measure: Measure::Span(Arc::new(table)),
+                law: Some(law.clone()),
+                parameters,
+            });
+        }
+    });
+    Ok(springs)
+}

@@ -1,0 +1,48 @@
+//! How the springs of a network pull at rest.
+
+use super::elastic::Elastic;
+use super::network::Network;
+use crate::fit::Spread;
+use crate::springs::{distance, norm};
+use crate::stiffness::gather;
+
+/// The rest lengths of a network's springs beside their lengths in the mesh, and how well the springs balance there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RestTension {
+    /// `|L₀/ℓ − 1|` of the springs between two points.
+    pub rest_lengths: Spread,
+    /// Springs between two points with `L₀ < 0`.
+    pub negative: usize,
+    /// Springs that pull alike at every measure, to rounding, and so have no rest measure.
+    pub steady: usize,
+    /// The largest force on a point over the largest of a spring on one of its points; 0 where none pulls.
+    pub unbalanced: f64,
+}
+
+impl RestTension {
+    /// Of a network with its points at `points`, `[points × dimension]`, m.
+    pub fn of(network: &Network, points: &[f64]) -> RestTension {
+        let d = network.dimension;
+        let at = |point: usize| &points[point * d..(point + 1) * d];
+        let length = |[i, j]: [usize; 2]| distance(at(i), at(j));
+        let changes: Vec<f64> = network.lengths.iter().map(|s| (s.rest / length(s.points) - 1.0).abs()).collect();
+        let pulls = network.lengths.iter().map(|s| s.pull(length(s.points))[1].abs());
+        let mut largest = pulls.fold(0.0, f64::max);
+        for spring in &network.others {
+            let mut x = vec![0.0; spring.points.len() * d];
+            gather(points, d, &spring.points, &mut x);
+            let pull = spring.tension(spring.measure.value(&x, d)).abs();
+            let steepest = spring.measure.gradient(&x, d).chunks_exact(d).map(norm).fold(0.0, f64::max);
+            largest = largest.max(pull * steepest);
+        }
+        let mut force = vec![0.0; points.len()];
+        network.forces(points, &mut force);
+        let left = force.chunks_exact(d).map(norm).fold(0.0, f64::max);
+        RestTension {
+            rest_lengths: Spread::of(&changes),
+            negative: network.lengths.iter().filter(|s| s.rest < 0.0).count(),
+            steady: network.others.iter().filter(|s| s.law.is_some()).count(),
+            unbalanced: if largest > 0.0 { left / largest } else { 0.0 },
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Constants and tensions of each cell: `min ‖W (R − K) W‖_F`, `K = Σ_s k_s g_s g_sᵀ + T_s ∇∇c_s`, under `Σ_s T_s g_s = 0`.
+//!
+//! Equilibrium makes K vanish on the rigid motions, so that the norm may be taken on the deformations alone. The equations are
+//! solved by orthogonal transformations, which do not square their condition.
+
+mod bounded;
+mod cell;
+mod linear;
+mod problem;
+mod unknowns;
+mod view;
+
+use super::congruence::Congruence;
+use super::settings::Fit;
+use super::visit::each_cell;
+use crate::element::Element;
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::Moduli;
+use crate::springs::Springs;
+use cell::{CellTension, Cells};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Cells that one thread fits in one go.
+const CHUNK: usize = 16;
+
+/// The springs of all cells.
+#[derive(Debug, Default)]
+pub struct Tensions {
+    /// k, `[cells × springs]`.
+    pub constants: Vec<f64>,
+    /// `k c₀`, `[cells × springs]`.
+    pub parameters: Vec<f64>,
+    /// Cells whose unknowns are linearly dependent: of all optima they have that of least norm, in the scaling in which each unknown
+    /// alone has a matrix of norm one.
+    pub deficient: usize,
+    /// Cells whose quadratic programme did not end at its optimum.
+    pub unreached: usize,
+    /// Cells that have the shape of another and took its springs over.
+    pub reused: usize,
+}
+
+/// Fits every cell; `progress` is told the number of cells done, now and then. What is given has been checked.
+///
+/// # Errors
+/// The cells are those of a surface or curve in space, a cell is reversed, tangled or flat, what a spring measures has no gradient,
+/// or no springs but those of no force are in equilibrium.
+pub fn fit_tensions(
+    element: &Element,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    moduli: Moduli,
+    fit: &Fit,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Tensions> {
+    if element.space() > element.dimension() {
+        let expected =
+            "\"mesh\" on surfaces and curves in space, where tensions resist motions out of the cell's plane";
+        let error = Error::expected("rest", expected, format!("\"{}\"", fit.rest.name()));
+        return Err(error.of_kind(ErrorKind::Unsupported));
+    }
+    let n = element.nodes();
+    let cells = connectivity.len() / n;
+    let Congruence { representatives, shapes } = Congruence::of(element, points, connectivity)?;
+    let all = Cells::new(&Arc::new(element.clone()), springs, moduli, fit);
+    let chunk = |chunk: &[usize]| {
+        let mut found = Vec::new();
+        for &cell in chunk {
+            let mut outcome = None;
+            each_cell(element, points, &connectivity[cell * n..(cell + 1) * n], cell, |_, x, geometry| {
+                outcome = Some(all.fit(x, geometry));
+            })?;
+            let place = || format!("{} cell {}", element.name, cell + 1);
+            let placed = |problem: String| Error::at(place(), problem).of_kind(ErrorKind::Infeasible);
+            found.extend(outcome.transpose().map_err(placed)?);
+        }
+        Ok(found)
+    };
+    let mut fitted: Vec<CellTension> = Vec::new();
+    for round in representatives.chunks(CHUNK * 4 * rayon::current_num_threads()) {
+        let parts: Vec<Result<Vec<CellTension>>> = round.par_chunks(CHUNK).map(chunk).collect();
+        for part in parts {
+            fitted.extend(part?);
+        }
+        progress(fitted.len() * cells / representatives.len());
+    }
+    let mut tensions = Tensions { reused: cells - fitted.len(), ..Tensions::default() };
+    tensions.deficient = fitted.iter().filter(|cell| cell.deficient).count();
+    tensions.unreached = fitted.iter().filter(|cell| !cell.reached).count();
+    for one in shapes.iter().map(|&shape| &fitted[shape]) {
+        tensions.constants.extend(&one.constants);
+        tensions.parameters.extend(&one.parameters);
+    }
+    Ok(tensions)
+}

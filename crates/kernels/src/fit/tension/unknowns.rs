@@ -1,0 +1,75 @@
+//! What is unknown of the springs of a cell.
+
+use crate::fit::rest::Rest;
+use crate::springs::{Springs, norm};
+
+/// An unknown u without a unit, and what it adds to the springs.
+pub struct Unknown {
+    pub terms: Vec<Term>,
+    /// Whether it is a constant, not a tension alone.
+    pub is_constant: bool,
+}
+
+/// `k_s += constant · u`, `T_s += tension · u`.
+pub struct Term {
+    pub spring: usize,
+    pub constant: f64,
+    pub tension: f64,
+}
+
+/// What gives a cell's unknowns their size.
+pub struct Sizes {
+    /// Of R, N/m.
+    pub stiffness: f64,
+    /// Of the cell, m.
+    pub extent: f64,
+    /// `‖g_s‖`.
+    pub gradients: Vec<f64>,
+    /// `c_s` at rest.
+    pub measures: Vec<f64>,
+}
+
+/// The unknowns of all springs: of each a constant, and of those whose rest measure is unknown a tension. Tied springs have one of
+/// both for each group. Their tensions are `T_s = q c_s`: then they also share the ratio of rest, `c₀/c = 1 − q/k`.
+pub fn unknowns(springs: &Springs, rest: Rest, tied: bool, sizes: &Sizes) -> Vec<Unknown> {
+    let members: Vec<Vec<usize>> = match tied {
+        true => {
+            let of_group = |group| (0..springs.len()).filter(|&s| springs.groups[s] == group).collect();
+            (0..springs.names.len()).map(of_group).filter(|group: &Vec<usize>| !group.is_empty()).collect()
+        }
+        false => (0..springs.len()).map(|s| vec![s]).collect(),
+    };
+    members.iter().flat_map(|members| of_members(members, members[0] < springs.pairs.len(), rest, sizes)).collect()
+}
+
+/// Of springs that share their unknowns.
+fn of_members(members: &[usize], on_lengths: bool, rest: Rest, sizes: &Sizes) -> Vec<Unknown> {
+    let Sizes { stiffness, extent, gradients, measures } = sizes;
+    let mean = |values: &[f64]| {
+        let own: Vec<f64> = members.iter().map(|&s| values[s]).collect();
+        norm(&own) / (own.len() as f64).sqrt()
+    };
+    let (g, c) = (mean(gradients), mean(measures));
+    let unknown = |is_constant: bool, of: &dyn Fn(usize) -> [f64; 2]| {
+        let term = |&spring: &usize| {
+            let [constant, tension] = of(spring);
+            Term { spring, constant, tension }
+        };
+        Unknown { terms: members.iter().map(term).collect(), is_constant }
+    };
+    let constant = stiffness / (g * g);
+    match rest {
+        Rest::Zero if on_lengths => vec![unknown(true, &|s| [constant, constant * measures[s]])],
+        Rest::Mesh => vec![unknown(true, &|_| [constant, 0.0])],
+        Rest::Free | Rest::Zero => {
+            let tension = stiffness * extent / g;
+            let share = |s: usize| match members {
+                // A spring alone may pull where it measures zero.
+                [_] => 1.0,
+                _ if c == 0.0 => 0.0,
+                _ => measures[s] / c,
+            };
+            vec![unknown(true, &|_| [constant, 0.0]), unknown(false, &|s| [0.0, tension * share(s)])]
+        }
+    }
+}

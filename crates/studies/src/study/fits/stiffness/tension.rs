@@ -1,0 +1,73 @@
+//! How the springs of a fit with rest measures of its own pull at rest.
+
+use crate::fit::{CellFits, Spread};
+use crate::model::{Network, RestTension};
+use crate::study::fits::spread::SpreadRecord;
+use serde::{Deserialize, Serialize};
+
+/// What is to be known of a network whose springs pull at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TensionOutcome {
+    pub network: RestTension,
+    /// Cells in which no springs but those of no force satisfy what the fit asks for.
+    pub idle: usize,
+}
+
+/// The same, as a report has it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TensionRecord {
+    /// `|rest length / length in the mesh − 1|` of the springs between two points.
+    pub rest_lengths: SpreadRecord,
+    /// Springs with a rest length below zero.
+    pub negative_rest_lengths: usize,
+    /// Springs whose force does not depend on what they measure.
+    pub constant_forces: usize,
+    /// The largest force on a node at rest over the largest force of a spring.
+    pub unbalanced: f64,
+    /// Elements without springs.
+    pub idle_elements: usize,
+}
+
+impl TensionOutcome {
+    pub(super) fn of(cells: &[CellFits], network: &Network, points: &[f64]) -> TensionOutcome {
+        let idle = |fits: &CellFits| {
+            let count = fits.springs.len().max(1);
+            let pairs = fits.constants.chunks_exact(count).zip(fits.parameters.chunks_exact(count));
+            pairs.filter(|(k, p)| k.iter().chain(*p).all(|number| *number == 0.0)).count()
+        };
+        TensionOutcome { network: RestTension::of(network, points), idle: cells.iter().map(idle).sum() }
+    }
+
+    /// What a reader must know of it.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let RestTension { rest_lengths: Spread { mean, max }, negative, steady, unbalanced } = self.network;
+        let mut notes = vec![format!(
+            "the rest lengths differ from the lengths in the mesh by {:.3} % on average and {:.3} % at most; the forces on the \
+             nodes at rest are {unbalanced:.1e} of the largest force of a spring",
+            100.0 * mean,
+            100.0 * max
+        )];
+        let mut count = |count: usize, text: &str| {
+            if count > 0 {
+                notes.push(format!("{count} {text}"));
+            }
+        };
+        count(negative, "springs have a rest length below zero, which some simulators do not take");
+        count(steady, "springs pull with a constant force and have no rest length: they have a law of force");
+        count(self.idle, "elements have no springs: none but those of no force satisfy what the fit asks for");
+        notes
+    }
+}
+
+impl From<&TensionOutcome> for TensionRecord {
+    fn from(outcome: &TensionOutcome) -> TensionRecord {
+        let TensionOutcome { network, idle } = outcome;
+        TensionRecord {
+            rest_lengths: Some(network.rest_lengths).into(),
+            negative_rest_lengths: network.negative,
+            constant_forces: network.steady,
+            unbalanced: network.unbalanced,
+            idle_elements: *idle,
+        }
+    }
+}
