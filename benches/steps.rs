@@ -233,8 +233,8 @@ fn compare(title: &str, mesh: &Mesh) {
     let material = Material::new(1e4, 0.3, State::Solid).expect("it is valid");
     let moduli = material.moduli();
     let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
-    let exact = |volume: VolumeSprings| {
-        let fit = ExactFit { energy: ExactEnergy::StableNeoHookean, volume, large: true };
+    let exact = |energy: ExactEnergy, volume: VolumeSprings| {
+        let fit = ExactFit { energy, volume, large: true };
         let cells = fit_exact(element, &mesh.points, connectivity, material, &fit, &mut |_| {});
         let mut network = Network::assemble(mesh, &[cells.expect("every cell has a volume")]);
         if volume == VolumeSprings::Patches {
@@ -247,7 +247,9 @@ fn compare(title: &str, mesh: &Mesh) {
     let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::OffDiagonal)) };
     let cells = fit_cells(element, &springs, &mesh.points, connectivity, moduli, &fit, &mut |_| {});
     let classical = Network::assemble(mesh, &[cells.expect("every cell has a volume")]);
-    let (points, patches) = (exact(VolumeSprings::Points), exact(VolumeSprings::Patches));
+    let stable = ExactEnergy::StableNeoHookean;
+    let (points, patches) = (exact(stable, VolumeSprings::Points), exact(stable, VolumeSprings::Patches));
+    let lawful = exact(ExactEnergy::NeoHookean, VolumeSprings::Points);
 
     let mut usual = FiniteElements::new(mesh, material, linear);
     let mut clever = FiniteElements::new(mesh, material, |nodes, g, volume| Metric {
@@ -279,6 +281,7 @@ fn compare(title: &str, mesh: &Mesh) {
         ("exact", of_network(&points)),
         ("patches", of_network(&patches)),
         ("classical with volume springs", of_network(&classical)),
+        ("exact, law with a logarithm", of_network(&lawful)),
         ("exact, not prepared", Box::new(|x, force| assert!(points.forces(x, force)))),
     ];
     let start: Vec<f64> = mesh.points.iter().map(|x| 1.01 * x + 1e-3 * (20.0 * x).sin()).collect();
@@ -293,7 +296,7 @@ fn compare(title: &str, mesh: &Mesh) {
         (model.forces)(&start, &mut model.force);
     }
     let size = all[0].force.iter().fold(0.0f64, |size, f| size.max(f.abs()));
-    for other in [1, 2, 5] {
+    for other in [1, 2, 6] {
         let pairs = all[0].force.iter().zip(&all[other].force);
         let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
         assert!(error < 1e-10, "{}: forces differ by {error:e}", all[other].name);
@@ -315,6 +318,9 @@ fn compare(title: &str, mesh: &Mesh) {
     };
     let ratio = |a: usize, b: usize| median(runs[a].iter().zip(&runs[b]).map(|(a, b)| a / b).collect());
     println!("{title}: {} tetrahedra, {} points, {} length springs", cells, mesh.point_count(), points.lengths.len());
+    let from = clock(begun);
+    drop(points.prepared());
+    println!("  preparation of the exact network: {:.1} ms", 1e3 * (clock(begun) - from));
     println!("  {:30} {:>10} {:>10} {:>10}", "", "ns/tet", "to usual", "to best");
     for (i, model) in all.iter().enumerate() {
         assert!(model.x.iter().all(|x| x.abs() < 2.0), "{} ran away", model.name);

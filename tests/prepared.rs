@@ -6,6 +6,7 @@ use springfit::fit::{CellFits, ExactEnergy, ExactFit, Fit, Objective, VolumeSpri
 use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, patch_springs};
+use springfit::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 use springfit::springs::{Law, Measure, Patch, Springs};
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
@@ -284,6 +285,57 @@ fn what_has_no_force_is_said() {
         }
     }
     assert!(Network { dimension: 2, ..Network::default() }.prepared().forces(&[1.0; 4], &mut [3.0; 4]));
+}
+
+struct Operations([[f64; 4]; 4], f64);
+
+impl CoordinatesWork for Operations {
+    type Output = Vec<[f64; 4]>;
+
+    fn run<C: Coordinates>(self, zero: C) -> Vec<[f64; 4]> {
+        let Operations(given, factor) = self;
+        let [a, b, c, d] = given.map(|x| zero.load(&x));
+        let stored = |x: C| {
+            let mut to = [0.0; 4];
+            x.store(&mut to);
+            to
+        };
+        let vectors = [
+            a.plus(b),
+            a.minus(b),
+            a.scaled(factor),
+            a.plus_scaled(factor, b),
+            a.turned(),
+            a.difference_of_products(b, c, d),
+        ];
+        vectors.map(stored).into_iter().chain([[a.dot(b); 4]]).collect()
+    }
+}
+
+/// With and without registers of the machine, and by hand: products may be fused, which is within a rounding of their terms.
+#[test]
+fn registers_compute_what_arrays_do() {
+    let mut random = Random(76);
+    for _ in 0..50 {
+        let given: [[f64; 4]; 4] = std::array::from_fn(|_| std::array::from_fn(|_| random.next()));
+        let [a, b, c, d] = given;
+        let factor = random.next();
+        let each = |f: &dyn Fn(usize) -> f64| -> [f64; 4] { std::array::from_fn(f) };
+        let expected = [
+            each(&|k| a[k] + b[k]),
+            each(&|k| a[k] - b[k]),
+            each(&|k| factor * a[k]),
+            each(&|k| a[k] + factor * b[k]),
+            [a[1], a[2], a[0], a[3]],
+            each(&|k| a[k] * b[k] - c[k] * d[k]),
+            [a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; 4],
+        ];
+        for found in [with_coordinates(Operations(given, factor)), Operations(given, factor).run([0.0; 4])] {
+            for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+                assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+            }
+        }
+    }
 }
 
 /// What one evaluation leaves in memory is not seen by the next, by other threads neither.

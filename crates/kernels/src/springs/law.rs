@@ -88,6 +88,15 @@ impl Law {
         at(c, rest, parameters, |at| self.force.evaluate(at))
     }
 
+    /// `T` of N springs; `at` are c, c₀ and the parameters of each, `values` memory that it may use.
+    pub fn force_each<const N: usize>(&self, at: &[[f64; N]], values: &mut LawRoom<N>) -> [f64; N] {
+        let LawRoom { at: all, values } = values;
+        all.clear();
+        all.push(std::array::from_fn(|i| (at[0][i] - at[1][i]) / at[1][i]));
+        all.extend_from_slice(at);
+        self.force.evaluate_each(all, values)
+    }
+
     /// `∂T/∂c = (∂T/∂s)/c₀ + ∂T/∂c`.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
         at(c, rest, parameters, |at| {
@@ -133,6 +142,13 @@ impl Law {
         let half = (to - from) / 2.0;
         rule.iter().map(|(x, w)| w * half * self.force(from + half * (1.0 + x), rest, parameters)).sum()
     }
+}
+
+/// Memory of [`Law::force_each`].
+#[derive(Debug, Clone, Default)]
+pub struct LawRoom<const N: usize> {
+    at: Vec<[f64; N]>,
+    values: Vec<[f64; N]>,
 }
 
 /// The law of force that the springs of a fit share.

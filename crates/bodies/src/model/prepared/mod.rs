@@ -2,6 +2,7 @@
 //! together, its springs sorted by what they cost.
 
 mod edges;
+mod laws;
 mod simplices;
 
 use super::network::Network;

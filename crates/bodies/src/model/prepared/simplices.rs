@@ -3,6 +3,7 @@
 //! With the edges `e_a = x_a − x_0` from the first node, filled up to three with the axes beyond the dimension, the content is
 //! `V = c det [e_1 e_2 e_3]` and `∂det/∂x_1 = e_2 × e_3`, and so on round; what the first node feels is minus the sum.
 
+use super::laws::{Lawful, Laws, LawsRoom};
 use crate::model::network::{MeasureSpring, Network};
 use crate::scalar::Coordinates;
 use crate::springs::Measure;
@@ -25,21 +26,11 @@ struct Membership {
     share: f64,
 }
 
-/// A spring with a law on the content of one cell.
-#[derive(Debug)]
-struct Lawful {
-    cell: usize,
-    /// c.
-    scale: f64,
-    /// Among the others of the network.
-    spring: usize,
-}
-
 /// The cells of a network, each once.
 #[derive(Debug, Default)]
 pub struct Simplices {
     cells: Vec<Simplex>,
-    lawful: Vec<Lawful>,
+    laws: Laws,
     /// `[cells]`, or none where there are no patches.
     memberships: Vec<Membership>,
     /// The springs on patches, among the others of the network.
@@ -53,6 +44,7 @@ pub struct Tensions {
     cells: Vec<f64>,
     /// `[patches + 1]`: contents, then tensions.
     patches: Vec<f64>,
+    laws: LawsRoom,
 }
 
 impl Simplices {
@@ -63,6 +55,7 @@ impl Simplices {
             simplices: Simplices::default(),
             known: HashMap::new(),
             shares: Vec::new(),
+            lawful: Vec::new(),
         };
         let rows = |points: &mut dyn Iterator<Item = usize>| {
             let mut nodes = [0; 4];
@@ -85,7 +78,7 @@ impl Simplices {
                     let cell = all.cell(rows(&mut spring.points.iter().copied()));
                     let scale = scale(measure, network.dimension);
                     if spring.law.is_some() {
-                        all.simplices.lawful.push(Lawful { cell, scale, spring: s });
+                        all.lawful.push(Lawful { cell, scale, spring: s });
                     } else {
                         let simplex = &mut all.simplices.cells[cell];
                         simplex.slope += spring.constant * scale * scale;
@@ -94,7 +87,7 @@ impl Simplices {
                 }
             }
         }
-        all.finish()
+        all.finish(network)
     }
 
     /// Whether a spring measures the content of a simplex in a space of its own dimension, or of a patch of such.
@@ -122,18 +115,14 @@ impl Simplices {
         force: &mut [[f64; 4]],
     ) -> bool {
         let force = &mut force[..x.len()];
-        if self.lawful.is_empty() && self.patches.is_empty() {
+        if self.laws.is_empty() && self.patches.is_empty() {
             return pull::<C, D>(zero, &self.cells, |_| 0.0, x, force);
         }
         tensions.cells.clear();
         tensions.cells.resize(self.cells.len(), 0.0);
         let mut sound = self.pull_patches::<C, D>(zero, others, x, tensions);
-        for lawful in &self.lawful {
-            let Lawful { cell, scale, spring } = *lawful;
-            let tension = others[spring].tension(scale * self.cells[cell].determinant::<C, D>(zero, x));
-            sound &= tension.is_finite();
-            tensions.cells[cell] += scale * tension;
-        }
+        let determinant = |cell: usize| self.cells[cell].determinant::<C, D>(zero, x);
+        sound &= self.laws.pull(determinant, &mut tensions.laws, &mut tensions.cells);
         let cells = &tensions.cells[..self.cells.len()];
         sound & pull::<C, D>(zero, &self.cells, |cell| cells[cell], x, force)
     }
@@ -147,7 +136,7 @@ impl Simplices {
         x: &[[f64; 4]],
         tensions: &mut Tensions,
     ) -> bool {
-        let Tensions { cells, patches } = tensions;
+        let Tensions { cells, patches, .. } = tensions;
         patches.clear();
         patches.resize(self.patches.len() + 1, 0.0);
         for (cell, membership) in self.cells.iter().zip(&self.memberships) {
@@ -249,6 +238,7 @@ struct Builder {
     known: HashMap<[u32; 4], usize>,
     /// Of each cell its patches and their common share, times c.
     shares: Vec<(Vec<u32>, f64)>,
+    lawful: Vec<Lawful>,
 }
 
 impl Builder {
@@ -278,8 +268,8 @@ impl Builder {
         self.shares[cell].1 = share;
     }
 
-    fn finish(self) -> Simplices {
-        let Builder { nodes, mut simplices, shares, .. } = self;
+    fn finish(self, network: &Network) -> Simplices {
+        let Builder { nodes, mut simplices, shares, mut lawful, .. } = self;
         let none = simplices.patches.len() as u32;
         if none > 0 {
             let membership = |(own, share): &(Vec<u32>, f64)| {
@@ -298,8 +288,9 @@ impl Builder {
         if none > 0 {
             simplices.memberships = order.iter().map(|&cell| simplices.memberships[cell]).collect();
         }
-        simplices.lawful.iter_mut().for_each(|lawful| lawful.cell = place[lawful.cell]);
-        simplices.lawful.sort_by_key(|lawful| lawful.cell);
+        lawful.iter_mut().for_each(|lawful| lawful.cell = place[lawful.cell]);
+        lawful.sort_by_key(|lawful| lawful.cell);
+        simplices.laws = Laws::new(network, &lawful);
         simplices
     }
 }
