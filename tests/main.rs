@@ -33,6 +33,7 @@ mod nonlinear;
 mod nonnegative;
 mod outputs;
 mod paper;
+mod prepared;
 mod programs;
 mod published;
 mod quadrature;

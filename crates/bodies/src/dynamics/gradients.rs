@@ -1,9 +1,10 @@
 //! The equations of an implicit step by conjugate gradients (Hestenes and Stiefel 1952).
 
-use super::blocks::{Block, Pattern, places};
+use super::blocks::{Block, Pattern};
 use super::equations::{End, Equations, Solved};
 use super::incomplete::Incomplete;
 use crate::error::{Error, ErrorKind, Result};
+use crate::model::places;
 
 /// How far definiteness is followed, whatever is asked of solutions.
 const DEFINITE: f64 = 1e-10;

@@ -1,6 +1,6 @@
 //! Forces and tangent of a network into memory that is there: what a simulation asks for at every step.
 
-use super::network::{LengthSpring, Network};
+use super::network::{LengthSpring, MeasureSpring, Network};
 use super::system::dofs;
 use crate::stiffness::gather;
 use crate::symbolic::Jet;
@@ -45,13 +45,24 @@ impl Network {
     pub(super) fn pull(&self, x: &[f64], force: &mut [f64]) -> bool {
         force.fill(0.0);
         let d = self.dimension;
-        let mut sound = match d {
+        let sound = match d {
             1 => pull::<1>(&self.lengths, x, force),
             2 => pull::<2>(&self.lengths, x, force),
             _ => pull::<3>(&self.lengths, x, force),
         };
+        self.add_others(&self.others, x, force) & sound
+    }
+
+    /// Adds what these of the others pull; false where one has no force.
+    pub(super) fn add_others<'a>(
+        &self,
+        springs: impl IntoIterator<Item = &'a MeasureSpring>,
+        x: &[f64],
+        force: &mut [f64],
+    ) -> bool {
+        let (d, mut sound) = (self.dimension, true);
         let mut local = Vec::new();
-        for spring in &self.others {
+        for spring in springs {
             local.resize(spring.points.len() * d, 0.0);
             gather(x, d, &spring.points, &mut local);
             let tension = spring.tension(spring.measure.value(&local, d));

@@ -3,10 +3,12 @@
 //! The same source runs on `f64`, on [`Lanes`] of them (one element per lane), on `f32` and on pairs of `f64` for studies of
 //! rounding, and on exact rationals.
 
+mod coordinates;
 mod double_double;
 mod lanes;
 mod sum;
 
+pub use coordinates::{Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use lanes::{Lanes, Packed, PackedWork, widest};
 pub use sum::Sum;

@@ -70,6 +70,33 @@ impl Program {
         if self.depth <= ROOM { self.run(at, &mut [0.0; ROOM]) } else { self.run(at, &mut vec![0.0; self.depth]) }
     }
 
+    /// [`Program::evaluate`] at N places at once, `at` one entry per variable; each step is read once for all. `values` is memory
+    /// that it may use.
+    pub fn evaluate_each<const N: usize>(&self, at: &[[f64; N]], values: &mut Vec<[f64; N]>) -> [f64; N] {
+        values.resize(self.depth.max(values.len()), [0.0; N]);
+        let mut next = 0;
+        for step in &self.steps {
+            match step {
+                Step::Number(c) => (values[next], next) = ([*c; N], next + 1),
+                Step::Variable(v) => (values[next], next) = (at[*v], next + 1),
+                Step::Add | Step::Multiply => {
+                    let last = values[next - 1];
+                    next -= 1;
+                    let into = values[next - 1].iter_mut().zip(&last);
+                    match step {
+                        Step::Add => into.for_each(|(a, b)| *a += b),
+                        _ => into.for_each(|(a, b)| *a *= b),
+                    }
+                }
+                Step::PowerOf(n) => values[next - 1].iter_mut().for_each(|x| *x = x.powi(*n)),
+                Step::Power(p) if *p == 0.5 => values[next - 1].iter_mut().for_each(|x| *x = x.sqrt()),
+                Step::Power(p) => values[next - 1].iter_mut().for_each(|x| *x = x.powf(*p)),
+                Step::Call(f) => values[next - 1].iter_mut().for_each(|x| *x = x.apply(*f).unwrap_or(f64::NAN)),
+            }
+        }
+        values[0]
+    }
+
     fn run(&self, at: &[f64], values: &mut [f64]) -> f64 {
         let mut next = 0;
         for step in &self.steps {

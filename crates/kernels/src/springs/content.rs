@@ -65,9 +65,10 @@ impl<'a> Content<'a> {
                 return;
             }
             let j = self.rows(dn);
+            // det = J_k · (J_k+1 × J_k+2) for every k.
+            let beside: [[f64; 3]; 3] = std::array::from_fn(|k| cross(j[(k + 1) % 3], j[(k + 2) % 3]));
             for (i, entry) in gradient.iter_mut().enumerate() {
-                let k = i % d;
-                *entry += w * triple(node(dn, i / d, d), j[(k + 1) % 3], j[(k + 2) % 3]);
+                *entry += w * dot(&node(dn, i / d, d), &beside[i % d]);
             }
         });
         gradient
@@ -76,7 +77,7 @@ impl<'a> Content<'a> {
     /// The value with its first and second derivatives in the positions.
     ///
     /// In a cell that fills its space the content is a polynomial of degree d: det is linear in each row J_k of the Jacobian, so
-    /// that in its derivatives ∇N_a and ∇N_b take the places of J_k and J_m.
+    /// that in its derivatives by `x_ak` and `x_bm` ∇N_a and ∇N_b take the places of J_k and J_m.
     pub fn jet(&self) -> Jet {
         let (d, size) = (self.table.dimension, self.x.len());
         let mut hessian = vec![0.0; size * size];
@@ -85,16 +86,20 @@ impl<'a> Content<'a> {
                 self.bend(dn, w, &mut hessian);
                 return;
             }
+            // ∇N_a · (∇N_b × J_l) = J_l · (∇N_a × ∇N_b), l the axis that is neither k nor m: one cross product for each pair of nodes.
             let j = self.rows(dn);
-            for (i, row) in hessian.chunks_exact_mut(size).enumerate() {
-                let (k, a) = (i % d, node(dn, i / d, d));
-                let (second, third) = (j[(k + 1) % 3], j[(k + 2) % 3]);
-                for (m, entry) in row.iter_mut().enumerate() {
-                    *entry += match (m % d + 3 - k) % 3 {
-                        1 => w * triple(a, node(dn, m / d, d), third),
-                        2 => w * triple(a, second, node(dn, m / d, d)),
-                        _ => 0.0,
-                    };
+            for a in 0..size / d {
+                for b in 0..a {
+                    let normal = cross(node(dn, a, d), node(dn, b, d));
+                    for k in 0..d {
+                        for m in (0..d).filter(|m| *m != k) {
+                            let l = 3 - k - m;
+                            let sign = if (k + 1) % 3 == m { w } else { -w };
+                            let bend = sign * dot(&j[l], &normal);
+                            hessian[(a * d + k) * size + b * d + m] += bend;
+                            hessian[(b * d + m) * size + a * d + k] += bend;
+                        }
+                    }
                 }
             }
         });

@@ -85,21 +85,32 @@ impl Law {
 
     /// `T(c)`.
     pub fn force(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        self.force.evaluate(&at(c, rest, parameters))
+        at(c, rest, parameters, |at| self.force.evaluate(at))
+    }
+
+    /// `T` of N springs; `at` are c, c₀ and the parameters of each, `values` memory that it may use.
+    pub fn force_each<const N: usize>(&self, at: &[[f64; N]], values: &mut LawRoom<N>) -> [f64; N] {
+        let LawRoom { at: all, values } = values;
+        all.clear();
+        all.push(std::array::from_fn(|i| (at[0][i] - at[1][i]) / at[1][i]));
+        all.extend_from_slice(at);
+        self.force.evaluate_each(all, values)
     }
 
     /// `∂T/∂c = (∂T/∂s)/c₀ + ∂T/∂c`.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        let at = at(c, rest, parameters);
-        // Where the measure at rest is zero there is no strain.
-        let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(&at) / rest };
-        by_strain + self.slope_in_measure.evaluate(&at)
+        at(c, rest, parameters, |at| {
+            // Where the measure at rest is zero there is no strain.
+            let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(at) / rest };
+            by_strain + self.slope_in_measure.evaluate(at)
+        })
     }
 
     /// `∂T/∂p`, `[parameters]`.
     pub fn by_parameter(&self, c: f64, rest: f64, parameters: &[f64], slopes: &mut [f64]) {
-        let at = at(c, rest, parameters);
-        slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(&at));
+        at(c, rest, parameters, |at| {
+            slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(at))
+        })
     }
 
     /// `∫ T dc` from rest, by a quadrature that is refined until it agrees with its halves.
@@ -131,6 +142,13 @@ impl Law {
         let half = (to - from) / 2.0;
         rule.iter().map(|(x, w)| w * half * self.force(from + half * (1.0 + x), rest, parameters)).sum()
     }
+}
+
+/// Memory of [`Law::force_each`].
+#[derive(Debug, Clone, Default)]
+pub struct LawRoom<const N: usize> {
+    at: Vec<[f64; N]>,
+    values: Vec<[f64; N]>,
 }
 
 /// The law of force that the springs of a fit share.
@@ -204,6 +222,18 @@ impl Force {
     }
 }
 
-fn at(c: f64, rest: f64, parameters: &[f64]) -> Vec<f64> {
-    [(c - rest) / rest, c, rest].into_iter().chain(parameters.iter().copied()).collect()
+/// Values of a law that need no memory of their own.
+const ROOM: usize = 12;
+
+/// Calls `work` with the values of the variables and parameters.
+fn at<R>(c: f64, rest: f64, parameters: &[f64], work: impl FnOnce(&[f64]) -> R) -> R {
+    let variables = [(c - rest) / rest, c, rest];
+    let count = variables.len() + parameters.len();
+    if count > ROOM {
+        return work(&[&variables, parameters].concat());
+    }
+    let mut values = [0.0; ROOM];
+    values[..variables.len()].copy_from_slice(&variables);
+    values[variables.len()..count].copy_from_slice(parameters);
+    work(&values[..count])
 }

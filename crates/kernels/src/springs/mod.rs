@@ -9,7 +9,7 @@ mod patch;
 mod vector;
 
 pub use content::Content;
-pub use law::{Force, Law};
+pub use law::{Force, Law, LawRoom};
 pub use measure::{Measure, Response, linear};
 pub use patch::Patch;
 pub use vector::{distance, dot, norm, unit};

@@ -35,28 +35,6 @@ impl ExactBatch<'_> {
     pub fn run(self) -> Result<(), (usize, Fault)> {
         widest(self)
     }
-
-    /// The number of a content spring in the order of [`ContentSpring`].
-    fn content(&self, shares: [f64; 2], content: f64, volume: f64, volumetric: f64) -> ContentSpring {
-        let Coefficients { tension, slope, lambda, law, law_lambda, .. } = self.coefficients;
-        let pull = shares[0] * tension * volume;
-        let slope = shares[0] * slope * volume + shares[1] * lambda * volumetric;
-        let constant = slope / (content * content);
-        match law {
-            None => ContentSpring { constant, parameters: [(slope + pull) / content, 0.0], count: 1 },
-            Some(_) => {
-                let b = shares[1] * law_lambda * volumetric;
-                ContentSpring { constant, parameters: [pull / content, b / content], count: 2 }
-            }
-        }
-    }
-}
-
-/// What is stored of a spring on content.
-struct ContentSpring {
-    constant: f64,
-    parameters: [f64; 2],
-    count: usize,
 }
 
 impl PackedWork for ExactBatch<'_> {
@@ -69,26 +47,28 @@ impl PackedWork for ExactBatch<'_> {
         let table = &self.element.tabulation;
         let mut packing = Packing::new(&zero, self.element, self.points);
         let mut geometry = Geometry::like(&zero, table);
-        let mut pairs = vec![zero.clone(); self.springs.pairs.len()];
+        // Constants and parameters of a cell, those of areas left out.
+        let mut numbers = vec![zero.clone(); m + p];
+        let (edges, first) = (self.springs.pairs.len(), self.springs.pairs.len() + self.springs.areas.len());
         let mut own = vec![zero.clone(); n];
-        let (mut plain, mut plain_own) = (Geometry::new(table), vec![0.0; n]);
+        let (mut plain, mut plain_own, mut plain_numbers) = (Geometry::new(table), vec![0.0; n], vec![0.0; m + p]);
         let mut x = vec![0.0; packing.x.len()];
         let mut cell = 0;
         while cell < cells {
             let count = T::COUNT.min(cells - cell);
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             if packing.gather(nodes) && geometry.update(table, &packing.x) {
-                stiffen(&geometry, self.coefficients.lengths, &mut pairs, &mut own);
+                let (constants, parameters) = numbers.split_at_mut(m);
+                stiffen(&geometry, self.coefficients.lengths, &mut constants[..edges], &mut own);
+                self.contents(&geometry, &mut constants[first..], parameters);
                 for lane in 0..count {
                     let at = cell + lane;
-                    for (k, pair) in self.constants[at * m..].iter_mut().zip(&pairs) {
-                        *k = pair.as_slice()[lane];
-                    }
-                    let volume = |q: usize| geometry.volumes[q].as_slice()[lane];
-                    let volumetric = |q: usize| geometry.volumetric.get(q).map_or(volume(q), |v| v.as_slice()[lane]);
-                    self.contents(at, p, volume, volumetric);
+                    let stored = self.constants[at * m..][..m].iter_mut().zip(&*constants);
+                    stored.for_each(|(k, lanes)| *k = lanes.as_slice()[lane]);
+                    let stored = self.parameters[at * p..][..p].iter_mut().zip(&*parameters);
+                    stored.for_each(|(k, lanes)| *k = lanes.as_slice()[lane]);
                     if !self.springs.areas.is_empty() {
-                        self.areas(at, &packing.lane(lane), volume);
+                        self.areas(at, &packing.lane(lane), |q| geometry.volumes[q].as_slice()[lane]);
                     }
                 }
             } else {
@@ -102,12 +82,12 @@ impl PackedWork for ExactBatch<'_> {
                     {
                         plain = precise;
                     }
-                    let edges = &mut self.constants[at * m..][..pairs.len()];
-                    stiffen(&plain, self.coefficients.lengths, edges, &mut plain_own);
-                    let volume = |q: usize| plain.volumes[q];
-                    let volumetric = |q: usize| plain.volumetric.get(q).map_or(volume(q), |v| *v);
-                    self.contents(at, p, volume, volumetric);
-                    self.areas(at, &x, volume);
+                    let (constants, parameters) = plain_numbers.split_at_mut(m);
+                    stiffen(&plain, self.coefficients.lengths, &mut constants[..edges], &mut plain_own);
+                    self.contents(&plain, &mut constants[first..], parameters);
+                    self.constants[at * m..][..m].copy_from_slice(constants);
+                    self.parameters[at * p..][..p].copy_from_slice(parameters);
+                    self.areas(at, &x, |q| plain.volumes[q]);
                 }
             }
             cell += count;
@@ -140,25 +120,54 @@ impl ExactBatch<'_> {
         })
     }
 
-    /// Writes the springs on content of one cell; `volume(q)` and `volumetric(q)` are those of the two terms at a point.
+    /// The constants and parameters of the springs on content: at the quadrature points and then of the cell.
+    fn contents<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T]) {
+        geometry.volumes[0].vectorize(
+            #[inline(always)]
+            || {
+                let (volumes, count) = (&geometry.volumes, if self.coefficients.law.is_some() { 2 } else { 1 });
+                let volumetric = if geometry.volumetric.is_empty() { volumes } else { &geometry.volumetric };
+                let mut springs = constants.iter_mut().zip(parameters.chunks_exact_mut(count));
+                for &q in &self.springs.points {
+                    if let Some((constant, parameters)) = springs.next() {
+                        let content = volumes[q].magnitude().choose(&volumes[q], &volumetric[q]);
+                        let volumes = [&volumes[q], &volumetric[q]];
+                        self.content(self.shares.points, &content, volumes, constant, parameters);
+                    }
+                }
+                if let Some((constant, parameters)) = springs.next() {
+                    let (mut content, mut whole) = (volumes[0].clone(), volumetric[0].clone());
+                    for (v, w) in volumes.iter().zip(volumetric).skip(1) {
+                        content = content + v;
+                        whole = whole + w;
+                    }
+                    self.content(self.shares.cell, &content, [&content, &whole], constant, parameters);
+                }
+            },
+        );
+    }
+
+    /// A spring that measures this content, with the volumes of the two terms: its constant, and `k L₀` or `a` and `b` of its law.
     #[inline(always)]
-    fn contents(&mut self, cell: usize, p: usize, volume: impl Fn(usize) -> f64, volumetric: impl Fn(usize) -> f64) {
-        let m = self.springs.len();
-        let first = self.springs.pairs.len() + self.springs.areas.len();
-        let (mut place, mut next) = (cell * m + first, cell * p);
-        let mut store = |batch: &mut Self, spring: ContentSpring| {
-            batch.constants[place] = spring.constant;
-            batch.parameters[next..next + spring.count].copy_from_slice(&spring.parameters[..spring.count]);
-            (place, next) = (place + 1, next + spring.count);
-        };
-        for &q in &self.springs.points {
-            let content = if volume(q) == 0.0 { volumetric(q) } else { volume(q) };
-            store(self, self.content(self.shares.points, content, volume(q), volumetric(q)));
-        }
-        if self.springs.content.is_some() {
-            let points = 0..self.element.tabulation.points();
-            let [content, whole] = points.fold([0.0; 2], |[v, w], q| [v + volume(q), w + volumetric(q)]);
-            store(self, self.content(self.shares.cell, content, content, whole));
+    fn content<T: Real>(
+        &self,
+        shares: [f64; 2],
+        content: &T,
+        [volume, volumetric]: [&T; 2],
+        constant: &mut T,
+        parameters: &mut [T],
+    ) {
+        let Coefficients { tension, slope, lambda, law_lambda, .. } = self.coefficients;
+        let pull = volume.clone().scaled(&(shares[0] * tension));
+        let slope = volume.clone().scaled(&(shares[0] * slope)) + &volumetric.clone().scaled(&(shares[1] * lambda));
+        *constant = slope.clone() / &(content.clone() * content);
+        match parameters {
+            [rest] => *rest = (slope + &pull) / content,
+            [a, b] => {
+                *a = pull / content;
+                *b = volumetric.clone().scaled(&(shares[1] * law_lambda)) / content;
+            }
+            _ => {}
         }
     }
 }

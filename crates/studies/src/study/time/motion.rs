@@ -75,8 +75,8 @@ pub fn move_models(
         let damping = planned.damping(Some(&fit.network), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
         let options = planned.recipe.options;
-        let (mut made, states) =
-            run.follow((&fit.fit.name, growth), &fit.network, damping, options, keeps, progress)?;
+        let model = fit.network.prepared();
+        let (mut made, states) = run.follow((&fit.fit.name, growth), &model, damping, options, keeps, progress)?;
         made.fit = Some(i);
         for ((record, u), fem) in made.records.iter_mut().zip(&states).zip(&reference) {
             let away: f64 = u.iter().zip(fem).map(|(a, b)| (a - b) * (a - b)).sum();

@@ -1,0 +1,130 @@
+//! Springs between two points, those without a rest length apart: they need no root.
+
+use crate::model::network::{MeasureSpring, Network};
+use crate::scalar::Coordinates;
+use crate::springs::Measure;
+
+/// Length springs without a rest length, `f_i = Σ_j k_ij (x_i − x_j)`, each in the rows of both of its points: a row needs no
+/// other row's force.
+#[derive(Debug)]
+pub struct Edges {
+    /// `[rows + 1]`.
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    constants: Vec<f64>,
+}
+
+impl Edges {
+    pub fn new(network: &Network, place: &[usize], rows: usize) -> Edges {
+        let springs = || network.lengths.iter().filter(|s| s.rest == 0.0);
+        let mut starts = vec![0; rows + 1];
+        springs().flat_map(|s| s.points).for_each(|p| starts[place[p] + 1] += 1);
+        (0..rows).for_each(|i| starts[i + 1] += starts[i]);
+        let mut next = starts.clone();
+        let (mut columns, mut constants) = (vec![0; starts[rows]], vec![0.0; starts[rows]]);
+        for spring in springs() {
+            let [i, j] = spring.points.map(|p| place[p]);
+            for (row, column) in [(i, j), (j, i)] {
+                columns[next[row]] = column as u32;
+                constants[next[row]] = spring.constant;
+                next[row] += 1;
+            }
+        }
+        Edges { starts, columns, constants }
+    }
+
+    /// Writes the forces, as [`unpack`](super::unpack) reads them.
+    #[inline(always)]
+    pub fn pull<C: Coordinates>(&self, zero: C, x: &[[f64; 4]], force: &mut [[f64; 4]]) {
+        for (i, force) in force.iter_mut().enumerate() {
+            let springs = self.starts[i]..self.starts[i + 1];
+            let (xi, mut sum) = (zero.load(&x[i]), zero);
+            for (&j, &k) in self.columns[springs.clone()].iter().zip(&self.constants[springs]) {
+                sum = sum.plus_scaled(k, xi.minus(zero.load(&x[j as usize])));
+            }
+            sum.turned().turned().store(force);
+        }
+    }
+}
+
+/// Length springs with a rest length or a law.
+#[derive(Debug)]
+pub struct Bars {
+    points: Vec<[u32; 2]>,
+    constants: Vec<f64>,
+    rests: Vec<f64>,
+    lawful: Vec<([u32; 2], usize)>,
+}
+
+/// Bars whose roots and quotients are taken together.
+const BLOCK: usize = 32;
+
+impl Bars {
+    /// `lawful` are the springs on lengths among the others of the network.
+    pub fn new(network: &Network, lawful: &[usize], place: &[usize]) -> Bars {
+        let rows = |points: &[usize]| [place[points[0]] as u32, place[points[1]] as u32];
+        let mut springs: Vec<_> = network.lengths.iter().filter(|s| s.rest != 0.0).collect();
+        springs.sort_by_key(|s| s.points.map(|p| place[p]).into_iter().min());
+        Bars {
+            points: springs.iter().map(|s| rows(&s.points)).collect(),
+            constants: springs.iter().map(|s| s.constant).collect(),
+            rests: springs.iter().map(|s| s.rest).collect(),
+            lawful: lawful.iter().map(|&s| (rows(&network.others[s].points), s)).collect(),
+        }
+    }
+
+    /// Whether a spring is one on the distance of two points.
+    pub fn has(spring: &MeasureSpring) -> bool {
+        matches!(spring.measure, Measure::Length) && spring.points.len() == 2
+    }
+
+    /// Adds `T n` at j and `−T n` at i; false where a bar has no direction or a law no force.
+    #[inline(always)]
+    pub fn pull<C: Coordinates>(
+        &self,
+        zero: C,
+        others: &[MeasureSpring],
+        x: &[[f64; 4]],
+        force: &mut [[f64; 4]],
+    ) -> bool {
+        let mut sound = true;
+        let mut rs = [zero; BLOCK];
+        let (mut lengths, mut stresses) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let blocks = self.points.chunks(BLOCK).zip(self.constants.chunks(BLOCK)).zip(self.rests.chunks(BLOCK));
+        for ((points, constants), rests) in blocks {
+            for ((r, square), [i, j]) in rs.iter_mut().zip(&mut lengths).zip(points) {
+                *r = zero.load(&x[*j as usize]).minus(zero.load(&x[*i as usize]));
+                *square = r.dot(*r);
+            }
+            let count = points.len();
+            let (lengths, stresses) = (&mut lengths[..count], &mut stresses[..count]);
+            for s in 0..count {
+                lengths[s] = lengths[s].sqrt();
+                stresses[s] = constants[s] * (lengths[s] - rests[s]) / lengths[s];
+            }
+            for s in 0..count {
+                sound &= lengths[s] > 0.0;
+                add(stresses[s], rs[s], points[s], force);
+            }
+        }
+        for &(points, spring) in &self.lawful {
+            let [i, j] = points;
+            let r = zero.load(&x[j as usize]).minus(zero.load(&x[i as usize]));
+            let length = r.dot(r).sqrt();
+            let tension = others[spring].tension(length);
+            sound &= tension.is_finite();
+            add(tension / length, r, points, force);
+        }
+        sound
+    }
+}
+
+#[inline(always)]
+fn add<C: Coordinates>(stress: f64, r: C, [i, j]: [u32; 2], force: &mut [[f64; 4]]) {
+    let pull = r.scaled(stress).turned().turned();
+    let [i, j] = [i as usize, j as usize];
+    let at = pull.load(&force[i]).minus(pull);
+    at.store(&mut force[i]);
+    let at = pull.load(&force[j]).plus(pull);
+    at.store(&mut force[j]);
+}

@@ -1,0 +1,170 @@
+//! A network made ready to pull many times, as a simulation asks for at every step: its points in an order that keeps neighbours
+//! together, its springs sorted by what they cost.
+
+mod edges;
+mod laws;
+mod simplices;
+
+use super::network::Network;
+use super::numbering::places;
+use super::{Elastic, Response};
+use crate::scalar::{Coordinates, CoordinatesWork, with_coordinates};
+use edges::{Bars, Edges};
+use simplices::{Simplices, Tensions};
+use std::sync::{Mutex, PoisonError};
+
+/// The network with other loops and the same answers, but for rounding: in a fraction of the time where springs are on lengths, on
+/// the contents of lines, triangles and tetrahedra in a space of their dimension, or on patches of these. It has the memory
+/// that a step needs, so that threads wait for each other.
+#[derive(Debug)]
+pub struct PreparedNetwork<'a> {
+    network: &'a Network,
+    /// Points of the network in the order of their rows.
+    order: Vec<usize>,
+    edges: Edges,
+    bars: Bars,
+    simplices: Simplices,
+    /// Those of the network's others that pull as they do without preparation.
+    rest: Vec<usize>,
+    room: Mutex<Room>,
+}
+
+#[derive(Debug, Default)]
+struct Room {
+    /// Of the rows, one number to spare.
+    x: Vec<[f64; 4]>,
+    force: Vec<[f64; 4]>,
+    tensions: Tensions,
+}
+
+impl Network {
+    /// Sorts the springs for [`Elastic::forces`], which costs as much as a few dozen evaluations.
+    pub fn prepared(&self) -> PreparedNetwork<'_> {
+        PreparedNetwork::new(self)
+    }
+}
+
+impl<'a> PreparedNetwork<'a> {
+    fn new(network: &'a Network) -> PreparedNetwork<'a> {
+        let (mut cells, mut lengths, mut rest) = (Vec::new(), Vec::new(), Vec::new());
+        for (s, spring) in network.others.iter().enumerate() {
+            let kind = match spring {
+                spring if Simplices::have(spring, network.dimension) => &mut cells,
+                spring if Bars::has(spring) => &mut lengths,
+                _ => &mut rest,
+            };
+            kind.push(s);
+        }
+        let order = order(network);
+        let count = order.iter().max().map_or(0, |last| last + 1);
+        let mut place = vec![usize::MAX; count];
+        order.iter().enumerate().for_each(|(row, &point)| place[point] = row);
+        PreparedNetwork {
+            network,
+            edges: Edges::new(network, &place, order.len()),
+            bars: Bars::new(network, &lengths, &place),
+            simplices: Simplices::new(network, &cells, &place),
+            order,
+            rest,
+            room: Mutex::default(),
+        }
+    }
+}
+
+/// The points of the network: as they are numbered, or from the outside in where neighbours are nearer to each other so.
+fn order(network: &Network) -> Vec<usize> {
+    let lengths = network.lengths.iter().map(|s| (s.points[0], s.points[1]));
+    // A patch hangs together by its cells, which other springs join.
+    let others = network.others.iter().flat_map(|s| s.points.iter().map(move |&p| (s.points[0], p)));
+    let pairs: Vec<(usize, usize)> = lengths.chain(others).collect();
+    let count = pairs.iter().map(|(i, j)| i.max(j) + 1).max().unwrap_or(0);
+    let mut is_used = vec![false; count];
+    pairs.iter().for_each(|&(i, j)| (is_used[i], is_used[j]) = (true, true));
+    let place = places(&pairs, &is_used);
+    let given: Vec<usize> = (0..count).filter(|&p| is_used[p]).collect();
+    let distance =
+        |place: &dyn Fn(usize) -> usize| -> usize { pairs.iter().map(|&(i, j)| place(i).abs_diff(place(j))).sum() };
+    if distance(&|p| p) <= distance(&|p| place[p]) {
+        return given;
+    }
+    let mut order = given;
+    order.sort_by_key(|&p| place[p]);
+    order
+}
+
+impl Elastic for PreparedNetwork<'_> {
+    fn respond(&self, x: &[f64]) -> Option<Response> {
+        self.network.respond(x)
+    }
+
+    fn energy(&self, x: &[f64]) -> Option<f64> {
+        Elastic::energy(self.network, x)
+    }
+
+    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
+        let mut room = self.room.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut sound = match self.network.dimension {
+            1 => with_coordinates(Pull::<1> { model: self, room: &mut room, x, force }),
+            2 => with_coordinates(Pull::<2> { model: self, room: &mut room, x, force }),
+            _ => with_coordinates(Pull::<3> { model: self, room: &mut room, x, force }),
+        };
+        let rest = self.rest.iter().map(|&s| &self.network.others[s]);
+        sound &= self.network.add_others(rest, x, force);
+        sound
+    }
+
+    fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+        self.network.refill(x, force, tangent)
+    }
+
+    fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+        self.network.refill_definite(x, force, tangent)
+    }
+}
+
+/// One evaluation.
+struct Pull<'a, const D: usize> {
+    model: &'a PreparedNetwork<'a>,
+    room: &'a mut Room,
+    x: &'a [f64],
+    force: &'a mut [f64],
+}
+
+impl<const D: usize> CoordinatesWork for Pull<'_, D> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<C: Coordinates>(self, zero: C) -> bool {
+        let Pull { model, room, x, force } = self;
+        let Room { x: rows, force: sums, tensions } = room;
+        let others = &model.network.others;
+        rows.resize(model.order.len(), [0.0; 4]);
+        sums.resize(model.order.len(), [0.0; 4]);
+        pack::<D>(&model.order, x, rows);
+        model.edges.pull(zero, rows, sums);
+        let mut sound = model.bars.pull(zero, others, rows, sums);
+        sound &= model.simplices.pull::<C, D>(zero, others, rows, tensions, sums);
+        unpack::<D>(&model.order, sums, force);
+        sound
+    }
+}
+
+#[inline(always)]
+fn pack<const D: usize>(order: &[usize], x: &[f64], rows: &mut [[f64; 4]]) {
+    let points = x.as_chunks::<D>().0;
+    for (row, &point) in rows.iter_mut().zip(order) {
+        row[..D].copy_from_slice(&points[point]);
+    }
+}
+
+/// Forces of the rows are (z, x, y), as cross products without a last turn are.
+#[inline(always)]
+fn unpack<const D: usize>(order: &[usize], sums: &[[f64; 4]], force: &mut [f64]) {
+    force.fill(0.0);
+    let points = force.as_chunks_mut::<D>().0;
+    for (sum, &point) in sums.iter().zip(order) {
+        for k in 0..D {
+            points[point][k] = sum[(k + 1) % 3];
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! Springs on the content of lines, triangles and tetrahedra that fill their space, and of patches of them.
+//!
+//! With the edges `e_a = x_a − x_0` from the first node, filled up to three with the axes beyond the dimension, the content is
+//! `V = c det [e_1 e_2 e_3]` and `∂det/∂x_1 = e_2 × e_3`, and so on round; what the first node feels is minus the sum.
+
+use super::laws::{Lawful, Laws, LawsRoom};
+use crate::model::network::{MeasureSpring, Network};
+use crate::scalar::Coordinates;
+use crate::springs::Measure;
+use std::collections::HashMap;
+
+/// The nodes of a cell, filled up with zeros, and its linear springs: they pull with `slope · det − pull` along `∇det`.
+#[derive(Debug, Clone, Copy)]
+struct Simplex {
+    nodes: [u32; 4],
+    slope: f64,
+    pull: f64,
+}
+
+/// Of a cell of which patches have a share.
+#[derive(Debug, Clone, Copy)]
+struct Membership {
+    /// Patches; where they are fewer the rest name one that never pulls.
+    patches: [u32; 4],
+    /// `share · c`.
+    share: f64,
+}
+
+/// The cells of a network, each once.
+#[derive(Debug, Default)]
+pub struct Simplices {
+    cells: Vec<Simplex>,
+    laws: Laws,
+    /// `[cells]`, or none where there are no patches.
+    memberships: Vec<Membership>,
+    /// The springs on patches, among the others of the network.
+    patches: Vec<usize>,
+}
+
+/// What is worked out before the forces, in memory that stays.
+#[derive(Debug, Default)]
+pub struct Tensions {
+    /// `[cells]`, along `∇det`, of laws and patches.
+    cells: Vec<f64>,
+    /// `[patches + 1]`: contents, then tensions.
+    patches: Vec<f64>,
+    laws: LawsRoom,
+}
+
+impl Simplices {
+    /// The cells that these springs among the others of the network measure, those between neighbouring rows after each other.
+    pub fn new(network: &Network, springs: &[usize], place: &[usize]) -> Simplices {
+        let mut all = Builder {
+            nodes: network.dimension + 1,
+            simplices: Simplices::default(),
+            known: HashMap::new(),
+            shares: Vec::new(),
+            lawful: Vec::new(),
+        };
+        let rows = |points: &mut dyn Iterator<Item = usize>| {
+            let mut nodes = [0; 4];
+            nodes.iter_mut().zip(points).for_each(|(node, point)| *node = place[point] as u32);
+            nodes
+        };
+        for &s in springs {
+            let spring = &network.others[s];
+            match &spring.measure {
+                Measure::Patch(patch) => {
+                    let scale = scale(&Measure::Content(patch.element.clone()), network.dimension);
+                    let index = all.simplices.patches.len() as u32;
+                    all.simplices.patches.push(s);
+                    for (nodes, share) in &patch.cells {
+                        let nodes = rows(&mut nodes.iter().map(|&place| spring.points[place]));
+                        all.share(nodes, index, share * scale);
+                    }
+                }
+                measure => {
+                    let cell = all.cell(rows(&mut spring.points.iter().copied()));
+                    let scale = scale(measure, network.dimension);
+                    if spring.law.is_some() {
+                        all.lawful.push(Lawful { cell, scale, spring: s });
+                    } else {
+                        let simplex = &mut all.simplices.cells[cell];
+                        simplex.slope += spring.constant * scale * scale;
+                        simplex.pull += spring.constant * scale * spring.rest;
+                    }
+                }
+            }
+        }
+        all.finish(network)
+    }
+
+    /// Whether a spring measures the content of a simplex in a space of its own dimension, or of a patch of such.
+    pub fn have(spring: &MeasureSpring, dimension: usize) -> bool {
+        match &spring.measure {
+            Measure::Content(element) | Measure::PointContent(element, _) => {
+                element.dimension() == dimension && spring.points.len() == dimension + 1
+            }
+            Measure::Patch(patch) => {
+                patch.element.dimension() == dimension
+                    && patch.cells.iter().all(|(nodes, _)| nodes.len() == dimension + 1)
+            }
+            Measure::Length | Measure::Span(_) | Measure::Function(_) => false,
+        }
+    }
+
+    /// Adds the forces, as [`unpack`](super::unpack) reads them; false where a spring has none.
+    #[inline(always)]
+    pub fn pull<C: Coordinates, const D: usize>(
+        &self,
+        zero: C,
+        others: &[MeasureSpring],
+        x: &[[f64; 4]],
+        tensions: &mut Tensions,
+        force: &mut [[f64; 4]],
+    ) -> bool {
+        let force = &mut force[..x.len()];
+        if self.laws.is_empty() && self.patches.is_empty() {
+            return pull::<C, D>(zero, &self.cells, |_| 0.0, x, force);
+        }
+        tensions.cells.clear();
+        tensions.cells.resize(self.cells.len(), 0.0);
+        let mut sound = self.pull_patches::<C, D>(zero, others, x, tensions);
+        let determinant = |cell: usize| self.cells[cell].determinant::<C, D>(zero, x);
+        sound &= self.laws.pull(determinant, &mut tensions.laws, &mut tensions.cells);
+        let cells = &tensions.cells[..self.cells.len()];
+        sound & pull::<C, D>(zero, &self.cells, |cell| cells[cell], x, force)
+    }
+
+    /// The tensions that patches lay on their cells: first the content of every patch, then what its spring pulls.
+    #[inline(always)]
+    fn pull_patches<C: Coordinates, const D: usize>(
+        &self,
+        zero: C,
+        others: &[MeasureSpring],
+        x: &[[f64; 4]],
+        tensions: &mut Tensions,
+    ) -> bool {
+        let Tensions { cells, patches, .. } = tensions;
+        patches.clear();
+        patches.resize(self.patches.len() + 1, 0.0);
+        for (cell, membership) in self.cells.iter().zip(&self.memberships) {
+            let part = membership.share * cell.determinant::<C, D>(zero, x);
+            for a in 0..=D {
+                patches[membership.patches[a] as usize] += part;
+            }
+        }
+        let mut sound = true;
+        for (value, &spring) in patches.iter_mut().zip(&self.patches) {
+            *value = others[spring].tension(*value);
+            sound &= value.is_finite();
+        }
+        patches[self.patches.len()] = 0.0;
+        for (tension, membership) in cells.iter_mut().zip(&self.memberships) {
+            let mut sum = 0.0;
+            for a in 0..=D {
+                sum += patches[membership.patches[a] as usize];
+            }
+            *tension = membership.share * sum;
+        }
+        sound
+    }
+}
+
+/// c, for the content is linear in each edge: that of the cell whose edges are the axes.
+fn scale(measure: &Measure, dimension: usize) -> f64 {
+    let mut x = vec![0.0; (dimension + 1) * dimension];
+    (0..dimension).for_each(|k| x[(k + 1) * dimension + k] = 1.0);
+    measure.value(&x, dimension)
+}
+
+const AXES: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+impl Simplex {
+    /// The three edges and the same turned.
+    #[inline(always)]
+    fn edges<C: Coordinates, const D: usize>(&self, zero: C, x: &[[f64; 4]]) -> ([C; 3], [C; 3]) {
+        let first = zero.load(&x[self.nodes[0] as usize]);
+        let (mut edges, mut turned) = ([zero; 3], [zero; 3]);
+        for a in 0..3 {
+            edges[a] = if a < D { zero.load(&x[self.nodes[a + 1] as usize]).minus(first) } else { zero.load(&AXES[a]) };
+            turned[a] = edges[a].turned();
+        }
+        (edges, turned)
+    }
+
+    #[inline(always)]
+    fn determinant<C: Coordinates, const D: usize>(&self, zero: C, x: &[[f64; 4]]) -> f64 {
+        let (e, t) = self.edges::<C, D>(zero, x);
+        t[0].turned().dot(cross((e[1], t[1]), (e[2], t[2])))
+    }
+}
+
+/// `a × b` as (z, x, y), of vectors and the same turned.
+#[inline(always)]
+fn cross<C: Coordinates>((a, turned_a): (C, C), (b, turned_b): (C, C)) -> C {
+    a.difference_of_products(turned_b, turned_a, b)
+}
+
+/// Adds `T ∇det` of every cell, `T = slope · det − pull + tension(cell)`.
+#[inline(always)]
+fn pull<C: Coordinates, const D: usize>(
+    zero: C,
+    cells: &[Simplex],
+    tension: impl Fn(usize) -> f64,
+    x: &[[f64; 4]],
+    force: &mut [[f64; 4]],
+) -> bool {
+    let mut sound = true;
+    for (cell, simplex) in cells.iter().enumerate() {
+        let (e, t) = simplex.edges::<C, D>(zero, x);
+        let first = cross((e[1], t[1]), (e[2], t[2]));
+        let tension = simplex.slope * t[0].turned().dot(first) - simplex.pull + tension(cell);
+        sound &= tension.is_finite();
+        let mut normals = [first; 3];
+        for a in 1..D {
+            let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+            normals[a] = cross((e[b], t[b]), (e[c], t[c]));
+        }
+        let mut sum = zero;
+        for a in 0..D {
+            let own = normals[a].scaled(tension);
+            sum = if a == 0 { own } else { sum.plus(own) };
+            let at = &mut force[simplex.nodes[a + 1] as usize];
+            zero.load(at).plus(own).store(at);
+        }
+        let at = &mut force[simplex.nodes[0] as usize];
+        zero.load(at).minus(sum).store(at);
+    }
+    sound
+}
+
+/// Cells by their nodes.
+struct Builder {
+    /// Of a cell.
+    nodes: usize,
+    simplices: Simplices,
+    known: HashMap<[u32; 4], usize>,
+    /// Of each cell its patches and their common share, times c.
+    shares: Vec<(Vec<u32>, f64)>,
+    lawful: Vec<Lawful>,
+}
+
+impl Builder {
+    fn cell(&mut self, nodes: [u32; 4]) -> usize {
+        match self.known.get(&nodes) {
+            Some(cell) => *cell,
+            None => self.add(nodes),
+        }
+    }
+
+    fn add(&mut self, nodes: [u32; 4]) -> usize {
+        let cell = self.simplices.cells.len();
+        self.simplices.cells.push(Simplex { nodes, slope: 0.0, pull: 0.0 });
+        self.shares.push((Vec::new(), 0.0));
+        self.known.insert(nodes, cell);
+        cell
+    }
+
+    /// A cell of which more patches have shares than it has nodes, or not equal ones, is there twice.
+    fn share(&mut self, nodes: [u32; 4], patch: u32, share: f64) {
+        let mut cell = self.cell(nodes);
+        let (patches, own) = &self.shares[cell];
+        if patches.len() == self.nodes || (!patches.is_empty() && *own != share) {
+            cell = self.add(nodes);
+        }
+        self.shares[cell].0.push(patch);
+        self.shares[cell].1 = share;
+    }
+
+    fn finish(self, network: &Network) -> Simplices {
+        let Builder { nodes, mut simplices, shares, mut lawful, .. } = self;
+        let none = simplices.patches.len() as u32;
+        if none > 0 {
+            let membership = |(own, share): &(Vec<u32>, f64)| {
+                let mut patches = [none; 4];
+                patches.iter_mut().zip(own).for_each(|(patch, own)| *patch = *own);
+                Membership { patches, share: *share }
+            };
+            simplices.memberships = shares.iter().map(membership).collect();
+        }
+        let lowest = |cell: &Simplex| cell.nodes[..nodes].iter().copied().min();
+        let mut order: Vec<usize> = (0..simplices.cells.len()).collect();
+        order.sort_by_key(|&cell| lowest(&simplices.cells[cell]));
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(at, &cell)| place[cell] = at);
+        simplices.cells = order.iter().map(|&cell| simplices.cells[cell]).collect();
+        if none > 0 {
+            simplices.memberships = order.iter().map(|&cell| simplices.memberships[cell]).collect();
+        }
+        lawful.iter_mut().for_each(|lawful| lawful.cell = place[lawful.cell]);
+        lawful.sort_by_key(|lawful| lawful.cell);
+        simplices.laws = Laws::new(network, &lawful);
+        simplices
+    }
+}

@@ -1,0 +1,176 @@
+//! The coordinates of a point side by side in one register: what a loop over springs and cells that share points computes with,
+//! where a register with one cell per lane would be filled and emptied number by number.
+
+#[cfg(target_arch = "x86_64")]
+use pulp::{Simd, WithSimd, cast, x86::V3};
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::__m256d;
+
+/// A vector of three coordinates, with one place to spare; `self` selects the kind of register where a method makes a new one.
+pub trait Coordinates: Copy {
+    fn load(self, from: &[f64; 4]) -> Self;
+
+    fn store(self, to: &mut [f64; 4]);
+
+    fn plus(self, other: Self) -> Self;
+
+    fn minus(self, other: Self) -> Self;
+
+    fn scaled(self, factor: f64) -> Self;
+
+    /// `self + factor · other`.
+    fn plus_scaled(self, factor: f64, other: Self) -> Self;
+
+    /// `(y, z, x)`.
+    fn turned(self) -> Self;
+
+    /// `a b − c d` of each coordinate, with `self` as a.
+    fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self;
+
+    /// `x x' + y y' + z z'`.
+    fn dot(self, other: Self) -> f64;
+}
+
+/// Work that is written once for every kind of register.
+pub trait CoordinatesWork {
+    type Output;
+
+    /// `zero` selects the kind.
+    fn run<C: Coordinates>(self, zero: C) -> Self::Output;
+}
+
+/// Does the work with one register for a point where this machine has such.
+pub fn with_coordinates<W: CoordinatesWork>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = V3::try_new() {
+        return Simd::vectorize(simd, Wide(simd, work));
+    }
+    work.run([0.0; 4])
+}
+
+#[cfg(target_arch = "x86_64")]
+struct Wide<W>(V3, W);
+
+#[cfg(target_arch = "x86_64")]
+impl<W: CoordinatesWork> WithSimd for Wide<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> W::Output {
+        self.1.run(Register { simd: self.0, values: self.0.splat_f64x4(0.0) })
+    }
+}
+
+/// Named instructions, for the compiler pairs the operations of an array's entries as it likes and shuffles in between.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+struct Register {
+    simd: V3,
+    values: pulp::f64x4,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Register {
+    #[inline(always)]
+    fn of(self, values: pulp::f64x4) -> Register {
+        Register { simd: self.simd, values }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Coordinates for Register {
+    #[inline(always)]
+    fn load(self, from: &[f64; 4]) -> Register {
+        self.of(cast(*from))
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64; 4]) {
+        *to = cast(self.values);
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Register) -> Register {
+        self.of(self.simd.add_f64x4(self.values, other.values))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Register) -> Register {
+        self.of(self.simd.sub_f64x4(self.values, other.values))
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Register {
+        self.of(self.simd.mul_f64x4(self.values, self.simd.splat_f64x4(factor)))
+    }
+
+    #[inline(always)]
+    fn plus_scaled(self, factor: f64, other: Register) -> Register {
+        self.of(self.simd.mul_add_f64x4(self.simd.splat_f64x4(factor), other.values, self.values))
+    }
+
+    #[inline(always)]
+    fn turned(self) -> Register {
+        let values: __m256d = cast(self.values);
+        self.of(cast(self.simd.avx2._mm256_permute4x64_pd::<0b11_00_10_01>(values)))
+    }
+
+    #[inline(always)]
+    fn difference_of_products(self, b: Register, c: Register, d: Register) -> Register {
+        self.of(self.simd.mul_sub_f64x4(self.values, b.values, self.simd.mul_f64x4(c.values, d.values)))
+    }
+
+    #[inline(always)]
+    fn dot(self, other: Register) -> f64 {
+        let products: [f64; 4] = cast(self.simd.mul_f64x4(self.values, other.values));
+        products[0] + products[1] + products[2]
+    }
+}
+
+/// Where the machine has no such register.
+impl Coordinates for [f64; 4] {
+    #[inline(always)]
+    fn load(self, from: &[f64; 4]) -> [f64; 4] {
+        *from
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64; 4]) {
+        *to = self;
+    }
+
+    #[inline(always)]
+    fn plus(self, other: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|k| self[k] + other[k])
+    }
+
+    #[inline(always)]
+    fn minus(self, other: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|k| self[k] - other[k])
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> [f64; 4] {
+        self.map(|x| x * factor)
+    }
+
+    #[inline(always)]
+    fn plus_scaled(self, factor: f64, other: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|k| self[k] + factor * other[k])
+    }
+
+    #[inline(always)]
+    fn turned(self) -> [f64; 4] {
+        [self[1], self[2], self[0], self[3]]
+    }
+
+    #[inline(always)]
+    fn difference_of_products(self, b: [f64; 4], c: [f64; 4], d: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|k| self[k] * b[k] - c[k] * d[k])
+    }
+
+    #[inline(always)]
+    fn dot(self, other: [f64; 4]) -> f64 {
+        self[0] * other[0] + self[1] * other[1] + self[2] * other[2]
+    }
+}
