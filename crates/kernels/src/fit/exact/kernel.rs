@@ -92,10 +92,12 @@ impl PackedWork for ExactBatch<'_> {
             }
             cell += count;
         }
-        match self.constants.iter().position(|k| !k.is_finite()) {
-            Some(place) => Err((place / m, Fault::Unmeasured)),
-            None => Ok(()),
+        // All of them, without leaving early: several at once.
+        if self.constants.iter().fold(true, |sound, k| sound & k.is_finite()) {
+            return Ok(());
         }
+        let place = self.constants.iter().position(|k| !k.is_finite()).unwrap_or(0);
+        Err((place / m, Fault::Unmeasured))
     }
 }
 
