@@ -38,7 +38,7 @@ struct Room {
 }
 
 impl Network {
-    /// Sorts the springs for [`Elastic::forces`], which costs as much as a few dozen evaluations.
+    /// Sorts the springs for [`Elastic::forces`], which costs as much as about a hundred evaluations.
     pub fn prepared(&self) -> PreparedNetwork<'_> {
         PreparedNetwork::new(self)
     }
