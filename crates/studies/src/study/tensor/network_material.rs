@@ -69,7 +69,7 @@ pub fn network_material(mesh: &Mesh, material: Material, cells: &[CellFits], net
             directions = frame(&sample, mesh.cell_dimension()).0;
         }
         let piece = match cells {
-            [] => Piece::of_network(&stars, &sample, network),
+            [] => Piece::of_network(mesh, &stars, &sample, network),
             cells => Piece::of_cells(mesh, &sample, cells, network),
         };
         tensor(&sample, &piece, &directions)

@@ -82,17 +82,20 @@ impl Piece {
         }
     }
 
-    /// The springs of a network that belong to no cell: each is shared equally among the cells that have all its points.
-    pub(super) fn of_network(stars: &Stars, sample: &Sample, whole: &Network) -> Piece {
+    /// The springs of a network that belong to no cell: each is shared equally among the cells that have all its points, or, where no
+    /// cell has, among those that have any. Patches are as in [`Piece::of_cells`].
+    pub(super) fn of_network(mesh: &Mesh, stars: &Stars, sample: &Sample, whole: &Network) -> Piece {
         let has = |cell: usize, point: usize| stars.points(cell).contains(&point);
+        let share_of = |cells: &mut dyn Iterator<Item = usize>| {
+            let (own, count) =
+                cells.fold((0, 0), |(own, count), cell| (own + u32::from(stars.is_in(cell, sample)), count + 1_u32));
+            (count > 0).then(|| f64::from(own) / f64::from(count))
+        };
         let share = |points: &[usize]| {
-            let all = stars.around(points[0]).iter().filter(|&&cell| points.iter().all(|&point| has(cell, point)));
-            let (mut own, mut count) = (0, 0);
-            for &cell in all {
-                count += 1;
-                own += usize::from(stars.is_in(cell, sample));
-            }
-            if count == 0 { 0.0 } else { own as f64 / count as f64 }
+            let around = || stars.around(points[0]).iter().copied();
+            let any = || points.iter().flat_map(|&point| stars.around(point)).copied();
+            let all = share_of(&mut around().filter(|&cell| points.iter().all(|&point| has(cell, point))));
+            all.or_else(|| share_of(&mut any())).unwrap_or(0.0)
         };
         let place = |point: &usize| sample.places.get(point).copied();
         let mut network = Network { dimension: whole.dimension, ..Network::default() };
@@ -106,13 +109,15 @@ impl Piece {
                 }
             }
         }
-        for spring in &whole.others {
+        for spring in whole.others.iter().filter(|spring| !matches!(spring.measure, Measure::Patch(_))) {
             let points: Option<Vec<usize>> = spring.points.iter().map(place).collect();
             if let Some(points) = points {
                 shares.push(share(&spring.points));
                 network.others.push(MeasureSpring { points, ..spring.clone() });
             }
         }
-        Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() }
+        let mut piece = Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() };
+        piece.add_patches(mesh, sample, whole);
+        piece
     }
 }
