@@ -13,10 +13,9 @@ use super::stretches::sampled_fits;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
-use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors, fit_exact};
+use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors};
 use crate::material::{Energy, Material};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::patch_springs;
 use crate::springs::Springs;
 use std::sync::Arc;
 use std::time::Instant;
@@ -136,16 +135,7 @@ pub fn measure_recipes(
 /// The exact networks that the body has: with volume springs at points and on cells, and on patches where these can be.
 fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<NamedFit> {
     let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
-    let serves = |recipe: &ExactRecipe| {
-        let Ok(fit) = recipe.resolve(law) else { return false };
-        let block = |b: &CellBlock| {
-            let cell = &b.connectivity[..b.element.nodes()];
-            fit_exact(&b.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
-        };
-        let patches = fit.volume == VolumeSprings::Patches;
-        mesh.blocks.iter().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
-    };
-    let recipes = VolumeSprings::all().map(recipe).filter(serves);
+    let recipes = VolumeSprings::all().map(recipe).filter(|recipe| recipe.serves(law, mesh, material));
     recipes.map(|recipe| NamedFit::of(Recipe::Exact(recipe), None)).collect()
 }
 

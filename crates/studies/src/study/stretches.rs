@@ -7,7 +7,7 @@ use super::metrics::displacement_error;
 use super::progress::{Event, Progress};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
-use crate::fit::{Balance, Family, Fit, Higher, Objective, Sampling, Source, Weight, fit_exact, fit_sampled};
+use crate::fit::{Balance, Family, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
 use crate::material::{Energy, Material};
 use crate::mesh::{BoxMesh, Mesh, Selection};
 use crate::model::{Body, Elastic, Response, Support, displaced};
@@ -79,12 +79,9 @@ pub fn compare_stretches(
     let cells = vec![if d == 3 { 3 } else { 6 }; d];
     let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
     let pulled = Pulled { mesh, material, large: LargeBody::at_rest(energy, material.state()) };
-    let exact = ExactRecipe::default();
-    let exact = exact.resolve(Some(&pulled.large.energy)).and_then(|fit| {
-        let block = &pulled.mesh.blocks[0];
-        fit_exact(element, &pulled.mesh.points, &block.connectivity, material, &fit, &mut |_| {}).map(|_| exact)
-    });
-    let exact = exact.ok().map(|exact| NamedFit::of(Recipe::Exact(exact), None));
+    let exact = Some(ExactRecipe::default());
+    let exact = exact.filter(|exact| exact.serves(Some(&pulled.large.energy), &pulled.mesh, material));
+    let exact = exact.map(|exact| NamedFit::of(Recipe::Exact(exact), None));
     let recipes: Vec<NamedFit> = exact.into_iter().chain(recipes(element, sampled)).collect();
     let total = recipes.len() + 1;
     progress(Event::stage("finite elements", 0, total));

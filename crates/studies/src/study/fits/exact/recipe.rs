@@ -1,8 +1,10 @@
 //! An exact network before the material is known.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::{ExactEnergy, ExactFit, VolumeSprings};
-use crate::material::Energy;
+use crate::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
+use crate::material::{Energy, Material};
+use crate::mesh::{CellBlock, Mesh};
+use crate::model::patch_springs;
 use crate::positive::PositiveFit;
 
 /// An exact network before the material is known.
@@ -35,5 +37,16 @@ impl ExactRecipe {
             (None, None) => ExactEnergy::default(),
         };
         Ok(ExactFit { energy, volume: self.volume, large: law.is_some() })
+    }
+
+    /// Whether a body of this material and law has the network. The first cell of each block answers for all; patches are made.
+    pub fn serves(&self, law: Option<&Energy>, mesh: &Mesh, material: Material) -> bool {
+        let Ok(fit) = self.resolve(law) else { return false };
+        let block = |block: &CellBlock| {
+            let cell = &block.connectivity[..block.element.nodes()];
+            fit_exact(&block.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
+        };
+        let patches = fit.volume == VolumeSprings::Patches;
+        mesh.blocks.iter().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
     }
 }
