@@ -129,7 +129,8 @@ fn cooks_membrane_deforms_near_the_incompressible() {
     }
 }
 
-/// The lowest 30 frequencies with patches are those of quadratic hexahedra, one for one: none is missing and none is added.
+/// The lowest 30 frequencies with patches are those of quadratic hexahedra, one for one: patches neither add nor
+/// remove a frequency.
 #[test]
 fn patches_add_no_soft_motion() {
     let density = 1.0;

@@ -199,7 +199,7 @@ fn tensions_of_volume_springs_change_where_springs_alone_do_not_suffice() {
     }
 }
 
-/// Whatever is wrong with the mesh, the network or both is an error; none is a network.
+/// Each fault of the mesh, of the network or of both is an error, and no network is returned.
 #[test]
 fn wrong_networks_are_refused() {
     let mesh = sheared(grid("tet4", &[2, 2, 2]), 0.5);

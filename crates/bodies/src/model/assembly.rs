@@ -194,7 +194,7 @@ struct Star<'a> {
     fit: &'a CellFits,
     /// Where the places of each point begin, `[points + 1]`.
     starts: Vec<usize>,
-    /// Positions in the connectivity, grouped by the point that stands there.
+    /// Indices into the connectivity, grouped by the point that each of them holds.
     places: Vec<usize>,
     /// For each node of the cell its length springs: spring and node at the other end.
     springs: Vec<Vec<(usize, usize)>>,

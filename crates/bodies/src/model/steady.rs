@@ -3,7 +3,8 @@
 use crate::springs::Law;
 use std::sync::{Arc, LazyLock};
 
-/// A rest measure so many times what is measured is none: the energy to there has no digits for its changes.
+/// A rest measure beyond this multiple of the present measure is not stored: the energy from there would be so large that rounding
+/// hides its changes.
 const FARTHEST: f64 = 1e10;
 
 /// A rest length below this share of the length is zero.

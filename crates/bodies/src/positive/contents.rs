@@ -22,7 +22,7 @@ pub(super) struct Contents {
 
 impl Contents {
     /// # Errors
-    /// A law is none of the exact energies'; kind `Unsupported`.
+    /// A spring has a law that no exact energy has; kind `Unsupported`.
     pub fn new(mesh: &Mesh, network: &Network) -> Result<Contents> {
         let mut contents = Contents::default();
         for (place, spring) in network.others.iter().enumerate() {

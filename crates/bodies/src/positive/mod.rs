@@ -10,10 +10,10 @@
 //! With the springs on content as they are, no point feels a force at rest, and as `Σ_b k_ab F (X_b − X_a)` is as before for every F,
 //! the forces of every homogeneous deformation, small or large and under any law, are those of the exact network. Of all such
 //! networks the one is taken whose constants change least while the energies of the lowest modes stay; a convex quadratic
-//! programme. Where there is none, springs across the sides of simplices may be added, and at last the tension of the springs on
-//! content may change as well: then homogeneous deformations are near those of the exact network.
+//! programme. Where it has no solution, springs across the sides of simplices may be added. If that does not suffice, the tension of the
+//! springs on content may change as well: then the forces of homogeneous deformations are near those of the exact network.
 //!
-//! Where all of that fails no network of these springs but that without springs is at rest without negative constants.
+//! Where all of this fails, only the network whose constants are all zero balances at rest without negative constants.
 
 mod balance;
 mod contents;

@@ -74,7 +74,7 @@ impl Programme<'_> {
     /// `None` where there is no solution.
     ///
     /// # Errors
-    /// The solver ends without a solution and without a proof that there is none.
+    /// The solver stops without a solution and without a proof that no solution exists.
     pub fn solve(&self) -> Result<Option<Changes>> {
         let (mesh, edges, contents) = (self.mesh, self.edges, self.contents);
         let (d, dofs) = (mesh.dimension, mesh.points.len());

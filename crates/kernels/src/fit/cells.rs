@@ -43,7 +43,7 @@ pub struct CellFits {
 
 /// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
-/// `progress` is told the number of cells done, now and then.
+/// `progress` receives the number of finished cells from time to time.
 ///
 /// # Errors
 /// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, or a

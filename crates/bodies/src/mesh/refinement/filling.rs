@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// The element of that cell whose triangles have the same nodes as those of `element`: one of `known`, or else a shipped one.
 ///
 /// # Errors
-/// There is none.
+/// No element of this cell type has these triangles.
 pub fn filling(element: &Element, cell: Cell, known: &[Arc<Element>]) -> Result<Arc<Element>> {
     let wanted = triangle(element);
     let fits = |other: &Element| other.cell == cell && triangle(other) == wanted;

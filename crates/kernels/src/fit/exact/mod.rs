@@ -44,7 +44,7 @@ pub struct ExactFit {
 /// The springs of every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The result has
 /// [`Force::Exact`]; constants that are rounding, as at right angles, are zero.
 ///
-/// `progress` is told the number of cells done, now and then.
+/// `progress` receives the number of finished cells from time to time.
 ///
 /// # Errors
 /// An array has a wrong length or a number is not finite; a cell is reversed, tangled, flat or bent in space; or the energy has no

@@ -49,7 +49,7 @@ pub struct SampledFits {
 
 /// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
-/// `progress` is told the number of cells done, now and then.
+/// `progress` receives the number of finished cells from time to time.
 ///
 /// # Errors
 /// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the state is not one

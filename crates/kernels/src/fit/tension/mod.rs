@@ -40,7 +40,7 @@ pub struct Tensions {
     pub reused: usize,
 }
 
-/// Fits every cell; `progress` is told the number of cells done, now and then. What is given has been checked.
+/// Fits every cell. `progress` receives the number of finished cells from time to time. The caller has checked the arguments.
 ///
 /// # Errors
 /// The cells are those of a surface or curve in space, a cell is reversed, tangled or flat, what a spring measures has no gradient,
