@@ -1,6 +1,6 @@
 //! Hyperelastic materials: an energy per volume at rest as an expression of the deformation's invariants.
 
-use super::Material;
+use super::{Material, Moduli};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::symbolic::{Expr, Jet, Program, Scope};
@@ -156,6 +156,11 @@ impl Energy {
 
     pub fn poisson(&self) -> f64 {
         self.constants[1]
+    }
+
+    /// Those of a solid, Pa.
+    pub fn moduli(&self) -> Moduli {
+        Moduli { lambda: self.constants[2], mu: self.constants[3] }
     }
 
     /// W as a function of `I1`, `I2` and `J` alone, with fibres that are not stretched; `None` of energies of the stretches.

@@ -37,7 +37,7 @@ const SAME: f64 = 1e-10;
 impl ExactEnergy {
     /// The one that a law is, apart from its fibres.
     pub fn of_law(law: &Energy) -> Option<ExactEnergy> {
-        let [_, mu] = lame(law);
+        let mu = law.moduli().mu;
         let [a, b] = [[3.0, 3.0, 1.0], [3.0, 4.0, 1.0]].map(|at| law.of_invariants(at));
         let share = (b? - a?) / (mu / 2.0);
         let candidates = ExactEnergy::all().map(|energy| energy.with_share(share).unwrap_or(energy));
@@ -46,7 +46,7 @@ impl ExactEnergy {
 
     /// Whether a law is this energy, apart from its fibres.
     pub fn is_that_of(&self, law: &Energy) -> bool {
-        let [lambda, mu] = lame(law);
+        let Moduli { lambda, mu } = law.moduli();
         let size = SAME * (lambda.abs() + mu);
         let value = |at: [f64; 3]| law.of_invariants(at).map(|value| value - self.value(at, [lambda, mu]));
         DEFORMATIONS.iter().all(|at| value(*at).is_some_and(|difference| difference.abs() <= size))
@@ -81,12 +81,6 @@ impl ExactEnergy {
             }
         }
     }
-}
-
-/// λ and μ of the material of a law.
-fn lame(law: &Energy) -> [f64; 2] {
-    let (young, nu) = (law.young(), law.poisson());
-    [young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), young / (2.0 * (1.0 + nu))]
 }
 
 /// The numbers of an exact network per volume of the cell, thickness included.
