@@ -47,7 +47,7 @@ fn main() {
         let mut support = Support::free(&mesh);
         support.fix(&mesh.groups["zmin"].points, &[0, 1, 2], 3);
         let system = System::new(&finite_elements(&mesh, material.moduli()), &support).expect("it fits into memory");
-        let factor = system.cholesky().expect("the body is held");
+        let factor = system.cholesky().unwrap().expect("the body is held");
         let targets = |loads: Vec<NodalLoad>| -> Vec<Target> {
             let forces: Vec<Vec<f64>> = loads.iter().map(|load| load.forces.clone()).collect();
             let of = |(load, displacement): (NodalLoad, Vec<f64>)| {

@@ -12,4 +12,4 @@ pub use springfit_studies::study;
 
 #[cfg(feature = "cli")]
 use springfit_foundation::file;
-pub use springfit_foundation::file::{check_file, check_folder, files_in, write_whole};
+pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};

@@ -23,7 +23,7 @@ struct Model {
 impl Model {
     fn new(entries: &springfit::model::Entries, support: &Support, masses: Vec<f64>, dimension: usize) -> Model {
         let system = System::new(entries, support).unwrap();
-        let factor = system.factorize().unwrap();
+        let factor = system.factorize().unwrap().unwrap();
         Model { system, factor, masses, dimension }
     }
 

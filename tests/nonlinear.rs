@@ -145,7 +145,7 @@ fn newtons_method_converges_quadratically() {
             }
             let linear = {
                 let system = System::new(&finite_elements(&mesh, material.moduli()), &support).unwrap();
-                system.solve(&system.factorize().unwrap(), &forces).0
+                system.solve(&system.factorize().unwrap().unwrap(), &forces).0
             };
             let difference = |load: f64| {
                 let small: Vec<f64> = forces.iter().map(|f| f * load).collect();

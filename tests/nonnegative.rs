@@ -47,7 +47,7 @@ fn exact(mesh: &Mesh, fit: ExactFit) -> Network {
 }
 
 fn nearest(mesh: &Mesh, network: &Network) -> (Network, PositiveOutcome) {
-    nearest_positive(mesh, network, &PositiveFit::default()).unwrap()
+    nearest_positive(mesh, network, &PositiveFit::default(), &mut |_, _| {}).unwrap()
 }
 
 fn forces(network: &Network, x: &[f64]) -> Vec<f64> {
@@ -80,7 +80,7 @@ fn compliance(mesh: &Mesh, network: &Network, axis: usize) -> f64 {
     let mut load = vec![0.0; mesh.points.len()];
     at(high).for_each(|p| load[p * d + axis] = 1.0);
     let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
-    let factor = system.cholesky().expect("the network is positive definite with supports");
+    let factor = system.cholesky().unwrap().expect("the network is positive definite with supports");
     let (u, residual) = system.solve(&factor, &load);
     assert!(residual < 1e-8, "{residual:e}");
     u.iter().zip(&load).map(|(u, f)| u * f).sum()
@@ -171,10 +171,11 @@ fn the_nearest_network_has_no_unit() {
 fn a_sheared_box_has_the_zero_network_alone_until_springs_go_across_faces() {
     let mesh = sheared(grid("tet4", &[3, 3, 3]), 0.5);
     let network = exact(&mesh, EXACT);
-    let error = nearest_positive(&mesh, &network, &PositiveFit::default()).unwrap_err();
+    let error = nearest_positive(&mesh, &network, &PositiveFit::default(), &mut |_, _| {}).unwrap_err();
     assert_eq!((error.kind(), error.key()), (ErrorKind::Infeasible, Some("nonnegative")));
     assert!(error.problem().contains("only the zero network") && error.problem().contains("across"), "{error}");
-    let (found, outcome) = nearest_positive(&mesh, &network, &PositiveFit { across: true, modes: 10 }).unwrap();
+    let (found, outcome) =
+        nearest_positive(&mesh, &network, &PositiveFit { across: true, modes: 10 }, &mut |_, _| {}).unwrap();
     assert!(outcome.route == Route::Across && outcome.across > 0 && found.negative() == 0, "{outcome:?}");
     assert!(largest(&forces(&found, &mesh.points)) < 1e-12 * pull(&found, &mesh));
     for axis in [0, 2] {
@@ -207,7 +208,7 @@ fn wrong_networks_are_refused() {
     let refused = |change: &dyn Fn(&mut Network)| {
         let mut network = network.clone();
         change(&mut network);
-        nearest_positive(&mesh, &network, &PositiveFit::default()).unwrap_err()
+        nearest_positive(&mesh, &network, &PositiveFit::default(), &mut |_, _| {}).unwrap_err()
     };
     assert_eq!(refused(&|n| n.dimension = 2).key(), Some("network"));
     assert_eq!(refused(&|n| n.lengths[0].points[1] = 1000).key(), Some("network"));
@@ -222,7 +223,7 @@ fn wrong_networks_are_refused() {
     assert_eq!(refused(&|n| n.others.clear()).kind(), ErrorKind::Infeasible);
     let bricks = sheared(grid("hex8", &[2, 2, 2]), 1.5);
     let across = PositiveFit { across: true, ..PositiveFit::default() };
-    let error = nearest_positive(&bricks, &exact(&bricks, EXACT), &across).unwrap_err();
+    let error = nearest_positive(&bricks, &exact(&bricks, EXACT), &across, &mut |_, _| {}).unwrap_err();
     assert_eq!((error.kind(), error.key()), (ErrorKind::Unsupported, Some("across")), "{error}");
 }
 

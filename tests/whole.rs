@@ -61,7 +61,7 @@ impl Body {
 
     fn target(&self, load: NodalLoad) -> Target {
         let system = System::new(&finite_elements(&self.mesh, self.material.moduli()), &self.support).unwrap();
-        let displacement = system.solve(&system.factorize().unwrap(), &load.forces).0;
+        let displacement = system.solve(&system.factorize().unwrap().unwrap(), &load.forces).0;
         Target::new(load.name, self.support.clone(), load.forces, displacement)
     }
 
@@ -77,7 +77,7 @@ impl Body {
     fn frequencies(&self, count: usize) -> Frequencies {
         let masses = masses(&self.mesh, 1000.0, self.material.thickness());
         let system = System::new(&finite_elements(&self.mesh, self.material.moduli()), &self.support).unwrap();
-        let factor = system.factorize().unwrap();
+        let factor = system.factorize().unwrap().unwrap();
         let squares = lowest_modes(&system, &factor, &masses, self.mesh.dimension, count).unwrap().squares;
         Frequencies { support: self.support.clone(), masses, squares, weight: 0.5 }
     }
@@ -179,7 +179,7 @@ fn what_a_network_did_is_found() {
     let network = Network::assemble(&body.mesh, &body.fits(PLAIN, false));
     let truth = network.scaled(&waves(network.len(), 0.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
     let system = System::new(&truth.stiffness(&body.mesh.points), &body.support).unwrap();
-    let factor = system.factorize().unwrap();
+    let factor = system.factorize().unwrap().unwrap();
     let mut trained = body.made();
     trained.iter_mut().for_each(|t| t.displacement = system.solve(&factor, &t.forces).0);
     let wanted =

@@ -47,13 +47,18 @@ impl Compare {
         let path = Path::new(&self.what);
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("compare-{stem}")));
-        springfit::check_folder(&folder)?;
+        let names: &[&str] = if self.law.is_some() { &report::STRETCHES_FILES } else { &report::COMPARISON_FILES };
+        let mut inputs = vec![PathBuf::from(&self.what)];
+        inputs.extend(self.law.as_ref().map(PathBuf::from));
+        report::check_outputs(&folder, names, &inputs)?;
         let mut progress = |event: Event| terminal.show(event);
         if self.law.is_some() && is_scene(path) {
             return Err(Error::at("--law", "goes with an element; a scene names it in its material"));
         }
         let comparison = if is_scene(path) {
-            Comparison::of_scene(&study::compare_scene(&Scene::load(path)?, &mut progress)?)
+            let scene = Scene::load(path)?;
+            report::check_outputs(&folder, names, &scene.inputs())?;
+            Comparison::of_scene(&study::compare_scene(&scene, &mut progress)?)
         } else {
             let element = Element::load(&self.what)?;
             let plane = self.plane.map(Into::into);

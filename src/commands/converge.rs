@@ -3,8 +3,8 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
+use springfit::report;
 use springfit::study::{self, Event, Scene};
-use springfit::{check_folder, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -29,11 +29,14 @@ impl Converge {
         let scene = Scene::load(&self.scene)?;
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
-        check_folder(&folder)?;
+        let truth = self.truth.as_ref().map(|path| Scene::load(path)).transpose()?;
+        let inputs: Vec<PathBuf> =
+            [Some(&scene), truth.as_ref()].into_iter().flatten().flat_map(Scene::inputs).collect();
+        report::check_outputs(&folder, &report::CONVERGENCE_FILES, &inputs)?;
         let mut show = |event: Event| terminal.show(event);
-        let convergence = match &self.truth {
+        let convergence = match &truth {
             None => study::converge(&scene, self.levels, &mut show),
-            Some(path) => study::converge_to(&scene, &Scene::load(path)?, self.levels, &mut show),
+            Some(truth) => study::converge_to(&scene, truth, self.levels, &mut show),
         };
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         let paths = report::write_convergence(&convergence, &folder);

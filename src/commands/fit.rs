@@ -109,6 +109,9 @@ pub struct Fit {
 impl Fit {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let format = NetworkFormat::of(&self.output).map_err(|e| e.at_key("--output"))?;
+        let elements = self.element.iter().chain(&self.law).map(PathBuf::from);
+        let inputs: Vec<PathBuf> = [self.mesh.clone()].into_iter().chain(elements).collect();
+        springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
         springfit::check_file(&self.output)?;
         let young = parse_pressure(&self.young).map_err(|e| e.under("--young"))?;
         let named = self.named_fit()?;

@@ -3,8 +3,8 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
+use springfit::report::{self, check_outputs};
 use springfit::study::{self, Index};
-use springfit::{check_folder, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -25,7 +25,7 @@ pub struct Paper {
 impl Paper {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
-        check_folder(&folder)?;
+        check_outputs(&folder, &report::PAPER_FILES, self.index.as_slice())?;
         let index = self.index.as_ref().map_or_else(Index::shipped, |path| Index::load(path))?;
         index.expect(&self.table).map_err(Error::of_option)?;
         let path = match &self.index {

@@ -5,7 +5,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::study::{Controls, Scene, run_with, stages};
-use springfit::{check_folder, report};
+use springfit::{check_apart, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -39,9 +39,10 @@ impl Run {
         }
         let stem = self.scene.file_stem().unwrap_or_default();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
-        check_folder(&folder)?;
+        report::check_scene_outputs(&scene, &folder, &[])?;
         let controls = Arc::new(Controls { checkpoint: self.checkpoint.clone(), ..Controls::default() });
         if scene.fits().iter().any(|fit| fit.recipe.whole().is_some()) {
+            check_apart(self.checkpoint.as_slice(), &scene.inputs()).map_err(|e| e.at_key("--checkpoint"))?;
             end_early(&controls);
         } else if self.checkpoint.is_some() {
             return Err(Error::at(

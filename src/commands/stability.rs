@@ -5,8 +5,8 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
 use springfit::error::Result;
+use springfit::report;
 use springfit::study::{self, Event, Scene};
-use springfit::{check_folder, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -26,11 +26,17 @@ impl Stability {
         let stem = what.map(|what| Path::new(what).file_stem().unwrap_or_default().to_string_lossy());
         let name = stem.map_or("stability".to_string(), |stem| format!("stability-{stem}"));
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(name));
-        check_folder(&folder)?;
+        report::check_outputs(
+            &folder,
+            &report::STABILITY_FILES,
+            &what.map(PathBuf::from).into_iter().collect::<Vec<_>>(),
+        )?;
         let mut progress = |event: Event| terminal.show(event);
         let outcome = match what {
             Some(path) if is_scene(Path::new(path)) => {
-                study::sweep_scene(&Scene::load(Path::new(path))?, &mut progress)?
+                let scene = Scene::load(Path::new(path))?;
+                report::check_outputs(&folder, &report::STABILITY_FILES, &scene.inputs())?;
+                study::sweep_scene(&scene, &mut progress)?
             }
             _ => study::sweep(what.map(Element::load).transpose()?, &mut progress)?,
         };

@@ -8,6 +8,9 @@ use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
+/// What [`Comparison::write`] writes.
+pub const COMPARISON_FILES: [&str; 2] = ["table.csv", "plot.svg"];
+
 /// Rows of text under headings: those of a table and of its CSV file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
@@ -125,7 +128,8 @@ impl Comparison {
     /// # Errors
     /// Nothing can be plotted; the folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
-        let files = [("table.csv", self.csv()), ("plot.svg", self.plot()?)];
+        let [table, plot] = COMPARISON_FILES;
+        let files = [(table, self.csv()), (plot, self.plot()?)];
         write_files(folder, &files)
     }
 

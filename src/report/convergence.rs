@@ -174,12 +174,16 @@ pub fn convergence_csv(convergence: &Convergence) -> String {
     csv(&header, &rows)
 }
 
+/// What [`write_convergence`] writes.
+pub const CONVERGENCE_FILES: [&str; 2] = ["converge.csv", "converge.svg"];
+
 /// Writes `converge.csv` and, where any error is above zero, `converge.svg` into `folder`, and returns the paths.
 ///
 /// # Errors
 /// The plot cannot be drawn; the folder or a file cannot be written.
 pub fn write_convergence(convergence: &Convergence, folder: &Path) -> Result<Vec<PathBuf>> {
-    let mut files = vec![("converge.csv", convergence_csv(convergence))];
-    files.extend(plot(convergence)?.map(|text| ("converge.svg", text)));
+    let [table, figure] = CONVERGENCE_FILES;
+    let mut files = vec![(table, convergence_csv(convergence))];
+    files.extend(plot(convergence)?.map(|text| (figure, text)));
     write_files(folder, &files)
 }

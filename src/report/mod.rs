@@ -19,6 +19,7 @@ mod motion_record;
 mod network;
 mod network_format;
 mod number;
+mod outputs;
 mod paper;
 mod pictures;
 mod rows;
@@ -30,8 +31,8 @@ mod table;
 
 pub use check::{InspectionRecord, PropertyRecord, check_json, check_text};
 pub use columns::Heading;
-pub use comparison::Comparison;
-pub use convergence::{convergence_csv, convergence_text, write_convergence};
+pub use comparison::{COMPARISON_FILES, Comparison};
+pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
 pub use fit_record::FitRecord;
@@ -43,17 +44,19 @@ pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::{network_csv, network_json};
 pub use network_format::{NETWORK_FORMATS, NetworkFile, NetworkFormat};
-pub use paper::{paper_text, write_paper};
+pub use outputs::{check_outputs, check_scene_outputs};
+pub use paper::{PAPER_FILES, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use series::write_series;
-pub use stability::{stability_text, write_stability};
-pub use stretches::{stretches_text, write_stretches};
+pub use stability::{STABILITY_FILES, stability_text, write_stability};
+pub use stretches::{STRETCHES_FILES, stretches_text, write_stretches};
 pub use table::{notes, summary, table};
 
 use crate::error::Result;
-use crate::file::{create_folder, write_whole};
+use crate::file::{create_folder, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
+use outputs::Stems;
 use std::path::{Path, PathBuf};
 
 /// Writes what `output` asks for into `folder`, and returns the paths.
@@ -61,28 +64,24 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The folder or a file cannot be written.
 pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Result<Vec<PathBuf>> {
-    let moved = outcome.motion.iter().flat_map(|motion| &motion.models);
-    let moved: Vec<String> = moved.map(|model| format!("motion {}", model.name)).collect();
-    let fits = outcome.fits.iter().map(|f| f.fit.name.as_str());
-    let mut stems = file_stems(fits.chain(moved.iter().map(String::as_str)));
-    let motion_stems = stems.split_off(outcome.fits.len());
-    let moved = || outcome.motion.iter().flat_map(|motion| &motion.models).zip(&motion_stems);
+    let models = || outcome.motion.iter().flat_map(|motion| &motion.models);
+    let names = models().map(|model| model.name.as_str());
+    let Stems { fits: stems, motions } = Stems::of(outcome.fits.iter().map(|f| f.fit.name.as_str()), names);
+    let moved = || models().zip(&motions);
     let mut written = Vec::new();
-    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    if output.csv {
-        for (fit, stem) in outcome.fits.iter().zip(&stems) {
-            files.push((folder.join(format!("{stem}.csv")), network_csv(&fit.network).into_bytes()));
-        }
-    }
-    for (model, stem) in moved() {
-        files.push((folder.join(format!("{stem}.csv")), motion_csv(model).into_bytes()));
-    }
     let reports = output.report != Some(false);
-    if !files.is_empty() || output.vtu || reports {
+    let tables = output.csv && !outcome.fits.is_empty();
+    if tables || moved().next().is_some() || output.vtu || reports {
         create_folder(folder)?;
     }
-    for (path, content) in files {
-        write_whole(&path, &content)?;
+    for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| tables) {
+        let path = folder.join(format!("{stem}.csv"));
+        write_with(&path, |to| network_csv(&fit.network, to))?;
+        written.push(path);
+    }
+    for (model, stem) in moved() {
+        let path = folder.join(format!("{stem}.csv"));
+        write_whole(&path, motion_csv(model).as_bytes())?;
         written.push(path);
     }
     if output.vtu {
@@ -116,18 +115,4 @@ fn write_files<N: AsRef<Path>>(folder: &Path, files: &[(N, String)]) -> Result<V
         Ok(path)
     };
     files.iter().map(write).collect()
-}
-
-/// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
-fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut stems = vec!["mesh".to_string()];
-    for name in names {
-        let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
-        let dashed: String = name.chars().map(kept).collect();
-        let stem = dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
-        let numbered = (2..).map(|i| format!("{stem}-{i}"));
-        let free = std::iter::once(stem.clone()).chain(numbered).find(|s| !s.is_empty() && !stems.contains(s));
-        stems.extend(free);
-    }
-    stems.split_off(1)
 }

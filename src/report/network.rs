@@ -1,12 +1,12 @@
 //! Networks for simulators.
 
-use super::rows::csv;
 use crate::element::{SpringKind, Tabulation};
 use crate::mesh::Mesh;
-use crate::model::Network;
+use crate::model::{MeasureSpring, Network};
 use crate::springs::{Law, Measure};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 
 /// One spring per line: `kind,points,constant,rest`. Points count from 0. A length spring has N/m and m, a spring on
 /// an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
@@ -16,7 +16,10 @@ use std::collections::BTreeMap;
 ///
 /// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
 /// rest then.
-pub fn network_csv(network: &Network) -> String {
+///
+/// # Errors
+/// The writer fails.
+pub fn network_csv(network: &Network, to: &mut dyn Write) -> io::Result<()> {
     let lawful = network.others.iter().any(|spring| spring.law.is_some());
     let row = |kind: &str, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
         let points: Vec<_> = points.iter().map(usize::to_string).collect();
@@ -36,18 +39,23 @@ pub fn network_csv(network: &Network) -> String {
         row(s.kind.name(), &s.points, s.constant, s.rest, law)
     });
     let header = ["kind", "points", "constant", "rest", "law", "parameters"];
-    csv(&header[..if lawful { 6 } else { 4 }], &lengths.chain(others).collect::<Vec<_>>())
+    let mut table = csv::WriterBuilder::new().flexible(true).from_writer(to);
+    table.write_record(&header[..if lawful { 6 } else { 4 }])?;
+    lengths.chain(others).try_for_each(|row| table.write_record(row))?;
+    table.flush()
 }
 
-/// A network in JSON.
-#[derive(Debug, Serialize)]
+/// A network in JSON; its records are made while they are written.
+#[derive(Serialize)]
 struct NetworkRecord<'a> {
     /// By quantity.
     units: BTreeMap<String, &'static str>,
     /// `[points][axes]`.
-    points: Vec<&'a [f64]>,
+    #[serde(serialize_with = "points")]
+    points: &'a Mesh,
     masses: Option<&'a [f64]>,
-    springs: Vec<SpringRecord<'a>>,
+    #[serde(serialize_with = "springs")]
+    springs: &'a Network,
 }
 
 /// A spring; only one with a law of force has the keys of the law, and only one of a kind of exact networks those of its measure.
@@ -110,8 +118,11 @@ fn units() -> BTreeMap<String, &'static str> {
     [("length".into(), "m"), ("mass".into(), "kg")].into_iter().chain(kinds).collect()
 }
 
-/// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
-pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a Network) -> String {
+fn points<S: Serializer>(mesh: &&Mesh, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(mesh.points.chunks_exact(mesh.dimension))
+}
+
+fn springs<S: Serializer>(network: &&Network, to: S) -> Result<S::Ok, S::Error> {
     let lengths = network.lengths.iter().map(|s| SpringRecord {
         kind: "length",
         points: &s.points,
@@ -121,24 +132,31 @@ pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a 
         parameters: None,
         measure: None,
     });
-    let others = network.others.iter().map(|s| {
+    to.collect_seq(lengths.chain(network.others.iter().map(SpringRecord::of)))
+}
+
+impl<'a> SpringRecord<'a> {
+    fn of(spring: &'a MeasureSpring) -> SpringRecord<'a> {
         let parameters =
-            |law: &'a Law| law.parameters.iter().map(String::as_str).zip(s.parameters.iter().copied()).collect();
+            |law: &'a Law| law.parameters.iter().map(String::as_str).zip(spring.parameters.iter().copied()).collect();
         SpringRecord {
-            kind: s.kind.name(),
-            points: &s.points,
-            constant: s.constant,
-            rest: s.rest,
-            law: s.law.as_deref().map(|law| law.text.as_str()),
-            parameters: s.law.as_deref().map(parameters),
-            measure: MeasureRecord::of(&s.measure),
+            kind: spring.kind.name(),
+            points: &spring.points,
+            constant: spring.constant,
+            rest: spring.rest,
+            law: spring.law.as_deref().map(|law| law.text.as_str()),
+            parameters: spring.law.as_deref().map(parameters),
+            measure: MeasureRecord::of(&spring.measure),
         }
-    });
-    let record = NetworkRecord {
-        units: units(),
-        points: mesh.points.chunks_exact(mesh.dimension).collect(),
-        masses,
-        springs: lengths.chain(others).collect(),
-    };
-    serde_json::to_string(&record).expect("keys are text") + "\n"
+    }
+}
+
+/// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
+///
+/// # Errors
+/// The writer fails.
+pub fn network_json(mesh: &Mesh, masses: Option<&[f64]>, network: &Network, to: &mut dyn Write) -> io::Result<()> {
+    let record = NetworkRecord { units: units(), points: mesh, masses, springs: network };
+    serde_json::to_writer(&mut *to, &record)?;
+    to.write_all(b"\n")
 }

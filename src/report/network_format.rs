@@ -3,7 +3,7 @@
 use super::network::{network_csv, network_json};
 use super::pictures::network_grid;
 use crate::error::{Error, ErrorKind, Result};
-use crate::file::write_whole;
+use crate::file::write_with;
 use crate::mesh::{Mesh, vtk};
 use crate::study::{BodyLoad, FitOutcome};
 use std::path::Path;
@@ -32,9 +32,9 @@ pub const NETWORK_FORMATS: [NetworkFormat; 3] = [
     },
     NetworkFormat {
         ending: "json",
-        write: |path, file| write_whole(path, network_json(file.mesh, file.masses, &file.fit.network).as_bytes()),
+        write: |path, file| write_with(path, |to| network_json(file.mesh, file.masses, &file.fit.network, to)),
     },
-    NetworkFormat { ending: "csv", write: |path, file| write_whole(path, network_csv(&file.fit.network).as_bytes()) },
+    NetworkFormat { ending: "csv", write: |path, file| write_with(path, |to| network_csv(&file.fit.network, to)) },
 ];
 
 impl NetworkFormat {

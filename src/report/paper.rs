@@ -55,6 +55,9 @@ fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
     text
 }
 
+/// What [`write_paper`] writes whatever the tables are.
+pub const PAPER_FILES: [&str; 1] = ["paper.md"];
+
 /// Writes every table as CSV, all of them as Markdown, and the figures as SVG into `folder`; returns the paths.
 ///
 /// # Errors
@@ -92,7 +95,7 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
             }
         }
     }
-    files.push(("paper.md".into(), markdown(paper, &figures)));
+    files.push((PAPER_FILES[0].into(), markdown(paper, &figures)));
     write_files(folder, &files)
 }
 

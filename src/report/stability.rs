@@ -218,6 +218,9 @@ fn shade(error: f64) -> &'static str {
     SHADES[place as usize]
 }
 
+/// What [`write_stability`] writes whatever the subjects are.
+pub const STABILITY_FILES: [&str; 1] = ["stability.csv"];
+
 /// Writes `stability.csv` and a map for each subject as SVG into `folder`, and returns the paths.
 ///
 /// # Errors
@@ -229,8 +232,8 @@ pub fn write_stability(outcome: &StabilityOutcome, folder: &Path) -> Result<Vec<
             subjects.push(&row.subject);
         }
     }
-    let mut files = vec![("stability.csv".to_string(), table(outcome))];
-    for (subject, stem) in subjects.iter().zip(super::file_stems(subjects.iter().copied())) {
+    let mut files = vec![(STABILITY_FILES[0].to_string(), table(outcome))];
+    for (subject, stem) in subjects.iter().zip(super::outputs::file_stems(subjects.iter().copied())) {
         let rows: Vec<&StabilityRow> = outcome.rows.iter().filter(|row| row.subject == *subject).collect();
         files.push((format!("{stem}.svg"), map(subject, &rows)));
     }

@@ -27,6 +27,10 @@ pub fn stretches_text(study: &Stretches) -> String {
     )
 }
 
+/// What [`write_stretches`] writes.
+pub const STRETCHES_FILES: [&str; 6] =
+    ["stretch.csv", "samples.csv", "force.csv", "stretch.svg", "force.svg", "samples.svg"];
+
 /// Writes `stretch`, `force` and `samples` as CSV and SVG files into `folder`, and returns the paths.
 ///
 /// # Errors
@@ -51,12 +55,12 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
         }
     }
     let files = [
-        ("stretch.csv", csv(&texts(&header), &rows)),
-        ("samples.csv", csv(&texts(&sampled_header), &sampled_rows)),
-        ("force.csv", csv(&texts(&forces_header), &forces)),
-        ("stretch.svg", figure(&title(study), ["stretch, %", "%e_rms"], &against_stretch(|fit| &fit.errors))?),
+        (STRETCHES_FILES[0], csv(&texts(&header), &rows)),
+        (STRETCHES_FILES[1], csv(&texts(&sampled_header), &sampled_rows)),
+        (STRETCHES_FILES[2], csv(&texts(&forces_header), &forces)),
+        (STRETCHES_FILES[3], figure(&title(study), ["stretch, %", "%e_rms"], &against_stretch(|fit| &fit.errors))?),
         (
-            "force.svg",
+            STRETCHES_FILES[4],
             figure(
                 &title(study),
                 ["stretch, %", "error of the force that pulls, %"],
@@ -64,7 +68,7 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
             )?,
         ),
         (
-            "samples.svg",
+            STRETCHES_FILES[5],
             figure(
                 &format!("{}: 10 to 100 000 shapes, one element on one thread", study.element),
                 ["fit, ms", "error of the forces at shapes held out, %"],

@@ -2,8 +2,10 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bound;
 pub mod error;
 pub mod file;
+pub mod memory;
 mod named;
 pub mod scalar;
 pub mod symbolic;

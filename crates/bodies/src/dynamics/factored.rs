@@ -2,6 +2,7 @@
 
 use super::equations::{End, Equations, Solved};
 use crate::error::{Error, ErrorKind, Result};
+use crate::memory;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::prelude::MatMut;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -14,6 +15,8 @@ use faer::{Conj, Par, Side};
 /// Columns are eliminated in dense groups from this share on of the work per entry where faer would begin: with three coordinates a
 /// point that is twice as fast on membranes of a thousand triangles.
 const SUPERNODAL: f64 = 0.2;
+const FACTOR: &str = "the factor of an implicit step";
+const ADVICE: &str = "take solver = \"conjugate-gradients\", which needs none, or a mesh with fewer points";
 
 /// The matrix, in the order of elimination, and its Cholesky factor. Entries go straight to their places: a step sorts nothing and
 /// asks for no memory.
@@ -49,9 +52,7 @@ impl Factored {
     /// # Errors
     /// The factor does not fit into memory.
     pub fn new(places: &[(usize, usize)], held: &[bool]) -> Result<Factored> {
-        let large = |e: &dyn std::fmt::Debug| {
-            Error::new(format!("the equations cannot be built: {e:?}")).of_kind(ErrorKind::Limit)
-        };
+        let large = || Error::new(format!("{FACTOR} does not fit into memory: {ADVICE}")).of_kind(ErrorKind::Limit);
         let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
         let analyse = |order: &[usize], ordering| -> Result<_> {
             let n = order.len();
@@ -63,14 +64,14 @@ impl Factored {
             };
             let diagonal = (0..n).map(|i| Pair::new(i, i));
             let pairs: Vec<Pair<usize, usize>> = places.iter().filter_map(lower).chain(diagonal).collect();
-            let (pattern, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &pairs).map_err(|e| large(&e))?;
+            let (pattern, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &pairs).map_err(|_| large())?;
             // The analysis without a permutation reads the upper triangle, whichever side it is told.
             let turned: Vec<Pair<usize, usize>> = pairs.iter().map(|pair| Pair::new(pair.col, pair.row)).collect();
-            let (upper, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &turned).map_err(|e| large(&e))?;
+            let (upper, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &turned).map_err(|_| large())?;
             let supernodal_flop_ratio_threshold = SupernodalThreshold(SUPERNODAL);
             let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold, ..Default::default() };
             let symbolic =
-                factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|e| large(&e))?;
+                factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|_| large())?;
             Ok((place, pattern, symbolic))
         };
         // Once for the order that keeps the factor sparse, once with the rows in that order: then no step permutes.
@@ -89,13 +90,15 @@ impl Factored {
             }
         };
         if u32::try_from(rows.len()).is_err() {
-            return Err(large(&"more than 2³² entries"));
+            return Err(large());
         }
         let slots = places.iter().map(|&(row, column)| slot(row, column) as u32).collect();
         let diagonal = order.iter().map(|&dof| slot(dof, dof)).collect();
         let request = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let request = request.or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let room = Room(MemBuffer::try_new(request).map_err(|e| large(&e))?);
+        let bytes = 8 * (symbolic.len_val() + rows.len()) as u64 + request.unaligned_bytes_required() as u64;
+        memory::require(FACTOR, bytes, ADVICE)?;
+        let room = Room(MemBuffer::try_new(request).map_err(|_| large())?);
         let (values, factor) = (vec![0.0; rows.len() + 1], vec![0.0; symbolic.len_val()]);
         Ok(Factored { order, values, diagonal, slots, symbolic, factor, room, pattern })
     }

@@ -3,12 +3,13 @@
 use super::affine::Affine;
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::quality::Quality;
+use crate::bound;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-const MOST_CELLS: usize = 2_000_000;
+const MOST_CELLS: usize = bound::CELLS as usize;
 
 /// A box of `cells` equal cells per direction, `size` m long, with its least corner at `origin` m.
 ///

@@ -2,13 +2,14 @@
 
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::quality::Quality;
+use crate::bound;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-const MOST_POINTS: usize = 2_000_000;
+const MOST_POINTS: usize = bound::CELLS as usize;
 
 /// A disc of `radius` m about the origin, of linear triangles: a point in the middle and concentric rings of points around it,
 /// at equal distances, the last being the rim. With rings of `n_1 … n_R` points it has `N = 1 + Σ n_r` points,

@@ -104,7 +104,7 @@ impl Network {
     /// The tangent stiffness at rest, `Σ_s k_s g_s g_sᵀ`, N/m; `points` as in the mesh, `[points × dimension]`.
     pub fn stiffness(&self, points: &[f64]) -> Entries {
         let d = self.dimension;
-        let mut entries = Entries::new();
+        let mut entries = Entries::with_capacity(self.entries());
         for spring in &self.lengths {
             let [i, j] = spring.points;
             let (xi, xj) = (&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d]);

@@ -1,6 +1,7 @@
 //! The finite element model.
 
 use super::Entries;
+use super::size::body_entries;
 use crate::element::Tabulation;
 use crate::material::Moduli;
 use crate::mesh::{CellIndex, Mesh};
@@ -23,7 +24,7 @@ pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], 
 /// The assembled stiffness of the mesh, N/m; degree of freedom `point · dimension + direction`.
 pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
     let d = mesh.dimension;
-    let mut entries = Entries::new();
+    let mut entries = Entries::with_capacity(body_entries(mesh));
     each_cell(mesh, |cell, nodes, geometry| {
         let mut r = geometry.stiffness(moduli);
         let table = &mesh.blocks[cell.block].element.tabulation;

@@ -25,3 +25,4 @@ mod vibrations;
 
 pub use nearest::{PositiveFit, nearest_positive};
 pub use outcome::{PositiveOutcome, Route};
+pub use programme::Watch;

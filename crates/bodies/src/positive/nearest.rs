@@ -4,7 +4,7 @@ use super::balance::Balance;
 use super::contents::{Contents, tightened};
 use super::edges::Edges;
 use super::outcome::{PositiveOutcome, Route};
-use super::programme::{Changes, Programme};
+use super::programme::{Changes, Programme, Watch};
 use super::vibrations::Vibrations;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
@@ -30,12 +30,18 @@ impl Default for PositiveFit {
     }
 }
 
-/// The network without negative springs that is nearest to the exact `network` of the mesh; that itself where it has none.
+/// The network without negative springs that is nearest to the exact `network` of the mesh; that itself where it has none. `watch` is
+/// told how far the search has come.
 ///
 /// # Errors
 /// The network is not one of springs of rest length zero, or springs on content have constants below zero (kind `Unsupported`);
 /// no network but that without springs is at rest, the nearest one is not stable, or the solver fails (kind `Infeasible`).
-pub fn nearest_positive(mesh: &Mesh, network: &Network, fit: &PositiveFit) -> Result<(Network, PositiveOutcome)> {
+pub fn nearest_positive(
+    mesh: &Mesh,
+    network: &Network,
+    fit: &PositiveFit,
+    watch: &mut Watch,
+) -> Result<(Network, PositiveOutcome)> {
     check(mesh, network)?;
     let mut outcome = PositiveOutcome { tensions: [1.0; 2], ..PositiveOutcome::default() };
     outcome.negative = network.lengths.iter().filter(|s| s.constant < 0.0).count();
@@ -51,6 +57,7 @@ pub fn nearest_positive(mesh: &Mesh, network: &Network, fit: &PositiveFit) -> Re
         return Err(Error::expected("nonnegative", expected, format!("a mean modulus of {modulus:e} Pa")));
     }
     let none = Contents::default();
+    network.check_size()?;
     let exact = network.stiffness(&mesh.points);
     let search = Search { mesh, network, modulus, exact: &exact };
     let programme = |edges| Programme { mesh, network, edges, contents: &none, modulus, modes: Vec::new() };
@@ -74,7 +81,7 @@ pub fn nearest_positive(mesh: &Mesh, network: &Network, fit: &PositiveFit) -> Re
     }
     for (route, edges, contents) in routes {
         let contents = contents.map_err(Error::clone)?;
-        if let Some(changes) = search.changes(edges, contents, &vibrations)? {
+        if let Some(changes) = search.changes(edges, contents, &vibrations, watch)? {
             outcome.route = route;
             let network = search.finish(edges, contents, &vibrations, changes, &mut outcome)?;
             return Ok((network, outcome));
@@ -105,7 +112,13 @@ impl Search<'_> {
     }
 
     /// `None` where there is no network without negative springs.
-    fn changes(&self, edges: &Edges, contents: &Contents, vibrations: &Vibrations) -> Result<Option<Changes>> {
+    fn changes(
+        &self,
+        edges: &Edges,
+        contents: &Contents,
+        vibrations: &Vibrations,
+        watch: &mut Watch,
+    ) -> Result<Option<Changes>> {
         let d = self.mesh.dimension;
         let mode = |u: &Vec<f64>| {
             let stretch = |[i, j]: &[usize; 2]| (0..d).map(|k| (u[j * d + k] - u[i * d + k]).powi(2)).sum::<f64>();
@@ -113,7 +126,7 @@ impl Search<'_> {
             let springs = edges.pairs.iter().map(stretch);
             springs.chain(contents.energies(self.mesh, self.network, u)).map(|share| share / energy).collect()
         };
-        self.programme(edges, contents, vibrations.shapes.iter().map(mode).collect()).solve()
+        self.programme(edges, contents, vibrations.shapes.iter().map(mode).collect()).solve(watch)
     }
 
     /// The network of these changes, balanced and measured.

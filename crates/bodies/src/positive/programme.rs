@@ -6,7 +6,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
+use clarabel::solver::{
+    DefaultInfo, DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverError, SolverStatus, ZeroConeT,
+};
+use std::sync::mpsc;
 
 /// Of the square of a mode's relative error of energy against the squares of relative changes: a change of every constant by a
 /// tenth costs as much as an error of 0.1 %.
@@ -14,6 +17,12 @@ const MODES: f64 = 1e4;
 /// Of the squares of relative changes of tensions against those of constants. Each change of a tension costs a force inside the
 /// body under homogeneous strain.
 const TENSIONS: f64 = 100.0;
+
+/// Powers of ten from one to the residual at which Clarabel ends.
+const NEAR: usize = 8;
+
+/// Called with how far a search has come, of how much.
+pub type Watch<'a> = dyn FnMut(usize, usize) + 'a;
 
 /// What may change and what should stay.
 pub(super) struct Programme<'a> {
@@ -75,7 +84,7 @@ impl Programme<'_> {
     ///
     /// # Errors
     /// The solver stops without a solution and without a proof that no solution exists.
-    pub fn solve(&self) -> Result<Option<Changes>> {
+    pub fn solve(&self, watch: &mut Watch) -> Result<Option<Changes>> {
         let (mesh, edges, contents) = (self.mesh, self.edges, self.contents);
         let (d, dofs) = (mesh.dimension, mesh.points.len());
         let (count, tensions) = (edges.len(), contents.places.len());
@@ -133,10 +142,28 @@ impl Programme<'_> {
         let cones = [ZeroConeT(equations), NonnegativeConeT(count)];
         let (quadratic, matrix) = (quadratic.matrix(variables, variables), balance.matrix(rows, variables));
         let linear = vec![0.0; variables];
-        let mut solver = DefaultSolver::new(&quadratic, &linear, &matrix, &bounds, &cones, settings)
-            .map_err(|problem| unsolved(&format!("{problem}")))?;
-        solver.solve();
-        let solution = &solver.solution;
+        let (sender, iterates) = mpsc::channel();
+        let solve = move || {
+            let mut solver = DefaultSolver::new(&quadratic, &linear, &matrix, &bounds, &cones, settings)?;
+            solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
+                // Nobody listens once the search is over.
+                let _ = sender.send(nearness(info));
+                false
+            });
+            solver.solve();
+            Ok(solver.solution)
+        };
+        // Clarabel keeps what it reports to, so it works in a thread of its own, which ends the messages with itself.
+        let solution = std::thread::scope(|scope| {
+            let solver = scope.spawn(solve);
+            let mut nearest = 0;
+            for found in iterates {
+                nearest = found.max(nearest);
+                watch(nearest, NEAR);
+            }
+            solver.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        });
+        let solution = solution.map_err(|problem: SolverError| unsolved(&format!("{problem}")))?;
         match solution.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {
                 let changes = |from: usize, to: usize| &solution.x[from..to];
@@ -148,6 +175,12 @@ impl Programme<'_> {
             status => Err(unsolved(&format!("{status:?} after {} iterations", solution.iterations))),
         }
     }
+}
+
+/// How many of the [`NEAR`] powers of ten the largest residual has come down.
+fn nearness(info: &DefaultInfo<f64>) -> usize {
+    let residual = info.gap_rel.max(info.res_primal).max(info.res_dual);
+    if residual > 0.0 { (-residual.log10()).clamp(0.0, NEAR as f64) as usize } else { 0 }
 }
 
 fn unsolved(found: &str) -> Error {

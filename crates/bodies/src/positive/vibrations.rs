@@ -41,7 +41,7 @@ impl Vibrations {
         let shift = modulus / (size * size);
         let system = System::new(&raised(stiffness, &masses, d, shift), &support)?;
         let rigid: usize = unheld.iter().map(|body| body.motions).sum();
-        let Some(factor) = system.cholesky() else { return Ok(Vibrations { masses, ..Vibrations::default() }) };
+        let Some(factor) = system.cholesky()? else { return Ok(Vibrations { masses, ..Vibrations::default() }) };
         let modes = lowest_modes(&system, &factor, &masses, d, (rigid + count).min(system.size()))?;
         let (mut shapes, mut least) = (Vec::new(), None);
         for (square, shape) in modes.squares.iter().zip(modes.shapes) {
@@ -60,7 +60,7 @@ impl Vibrations {
     pub fn are_stable(&self, mesh: &Mesh, stiffness: &Entries) -> Result<bool> {
         let Some(least) = self.least else { return Ok(true) };
         let raised = raised(stiffness, &self.masses, mesh.dimension, UNSTABLE * least);
-        Ok(System::new(&raised, &Support::free(mesh))?.cholesky().is_some())
+        Ok(System::new(&raised, &Support::free(mesh))?.cholesky()?.is_some())
     }
 }
 

@@ -1,13 +1,15 @@
 //! Linear statics: `K u = f` with some displacements prescribed.
 
-use crate::error::{Error, ErrorKind, Result};
-use crate::model::{Entries, Support};
+use super::cholesky::{Analysis, Cholesky, out_of_memory};
+use crate::error::{Error, Result};
+use crate::memory;
+use crate::model::{ADVICE, Entries, Support};
 use crate::springs::norm;
-use faer::Side;
 use faer::linalg::solvers::ShapeCore;
 use faer::prelude::{MatMut, Solve};
-use faer::sparse::linalg::solvers::{Llt, Lu, SymbolicLlt};
-use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
+use faer::sparse::linalg::LuError;
+use faer::sparse::linalg::solvers::Lu;
+use faer::sparse::{Argsort, CreationError, FaerError, Pair, SparseColMat, SymbolicSparseColMat};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
@@ -33,14 +35,14 @@ struct Pattern {
     /// From the order of the entries to that of the matrix.
     order: Argsort<usize>,
     /// Analysed when first needed.
-    cholesky: OnceLock<Option<SymbolicLlt<usize>>>,
+    cholesky: OnceLock<Result<Analysis>>,
 }
 
 /// A factorisation of the matrix of a [`System`].
 #[derive(Debug, Clone)]
 pub enum Factor {
     /// `L Lᵀ`: the matrix is positive definite.
-    Cholesky(Llt<usize, f64>),
+    Cholesky(Cholesky),
     /// `L U` with pivoting: it is not.
     General(Box<Lu<usize, f64>>),
 }
@@ -59,7 +61,10 @@ impl System {
             }
         });
         let (symbolic, order) =
-            SymbolicSparseColMat::try_new_from_indices(free.len(), free.len(), &places).map_err(too_large)?;
+            SymbolicSparseColMat::try_new_from_indices(free.len(), free.len(), &places).map_err(|e| match e {
+                CreationError::Generic(cause) => too_large(cause),
+                CreationError::OutOfBounds { .. } => unreachable!("each place is that of a free degree of freedom"),
+            })?;
         let cholesky = OnceLock::new();
         System::of(Arc::new(Pattern { free, place, symbolic, order, cholesky }), entries, support)
     }
@@ -96,15 +101,34 @@ impl System {
     }
 
     /// Cholesky's factor, or the pivoted one where the matrix is not positive definite; `None` where it is singular.
-    pub fn factorize(&self) -> Option<Factor> {
-        self.cholesky().or_else(|| self.matrix.sp_lu().ok().map(|lu| Factor::General(Box::new(lu))))
+    ///
+    /// # Errors
+    /// The factor does not fit into memory.
+    pub fn factorize(&self) -> Result<Option<Factor>> {
+        if let Some(factor) = self.cholesky()? {
+            return Ok(Some(factor));
+        }
+        let what = "the factor of the stiffness, which is not positive definite,";
+        // L and U; pivoting adds to both.
+        memory::require(what, 2 * self.analysis()?.bytes(), ADVICE)?;
+        match self.matrix.sp_lu() {
+            Ok(lu) => Ok(Some(Factor::General(Box::new(lu)))),
+            Err(LuError::SymbolicSingular { .. }) => Ok(None),
+            Err(LuError::Generic(cause)) => Err(out_of_memory(what, cause)),
+        }
     }
 
     /// Cholesky's factor; `None` where the matrix is not positive definite.
-    pub fn cholesky(&self) -> Option<Factor> {
-        let analyse = || SymbolicLlt::try_new(self.matrix.symbolic(), Side::Lower).ok();
-        let symbolic = self.pattern.cholesky.get_or_init(analyse).clone()?;
-        Llt::try_new_with_symbolic(symbolic, self.matrix.as_ref(), Side::Lower).ok().map(Factor::Cholesky)
+    ///
+    /// # Errors
+    /// The factor does not fit into memory.
+    pub fn cholesky(&self) -> Result<Option<Factor>> {
+        Ok(self.analysis()?.factorize(self.matrix.as_ref())?.map(Factor::Cholesky))
+    }
+
+    fn analysis(&self) -> Result<&Analysis> {
+        let analyse = || Analysis::new(self.matrix.symbolic());
+        self.pattern.cholesky.get_or_init(analyse).as_ref().map_err(Clone::clone)
     }
 
     /// `K x` on the free degrees of freedom.
@@ -173,21 +197,21 @@ impl System {
 }
 
 /// The matrix does not fit into memory.
-fn too_large(cause: impl std::fmt::Debug) -> Error {
-    Error::new(format!("the stiffness matrix cannot be built: {cause:?}")).of_kind(ErrorKind::Limit)
+fn too_large(cause: FaerError) -> Error {
+    out_of_memory("the stiffness", cause)
 }
 
 impl Factor {
     /// `x ← K⁻¹ x` on the free degrees of freedom, of as many vectors as stand in x one after the other.
     pub fn solve(&self, x: &mut [f64]) {
         let rows = match self {
-            Factor::Cholesky(llt) => llt.nrows(),
+            Factor::Cholesky(cholesky) => cholesky.rows(),
             Factor::General(lu) => lu.nrows(),
         };
         let columns = x.len().checked_div(rows).unwrap_or(0);
         let x = MatMut::from_column_major_slice_mut(x, rows, columns);
         match self {
-            Factor::Cholesky(llt) => llt.solve_in_place(x),
+            Factor::Cholesky(cholesky) => cholesky.solve(x),
             Factor::General(lu) => lu.solve_in_place(x),
         }
     }

@@ -193,7 +193,7 @@ fn direction(
             None => System::new(&shifted, &support)?,
         };
         let system = known.insert(system);
-        if let Some(factor) = system.cholesky() {
+        if let Some(factor) = system.cholesky()? {
             let (step, _) = system.solve(&factor, rest);
             return Ok(step.iter().all(|s| s.is_finite()).then_some((step, shift > 0.0)));
         }

@@ -37,7 +37,7 @@ impl<'a> Balance<'a> {
         for group in groups {
             let system = System::new(body, &targets[group[0]].support)?;
             let singular = || Error::new("the finite elements do not stand").of_kind(ErrorKind::Infeasible);
-            let factor = system.cholesky().ok_or_else(singular)?;
+            let factor = system.cholesky()?.ok_or_else(singular)?;
             let (system, factor) = (Arc::new(system), Arc::new(factor));
             if object.newton.is_none() {
                 let loads = group.iter().map(|&l| (l, Arc::new(object.pulls(&targets[l].displacement)))).collect();

@@ -120,7 +120,7 @@ impl<'a> Displacements<'a> {
             None => System::new(entries, support)?,
         });
         self.systems.lock().expect("nothing panics while it holds the systems")[group] = Some(system.clone());
-        Ok(system.cholesky().map(|factor| (system, Arc::new(factor))))
+        Ok(system.cholesky()?.map(|factor| (system, Arc::new(factor))))
     }
 
     /// Displacements of every load, and the tangents at them.
@@ -165,7 +165,7 @@ impl<'a> Displacements<'a> {
             let x = displaced(points, &u);
             let Some(response) = network.respond(&x) else { return Ok(None) };
             let system = System::new(&response.tangent, &target.support)?;
-            let Some(factor) = system.cholesky() else { return Ok(None) };
+            let Some(factor) = system.cholesky()? else { return Ok(None) };
             let (gradients, pulls) = SpringGradients::at(&self.object.network, &x);
             let (system, factor, gradients) = (Arc::new(system), Arc::new(factor), Arc::new(gradients));
             Ok(Some((u, Tangent { system, factor, gradients, loads: vec![(l, Arc::new(pulls))] })))

@@ -1,10 +1,8 @@
 //! What minimises an objective.
 
 use super::objective::Objective;
+use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
-
-/// A search has no more iterations; a swarm keeps what each has found.
-const MOST_ITERATIONS: u64 = 1_000_000_000;
 
 /// What minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -77,8 +75,8 @@ impl Solver {
 
     fn check_numbers(&self) -> Result<()> {
         match self {
-            Solver::General { iterations, .. } if !(1..=MOST_ITERATIONS).contains(iterations) => {
-                Err(Error::expected("iterations", format!("a number from 1 to {MOST_ITERATIONS}"), iterations))
+            Solver::General { iterations, .. } if !(1..=bound::SEARCH_ITERATIONS).contains(iterations) => {
+                check_count("iterations", *iterations, 1, bound::SEARCH_ITERATIONS)
             }
             Solver::General { method: Search::NelderMead, topology: Some(_), .. } => {
                 Err(Error::at("topology", "does not go with \"nelder-mead\", which cannot switch springs off"))

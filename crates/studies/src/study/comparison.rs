@@ -10,6 +10,7 @@ use super::run::run;
 use super::scene::{Output, Scene};
 use super::shapes::random_shapes;
 use super::stretches::sampled_fits;
+use crate::bound::{self, check_count};
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::published::{self, Method};
@@ -86,9 +87,7 @@ pub fn measure_recipes(
     recipes: &[Recipe],
     progress: &mut Progress,
 ) -> Result<Vec<MethodOutcome>> {
-    if !(1..=1_000_000).contains(&shapes) {
-        return Err(Error::expected("shapes", "a number from 1 to 1000000", shapes));
-    }
+    check_count("shapes", shapes as u64, 1, bound::RANDOM_SHAPES)?;
     let springs = Springs::select(element, None)?;
     let points = random_shapes(element, shapes, SEED)?;
     let cells: Vec<usize> = (0..shapes * element.nodes()).collect();

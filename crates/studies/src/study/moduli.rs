@@ -107,7 +107,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
             (0..d).for_each(|k| support.prescribed[p * d + k] = Some(u[k]));
         }
         let system = System::new(entries, &support)?;
-        let Some(factor) = system.factorize() else { return Ok(None) };
+        let Some(factor) = system.factorize()? else { return Ok(None) };
         solutions.push(system.solve(&factor, &vec![0.0; mesh.points.len()]).0);
     }
     let energy = |u: &[f64], v: &[f64]| -> f64 {

@@ -69,6 +69,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     if scene.output().moduli {
         for (done, fit) in fits.iter_mut().enumerate() {
             progress(Event::stage("moduli", done, count));
+            fit.network.check_size()?;
             fit.moduli = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
         }
     }

@@ -4,7 +4,8 @@ use super::cells::{is_known, shape};
 use super::storage::base64;
 use super::xml_tag::escaped;
 use crate::error::{Error, Result};
-use crate::file::write_whole;
+use crate::file::write_with;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// Points, cells and arrays of a picture in ParaView.
@@ -98,45 +99,45 @@ fn check_arrays(arrays: &[Array], count: usize) -> Result<()> {
 /// The grid has no cells, a cell is of no type that VTK has, has the wrong number of points for its type or names a
 /// point that is not there, an array has no name of its own or too few or many values, or the file cannot be written.
 pub fn write(path: &Path, grid: &Grid) -> Result<()> {
-    write_whole(path, &encoded(grid).map_err(|error| error.in_file(path))?)
+    grid.check().map_err(|error| error.in_file(path))?;
+    write_with(path, |to| encode(grid, &mut Text(to)))
 }
 
-fn encoded(grid: &Grid) -> Result<Vec<u8>> {
-    grid.check()?;
-    let mut file = Text(String::new());
-    file.line("<?xml version=\"1.0\"?>");
-    file.line("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
-    file.line("<UnstructuredGrid>");
+fn encode(grid: &Grid, file: &mut Text) -> io::Result<()> {
+    file.line("<?xml version=\"1.0\"?>")?;
+    file.line(
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">",
+    )?;
+    file.line("<UnstructuredGrid>")?;
     let (points, cells) = (grid.points.len(), grid.cell_types.len());
-    file.line(&format!("<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"));
+    file.line(&format!("<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"))?;
     for (section, arrays) in [("PointData", &grid.point_data), ("CellData", &grid.cell_data)] {
-        file.line(&format!("<{section}>"));
+        file.line(&format!("<{section}>"))?;
         for Array { name, components, values } in arrays {
-            file.array("Float64", name, *components, values.iter().copied().map(f64::to_le_bytes));
+            file.array("Float64", name, *components, values.iter().copied().map(f64::to_le_bytes))?;
         }
-        file.line(&format!("</{section}>"));
+        file.line(&format!("</{section}>"))?;
     }
-    file.line("<Points>");
-    file.array("Float64", "Points", 3, grid.points.as_flattened().iter().copied().map(f64::to_le_bytes));
-    file.line("</Points>");
-    file.line("<Cells>");
+    file.line("<Points>")?;
+    file.array("Float64", "Points", 3, grid.points.as_flattened().iter().copied().map(f64::to_le_bytes))?;
+    file.line("</Points>")?;
+    file.line("<Cells>")?;
     for (name, values) in [("connectivity", &grid.connectivity), ("offsets", &grid.ends)] {
-        file.array("Int64", name, 1, values.iter().map(|&value| (value as u64).to_le_bytes()));
+        file.array("Int64", name, 1, values.iter().map(|&value| (value as u64).to_le_bytes()))?;
     }
-    file.array("UInt8", "types", 1, grid.cell_types.iter().map(|&cell_type| [cell_type]));
+    file.array("UInt8", "types", 1, grid.cell_types.iter().map(|&cell_type| [cell_type]))?;
     for end in ["Cells", "Piece", "UnstructuredGrid", "VTKFile"] {
-        file.line(&format!("</{end}>"));
+        file.line(&format!("</{end}>"))?;
     }
-    Ok(file.0.into_bytes())
+    Ok(())
 }
 
-/// The file so far.
-struct Text(String);
+/// Where the file goes.
+struct Text<'a>(&'a mut dyn Write);
 
-impl Text {
-    fn line(&mut self, line: &str) {
-        self.0.push_str(line);
-        self.0.push('\n');
+impl Text<'_> {
+    fn line(&mut self, line: &str) -> io::Result<()> {
+        writeln!(self.0, "{line}")
     }
 
     /// Appends an array in base64, uncompressed: the number of its bytes, and the bytes of its values.
@@ -146,7 +147,7 @@ impl Text {
         name: &str,
         components: usize,
         values: impl ExactSizeIterator<Item = [u8; SIZE]>,
-    ) {
+    ) -> io::Result<()> {
         let size = values.len() * SIZE;
         let mut bytes = Vec::with_capacity(8 + size);
         bytes.extend((size as u64).to_le_bytes());
@@ -154,8 +155,8 @@ impl Text {
         let name = escaped(name);
         // meshio makes a matrix of an array that says that it has one component
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
-        self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"));
-        self.line(&base64(&bytes));
-        self.line("</DataArray>");
+        self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"))?;
+        self.line(&base64(&bytes))?;
+        self.line("</DataArray>")
     }
 }

@@ -20,6 +20,7 @@ use super::input::check_cells;
 use super::normal::Rank;
 use super::norms::{Norm, solve_norm};
 use super::visit::each_cell;
+use crate::bound::{self, check_count};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, State};
@@ -162,9 +163,7 @@ impl SampledFit {
         if !(0.0..=1.0).contains(&self.higher) {
             return Err(Error::expected("higher", "a scale from 0 to 1", self.higher));
         }
-        if self.starts == 0 {
-            return Err(Error::expected("starts", "at least one start", 0));
-        }
+        check_count("starts", self.starts as u64, 1, bound::STARTS)?;
         if let Force::Exact { .. } = self.force {
             return Err(Error::at("force", "is that of exact networks, which are not fitted to samples"));
         }

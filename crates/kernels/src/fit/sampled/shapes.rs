@@ -1,6 +1,7 @@
 //! Deformed shapes of a cell: families of homogeneous and bent ones at random amplitudes and directions, or shapes of a list.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::bound::{self, check_count};
+use crate::error::{Error, Result};
 use crate::fit::input::{check_finite, check_length};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
@@ -10,8 +11,6 @@ use std::sync::Arc;
 const LONGEST: usize = 1 << 16;
 /// And so many coordinates.
 const WIDEST: usize = 256;
-/// Shapes of a fit.
-const MOST: usize = 1_000_000_000;
 /// A prime that scatters the states of the cells.
 const STRIDE: usize = 1_000_003;
 /// Of the shapes of a list each fifth is held out.
@@ -97,14 +96,8 @@ impl Sampling {
     /// # Errors
     /// A number is out of range, a list is empty or of the wrong length, or a family needs a solid.
     pub fn check(&self, dimension: usize) -> Result<()> {
-        for (key, count) in [("shapes", self.shapes.max(1)), ("held_out", self.held_out)] {
-            if count > MOST {
-                return Err(Error::expected(key, format!("at most {MOST} shapes"), count).of_kind(ErrorKind::Limit));
-            }
-        }
-        if self.shapes == 0 {
-            return Err(Error::expected("shapes", "at least one shape", 0));
-        }
+        check_count("shapes", self.shapes as u64, 1, bound::SHAPES)?;
+        check_count("held_out", self.held_out as u64, 0, bound::SHAPES)?;
         let [least, largest] = self.stretch;
         if !(-2.0..=2.0).contains(&least) || !(least..=2.0).contains(&largest) {
             return Err(Error::expected("stretch", "a range within -2 to 2", format!("{least} to {largest}")));

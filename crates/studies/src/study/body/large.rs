@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::material::{Energy, State};
 use crate::mesh::Mesh;
 use crate::model::Network;
-use crate::model::{Body, Elastic, displaced};
+use crate::model::{Body, Elastic, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton};
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
@@ -44,6 +44,9 @@ impl LargeBody {
         if mesh.cell_dimension() < mesh.dimension {
             let problem = "is known for cells that fill their space, found a surface or lines in space";
             return Err(Error::at("material.law", problem));
+        }
+        if !cases.is_empty() {
+            check_body(mesh)?;
         }
         let mut body = LargeBody { newton, ..LargeBody::at_rest(energy, state) };
         for (done, case) in cases.iter().enumerate() {
@@ -85,6 +88,9 @@ impl LargeBody {
     /// # Errors
     /// The equations do not fit into memory.
     pub fn compare(&self, mesh: &Mesh, cases: &[Case], network: &Network) -> Result<Vec<LoadOutcome>> {
+        if !cases.is_empty() {
+            network.check_size()?;
+        }
         let mut loads = Vec::new();
         for (i, case) in cases.iter().enumerate() {
             let start = Instant::now();

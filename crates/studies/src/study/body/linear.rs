@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::mesh::Mesh;
 use crate::model::Network;
-use crate::model::{Support, finite_elements};
+use crate::model::{Support, check_body, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
@@ -49,6 +49,7 @@ impl LinearBody {
         if cases.is_empty() {
             return Ok(body);
         }
+        check_body(mesh)?;
         let start = Instant::now();
         let entries = finite_elements(mesh, moduli);
         let assembly = start.elapsed().as_secs_f64();
@@ -58,13 +59,7 @@ impl LinearBody {
             if first == i {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?;
-                let factor = system.cholesky().ok_or_else(|| {
-                    let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
-                    let bending = "; surfaces and curves resist no bending, so hold their points across them";
-                    let embedded = mesh.cell_dimension() < mesh.dimension;
-                    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" }))
-                        .of_kind(ErrorKind::Infeasible)
-                })?;
+                let factor = definite(&system, mesh)?;
                 body.systems.push((system, factor));
                 body.system_of.push(body.systems.len() - 1);
                 setup.push(start.elapsed().as_secs_f64());
@@ -104,6 +99,7 @@ impl LinearBody {
         if cases.is_empty() {
             return Ok(answers);
         }
+        network.check_size()?;
         let start = Instant::now();
         let entries = network.stiffness(&mesh.points);
         let assembly = start.elapsed().as_secs_f64();
@@ -114,11 +110,11 @@ impl LinearBody {
             if index == systems.len() {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?;
-                let factor = system.factorize();
+                let factor = system.factorize().map_err(|e| e.at_key("mesh"))?;
                 let seconds = start.elapsed().as_secs_f64();
                 let (body, body_factor) = &self.systems[index];
                 let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
-                let other = other.and_then(|body| body.cholesky().map(|factor| (body, factor)));
+                let other = other.map(|body| definite(&body, mesh).map(|factor| (body, factor))).transpose()?;
                 let (body, body_factor) = other.as_ref().map_or((body, body_factor), |(body, factor)| (body, factor));
                 let stability = compare_energies(&system, factor.as_ref(), body, body_factor);
                 systems.push((system, factor, stability, seconds));
@@ -146,6 +142,20 @@ impl LinearBody {
         }
         Ok(answers)
     }
+}
+
+/// Cholesky's factor of the equations of the finite elements.
+///
+/// # Errors
+/// Some motion has no stiffness, or the factor does not fit into memory.
+fn definite(system: &System, mesh: &Mesh) -> Result<Factor> {
+    let factor = system.cholesky().map_err(|e| e.at_key("mesh"))?;
+    factor.ok_or_else(|| {
+        let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
+        let bending = "; surfaces and curves resist no bending, so hold their points across them";
+        let embedded = mesh.cell_dimension() < mesh.dimension;
+        Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" })).of_kind(ErrorKind::Infeasible)
+    })
 }
 
 fn moving_points(system: &System, stability: &Stability, dimension: usize) -> Vec<usize> {

@@ -7,6 +7,7 @@ use super::load::{LoadCase, LoadEntry};
 use super::motion::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
+use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::file;
 use crate::material::{Energy, Material};
@@ -76,6 +77,7 @@ impl Scene {
         if entry.output.frequencies > 0 && entry.material.density.is_none() {
             return Err(Error::expected("output.frequencies", "a density in [material]", "none"));
         }
+        check_count("output.frequencies", entry.output.frequencies as u64, 0, bound::MODES)?;
         check_fits(&fits, &entry.material, &loads)?;
         if let Some(i) = loads.iter().position(|load| RESERVED.contains(&load.name.as_str())) {
             let expected = format!("a name other than {}", RESERVED.join(", "));
@@ -243,6 +245,19 @@ impl Scene {
                 .map_err(|e| e.placed(|e| Error::at("material.law", e.problem()).in_file(&self.path)))
         };
         self.law().map(load).transpose()
+    }
+
+    /// The files that it is read from, and those that it names: of the mesh, of elements, laws and data.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let mut files = vec![self.path.clone()];
+        files.extend(self.mesh.files(folder));
+        files.extend(self.law().map(|law| PathBuf::from(law_at(law, folder))));
+        let measured = self.loads.iter().filter_map(|load| load.measured.as_ref());
+        files.extend(measured.map(|entry| folder.join(&entry.file)));
+        let sampled = self.fits.iter().filter_map(|fit| fit.recipe.sampled());
+        files.extend(sampled.flat_map(|recipe| recipe.files()));
+        files
     }
 
     /// kg/m³, where the scene gives one.

@@ -7,6 +7,7 @@ use super::motion::MotionEntry;
 use super::output::Output;
 use super::part::Part;
 use super::value::Pressure;
+use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::solve::Newton;
@@ -89,12 +90,8 @@ impl NewtonEntry {
             iterations: self.iterations.unwrap_or(newton.iterations),
             tolerance: self.tolerance.unwrap_or(newton.tolerance),
         };
-        if !(1..=100_000).contains(&newton.steps) {
-            return Err(Error::expected("steps", "a number from 1 to 100000", newton.steps));
-        }
-        if newton.iterations == 0 {
-            return Err(Error::expected("iterations", "a number above 0", 0));
-        }
+        check_count("steps", newton.steps as u64, 1, bound::LOAD_STEPS)?;
+        check_count("iterations", newton.iterations as u64, 1, bound::ITERATIONS)?;
         if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
             return Err(Error::expected("tolerance", "a share above 0 and below 1", newton.tolerance));
         }

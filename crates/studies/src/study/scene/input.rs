@@ -1,6 +1,7 @@
 //! Where the mesh of a scene comes from.
 
 use super::elements::{load_element, load_elements};
+use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
 use serde::Deserialize;
@@ -69,7 +70,7 @@ pub struct DiscEntry {
 
 /// Rings and points that a disc may have at most; more is a slip of the pen.
 const MOST_RINGS: usize = 800;
-const MOST_POINTS: usize = 2_000_000;
+const MOST_POINTS: usize = bound::CELLS as usize;
 
 fn one() -> f64 {
     1.0
@@ -96,6 +97,13 @@ impl MeshInput {
             quality.gate()?;
         }
         Ok(())
+    }
+
+    /// The files that it names, relative to `folder`; names of shipped elements lead to no file.
+    pub fn files(&self, folder: &Path) -> Vec<PathBuf> {
+        let of_box = self.generated.iter().map(|entry| &entry.element);
+        let elements = of_box.chain(self.disc.iter().map(|entry| &entry.element)).chain(&self.elements);
+        self.file.iter().map(|file| folder.join(file)).chain(elements.map(|name| folder.join(name))).collect()
     }
 
     /// What is read or generated, in words.

@@ -2,8 +2,9 @@
 
 use super::part::Part;
 use super::value::Varying;
+use crate::bound::{self, check_count};
 use crate::dynamics::{Integrator, LEAST_TOLERANCE, Options, Solver};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::Lumping;
 use crate::study::choice::choice;
 use crate::symbolic::{Expr, Scope, parse_rational};
@@ -116,9 +117,6 @@ struct ForceEntry {
     each: bool,
 }
 
-const MOST_STEPS: f64 = 1e9;
-/// Rows of a motion's table over time.
-const MOST_STATES: f64 = 1e6;
 /// No time, acceleration or damping is larger; beyond, squares leave the range of numbers.
 const LARGEST: f64 = 1e30;
 /// Quotients of decimals are not exact.
@@ -156,8 +154,9 @@ impl MotionEntry {
             return Err(Error::expected("duration", format!("at least one step of {step} s"), format!("{duration} s")));
         }
         let steps = (duration / step * SLACK).ceil();
-        if steps > MOST_STEPS {
-            return Err(Error::expected("step", format!("at most {MOST_STEPS:e} steps in all"), format!("{steps:e}")));
+        if steps > bound::STEPS as f64 {
+            let expected = format!("at most {:e} steps in all", bound::STEPS as f64);
+            return Err(Error::expected("step", expected, format!("{steps:e}")).of_kind(ErrorKind::Limit));
         }
         let every = match self.every {
             None => (duration / STATES).max(step),
@@ -166,9 +165,10 @@ impl MotionEntry {
         if every < step * (1.0 - 1e-9) {
             return Err(Error::expected("every", format!("at least one step of {step} s"), format!("{every} s")));
         }
-        if duration / every > MOST_STATES {
-            let found = format!("{:.0}", duration / every);
-            return Err(Error::expected("every", format!("at most {MOST_STATES} states in all"), found));
+        if duration / every > bound::STATES as f64 {
+            let (expected, found) =
+                (format!("at most {} states in all", bound::STATES), format!("{:.0}", duration / every));
+            return Err(Error::expected("every", expected, found).of_kind(ErrorKind::Limit));
         }
         let gravity = self.gravity.unwrap_or_default();
         if let Some(g) = gravity.iter().find(|g| !(g.abs() <= LARGEST)) {
@@ -269,9 +269,7 @@ impl StepEntry<'_> {
         let options = Options { integrator, solver, linear: self.linear, ..Options::default() };
         let iterations = self.iterations.unwrap_or(options.iterations);
         let tolerance = self.tolerance.unwrap_or(options.tolerance);
-        if iterations == 0 {
-            return Err(Error::expected("iterations", "a number above 0", 0));
-        }
+        check_count("iterations", iterations as u64, 1, bound::ITERATIONS)?;
         if !(tolerance > 0.0 && tolerance < 1.0) {
             return Err(Error::expected("tolerance", "a share above 0 and below 1", tolerance));
         }

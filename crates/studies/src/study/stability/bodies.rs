@@ -90,7 +90,7 @@ fn solved(
 ) -> Result<StabilityRow> {
     let of = |verdict| StabilityRow::new(subject, Family::Contrast, case, "factor, refined once", verdict);
     let system = System::new(entries, support)?;
-    let Some(factor) = system.cholesky() else {
+    let Some(factor) = system.cholesky()? else {
         return Ok(of(Verdict::Refused("the stiffness is not positive definite in rounding".into())));
     };
     let (u, residual) = system.solve(&factor, f);
@@ -105,7 +105,7 @@ fn solved(
     let ones = vec![1.0; f.len()];
     let largest = largest_square(scaled.iter().map(|e| (e.row, e.col, e.val)), &ones, &held);
     let scaled = System::new(&scaled, support)?;
-    let softest = scaled.cholesky().map(|factor| 1.0 / (largest * compliance(&factor, scaled.size())));
+    let softest = scaled.cholesky()?.map(|factor| 1.0 / (largest * compliance(&factor, scaled.size())));
     let allowed = (f64::EPSILON / softest.unwrap_or(0.0)).max(PROMISED);
     let verdict = match error {
         error if error <= PROMISED => Verdict::Accurate,

@@ -3,7 +3,7 @@
 use super::raised::{RELEASE, Raised};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Entries, Lumping, Support, finite_elements, lumped_masses, unheld_bodies};
+use crate::model::{Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies};
 use crate::solve::{System, lowest_modes};
 use crate::study::outcome::{FrequencyOutcome, Outcome};
 use crate::study::progress::{Event, Progress};
@@ -45,9 +45,11 @@ pub fn natural_frequencies(
         let found = vibrations.of(stiffness).map_err(|e| e.problem().to_string());
         FrequencyOutcome { name: name.into(), rigid, found }
     };
+    check_body(mesh)?;
     let mut all = vec![of("finite elements", &finite_elements(mesh, material.moduli()))];
     for (done, fit) in outcome.fits.iter().enumerate() {
         progress(Event::stage("frequencies", done + 1, total));
+        fit.network.check_size()?;
         all.push(of(&fit.fit.name, &fit.network.stiffness(&mesh.points)));
     }
     Ok(all)
@@ -67,16 +69,16 @@ impl Vibrations<'_> {
     fn of(&self, stiffness: &Entries) -> Result<Vec<f64>> {
         let d = self.mesh.dimension;
         let system = System::new(stiffness, self.support)?;
-        if let Some(factor) = system.cholesky().filter(|_| self.rigid == 0) {
+        if let Some(factor) = system.cholesky()?.filter(|_| self.rigid == 0) {
             return Ok(lowest_modes(&system, &factor, self.masses, d, self.count)?.frequencies());
         }
         // (K + σ M) φ = (ω² + σ) M φ.
         let mut raised = Raised::new(stiffness.clone(), self.masses, self.support, d);
         let largest = raised.largest;
         let releases = || Error::new("some motion releases energy: it does not vibrate");
-        raised.by(RELEASE * largest)?.cholesky().ok_or_else(releases)?;
+        raised.by(RELEASE * largest)?.cholesky()?.ok_or_else(releases)?;
         let system = raised.by(SHIFT * largest)?;
-        let factor = system.cholesky().ok_or_else(releases)?;
+        let factor = system.cholesky()?.ok_or_else(releases)?;
         let modes = lowest_modes(&system, &factor, self.masses, d, self.rigid + self.count)?;
         let squares = modes.squares[self.rigid..].iter().map(|square| square - SHIFT * largest);
         Ok(squares.map(|square| square.max(0.0).sqrt() / std::f64::consts::TAU).collect())

@@ -5,7 +5,7 @@ use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Outc
 use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;
-use crate::model::{Body, Elastic, LinearElastic, Network, Support, finite_elements};
+use crate::model::{Body, Elastic, LinearElastic, Network, Support, check_body, finite_elements};
 use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, MotionRecipe};
@@ -55,6 +55,7 @@ pub fn move_models(
             }
             None => {
                 options.linear = true;
+                check_body(mesh)?;
                 let stiffness = finite_elements(mesh, material.moduli());
                 let body = LinearElastic { points: &mesh.points, stiffness };
                 run.follow((name, None), &body, damping, options, true, progress)?
@@ -209,6 +210,7 @@ fn indefinite(name: &str, network: &Network) -> String {
 ///
 /// `K + σ M` is positive definite from `σ = −ω²` of the lowest mode on.
 fn growth(network: &Network, mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
+    network.check_size()?;
     let stiffness = network.stiffness(&mesh.points);
     let mut raised = Raised::new(stiffness, &planned.masses, &planned.support, mesh.dimension);
     let largest = raised.largest;
@@ -216,7 +218,7 @@ fn growth(network: &Network, mesh: &Mesh, planned: &Planned) -> Result<Option<f6
         return Ok(None);
     }
     let mut shift = RELEASE * largest;
-    let mut stands = |shift: f64| -> Result<bool> { Ok(raised.by(shift)?.cholesky().is_some()) };
+    let mut stands = |shift: f64| -> Result<bool> { Ok(raised.by(shift)?.cholesky()?.is_some()) };
     if stands(shift)? {
         return Ok(None);
     }

@@ -65,7 +65,11 @@ impl FitKind for ExactRecipe {
         let seconds_assembly = start.elapsed().as_secs_f64();
         if let Some(positive) = &self.positive {
             let start = Instant::now();
-            let (nearest, found) = nearest_positive(mesh, &network, positive)?;
+            let search = format!("{}: nearest network", task.name);
+            let (nearest, found) = {
+                let mut watch = |done, total| progress(Event::stage(&search, done, total));
+                nearest_positive(mesh, &network, positive, &mut watch)?
+            };
             if found.route != Route::Unchanged {
                 // Its springs belong to the whole body.
                 cells.clear();

@@ -100,6 +100,7 @@ impl ShapesEntry {
             let path = folder.join(path);
             let numbers = numbers_of(&file::read_text(&path)?).map_err(|e| e.in_file(&path))?;
             sampling.source = Source::Gradients(Arc::new(numbers));
+            recipe.gradients = Some(path);
         }
         if let Some(loads) = self.loads {
             if loads.is_empty() {

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::fit::{Family, SampledFit, Sampling, Source, Weights};
 use crate::springs::Springs;
 use crate::study::fits::facts::SceneFacts;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A sampled fit before the mesh is known.
@@ -18,6 +19,8 @@ pub struct SampledRecipe {
     pub loads: Vec<String>,
     /// The energy, where the material has none: a shipped one's name, or the path of a file.
     pub law: Option<String>,
+    /// The file that the shapes were read from.
+    pub gradients: Option<PathBuf>,
 }
 
 impl Default for SampledRecipe {
@@ -26,11 +29,16 @@ impl Default for SampledRecipe {
         let families = vec![Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
         let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
         let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
-        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None }
+        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None, gradients: None }
     }
 }
 
 impl SampledRecipe {
+    /// The files that it names; the name of a shipped energy leads to no file.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        self.law.iter().map(PathBuf::from).chain(self.gradients.clone())
+    }
+
     /// The fit of one element's springs; `states` are positions of the mesh where the recipe names loads.
     ///
     /// # Errors

@@ -96,7 +96,7 @@ impl<'a> WholeBody<'a> {
             return Err(Error::expected(key, expected, found));
         }
         let system = System::new(self.entries(), self.support)?;
-        let factor = system.cholesky().ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
+        let factor = system.cholesky()?.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
         Ok(self.held.get_or_init(|| (system, factor)))
     }
 

@@ -1,6 +1,7 @@
 //! The keys of a `[[fit]]` whose objective is "whole".
 
 use super::recipe::{LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
+use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective};
 use crate::study::choice::choice;
@@ -93,9 +94,8 @@ impl WholeEntry {
         if !(settings.range >= 1.0) {
             return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
         }
-        if settings.iterations == 0 {
-            return Err(Error::expected("iterations", "a number above 0", 0));
-        }
+        check_count("iterations", settings.iterations as u64, 1, bound::ITERATIONS)?;
+        check_count("frequencies", self.frequencies.unwrap_or(0) as u64, 0, bound::MODES)?;
         if settings.residual == Residual::Forces && self.frequencies.is_some() {
             return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
         }

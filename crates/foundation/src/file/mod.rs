@@ -1,10 +1,15 @@
 //! Files on disk: read with an error that names them, written whole or not at all.
 
+mod identity;
+mod partial;
+
+pub use identity::check_apart;
+
 use crate::error::{Error, ErrorKind, Result};
+use partial::Partial;
 use std::fs;
-use std::io::{Read, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// More than a mesh has that fits into memory with its model; what is no file on a disk may never end.
 const LARGEST_FILE: u64 = 4_000_000_000;
@@ -52,28 +57,43 @@ pub fn ending(path: &Path) -> String {
 }
 
 /// Creates `path` with `content`, or replaces it; a failure leaves what was there before. A link stays one, and a file that is
-/// replaced keeps its permissions; what is no file, such as a device, is written to as it is.
+/// replaced keeps its permissions; what is no file, such as a device, is written to as it is. What killed programs left of such files
+/// in that folder is removed.
 ///
 /// # Errors
 /// The folder is missing or read-only, or the disk is full.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
+    write_with(path, |file| file.write_all(content))
+}
+
+/// As [`write_whole`], with content that is made while it is written.
+///
+/// # Errors
+/// As there.
+pub fn write_with(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     if path.file_name().is_none() || path.is_dir() {
         return Err(unwritable("expected the name of a file to write, found a folder", path));
     }
     refuse_protected(path)?;
+    // A file that is not there yet has no other name.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = fs::metadata(&target).ok();
+    let write = |file: &fs::File| {
+        let mut buffer = BufWriter::new(file);
+        content(&mut buffer)?;
+        buffer.flush()
+    };
     let written = if old.as_ref().is_some_and(|old| !old.is_file()) {
-        fs::File::options().write(true).open(&target).and_then(|mut file| file.write_all(content))
+        fs::File::options().write(true).open(&target).and_then(|file| write(&file))
     } else {
-        let partial = partial_beside(&target);
-        let written = fs::File::create(&partial).and_then(|mut file| {
-            old.map_or(Ok(()), |old| file.set_permissions(old.permissions()))?;
-            file.write_all(content)?;
-            file.sync_all()?;
-            fs::rename(&partial, &target)
-        });
-        written.inspect_err(|_| drop(fs::remove_file(&partial)))
+        Partial::beside(&target).and_then(|partial| {
+            let written = old
+                .map_or(Ok(()), |old| partial.file.set_permissions(old.permissions()))
+                .and_then(|()| write(&partial.file))
+                .and_then(|()| partial.file.sync_all())
+                .and_then(|()| partial.rename(&target));
+            written.inspect_err(|_| drop(partial.remove()))
+        })
     };
     written.map_err(|e| Error::io("cannot be written", e).in_file(path))
 }
@@ -93,13 +113,6 @@ fn refuse_protected(path: &Path) -> Result<()> {
     Err(unwritable(problem, path))
 }
 
-/// A name of its own in each process and thread, short whatever the file is called.
-fn partial_beside(path: &Path) -> PathBuf {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    path.with_file_name(format!(".springfit.{}.{count}.partial", std::process::id()))
-}
-
 /// Whether files could be written into `path`, which may not be there yet: asked before long work. Nothing stays behind.
 ///
 /// # Errors
@@ -115,8 +128,7 @@ fn probe(path: &Path, name: &Path) -> Result<()> {
     if !place.is_dir() {
         return Err(unwritable("the folder cannot be created: a file stands in the way", name));
     }
-    let partial = partial_beside(&place.join("probe"));
-    let tried = fs::File::create(&partial).and_then(|_| fs::remove_file(&partial));
+    let tried = Partial::beside(&place.join("probe")).and_then(Partial::remove);
     tried.map_err(|e| Error::io("nothing can be written there", e).in_file(name))
 }
 

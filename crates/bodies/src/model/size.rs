@@ -1,0 +1,52 @@
+//! Whether the stiffness of a model fits into memory: asked before it is assembled.
+
+use super::network::Network;
+use crate::error::Result;
+use crate::memory;
+use crate::mesh::Mesh;
+
+/// Bytes for each entry of the lower triangle: 24 of its own, and while equations are made of them 16 for the place of each of the
+/// two that it gives, 8 for their order, 8 to sort them and 8 for their values.
+const BYTES: u64 = 24 + 2 * (16 + 8 + 8 + 8);
+/// What to do where a model is too large.
+pub(crate) const ADVICE: &str = "take a mesh with fewer points, or a machine with more memory";
+
+/// Entries of the lower triangle of a matrix with so many rows.
+fn triangle(rows: usize) -> usize {
+    rows * (rows + 1) / 2
+}
+
+fn check(what: &str, entries: usize) -> Result<()> {
+    memory::require(what, entries as u64 * BYTES, ADVICE).map_err(|e| e.at_key("mesh"))
+}
+
+/// The number of [`finite_elements`](super::finite_elements)' entries.
+pub(super) fn body_entries(mesh: &Mesh) -> usize {
+    let block = |block: &crate::mesh::CellBlock| block.cells().len() * triangle(block.element.nodes() * mesh.dimension);
+    mesh.blocks.iter().map(block).sum()
+}
+
+/// That the stiffness of the finite elements and its equations fit into memory.
+///
+/// # Errors
+/// They do not; kind `Limit`.
+pub fn check_body(mesh: &Mesh) -> Result<()> {
+    check("the stiffness of the finite elements", body_entries(mesh))
+}
+
+impl Network {
+    /// The number of [`stiffness`](Network::stiffness)' entries.
+    pub(super) fn entries(&self) -> usize {
+        let d = self.dimension;
+        let others: usize = self.others.iter().map(|spring| triangle(spring.points.len() * d)).sum();
+        self.lengths.len() * triangle(2 * d) + others
+    }
+
+    /// That the stiffness and its equations fit into memory.
+    ///
+    /// # Errors
+    /// They do not; kind `Limit`.
+    pub fn check_size(&self) -> Result<()> {
+        check("the stiffness of a network", self.entries())
+    }
+}

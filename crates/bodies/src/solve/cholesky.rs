@@ -1,0 +1,84 @@
+//! Cholesky's factor of a sparse matrix, in memory that is there.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::memory;
+use crate::model::ADVICE;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::solvers::LltError;
+use faer::prelude::MatMut;
+use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
+use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Side, get_global_parallelism};
+use std::sync::Arc;
+
+/// What all factors of matrices of one pattern share.
+#[derive(Debug, Clone)]
+pub(super) struct Analysis(Arc<SymbolicCholesky<usize>>);
+
+/// `L`, of `L Lᵀ`.
+#[derive(Debug, Clone)]
+pub struct Cholesky {
+    analysis: Analysis,
+    values: Vec<f64>,
+}
+
+impl Analysis {
+    /// # Errors
+    /// It does not fit into memory.
+    pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Analysis> {
+        factorize_symbolic_cholesky(pattern, Side::Lower, Default::default(), Default::default())
+            .map(|symbolic| Analysis(Arc::new(symbolic)))
+            .map_err(|cause| out_of_memory("the analysis of the stiffness", cause))
+    }
+
+    /// Bytes that a factor takes, those with which it is made among them.
+    pub fn bytes(&self) -> u64 {
+        let scratch = self.0.factorize_numeric_llt_scratch::<f64>(get_global_parallelism(), Default::default());
+        8 * self.0.len_val() as u64 + scratch.unaligned_bytes_required() as u64
+    }
+
+    /// The factor; `None` where the matrix is not positive definite.
+    ///
+    /// # Errors
+    /// It does not fit into memory.
+    pub fn factorize(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<Option<Cholesky>> {
+        let what = "the factor of the stiffness";
+        memory::require(what, self.bytes(), ADVICE)?;
+        let full = || out_of_memory(what, FaerError::OutOfMemory);
+        let mut values = Vec::new();
+        values.try_reserve_exact(self.0.len_val()).map_err(|_| full())?;
+        values.resize(self.0.len_val(), 0.0);
+        let par = get_global_parallelism();
+        let scratch = self.0.factorize_numeric_llt_scratch::<f64>(par, Default::default());
+        let mut room = MemBuffer::try_new(scratch).map_err(|_| full())?;
+        let (stack, none) = (MemStack::new(&mut room), Default::default());
+        let done = self.0.factorize_numeric_llt(&mut values, matrix, Side::Lower, none, par, stack, Default::default());
+        match done {
+            Ok(_) => Ok(Some(Cholesky { analysis: self.clone(), values })),
+            Err(LltError::NonPositivePivot { .. }) => Ok(None),
+        }
+    }
+}
+
+impl Cholesky {
+    pub(super) fn rows(&self) -> usize {
+        self.analysis.0.nrows()
+    }
+
+    pub(super) fn solve(&self, x: MatMut<'_, f64>) {
+        let Analysis(symbolic) = &self.analysis;
+        let par = get_global_parallelism();
+        let mut room = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(x.ncols(), par));
+        let factor = LltRef::new(symbolic, &self.values);
+        factor.solve_in_place_with_conj(Conj::No, x, par, MemStack::new(&mut room));
+    }
+}
+
+/// What the estimates before did not see coming.
+pub(super) fn out_of_memory(what: &str, cause: FaerError) -> Error {
+    let cause = match cause {
+        FaerError::IndexOverflow => "has more entries than can be counted",
+        _ => "does not fit into memory",
+    };
+    Error::new(format!("{what} {cause}: {ADVICE}")).of_kind(ErrorKind::Limit)
+}

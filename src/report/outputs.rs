@@ -1,0 +1,80 @@
+//! The files that a command writes, known before its work.
+
+use crate::error::Result;
+use crate::file::{check_apart, check_file, check_folder};
+use crate::study::Scene;
+use std::path::{Path, PathBuf};
+
+/// What the finite elements are called among the models that move.
+const BODY: &str = "finite elements";
+
+/// That these files can be written into `folder`, which may not be there yet, and that none is one of the inputs.
+///
+/// # Errors
+/// Names the file or the folder.
+pub fn check_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Result<()> {
+    check_folder(folder)?;
+    let files: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
+    check_apart(&files, inputs)?;
+    // A folder that is yet to come holds nothing that is in the way.
+    files.iter().filter(|file| file.symlink_metadata().is_ok()).try_for_each(|file| check_file(file))
+}
+
+/// The same of all that a run of the scene writes.
+///
+/// # Errors
+/// As there.
+pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Result<()> {
+    let output = scene.output();
+    let fits: Vec<&str> = scene.fits().iter().map(|fit| fit.name.as_str()).collect();
+    let recipe = scene.motion();
+    let bodies = recipe.filter(|recipe| recipe.finite_elements).map(|_| BODY);
+    let moved: Vec<&str> = recipe.map_or(Vec::new(), |_| bodies.into_iter().chain(fits.iter().copied()).collect());
+    let Stems { fits, motions } = Stems::of(fits.iter().copied(), moved.iter().copied());
+    let mut names: Vec<String> = motions.iter().map(|stem| format!("{stem}.csv")).collect();
+    if output.csv {
+        names.extend(fits.iter().map(|stem| format!("{stem}.csv")));
+    }
+    if output.vtu {
+        names.push("mesh.vtu".into());
+        names.extend(fits.iter().map(|stem| format!("{stem}.vtu")));
+        names.extend(motions.iter().map(|stem| format!("{stem}.pvd")));
+        motions.iter().try_for_each(|stem| check_folder(&folder.join(stem)))?;
+    }
+    if output.report != Some(false) {
+        names.push("report.json".into());
+    }
+    let inputs: Vec<PathBuf> = scene.inputs().into_iter().chain(more.iter().cloned()).collect();
+    check_outputs(folder, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)
+}
+
+/// The files' names without their endings.
+pub(super) struct Stems {
+    pub fits: Vec<String>,
+    pub motions: Vec<String>,
+}
+
+impl Stems {
+    /// Of the fits, and of the models that move.
+    pub fn of<'a>(fits: impl Iterator<Item = &'a str>, moved: impl Iterator<Item = &'a str>) -> Stems {
+        let fits: Vec<&str> = fits.collect();
+        let moved: Vec<String> = moved.map(|name| format!("motion {name}")).collect();
+        let mut stems = file_stems(fits.iter().copied().chain(moved.iter().map(String::as_str)));
+        let motions = stems.split_off(fits.len());
+        Stems { fits: stems, motions }
+    }
+}
+
+/// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
+pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut stems = vec!["mesh".to_string()];
+    for name in names {
+        let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
+        let dashed: String = name.chars().map(kept).collect();
+        let stem = dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
+        let numbered = (2..).map(|i| format!("{stem}-{i}"));
+        let free = std::iter::once(stem.clone()).chain(numbered).find(|s| !s.is_empty() && !stems.contains(s));
+        stems.extend(free);
+    }
+    stems.split_off(1)
+}
