@@ -8,15 +8,45 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Shows progress in a bar that appears on a terminal once work has taken a second.
+/// Shows progress: on a terminal in a bar that appears once work has taken a second, elsewhere in a line every ten seconds.
 pub struct Terminal {
     start: Instant,
     bar: Option<ProgressBar>,
+    stage: Stage,
+    /// When the last line was printed.
+    last: Instant,
+}
+
+/// The stage that runs, and what was done of it when it began.
+struct Stage {
+    name: String,
+    start: Instant,
+    first: usize,
+}
+
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+/// Before, a stage does not say how long it will take.
+const TRIAL: Duration = Duration::from_secs(1);
+
+impl Stage {
+    fn new(name: &str, done: usize) -> Stage {
+        Stage { name: name.into(), start: Instant::now(), first: done }
+    }
+
+    /// The time that is left at the pace so far.
+    fn left(&self, done: usize, total: usize) -> Option<Duration> {
+        let elapsed = self.start.elapsed();
+        let (made, left) = (done.checked_sub(self.first)?, total.saturating_sub(done));
+        (made > 0 && elapsed > TRIAL)
+            .then(|| Duration::try_from_secs_f64(elapsed.as_secs_f64() * left as f64 / made as f64).ok())
+            .flatten()
+    }
 }
 
 impl Terminal {
     pub fn new() -> Terminal {
-        Terminal { start: Instant::now(), bar: None }
+        let now = Instant::now();
+        Terminal { start: now, bar: None, stage: Stage::new("", 0), last: now }
     }
 
     /// Shows a stage in the bar, and a note above it.
@@ -28,8 +58,19 @@ impl Terminal {
                 return tell(&format!("note: {note}"));
             }
         };
-        if self.bar.is_none() && std::io::stderr().is_terminal() && self.start.elapsed() > Duration::from_secs(1) {
-            let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}");
+        if self.stage.name != name || done < self.stage.first {
+            self.stage = Stage::new(name, done);
+        }
+        let left = self.stage.left(done, total).map_or(String::new(), |left| format!(", about {} left", words(left)));
+        if !std::io::stderr().is_terminal() {
+            if self.last.elapsed() >= BETWEEN_LINES {
+                self.last = Instant::now();
+                tell(&format!("note: {name}: {done} of {total}{left}"));
+            }
+            return;
+        }
+        if self.bar.is_none() && self.start.elapsed() > Duration::from_secs(1) {
+            let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}{prefix}");
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
             self.bar = Some(style.into_iter().fold(bar, ProgressBar::with_style));
         }
@@ -37,6 +78,7 @@ impl Terminal {
             bar.set_length(total as u64);
             bar.set_position(done as u64);
             bar.set_message(name.to_string());
+            bar.set_prefix(left);
         }
     }
 
@@ -76,6 +118,15 @@ impl Terminal {
     /// Standard output cannot be written.
     pub fn written(&mut self, paths: &[PathBuf]) -> Result<()> {
         paths.iter().try_for_each(|path| self.print(&format!("written: {}\n", path.display())))
+    }
+}
+
+/// `45 s`, `12 min` or `3 h`.
+fn words(time: Duration) -> String {
+    match time.as_secs_f64() {
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.0} h", s / 3600.0),
     }
 }
 

@@ -22,6 +22,7 @@ mod golden;
 mod large;
 mod laws;
 mod layering;
+mod limits;
 mod locking;
 mod material;
 mod mesh_files;

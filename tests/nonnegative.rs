@@ -174,8 +174,11 @@ fn a_sheared_box_has_the_zero_network_alone_until_springs_go_across_faces() {
     let error = nearest_positive(&mesh, &network, &PositiveFit::default(), &mut |_, _| {}).unwrap_err();
     assert_eq!((error.kind(), error.key()), (ErrorKind::Infeasible, Some("nonnegative")));
     assert!(error.problem().contains("only the zero network") && error.problem().contains("across"), "{error}");
-    let (found, outcome) =
-        nearest_positive(&mesh, &network, &PositiveFit { across: true, modes: 10 }, &mut |_, _| {}).unwrap();
+    let mut steps = Vec::new();
+    let mut watch = |done: usize, total: usize| steps.push((done, total));
+    let across = PositiveFit { across: true, modes: 10 };
+    let (found, outcome) = nearest_positive(&mesh, &network, &across, &mut watch).unwrap();
+    assert!(steps.len() > 5 && steps.iter().all(|(done, total)| done <= total), "{steps:?}");
     assert!(outcome.route == Route::Across && outcome.across > 0 && found.negative() == 0, "{outcome:?}");
     assert!(largest(&forces(&found, &mesh.points)) < 1e-12 * pull(&found, &mesh));
     for axis in [0, 2] {

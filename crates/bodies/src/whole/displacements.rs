@@ -72,6 +72,12 @@ impl<'a> Displacements<'a> {
         Ok(Displacements { object, targets, frequencies, scales, groups, systems, guesses })
     }
 
+    /// Forgets the displacements from which those at the next θ are found. What follows then depends on θ alone, to the last bit,
+    /// and not on where the fit came from.
+    pub fn forget(&self) {
+        self.guesses.lock().expect("nothing panics while it holds the guesses").fill(None);
+    }
+
     /// How far the displacements and frequencies are off at θ; `None` where the network does not stand.
     ///
     /// # Errors

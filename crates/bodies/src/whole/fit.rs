@@ -94,6 +94,8 @@ pub fn fit_whole(
     found.network = object.network(&best.theta);
     found.range = found.network.range();
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
+    problem.forget();
+    judge.forget();
     let after = |problem: &Displacements| problem.errors(&best.theta).map(Option::unwrap_or_default);
     found.trained = [trained, after(&problem)?];
     found.validated = [validated, after(&judge)?];

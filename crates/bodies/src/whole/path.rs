@@ -9,7 +9,7 @@ use super::settings::{Method, Residual, Validation, Wanted, WholeSettings};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Where a fit stands, to go on from later.
+/// Where a fit stands at the beginning of a stage, to go on from later: with the same steps to the same end as without a break.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// The place of ρ among the regularizations.
@@ -77,13 +77,15 @@ impl Path<'_> {
         let stages = self.settings.regularizations.len();
         while snapshot.stage < snapshot.stages.unwrap_or(stages).min(stages) {
             let stage = snapshot.stage;
-            let mut now = snapshot.clone();
+            let now = snapshot.clone();
             let mut goes_on = true;
-            let mut visit = |theta: &[f64], _: f64| {
-                now.theta.copy_from_slice(theta);
+            // A search that began anew in the middle of a stage would come to another end: the stage is what is gone on with.
+            let mut visit = |_: &[f64], _: f64| {
                 goes_on = watch(Some(&now));
                 goes_on
             };
+            problem.forget();
+            judge.forget();
             let theta = self.stage(problem, stage, &snapshot.theta, &mut visit)?;
             let error = judge.errors(&theta)?.and_then(|errors| mean(&errors));
             let better = match (error, snapshot.best.error) {
@@ -100,7 +102,6 @@ impl Path<'_> {
             };
             if !goes_on {
                 // What is reached counts, but the stage is not done.
-                snapshot.theta = theta;
                 return Ok(best);
             }
             *snapshot = Snapshot { stage: stage + 1, theta, best, limited: better && wide, stages: snapshot.stages };
@@ -124,7 +125,6 @@ impl Path<'_> {
         let forces = match self.settings.residual {
             Residual::Displacements => false,
             Residual::Forces => true,
-            // One that is gone on with has left the start.
             Residual::ForcesFirst => stage == 0 && theta.iter().all(|t| *t == 0.0),
         };
         if forces {
