@@ -12,7 +12,7 @@ use super::shapes::random_shapes;
 use super::stretches::sampled_fits;
 use crate::bound::{self, check_count};
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::published::{self, Method};
 use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors};
 use crate::material::{Energy, Material};
@@ -156,7 +156,11 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let support = load_cases(scene, &mesh, material)?.0;
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
-    let whole = scene.law().is_none() && body.held("loads").is_ok();
+    let held = match body.held("loads") {
+        Err(error) if error.kind() == ErrorKind::Limit => return Err(error.in_file(scene.path())),
+        held => held.is_ok(),
+    };
+    let whole = scene.law().is_none() && held;
     let law = scene.energy(material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::fit::CellFits;
 use crate::material::Material;
 use crate::mesh::Mesh;
-use crate::model::{Entries, Network, Support, finite_elements, unheld_bodies};
+use crate::model::{Entries, Network, Support, check_body, finite_elements, unheld_bodies};
 use crate::solve::{Factor, Newton, System, lowest_modes};
 use crate::study::body::Case;
 use crate::study::checkpoint::{Controls, Fingerprint, Saved};
@@ -95,6 +95,7 @@ impl<'a> WholeBody<'a> {
             let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
             return Err(Error::expected(key, expected, found));
         }
+        check_body(self.mesh)?;
         let system = System::new(self.entries(), self.support)?;
         let factor = system.cholesky()?.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
         Ok(self.held.get_or_init(|| (system, factor)))
