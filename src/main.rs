@@ -22,8 +22,8 @@ fn main() -> ExitCode {
     unsafe {
         // A file that may not grow further is an error like a full disk, not the end.
         libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
-        // Rust aborts where memory is refused that no estimate saw coming: an error like others.
-        libc::signal(libc::SIGABRT, out_of_memory as extern "C" fn(libc::c_int) as libc::sighandler_t);
+        // Rust aborts where memory fails that no estimate saw coming: an error like others.
+        libc::signal(libc::SIGABRT, aborted as extern "C" fn(libc::c_int) as libc::sighandler_t);
     }
     CommandLine::parse().command.run(&mut Terminal::new()).unwrap_or_else(|error| {
         tell(&format!("error: {error}"));
@@ -34,8 +34,9 @@ fn main() -> ExitCode {
 /// Ends the program as an error does; nothing here asks for memory.
 #[cfg(unix)]
 #[allow(unsafe_code)]
-extern "C" fn out_of_memory(_: libc::c_int) {
-    const LINE: &[u8] = b"error: out of memory: take a smaller input, or a machine with more memory\n";
+extern "C" fn aborted(_: libc::c_int) {
+    const LINE: &[u8] =
+        b"error: the program cannot go on, as the line above says; if memory failed, take a smaller input\n";
     unsafe {
         libc::write(libc::STDERR_FILENO, LINE.as_ptr().cast(), LINE.len());
         libc::_exit(2);
