@@ -22,7 +22,7 @@ fn element(name: &str) -> Arc<Element> {
 
 fn mesh_of(dimension: usize, points: Vec<f64>, blocks: Vec<CellBlock>) -> Mesh {
     let (groups, quality) = (BTreeMap::new(), Quality::default());
-    Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, quality }
+    Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, numbering: None, quality }
 }
 
 /// Two cells in each direction; a chain of three cells in the plane for one that fills no box.

@@ -41,6 +41,7 @@ fn single(element: &Arc<Element>, x: &[f64]) -> Mesh {
         groups: Default::default(),
         reversed: 0,
         unused_points: 0,
+        numbering: None,
         quality: Default::default(),
     }
 }

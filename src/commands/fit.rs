@@ -92,7 +92,8 @@ pub struct Fit {
     /// Mesh units to metres
     #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
     scale: f64,
-    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]
+    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]. Cells that are flat or tangled,
+    /// that have the nodes of another or are folded over their neighbours are left out with skip and refused otherwise
     #[arg(long)]
     below: Option<String>,
     /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]

@@ -57,10 +57,18 @@ pub struct QualityRecord {
     /// From 0, flat, to 1, right angles.
     pub worst: Option<f64>,
     pub worst_cell: Option<String>,
-    pub poor_elements: usize,
+    /// Null if the quality was not measured, as that of a mesh that is generated.
+    pub poor_elements: Option<usize>,
+    /// Left out: of poor quality, flat or tangled.
     pub skipped_elements: usize,
-    pub coincident_nodes: usize,
-    pub hanging_nodes: usize,
+    /// Left out: elements with the nodes of another.
+    pub duplicate_elements: usize,
+    /// Left out: elements folded over their neighbours.
+    pub folded_elements: usize,
+    /// Null if coordinates are too coarse to tell.
+    pub coincident_nodes: Option<usize>,
+    /// On edges and faces that do not have them; null if they were not looked for.
+    pub hanging_nodes: Option<usize>,
 }
 
 /// Whether whole-object fits from several starts give the same errors.
@@ -117,8 +125,10 @@ impl QualityRecord {
         QualityRecord {
             worst: quality.worst.as_ref().and_then(|worst| finite(worst.quality)),
             worst_cell: quality.worst.as_ref().map(|worst| worst.cell.to_string()),
-            poor_elements: quality.poor,
+            poor_elements: quality.worst.as_ref().map(|_| quality.poor),
             skipped_elements: quality.skipped,
+            duplicate_elements: quality.duplicates,
+            folded_elements: quality.folded,
             coincident_nodes: quality.coincident,
             hanging_nodes: quality.hanging,
         }

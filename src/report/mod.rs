@@ -71,7 +71,7 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if output.csv {
         for (fit, stem) in outcome.fits.iter().zip(&stems) {
-            files.push((folder.join(format!("{stem}.csv")), network_csv(&fit.network).into_bytes()));
+            files.push((folder.join(format!("{stem}.csv")), network_csv(&outcome.mesh, &fit.network).into_bytes()));
         }
     }
     for (model, stem) in moved() {

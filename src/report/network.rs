@@ -8,7 +8,7 @@ use crate::springs::{Law, Measure};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// One spring per line: `kind,points,constant,rest`. Points count from 0. A length spring has N/m and m, a spring on
+/// One spring per line: `kind,points,constant,rest`. Points count from 0 among those of the mesh, which has no points without a cell. A length spring has N/m and m, a spring on
 /// an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
 ///
 /// A spring of the kinds `point-content`, `point-area` and `patch`, which exact networks have, measures what the columns do not tell:
@@ -16,11 +16,15 @@ use std::collections::BTreeMap;
 ///
 /// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
 /// rest then.
-pub fn network_csv(network: &Network) -> String {
+///
+/// Of a mesh from a file the last column, `nodes`, has the numbers that the points have in the file: the node tags of a Gmsh file, the
+/// places from 0 of a VTK file. They are those to look up in the mesh: `points` differ from them where tags are not 1, 2, …, and where
+/// nodes of no cell were left out.
+pub fn network_csv(mesh: &Mesh, network: &Network) -> String {
     let lawful = network.others.iter().any(|spring| spring.law.is_some());
     let row = |kind: &str, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
-        let points: Vec<_> = points.iter().map(usize::to_string).collect();
-        let mut row = vec![kind.into(), points.join(" "), format!("{constant:e}"), format!("{rest:e}")];
+        let places: Vec<_> = points.iter().map(usize::to_string).collect();
+        let mut row = vec![kind.into(), places.join(" "), format!("{constant:e}"), format!("{rest:e}")];
         if lawful {
             let parameters = law.map_or(String::new(), |(law, values)| {
                 let named = law.parameters.iter().zip(values).map(|(name, value)| format!("{name}={value:e}"));
@@ -28,6 +32,10 @@ pub fn network_csv(network: &Network) -> String {
             });
             row.extend([law.map_or(String::new(), |(law, _)| law.text.clone()), parameters]);
         }
+        row.extend(mesh.numbering.as_ref().map(|numbering| {
+            let numbers: Vec<_> = points.iter().map(|&p| numbering.nodes[p].to_string()).collect();
+            numbers.join(" ")
+        }));
         row
     };
     let lengths = network.lengths.iter().map(|s| row("length", &s.points, s.constant, s.rest, None));
@@ -35,8 +43,10 @@ pub fn network_csv(network: &Network) -> String {
         let law = s.law.as_deref().map(|law| (law, &s.parameters[..]));
         row(s.kind.name(), &s.points, s.constant, s.rest, law)
     });
-    let header = ["kind", "points", "constant", "rest", "law", "parameters"];
-    csv(&header[..if lawful { 6 } else { 4 }], &lengths.chain(others).collect::<Vec<_>>())
+    let mut header = vec!["kind", "points", "constant", "rest"];
+    header.extend(lawful.then_some(["law", "parameters"]).iter().flatten());
+    header.extend(mesh.numbering.as_ref().map(|_| "nodes"));
+    csv(&header, &lengths.chain(others).collect::<Vec<_>>())
 }
 
 /// A network in JSON.
@@ -46,6 +56,10 @@ struct NetworkRecord<'a> {
     units: BTreeMap<String, &'static str>,
     /// `[points][axes]`.
     points: Vec<&'a [f64]>,
+    /// What `nodes` are; null of a mesh that is no file.
+    numbering: Option<&'static str>,
+    /// The numbers of the points in the file.
+    nodes: Option<&'a [u64]>,
     masses: Option<&'a [f64]>,
     springs: Vec<SpringRecord<'a>>,
 }
@@ -54,7 +68,7 @@ struct NetworkRecord<'a> {
 #[derive(Debug, Serialize)]
 struct SpringRecord<'a> {
     kind: &'static str,
-    /// From 0.
+    /// Places in the list of points, from 0.
     points: &'a [usize],
     constant: f64,
     rest: f64,
@@ -110,7 +124,8 @@ fn units() -> BTreeMap<String, &'static str> {
     [("length".into(), "m"), ("mass".into(), "kg")].into_iter().chain(kinds).collect()
 }
 
-/// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
+/// Points (m), their numbers in the file (`nodes`, of which `numbering` says what they are), masses (kg, if known) and springs, units
+/// as in [`network_csv`]. The points of a spring are places in the list of points, from 0.
 pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a Network) -> String {
     let lengths = network.lengths.iter().map(|s| SpringRecord {
         kind: "length",
@@ -137,6 +152,8 @@ pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a 
     let record = NetworkRecord {
         units: units(),
         points: mesh.points.chunks_exact(mesh.dimension).collect(),
+        numbering: mesh.numbering.as_ref().map(|numbering| numbering.title()),
+        nodes: mesh.numbering.as_ref().map(|numbering| &numbering.nodes[..]),
         masses,
         springs: lengths.chain(others).collect(),
     };

@@ -34,7 +34,10 @@ pub const NETWORK_FORMATS: [NetworkFormat; 3] = [
         ending: "json",
         write: |path, file| write_whole(path, network_json(file.mesh, file.masses, &file.fit.network).as_bytes()),
     },
-    NetworkFormat { ending: "csv", write: |path, file| write_whole(path, network_csv(&file.fit.network).as_bytes()) },
+    NetworkFormat {
+        ending: "csv",
+        write: |path, file| write_whole(path, network_csv(file.mesh, &file.fit.network).as_bytes()),
+    },
 ];
 
 impl NetworkFormat {

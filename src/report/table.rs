@@ -25,13 +25,29 @@ pub fn summary(outcome: &Outcome) -> String {
         material.poisson(),
         outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
     );
-    if mesh.reversed > 0 {
-        writeln!(text, "{} elements were numbered the other way round and have been turned", mesh.reversed)
-            .expect("a String grows");
+    match &mesh.quality.turned {
+        _ if mesh.reversed == 0 => {}
+        None => writeln!(text, "{} elements were numbered the other way round and have been turned", mesh.reversed)
+            .expect("a String grows"),
+        Some(which) => writeln!(
+            text,
+            "{} of {} elements were numbered the other way round and have been turned: {which}",
+            mesh.reversed,
+            mesh.cell_count()
+        )
+        .expect("a String grows"),
     }
     if mesh.unused_points > 0 {
         writeln!(text, "{} points of the file belong to no element and were left out", mesh.unused_points)
             .expect("a String grows");
+    }
+    if let Some(numbering) = mesh.numbering.as_ref().filter(|numbering| !numbering.is_contiguous()) {
+        let title = numbering.title();
+        writeln!(
+            text,
+            "springs name their points from 0 as \"points\" and by the numbers of the file as \"nodes\": {title}"
+        )
+        .expect("a String grows");
     }
     for line in quality(&mesh.quality) {
         writeln!(text, "{line}").expect("a String grows");
@@ -45,17 +61,23 @@ fn quality(quality: &Quality) -> Vec<String> {
     if quality.skipped > 0 {
         lines.push(format!("{} cells of poor quality, flat or tangled, were left out", quality.skipped));
     }
+    if quality.duplicates > 0 {
+        lines.push(format!("{} cells have the nodes of another and were left out", quality.duplicates));
+    }
+    if quality.folded > 0 {
+        lines.push(format!("{} cells are folded over their neighbours and were left out", quality.folded));
+    }
     if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
         lines.push(format!(
             "{} cells have a quality below {:e}, the worst {:.1e} ({}): their constants lose as many digits",
             quality.poor, quality.least, worst.quality, worst.cell
         ));
     }
-    if quality.coincident > 0 {
-        lines.push(format!("{} points are at the place of another: the body is open there", quality.coincident));
+    if let Some(count) = quality.coincident.filter(|count| *count > 0) {
+        lines.push(format!("{count} points are at the place of another: the body is open there"));
     }
-    if quality.hanging > 0 {
-        lines.push(format!("{} points hang in the middle of edges that do not have them", quality.hanging));
+    if let Some(count) = quality.hanging.filter(|count| *count > 0) {
+        lines.push(format!("{count} points hang on edges or faces that do not have them"));
     }
     lines
 }
@@ -247,7 +269,7 @@ fn agreed(agreement: &Agreement) -> String {
 fn points(outcome: &Outcome, points: &[usize]) -> String {
     let place = |&p: &usize| {
         let x: Vec<String> = outcome.mesh.point(p).iter().map(|x| format!("{x:.4}")).collect();
-        format!("{} ({})", p + 1, x.join(", "))
+        format!("{} ({})", outcome.mesh.point_number(p), x.join(", "))
     };
     let named: Vec<_> = points.iter().take(3).map(place).collect();
     let rest = if points.len() > 3 { format!(" and {} more", points.len() - 3) } else { String::new() };

@@ -7,6 +7,9 @@ use std::path::Path;
 
 const WEDGE_NODES: [&str; 6] = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "1 0 1", "0 1 1"];
 
+/// The last is on the side of the others where the first is.
+const FOLDED_NODES: [&str; 5] = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "0.1 0.1 0.1"];
+
 /// Without the element file.
 fn scene_of(mesh: &str) -> String {
     edited(&edited(FROM_FILES, "mesh.msh", mesh), "elements = [\"own.toml\"]\n", "")
@@ -35,6 +38,16 @@ fn meshes() {
         (msh(&with_last("0 0 nan"), &tetrahedron), "mesh.msh: node 4", "found (0, 0, NaN)"),
         (msh(&with_last("0 0 1e999"), &tetrahedron), "mesh.msh: node 4", "found (0, 0, inf)"),
         (msh(&UNIT_NODES, &["4 2 0 1 1 2 3 5"]), "mesh.msh:13: $Elements", "element 1 names node 5"),
+        (
+            msh(&UNIT_NODES, &["4 2 0 1 1 2 3 4", "4 2 0 2 4 2 1 3"]),
+            "mesh.msh: cells",
+            "found 1 of 2 that has the nodes of another, or nodes at the same places: tet4 cell 2",
+        ),
+        (
+            msh(&FOLDED_NODES, &["4 2 0 1 1 2 3 4", "4 2 0 1 2 3 4 5"]),
+            "mesh.msh: cells",
+            "found 1 of 2 folded over their neighbours: tet4 cell",
+        ),
         (msh(&UNIT_NODES, &["2 2 0 1 1 2 3", "2 2 0 1 1 2 4"]), "scene.toml: mesh", "not positive definite"),
         (msh(&UNIT_NODES, &["1 2 0 1 1 2"]), "scene.toml: fix[0].where", "found the name \"z\" in \"z == 0\""),
         (msh(&UNIT_NODES, &[]), "mesh.msh: cells", "found none"),

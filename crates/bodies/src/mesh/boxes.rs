@@ -2,6 +2,7 @@
 
 use super::affine::Affine;
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::places::Places;
 use super::quality::Quality;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
@@ -37,6 +38,7 @@ impl BoxMesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            numbering: None,
             quality: Quality::default(),
         };
         let mut connectivity = Vec::new();
@@ -71,6 +73,7 @@ impl BoxMesh {
         mesh.groups = self.groups(&mesh);
         mesh.orient(false)?;
         mesh.reversed = 0;
+        mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
         Ok(mesh)
     }
 

@@ -1,6 +1,7 @@
 //! Round discs and domes of triangles.
 
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::places::Places;
 use super::quality::Quality;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
@@ -70,6 +71,7 @@ impl DiscMesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            numbering: None,
             quality: Quality::default(),
         };
         let rim = self.rings[self.rings.len() - 1];
@@ -82,6 +84,7 @@ impl DiscMesh {
         mesh.groups.insert("body".into(), Group { points: (0..total).collect(), cells, ..Group::default() });
         mesh.orient(false)?;
         mesh.reversed = 0;
+        mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
         Ok(mesh)
     }
 

@@ -137,6 +137,7 @@ fn meshes() -> Vec<(&'static str, MeshSource, bool)> {
     let grid = |points: &[[f64; 2]], cells: &[[usize; 4]]| MeshSource {
         format: Format::Gmsh,
         points: points.iter().map(|p| [p[0], p[1], 0.0]).collect(),
+        numbers: Vec::new(),
         blocks: vec![SourceBlock {
             dimension: 2,
             cell_type: 3,
@@ -176,8 +177,8 @@ fn mesh_row(case: &str, source: &MeshSource, hold: bool) -> StabilityRow {
     let mut say = |count: usize, what: &str| said.extend((count > 0).then(|| format!("{count} {what}")));
     say(mesh.reversed, "cells turned");
     say(mesh.unused_points, "nodes left out");
-    say(mesh.quality.coincident, "nodes at the place of another");
-    say(mesh.quality.hanging, "nodes that hang");
+    say(mesh.quality.coincident.unwrap_or(0), "nodes at the place of another");
+    say(mesh.quality.hanging.unwrap_or(0), "nodes that hang");
     say(mesh.quality.poor, "cells of poor quality");
     let mut support = Support::free(&mesh);
     if hold {

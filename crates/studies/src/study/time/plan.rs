@@ -90,7 +90,11 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
     let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !planned.support.is_fixed(dof));
     if let Some(p) = (0..mesh.point_count()).find(|&p| moves(p) && !(planned.masses[p] > 0.0)) {
         let expected = "a mass above zero at every point that moves (\"hrz\" gives one)";
-        return Err(Error::expected("mass", expected, format!("{:e} kg at point {}", planned.masses[p], p + 1)));
+        return Err(Error::expected(
+            "mass",
+            expected,
+            format!("{:e} kg at point {}", planned.masses[p], mesh.point_number(p)),
+        ));
     }
     Ok(planned)
 }
@@ -135,7 +139,10 @@ fn add_prescribed_motion(
             let dof = p * d + k;
             let moves = |by: &str| {
                 let axis = ["x", "y", "z"][k];
-                Error::at(&key, format!("moves point {} at {:?} m along {axis}, which {by}", p + 1, mesh.point(p)))
+                Error::at(
+                    &key,
+                    format!("moves point {} at {:?} m along {axis}, which {by}", mesh.point_number(p), mesh.point(p)),
+                )
             };
             if fixed.is_fixed(dof) {
                 if still {
