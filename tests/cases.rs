@@ -107,6 +107,26 @@ fn a_network_that_releases_energy_is_told() {
     assert_eq!((outcome.network.negative(), outcome.stability.unwrap().standing), (0, Standing::Sound));
 }
 
+/// Where everything is held nothing moves, and nothing can move freely.
+#[test]
+fn a_body_that_is_wholly_held_is_no_mechanism() {
+    for law in ["", "law = \"neo-hookean\""] {
+        for motion in ["", "[motion]\nduration = 0.01\nstep = 0.005\n"] {
+            let text = format!(
+                "[mesh]\nbox = {{ element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+                 density = 1000\n{law}\n[[fit]]\nobjective = \"exact\"\n[[fit]]\nobjective = \"offdiag\"\n[[fix]]\nwhere = \"z >= 0\"\n\
+                 [[load]]\ngroup = \"zmax\"\ndisplacement = [0, 0, 0]\n{motion}"
+            );
+            let outcome = run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+            for fit in &outcome.fits {
+                assert!(!["mechanism", "stalled", "indefinite"].contains(&fit.status()), "{law}: {}", fit.status());
+                assert!(fit.loads[0].displacement.as_ref().unwrap().iter().all(|u| *u == 0.0), "{law}");
+            }
+            assert!(springfit::report::notes(&outcome).iter().all(|note| !note.contains("mechanism")), "{law}");
+        }
+    }
+}
+
 #[test]
 fn a_mechanism_has_no_displacement_but_names_its_points() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/square_quad.toml");

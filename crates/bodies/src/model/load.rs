@@ -3,7 +3,7 @@
 use super::system::each_cell;
 use crate::element::{SideTable, Tabulation};
 use crate::error::{Error, Result};
-use crate::mesh::{Mesh, Selection, SideIndex};
+use crate::mesh::{CellIndex, Mesh, Selection, SideIndex};
 use crate::springs::{dot, norm, unit};
 use crate::stiffness::gather;
 use crate::symbolic::Expr;
@@ -63,6 +63,7 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             if sides.is_empty() {
                 return nothing("sides");
             }
+            finite_at(mesh, traction, sides.iter().flat_map(|side| side_points(mesh, side).0))?;
             side_forces(mesh, &sides, &|x, _| traction.iter().map(|t| t.at(x)).collect(), thickness)
         }
         Action::Force(force) => {
@@ -85,6 +86,8 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
                 return nothing("cells");
             }
             cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
+            let nodes = |c: &CellIndex| mesh.blocks[c.block].cells().nth(c.cell).unwrap_or_default();
+            finite_at(mesh, body, cells.iter().flat_map(|c| nodes(c).iter().copied()))?;
             body_forces(mesh, &chosen, body, thickness)
         }
         Action::Displacement(_) => {
@@ -94,10 +97,30 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             vec![0.0; mesh.points.len()]
         }
     };
-    match forces.iter().all(|f| f.is_finite()) {
-        true => Ok(forces),
-        false => Err(Error::at("load", "is not finite everywhere on the selected part")),
+    match forces.iter().position(|f| !f.is_finite()) {
+        None => Ok(forces),
+        Some(dof) => Err(not_finite(mesh, dof / mesh.dimension, "near", &format!("a nodal force of {}", forces[dof]))),
     }
+}
+
+/// That a load is finite at the nodes of what it acts on, which no quadrature point may reach.
+fn finite_at(mesh: &Mesh, components: &[Component], mut points: impl Iterator<Item = usize>) -> Result<()> {
+    let varies = |component: &Component| matches!(component, Component::Varying(_));
+    if !components.iter().any(varies) {
+        return Ok(());
+    }
+    let mut seen = vec![false; mesh.point_count()];
+    let fault = points.find_map(|p| {
+        let is_new = !std::mem::replace(&mut seen[p], true);
+        let values = is_new.then(|| components.iter().map(|component| component.at(mesh.point(p))));
+        values?.zip(["x", "y", "z"]).find(|(value, _)| !value.is_finite()).map(|(value, axis)| (p, value, axis))
+    });
+    fault.map_or(Ok(()), |(p, value, axis)| Err(not_finite(mesh, p, "at", &format!("{value} along {axis}"))))
+}
+
+fn not_finite(mesh: &Mesh, point: usize, place: &str, found: &str) -> Error {
+    let at = mesh.point(point);
+    Error::at("load", format!("is not finite everywhere on the selected part: found {found} {place} {at:?} m"))
 }
 
 fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &[Component], thickness: f64) -> Vec<f64> {
