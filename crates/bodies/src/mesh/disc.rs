@@ -4,6 +4,7 @@ use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::quality::Quality;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
+use crate::range;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -47,12 +48,8 @@ impl DiscMesh {
         if self.element.cell != Cell::Triangle || self.element.nodes() != 3 {
             return Err(Error::expected("element", "a triangle of three nodes", &self.element.name));
         }
-        if !(1e-30..=1e30).contains(&self.radius) {
-            return Err(Error::expected("radius", "a length from 1e-30 to 1e30 m", format!("{:?}", self.radius)));
-        }
-        if !(self.height.abs() <= 1e30) {
-            return Err(Error::expected("height", "a length up to 1e30 m", format!("{:?}", self.height)));
-        }
+        range::positive("radius", self.radius, "m")?;
+        range::largest("height", [self.height], "m")?;
         let total = self.rings.iter().try_fold(1usize, |sum, n| sum.checked_add(*n)).unwrap_or(usize::MAX);
         if self.rings.is_empty() || self.rings.iter().any(|n| *n < 3) || total > MOST_POINTS {
             let expected = format!("rings of three points or more, {MOST_POINTS} in all at most");

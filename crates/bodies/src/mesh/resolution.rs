@@ -5,6 +5,7 @@ use super::quality::{Below, Gate, Quality};
 use super::source::{Format, MeshSource, SourceBlock};
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
+use crate::range;
 use crate::stiffness::{Fault, Geometry, Placement};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -31,8 +32,9 @@ impl Mesh {
         let space = if dimension < 3 && in_one_plane(source) { 2 } else { 3 };
         let lengths = || source.points.iter().flatten().map(|x| (x * scale).abs());
         let largest = lengths().fold(0.0, f64::max);
-        if !(1e-30..=1e30).contains(&largest) {
-            let expected = "coordinates of which the largest is between 1e-30 and 1e30 m";
+        if !range::contains(largest) {
+            let expected =
+                format!("coordinates of which the largest is between {:e} and {:e} m", range::LEAST, range::LARGEST);
             return Err(Error::expected("points", expected, format!("{largest:?} m")));
         }
         let mut mesh = Mesh {

@@ -4,9 +4,11 @@ use super::system::each_cell;
 use crate::element::{SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Selection, SideIndex};
+use crate::range;
 use crate::springs::{dot, norm, unit};
 use crate::stiffness::gather;
 use crate::symbolic::Expr;
+use std::cell::RefCell;
 
 /// What acts on the selected part of the mesh; one entry per direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +39,30 @@ impl Component {
     }
 }
 
+/// The components of a load, and the values that they have had.
+struct Values<'a> {
+    components: &'a [Component],
+    met: RefCell<Vec<f64>>,
+}
+
+impl Values<'_> {
+    fn of(components: &[Component]) -> Values<'_> {
+        Values { components, met: RefCell::default() }
+    }
+
+    fn at(&self, x: &[f64]) -> Vec<f64> {
+        let values: Vec<f64> = self.components.iter().map(|component| component.at(x)).collect();
+        self.met.borrow_mut().extend(&values);
+        values
+    }
+
+    /// # Errors
+    /// Values are not finite or outside the range of quantities.
+    fn check(self, unit: &str) -> Result<()> {
+        range::largest("load", self.met.into_inner(), unit)
+    }
+}
+
 impl Action {
     /// The same traction everywhere, Pa.
     pub fn traction(traction: &[f64]) -> Action {
@@ -63,7 +89,10 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             if sides.is_empty() {
                 return nothing("sides");
             }
-            side_forces(mesh, &sides, &|x, _| traction.iter().map(|t| t.at(x)).collect(), thickness)
+            let traction = Values::of(traction);
+            let forces = side_forces(mesh, &sides, &|x, _| traction.at(x), thickness);
+            traction.check("Pa")?;
+            forces
         }
         Action::Force(force) => {
             let sides = part.sides(mesh)?;
@@ -85,7 +114,10 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
                 return nothing("cells");
             }
             cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
-            body_forces(mesh, &chosen, body, thickness)
+            let body = Values::of(body);
+            let forces = body_forces(mesh, &chosen, &body, thickness);
+            body.check("N/m³")?;
+            forces
         }
         Action::Displacement(_) => {
             if part.points(mesh)?.is_empty() {
@@ -100,7 +132,7 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
     }
 }
 
-fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &[Component], thickness: f64) -> Vec<f64> {
+fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &Values, thickness: f64) -> Vec<f64> {
     let d = mesh.dimension;
     let mut forces = vec![0.0; mesh.points.len()];
     each_cell(mesh, |cell, nodes, geometry| {
@@ -111,7 +143,7 @@ fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &[Component], thickness:
         for (values, volume) in values.zip(&geometry.volumes) {
             let at = |k: usize| nodes.iter().zip(values).map(|(&p, n)| n * mesh.point(p)[k]).sum();
             let x: Vec<f64> = (0..d).map(at).collect();
-            let b: Vec<f64> = body.iter().map(|b| thickness * b.at(&x)).collect();
+            let b: Vec<f64> = body.at(&x).into_iter().map(|b| thickness * b).collect();
             for (&node, n) in nodes.iter().zip(values) {
                 (0..d).for_each(|k| forces[node * d + k] += n * volume * b[k]);
             }

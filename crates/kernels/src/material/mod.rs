@@ -6,6 +6,7 @@ pub use energy::{Energy, Tangent};
 pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};
+use crate::range::positive;
 use serde::Deserialize;
 
 /// How a body of fewer dimensions relates to the solid it stands for.
@@ -84,15 +85,6 @@ impl Material {
     /// # Errors
     /// `E ≤ 0`, `ν ≤ −1`, `ν ≥ 1/2` (plane stress: `ν > 1/2`), thickness not positive, or a value that is not finite.
     pub fn new(young: f64, poisson: f64, state: State) -> Result<Material> {
-        let positive = |key: &str, value: f64, unit: &str| match value {
-            v if !(v > 0.0 && v.is_finite()) => {
-                Err(Error::expected(key, format!("a positive number of {unit}"), value))
-            }
-            v if !(1e-30..=1e30).contains(&v) => {
-                Err(Error::expected(key, format!("a number from 1e-30 to 1e30 {unit}"), format!("{v:?}")))
-            }
-            _ => Ok(()),
-        };
         positive("young", young, "Pa")?;
         let in_range = match state {
             State::PlaneStress { .. } | State::Rod { .. } => poisson > -1.0 && poisson <= 0.5,

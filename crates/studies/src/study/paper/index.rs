@@ -1,6 +1,7 @@
 //! The index of a paper's experiments: what was printed, and the scenes and elements that run it again.
 
 use crate::error::{Error, Result};
+use crate::range::LARGEST;
 use crate::file;
 use crate::study::fits::FitEntry;
 use serde::Deserialize;
@@ -56,9 +57,6 @@ pub struct RowEntry {
     #[serde(default)]
     pub why: BTreeMap<String, String>,
 }
-
-/// No printed figure is larger.
-const LARGEST: f64 = 1e30;
 
 /// How the figures of a table come about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

@@ -9,6 +9,7 @@ use super::part::Part;
 use super::value::Pressure;
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
+use crate::range;
 use crate::solve::Newton;
 use crate::study::fits::FitEntry;
 use serde::Deserialize;
@@ -72,12 +73,7 @@ impl MaterialEntry {
         // Plane stress admits more of ν than a solid; a solid is checked again when the mesh is known.
         let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
         Material::for_body(2, self.young.0, self.poisson, state, self.thickness).map_err(|e| e.under("material"))?;
-        match self.density {
-            Some(density) if !(density > 0.0 && density.is_finite()) => {
-                Err(Error::expected("material.density", "a positive number of kg/m³", density))
-            }
-            _ => Ok(()),
-        }
+        self.density.map_or(Ok(()), |density| range::positive("material.density", density, "kg/m³").map(|_| ()))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::part::Part;
 use crate::error::{Error, Result};
+use crate::range;
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
@@ -31,10 +32,6 @@ impl GaugeEntry {
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);
         let axis =
             axis.ok_or_else(|| Error::expected("axis", "\"x\", \"y\" or \"z\"", format!("\"{}\"", self.axis)))?;
-        if !(1e-30..=1e30).contains(&self.area) {
-            let expected = "a positive cross-section in m², from 1e-30 to 1e30";
-            return Err(Error::expected("area", expected, format!("{:?}", self.area)));
-        }
-        Ok(Gauge { part, axis, area: self.area })
+        Ok(Gauge { part, axis, area: range::positive("area", self.area, "m²")? })
     }
 }

@@ -3,6 +3,7 @@
 use super::elements::{load_element, load_elements};
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
+use crate::range;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -86,9 +87,7 @@ impl MeshInput {
             let found = if given.is_empty() { "none".into() } else { given.join(" and ") };
             return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\"", found));
         }
-        if !(self.scale > 0.0 && self.scale.is_finite()) {
-            return Err(Error::expected("mesh.scale", "a positive number of metres per mesh unit", self.scale));
-        }
+        range::positive("mesh.scale", self.scale, "metres per mesh unit")?;
         if let Some(quality) = &self.quality {
             if self.file.is_none() {
                 return Err(Error::at("mesh.quality", "belongs to a mesh in a \"file\": what is generated is regular"));
