@@ -409,7 +409,7 @@ fn the_json_of_a_network_has_all_that_its_energy_needs() {
         if volume == VolumeSprings::Patches {
             network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
         }
-        let text = network_json(&mesh, None, &network);
+        let text = network_json(&mesh, None, &network, &[]);
         let file: serde_json::Value = serde_json::from_str(&text).unwrap();
         let mut random = Random(38);
         let x: Vec<[f64; 3]> =

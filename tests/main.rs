@@ -15,6 +15,7 @@ mod elements;
 mod energies;
 mod errors;
 mod exact;
+mod extremes;
 mod fields;
 mod fits;
 mod fraction;

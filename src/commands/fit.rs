@@ -7,10 +7,11 @@ use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::material::{Material, parse_pressure};
 use springfit::mesh::{Gate, Mesh, MeshSource, Selection};
-use springfit::model::{self, Support};
-use springfit::report::{NetworkFile, NetworkFormat};
+use springfit::model::Support;
+use springfit::range;
+use springfit::report::{self, NetworkFile, NetworkFormat};
 use springfit::study::{
-    Controls, Event, FitEntry, NamedFit, Outcome, Recipe, Reference, WholeBody, fit_mesh, load_elements,
+    Controls, Event, FitEntry, NamedFit, Outcome, Recipe, Reference, WholeBody, fit_mesh, load_elements, point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -138,24 +139,21 @@ impl Fit {
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
         let fit = fit.map_err(|e| if sampled || whole || exact { e.placed(Error::of_option) } else { e })?;
-        let masses = self.density.map(|density| model::masses(&mesh, density, material.thickness()));
-        // The file first: who reads the table may have gone away.
-        let file = NetworkFile { mesh: &mesh, masses: masses.as_deref(), fit: &fit, loads: &[] };
-        format.write(&self.output, &file)?;
+        let masses = self.density.map(|density| point_masses(&mesh, density, material)).transpose();
+        let masses = masses.map_err(Error::of_option)?;
         let outcome = Outcome::of_fit(self.mesh.display().to_string(), mesh, material, masses, fit);
+        let (masses, notes) = (outcome.masses.as_deref(), report::notes(&outcome));
+        // The file first: who reads the table may have gone away.
+        let file = NetworkFile { mesh: &outcome.mesh, masses, fit: &outcome.fits[0], loads: &[], notes: &notes };
+        format.write(&self.output, &file)?;
         terminal.print_outcome(&outcome)?;
         terminal.written(std::slice::from_ref(&self.output))?;
         Ok(ExitCode::SUCCESS)
     }
 
     fn check(&self) -> Result<()> {
-        if !(self.scale > 0.0 && self.scale.is_finite()) {
-            return Err(Error::expected("--scale", "a positive number of metres per mesh unit", self.scale));
-        }
-        match self.density.filter(|d| !(*d > 0.0 && d.is_finite())) {
-            Some(density) => Err(Error::expected("--density", "a positive number of kg/m³", density)),
-            None => Ok(()),
-        }
+        range::positive("--scale", self.scale, "metres per mesh unit")?;
+        self.density.map_or(Ok(()), |density| range::positive("--density", density, "kg/m³").map(|_| ()))
     }
 
     /// What the options say of the fit.

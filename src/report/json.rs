@@ -6,6 +6,7 @@ use super::frequencies::FrequencyRecord;
 use super::load_record::{FollowedRecord, MeasuredRecord, ReadingRecord};
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::number::finite;
+use super::table::notes;
 use crate::mesh::Mesh;
 use crate::study::{BodyLoad, GaugeResult, Outcome};
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,8 @@ pub struct Report {
     /// Of each model that moved.
     pub motion: Vec<MotionRecord>,
     pub fits: Vec<FitRecord>,
+    /// What a reader must know before trusting a figure, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// The quality of the mesh.
@@ -107,6 +110,7 @@ impl Report {
             motion_options: outcome.motion.as_ref().map(MotionOptionsRecord::from),
             motion: models.map(MotionRecord::from).collect(),
             fits: outcome.fits.iter().map(fit).collect(),
+            notes: notes(outcome),
         }
     }
 }

@@ -48,6 +48,8 @@ struct NetworkRecord<'a> {
     points: Vec<&'a [f64]>,
     masses: Option<&'a [f64]>,
     springs: Vec<SpringRecord<'a>>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    notes: &'a [String],
 }
 
 /// A spring; only one with a law of force has the keys of the law, and only one of a kind of exact networks those of its measure.
@@ -110,8 +112,14 @@ fn units() -> BTreeMap<String, &'static str> {
     [("length".into(), "m"), ("mass".into(), "kg")].into_iter().chain(kinds).collect()
 }
 
-/// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
-pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a Network) -> String {
+/// Points (m), masses (kg, if known) and springs, units as in [`network_csv`]; and what a reader must know of the fit, one sentence each,
+/// if there is something.
+pub fn network_json<'a>(
+    mesh: &'a Mesh,
+    masses: Option<&'a [f64]>,
+    network: &'a Network,
+    notes: &'a [String],
+) -> String {
     let lengths = network.lengths.iter().map(|s| SpringRecord {
         kind: "length",
         points: &s.points,
@@ -139,6 +147,7 @@ pub fn network_json<'a>(mesh: &'a Mesh, masses: Option<&'a [f64]>, network: &'a 
         points: mesh.points.chunks_exact(mesh.dimension).collect(),
         masses,
         springs: lengths.chain(others).collect(),
+        notes,
     };
     serde_json::to_string(&record).expect("keys are text") + "\n"
 }

@@ -10,9 +10,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 21] = [
+const LAYERS: [&str; 22] = [
     "shipped",
     "error",
+    "range",
     "named",
     "file",
     "scalar",

@@ -7,7 +7,6 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-
 /// `v/‖v‖`.
 pub fn unit(v: &[f64]) -> Vec<f64> {
     let size = norm(v);

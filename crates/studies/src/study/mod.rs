@@ -8,6 +8,7 @@ mod comparison;
 mod convergence;
 mod fits;
 mod fitting;
+mod masses;
 mod metrics;
 mod moduli;
 mod outcome;
@@ -40,6 +41,7 @@ pub use fits::{
     WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
+pub use masses::point_masses;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{

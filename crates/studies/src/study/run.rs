@@ -4,6 +4,7 @@ use super::body::{Case, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
 use super::fits::{Reference, WholeBody};
 use super::fitting::fit_mesh;
+use super::masses::point_masses;
 use super::moduli::moduli_of_body;
 use super::outcome::{BodyLoad, Outcome};
 use super::progress::{Event, Progress};
@@ -12,7 +13,7 @@ use super::stages::stages;
 use super::time::TimePlan;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Support, masses};
+use crate::model::Support;
 
 /// Runs the scene. Work is done only for what the scene names.
 ///
@@ -42,7 +43,8 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         }
         None => None,
     };
-    let masses = scene.density().map(|density| masses(&mesh, density, material.thickness()));
+    let masses = scene.density().map(|density| point_masses(&mesh, density, material)).transpose();
+    let masses = masses.map_err(|e| scene.at("material", e))?;
     let linear =
         |progress: &mut Progress| LinearBody::solve(&mesh, material.moduli(), &cases, progress).map_err(in_scene);
     // Of the fits only those to the whole object need the body's displacements.

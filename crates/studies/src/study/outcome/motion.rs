@@ -54,9 +54,24 @@ pub struct Record {
     pub error: Option<f64>,
 }
 
+impl Record {
+    /// Whether all energies, momenta and displacements in it are finite.
+    pub fn is_finite(&self) -> bool {
+        let account = &self.account;
+        let balance = account.balance.iter().flat_map(|b| [b.work, b.dissipated, b.drift]);
+        let moved = account.momentum.iter().chain(&account.angular_momentum).chain(&self.watched).copied();
+        [account.total()].into_iter().chain(balance).chain(moved).all(f64::is_finite)
+    }
+}
+
 impl ModelMotion {
     pub fn steps_per_second(&self) -> f64 {
         self.steps as f64 / self.seconds
+    }
+
+    /// Whether a state after the start is known.
+    pub fn has_moved(&self) -> bool {
+        self.records.len() > 1
     }
 
     /// Mean and largest error over the records.

@@ -1,8 +1,8 @@
 //! The index of a paper's experiments: what was printed, and the scenes and elements that run it again.
 
 use crate::error::{Error, Result};
-use crate::range::LARGEST;
 use crate::file;
+use crate::range::LARGEST;
 use crate::study::fits::FitEntry;
 use serde::Deserialize;
 use std::collections::BTreeMap;

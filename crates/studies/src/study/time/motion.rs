@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, LinearElastic, Network, Support, finite_elements};
+use crate::scalar::{norm, scaled_norm};
 use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, MotionRecipe};
@@ -66,7 +67,7 @@ pub fn move_models(
         models.push(made);
         reference = states;
     }
-    let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(square).fold(0.0, f64::max).sqrt();
+    let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(norm).fold(0.0, f64::max);
     for (i, fit) in outcome.fits.iter().enumerate() {
         let growth = growth(&fit.network, mesh, planned)?;
         if growth.is_some() {
@@ -79,9 +80,9 @@ pub fn move_models(
         let (mut made, states) = run.follow((&fit.fit.name, growth), &model, damping, options, keeps, progress)?;
         made.fit = Some(i);
         for ((record, u), fem) in made.records.iter_mut().zip(&states).zip(&reference) {
-            let away: f64 = u.iter().zip(fem).map(|(a, b)| (a - b) * (a - b)).sum();
-            let rms = (away / mesh.point_count() as f64).sqrt();
-            record.error = (largest > 0.0).then(|| 100.0 * rms / largest);
+            let apart: Vec<f64> = u.iter().zip(fem).map(|(a, b)| a - b).collect();
+            let rms = scaled_norm(&apart, |apart| square(apart) / mesh.point_count() as f64);
+            record.error = (largest > 0.0).then(|| 100.0 * rms / largest).filter(|error| error.is_finite());
         }
         if planned.draws {
             made.states = states;
@@ -162,9 +163,9 @@ impl Run<'_> {
                     StepOutcome::Stalled => (made.steps, made.unsolved) = (made.steps + 1, made.unsolved + 1),
                     StepOutcome::Converged | StepOutcome::Linearized => made.steps += 1,
                 }
-                let farthest = simulation.state().displacement.iter().fold(0.0f64, |far, u| far.max(u.abs()));
-                let speed: f64 = simulation.state().velocity.iter().sum();
-                if !(farthest <= AWAY * extent && speed.is_finite()) {
+                let state = simulation.state();
+                let near = state.displacement.iter().all(|u| u.abs() <= AWAY * extent);
+                if !(near && state.velocity.iter().all(|v| v.is_finite())) {
                     made.ending = MotionEnding::RanAway;
                 }
             }
@@ -172,7 +173,12 @@ impl Run<'_> {
             if made.ending != MotionEnding::Complete {
                 break;
             }
-            made.records.push(self.record(&mut simulation));
+            let record = self.record(&mut simulation);
+            if !record.is_finite() {
+                made.ending = MotionEnding::RanAway;
+                break;
+            }
+            made.records.push(record);
             if keeps {
                 states.push(simulation.state().displacement.clone());
             }
