@@ -67,7 +67,7 @@ mesh = { box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] } }
 material = { young = 10e3, poisson = 0.3 }
 fit = [{ objective = "frobenius" }]
 fix = [{ group = "zmin" }]
-load = [{ group = "zmax", displacement = [0, 0, 0.01], measured = { file = "field.csv" } }]
+load = [{ group = "zmax", displacement = ["free", "free", 0.01], measured = { file = "field.csv" } }]
 "#;
 
 const GRADIENTS: &str = r#"

@@ -129,8 +129,8 @@ fn what_runs_away_is_not_reported_at_rest() {
 fn a_sampled_fit_that_misses_the_forces_says_so() {
     let scene = |force: &str| {
         let scene = format!(
-            "mesh = {{ box = {{ element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] }} }}\n\
-             material = {{ young = 1e4, poisson = 0.3, law = \"neo-hookean\" }}\n\
+            "mesh = {{ box = {{ element = \"tri3\", size = [1, 1], cells = [1, 1] }} }}\n\
+             material = {{ young = 1e4, poisson = 0.3333, law = \"neo-hookean\" }}\n\
              fit = [{{ objective = \"sampled\", force = \"{force}\", shapes = {{ families = [\"uniaxial\"], count = 20, \
              held_out = 5, stretch = 0.02 }} }}]\n"
         );

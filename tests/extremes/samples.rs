@@ -53,7 +53,7 @@ plane = "stress"
 thickness = 0.1
 [[fit]]
 objective = "frobenius"
-solver = "constrained"
+solver = "particle-swarm"
 topology = true
 sparsity = 0.1
 iterations = 20
@@ -202,7 +202,7 @@ watch = { group = "middle" }
 group = "middle"
 displacement = ["0.001*t", "free", 0.0]
 [[motion.force]]
-where = "x > 0 and x < 0.9 and y > 0"
+where = "x > 0 && x < 0.9 && y > 0"
 force = ["0.1*t", 0.0, 0.1]
 "#;
 
@@ -229,7 +229,7 @@ damping = { ratio = 0.1 }
 every = 0.01
 [[motion.force]]
 group = "zmax"
-force = [0, 0, "1 - t"]
+force = ["1 - t", 0, 0]
 "#;
 
 /// With finite elements that follow a law in motion, explicitly.
@@ -250,11 +250,11 @@ group = "zmin"
 duration = 0.002
 step = 0.0005
 integrator = "symplectic-euler"
-gravity = [0, 0, -9.81]
+gravity = [-9.81, 0, 0]
 every = 0.001
 [[motion.pull]]
 group = "zmax"
-displacement = [0, 0, "0.01*t"]
+displacement = ["free", 0, "0.01*t"]
 "#;
 
 pub const ALL: [(&str, &str); 8] = [

@@ -28,14 +28,15 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// That an error is one line that names a key.
+/// That an error is one line that names a key, or the line of a file.
 ///
 /// # Errors
 /// It is not.
 pub fn refused(error: &Error) -> Result<Verdict, String> {
-    match (error.key(), error.to_string().contains('\n')) {
-        (Some(_), false) => Ok(Verdict::Refused),
-        _ => Err(format!("the error names no key: {error}")),
+    let is_placed = error.key().is_some() || error.file().is_some() && error.line().is_some();
+    match is_placed && !error.to_string().contains('\n') {
+        true => Ok(Verdict::Refused),
+        false => Err(format!("the error names no key: {error}")),
     }
 }
 

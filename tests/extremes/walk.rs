@@ -137,12 +137,12 @@ pub fn numeric_keys(read: Read, document: &Value) -> BTreeSet<String> {
             }
             let tables = [Value::Table(Table::new()), Value::Array(vec![Value::Table(Table::new())])];
             let [one, several] = tables.map(|v| with(document, &inner, v));
-            // A table of its own must be in a sample, where its keys are met.
-            for (document, step) in [(one, None), (several, Some(Step::Index(0)))] {
-                let inner: Place = inner.iter().cloned().chain(step).collect();
-                if !fields(read, &document, &inner).is_empty() {
-                    found.insert(key(&inner));
-                }
+            // A table of its own must be in a sample, where its keys are met. A struct may be read from a list as well.
+            let entry = [inner.clone(), vec![Step::Index(0)]].concat();
+            if !fields(read, &one, &inner).is_empty() {
+                found.insert(key(&inner));
+            } else if !fields(read, &several, &entry).is_empty() {
+                found.insert(key(&entry));
             }
         }
     }
@@ -153,7 +153,7 @@ pub fn numeric_keys(read: Read, document: &Value) -> BTreeSet<String> {
 fn fields(read: Read, document: &Value, place: &[Step]) -> Vec<String> {
     let unknown = [place.to_vec(), vec![Step::Key("zzz".into())]].concat();
     let Some(problem) = read(&text(&with(document, &unknown, Value::Boolean(true)))) else { return Vec::new() };
-    let Some((_, listed)) = problem.split_once("expected").filter(|(before, _)| before.contains("unknown field"))
+    let Some((_, listed)) = problem.split_once("expected").filter(|(before, _)| before.contains("unknown field") && before.contains("zzz"))
     else {
         return Vec::new();
     };
