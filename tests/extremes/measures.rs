@@ -3,10 +3,11 @@
 use super::samples::{EXPLICIT, LINEAR, MOTION};
 use super::verdict::{Verdict, of_scene};
 use super::{folder, problem};
+use springfit::fit::Spread;
 use springfit::mesh::Field;
 use springfit::report;
 use springfit::scalar::{distance, norm};
-use springfit::study::{MotionEnding, Scene, displacement_error, run};
+use springfit::study::{MotionEnding, SampledOutcome, Scene, displacement_error, run};
 use std::path::Path;
 
 /// Powers of two scale exactly.
@@ -137,11 +138,18 @@ fn a_sampled_fit_that_misses_the_forces_says_so() {
         run(&Scene::parse(&scene, Path::new("scene.toml")).unwrap(), &mut |_| ()).unwrap()
     };
     let unexplained = |notes: &[String]| notes.iter().any(|note| note.contains("of the sampled forces unexplained"));
-    for (force, expected) in [("k*(c - c0)^3", true), ("linear", false)] {
-        let outcome = scene(force);
-        let sampled = outcome.fits[0].kind.sampled().unwrap();
-        assert_eq!(sampled.trained.max > 0.1, expected, "{force}: {sampled:?}");
-        assert_eq!(unexplained(&report::notes(&outcome)), expected, "{force}");
-        assert_eq!(unexplained(&report::Report::of(&outcome).notes), expected, "{force}");
+    let outcome = scene("k*(c - c0)^3");
+    let sampled = outcome.fits[0].kind.sampled().unwrap();
+    assert!(sampled.trained.max > 0.1, "{sampled:?}");
+    assert!(unexplained(&report::notes(&outcome)) && unexplained(&report::Report::of(&outcome).notes));
+    for (share, expected) in [(0.05, false), (0.1, false), (0.11, true)] {
+        let of = |max: f64| Spread { mean: max, max };
+        let [trained, held_out] = [(share, 0.0), (0.0, share)].map(|(trained, held_out)| SampledOutcome {
+            trained: of(trained),
+            held_out: Some(of(held_out)),
+            ..sampled.clone()
+        });
+        assert_eq!(unexplained(&trained.notes()), expected, "{share}");
+        assert_eq!(unexplained(&held_out.notes()), expected, "{share}");
     }
 }

@@ -71,7 +71,13 @@ fn every_number_of_a_scene_may_be_extreme() {
     for (name, scene) in ALL {
         let document = parse(scene);
         let sane = of_scene(scene, &path).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert_ne!(sane, Verdict::Refused, "{name}: {:?}", problem(scene));
+        if sane == Verdict::Refused {
+            let error = Scene::parse(scene, &path).and_then(|scene| springfit::study::run(&scene, &mut |_| ())).err();
+            wrong.push(format!(
+                "{name} is refused before it is changed: {}",
+                error.map_or_else(String::new, |e| e.to_string())
+            ));
+        }
         for place in numeric_places(&document) {
             for extreme in EXTREMES {
                 for value in values(&problem, &document, &place, extreme) {
@@ -83,13 +89,19 @@ fn every_number_of_a_scene_may_be_extreme() {
                         println!("{case}: {:.2} s", start.elapsed().as_secs_f64());
                     }
                     match verdict {
-                        Err(problem) => wrong.push(format!("{case}: {problem}")),
+                        Err(problem) => {
+                            println!("WRONG {case}: {problem}");
+                            wrong.push(format!("{case}: {problem}"));
+                        }
                         Ok(Verdict::Refused) => verdicts[0] += 1,
                         Ok(Verdict::Named) => verdicts[1] += 1,
                         Ok(Verdict::Right(found)) => {
                             verdicts[2] += 1;
                             let scales = HOMOGENEOUS.contains(&key(&place).as_str()) && extreme != 0.0;
-                            let alone = at(&document, &place).as_integer() != Some(0);
+                            // Not beside other components, nor where the load varies.
+                            let value = at(&document, &place);
+                            let alone =
+                                value.as_integer() != Some(0) && (!value.is_str() || key(&place) == "material.young");
                             if let (Verdict::Right(expected), true) = (&sane, scales && alone && name != "large")
                                 && !agree(expected, &found)
                             {

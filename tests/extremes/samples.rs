@@ -92,7 +92,7 @@ force = [1.0, 0, 0]
 /// Large deformation and sampled forces.
 pub const LARGE: &str = r#"
 [mesh]
-box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+box = { element = "tri3", size = [1, 1], cells = [1, 1] }
 [material]
 young = 10e3
 poisson = 0.3
@@ -102,23 +102,23 @@ objective = "sampled"
 higher = 0.5
 norm = "huber"
 huber = 0.5
-shapes = { families = ["uniaxial"], count = 20, held_out = 5, stretch = [-0.1, 0.2], perturbation = 0.02, seed = 1 }
+shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = [-0.1, 0.2], perturbation = 0.02, seed = 1 }
 [[fit]]
 name = "law"
 objective = "sampled"
 force = "k*(exp(a*s) - 1)"
 bounds = { a = [0.0, 10.0] }
 starts = 2
-shapes = { families = ["uniaxial"], count = 20, held_out = 5, stretch = 0.2 }
+shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = 0.2 }
 [newton]
 steps = 2
-iterations = 20
+iterations = 8
 tolerance = 1e-8
 [[fix]]
-group = "zmin"
+group = "ymin"
 [[load]]
-group = "zmax"
-traction = [0, 0, 100.0]
+group = "ymax"
+traction = [0, 100.0]
 "#;
 
 /// Fits to the whole object.
@@ -132,7 +132,7 @@ density = 1000
 [[fit]]
 name = "one"
 objective = "whole"
-start = "modal"
+start = ["modal"]
 higher = 0.3
 loads = ["pull"]
 regularization = 0.01
@@ -153,11 +153,9 @@ name = "three"
 objective = "whole"
 start = "sampled"
 law = "neo-hookean"
-shapes = { families = ["uniaxial"], count = 20, held_out = 5, stretch = 0.2, perturbation = 0.02, seed = 1 }
+shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = 0.2, perturbation = 0.02, seed = 1 }
 huber = 0.5
 norm = "huber"
-starts = 1
-bounds = {}
 loads = ["pull"]
 regularization = 0.01
 iterations = 3
@@ -202,7 +200,7 @@ watch = { group = "middle" }
 group = "middle"
 displacement = ["0.001*t", "free", 0.0]
 [[motion.force]]
-where = "x > 0 && x < 0.9 && y > 0"
+where = "x > 0 && x^2 + y^2 < 0.5"
 force = ["0.1*t", 0.0, 0.1]
 "#;
 
@@ -273,7 +271,7 @@ pub const FILES: [(&str, &str); 2] = [
     ("measured.csv", "point,ux,uy,uz\n4,0.001,0,0.01\n5,0,0,0.01\n6,0,0.001,0.01\n7,0,0,0.01\n"),
     (
         "rods.msh",
-        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 2 0.5 0\n$EndNodes\n$Elements\n2\n\
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 2 0.5 0.5\n$EndNodes\n$Elements\n2\n\
          1 1 2 0 1 1 2\n2 1 2 0 1 2 3\n$EndElements\n",
     ),
 ];

@@ -153,7 +153,8 @@ pub fn numeric_keys(read: Read, document: &Value) -> BTreeSet<String> {
 fn fields(read: Read, document: &Value, place: &[Step]) -> Vec<String> {
     let unknown = [place.to_vec(), vec![Step::Key("zzz".into())]].concat();
     let Some(problem) = read(&text(&with(document, &unknown, Value::Boolean(true)))) else { return Vec::new() };
-    let Some((_, listed)) = problem.split_once("expected").filter(|(before, _)| before.contains("unknown field") && before.contains("zzz"))
+    let Some((_, listed)) =
+        problem.split_once("expected").filter(|(before, _)| before.contains("unknown field") && before.contains("zzz"))
     else {
         return Vec::new();
     };
