@@ -104,7 +104,7 @@ fn loads_that_vary_and_measurements() {
         &[
             (load, "traction = [0, 0, \"x*\"]", "scene.toml: load[0].traction[2]", "column 3"),
             (load, "traction = [0, 0, \"w\"]", "scene.toml: load[0].traction[2]", "name \"w\" in \"w\""),
-            (load, "traction = [0, 0, \"1/(z - 1)\"]", "scene.toml: load[0]", "not finite"),
+            (load, "traction = [0, 0, \"1/(z - 1)\"]", "scene.toml: load[0]", "found inf"),
             (load, "traction = [0, 0, 1]\nmeasured = { file = \"u.csv\" }", "u.csv", "cannot be read"),
         ],
     );
