@@ -1,5 +1,8 @@
 use crate::scalar::Sum;
 
+/// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
+pub const SOLVED: f64 = 1e-6;
+
 /// Distances of the network's points from those of the finite elements, in percent of the largest displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisplacementError {

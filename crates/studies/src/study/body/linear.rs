@@ -7,12 +7,10 @@ use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Support, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
+use crate::study::metrics::SOLVED;
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
-
-/// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
-const SOLVED: f64 = 1e-6;
 
 /// The finite element solutions, and what the comparison with a network reuses.
 pub struct LinearBody {
