@@ -9,6 +9,7 @@ mod corpora;
 mod covariance;
 mod crash;
 mod derive;
+mod digits;
 mod door;
 mod dynamics;
 mod elements;
