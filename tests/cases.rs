@@ -104,7 +104,7 @@ fn a_network_that_releases_energy_is_told() {
     assert!(stability.energy_ratio[0] < 0.0 && !outcome.loose_points.is_empty());
     let nonnegative = Fit { nonnegative: true, ..Fit::new(MODAL) };
     let outcome = fitted("cylinder_hex", nonnegative, true);
-    assert_eq!((outcome.network.negative(), outcome.stability.unwrap().standing), (0, Standing::Sound));
+    assert_eq!((outcome.network.negative(), outcome.stability.unwrap().standing), (0, Standing::Stable));
 }
 
 #[test]

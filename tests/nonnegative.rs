@@ -239,7 +239,7 @@ fn scene(fit: &str) -> springfit::error::Result<Scene> {
 fn scenes_ask_for_networks_without_negative_springs() {
     let outcome = run(&scene("nonnegative = true").unwrap(), &mut |_| {}).unwrap();
     let fit = &outcome.fits[0];
-    assert_eq!((fit.network.negative(), fit.status(), fit.fit.name.as_str()), (0, "sound", "exact k>=0"));
+    assert_eq!((fit.network.negative(), fit.status(), fit.fit.name.as_str()), (0, "stable", "exact k>=0"));
     let FittedKind::Exact(exact) = &fit.kind else { panic!("an exact fit") };
     let positive = exact.positive.unwrap();
     assert!(positive.route == Route::Springs && positive.negative > 50, "{positive:?}");

@@ -11,7 +11,7 @@ use crate::study::{BodyLoad, GaugeResult, Outcome};
 use serde::{Deserialize, Serialize};
 
 /// Of the report's keys; it changes when a key is removed or its meaning changes.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// `report.json`. A value that does not exist or is not finite is null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -218,7 +218,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         String::new()
     };
     match stability.standing {
-        Standing::Sound => {}
+        Standing::Stable => {}
         Standing::Soft => notes.push(format!(
             "{name}: near-mechanism, some motion meets only {least:.1e} of the body's resistance; its displacements are \
              not to be trusted. Loosest: {points}{remedy}"

@@ -24,7 +24,7 @@ pub struct Stability {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
     /// Positive definite, and no motion much softer than in the body.
-    Sound,
+    Stable,
     /// Positive definite, but some motion meets less than a hundredth of the body's resistance.
     Soft,
     /// Some motion releases energy: without its supports' help the network runs away.
@@ -65,7 +65,7 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
         least if !(least >= NOTHING) => Standing::Singular,
         _ if !positive => Standing::Indefinite,
         least if least < SOFT => Standing::Soft,
-        _ => Standing::Sound,
+        _ => Standing::Stable,
     };
     Stability { standing, energy_ratio: ratios, softest }
 }

@@ -149,7 +149,7 @@ impl LinearBody {
 }
 
 fn moving_points(system: &System, stability: &Stability, dimension: usize) -> Vec<usize> {
-    if stability.standing == Standing::Sound {
+    if stability.standing == Standing::Stable {
         return Vec::new();
     }
     let mut squares = std::collections::BTreeMap::new();

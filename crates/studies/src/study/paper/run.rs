@@ -163,7 +163,7 @@ fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec
         let published = fit.fit.recipe.published().is_some();
         let stands = match found.followed {
             Some(followed) => followed.ending == Ending::Converged,
-            None => fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Sound),
+            None => fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Stable),
         };
         Ok(PaperRow::new(row, &fit.fit.name, figures, published, stands))
     };
