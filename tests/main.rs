@@ -19,6 +19,7 @@ mod fields;
 mod fits;
 mod fraction;
 mod golden;
+mod integrals;
 mod large;
 mod laws;
 mod layering;

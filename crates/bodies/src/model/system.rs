@@ -57,21 +57,3 @@ fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &DMatrix<f64
 pub(super) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
     nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
 }
-
-/// Nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix, which for a
-/// tetrahedron are a quarter of its mass. `thickness` in m, 1 for a solid; `density` in kg/m³.
-pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
-    let mut masses = vec![0.0; mesh.point_count()];
-    each_cell(mesh, |cell, nodes, geometry| {
-        shares(mesh, cell, geometry, |a, share| masses[nodes[a]] += density * thickness * share);
-    });
-    masses
-}
-
-/// Calls `visit(a, share)` with `N_a w |J|` for every node a and quadrature point of a cell.
-pub(super) fn shares(mesh: &Mesh, cell: CellIndex, geometry: &Geometry, mut visit: impl FnMut(usize, f64)) {
-    let values = mesh.blocks[cell.block].element.tabulation.values.chunks_exact(geometry.nodes);
-    for (values, v) in values.zip(&geometry.volumes) {
-        values.iter().enumerate().for_each(|(a, n)| visit(a, v * n));
-    }
-}

@@ -5,6 +5,7 @@ mod constant;
 mod definition;
 mod formula;
 mod groups;
+mod integrand;
 mod kind;
 mod proof;
 mod quadrature;
@@ -17,6 +18,7 @@ pub use definition::{FormatEntry, Formats};
 pub use formula::coordinate_names;
 pub(crate) use formula::{Formula, dot};
 pub use groups::SpringGroup;
+pub use integrand::Integrand;
 pub use kind::{Kind, SpringKind, Symmetry};
 pub use quadrature::Quadrature;
 pub use springfit_shipped::{ELEMENTS as SHIPPED, ElementFile};
@@ -53,6 +55,8 @@ pub struct Element {
     /// The order of nodes that turns the element inside out, if it has one.
     pub reflection: Option<Vec<usize>>,
     sides: OnceLock<Vec<SideTable>>,
+    /// The degree of the shape functions that loads and masses reckon with.
+    order: OnceLock<usize>,
 }
 
 /// A side of the element: its nodes, and the shape functions along it.
@@ -139,6 +143,7 @@ impl Element {
             springs,
             formats: definition.formats,
             sides: OnceLock::new(),
+            order: OnceLock::new(),
         })
     }
 
@@ -182,7 +187,15 @@ impl Element {
         let (origin, tangents) = side.embedding(self.cell);
         let on_side = |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < 1e-9;
         let nodes: Vec<usize> = (0..self.nodes()).filter(on_side).collect();
-        let local = Quadrature::of_degree(side.cell, 2 * self.degree());
+        let tabulation = self.side_tabulation(side, &nodes, 2 * self.degree());
+        SideTable { nodes, tabulation }
+    }
+
+    /// The functions of `nodes` along the side at the points of the rule of that degree.
+    fn side_tabulation(&self, side: &Side, nodes: &[usize], degree: usize) -> Tabulation {
+        let d = self.dimension();
+        let (origin, tangents) = side.embedding(self.cell);
+        let local = Quadrature::of_degree(side.cell, degree);
         let points = local
             .points
             .chunks_exact(d - 1)
@@ -197,7 +210,7 @@ impl Element {
             values: nodes.iter().map(|&a| self.functions.values[a].clone()).collect(),
             gradients: nodes.iter().map(|&a| self.functions.gradients[a].clone()).collect(),
         };
-        SideTable { nodes, tabulation: Tabulation::new(&functions, &rule, None).along(&tangents) }
+        Tabulation::new(&functions, &rule, None).along(&tangents)
     }
 
     /// Whether all shape functions are polynomials.
