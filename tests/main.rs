@@ -44,6 +44,7 @@ mod sampled;
 mod sampling;
 mod searches;
 mod shapes;
+mod small_loads;
 mod springs;
 mod stability;
 mod sums;

@@ -1,5 +1,6 @@
 //! Equilibrium and natural vibrations of either model, and how the two compare mode by mode.
 
+mod internal;
 mod linear;
 mod modes;
 mod newton;
