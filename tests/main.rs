@@ -23,6 +23,7 @@ mod integrals;
 mod large;
 mod laws;
 mod layering;
+mod linear_theory;
 mod locking;
 mod material;
 mod mesh_files;

@@ -155,7 +155,7 @@ fn the_stable_keys_are_there() {
         has(fit, &["relative_frobenius", "relative_spectral", "certificate_gap", "loads"]);
         has(&fit["relative_frobenius"], &["mean", "max"]);
         for load in fit["loads"].as_array().unwrap() {
-            has(load, &["name", "e_rms", "e_max", "seconds_fem", "seconds_lem"]);
+            has(load, &["name", "e_rms", "e_max", "e_tip", "e_energy", "seconds_fem", "seconds_lem"]);
         }
     }
 }

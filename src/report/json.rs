@@ -3,6 +3,7 @@
 use super::agreement::{Agreement, SAME, agreements};
 use super::fit_record::FitRecord;
 use super::frequencies::FrequencyRecord;
+use super::linear_theory::DeformationRecord;
 use super::load_record::{FollowedRecord, MeasuredRecord, ReadingRecord};
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::number::finite;
@@ -36,6 +37,8 @@ pub struct Report {
     pub law: Option<String>,
     /// How far the finite elements followed each load; empty at small deformation.
     pub loads_followed: Vec<FollowedRecord>,
+    /// How far linear finite elements are deformed.
+    pub deformations: Vec<DeformationRecord>,
     /// Stages that the scene did not ask for, with the reason.
     pub left_out: Vec<String>,
     /// Loads under which displacements were measured.
@@ -99,6 +102,7 @@ impl Report {
             poisson: material.poisson(),
             law: outcome.law.clone(),
             loads_followed: outcome.loads.iter().filter_map(|load| Some(load.followed.as_ref()?.into())).collect(),
+            deformations: DeformationRecord::all(outcome),
             left_out: outcome.left_out.clone(),
             measured: outcome.loads.iter().filter_map(MeasuredRecord::of).collect(),
             gauge: outcome.loads.iter().filter_map(gauge).map(|reading| reading.map(ReadingRecord::from)).collect(),

@@ -1,6 +1,7 @@
 //! How a scene's models moved: a table, notes and a file over time for each.
 
 use super::columns::{Heading, aligned};
+use super::linear_theory::turning_note;
 use super::rows::csv;
 use crate::study::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
 
@@ -74,6 +75,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
                 1.0 / growth
             ));
         }
+        notes.extend(turning_note(model, motion.models[0].deformation));
         if let MotionEnding::Refused(why) = &model.ending {
             notes.push(format!("{name}: its motion was not begun: {why}"));
         }

@@ -3,6 +3,8 @@
 use super::agreement::{Agreement, SAME, agreements};
 use super::columns::{Heading, aligned};
 use super::frequencies::{frequency_notes, frequency_table};
+use super::linear_theory::linear_notes;
+use super::load_errors::load_error_table;
 use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
 use crate::fit::Spread;
@@ -81,8 +83,14 @@ pub fn table(outcome: &Outcome) -> String {
         header.push(Heading::words("network"));
     }
     let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
-    let under =
-        [material_table(outcome), times(outcome), gauge(outcome), frequency_table(outcome), motion_table(outcome)];
+    let under = [
+        load_error_table(outcome),
+        material_table(outcome),
+        times(outcome),
+        gauge(outcome),
+        frequency_table(outcome),
+        motion_table(outcome),
+    ];
     aligned(&header, &rows) + &under.concat()
 }
 
@@ -157,7 +165,8 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         let why = "it needs a force along its axis that acts at one side of it alone";
         format!("the gauge says nothing under {}: {why}", load.name)
     });
-    let notes = finite.chain(silent).chain(measured).chain(own).chain(starts.iter().map(agreed));
+    let notes =
+        finite.chain(linear_notes(outcome)).chain(silent).chain(measured).chain(own).chain(starts.iter().map(agreed));
     notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
 }
 
@@ -171,6 +180,9 @@ fn trouble(load: &str, followed: &Followed) -> Option<String> {
             "no equilibrium found beyond {:.3} of the load {load} (residual {:.1e} there)",
             followed.load, followed.residual
         )),
+        (Ending::Converged, 0) if followed.is_rounded => {
+            Some(format!("under {load} the forces balance to their rounding only, {:.1e} of them", followed.residual))
+        }
         (_, 0) => None,
         (_, count) => Some(format!("{count} elements are turned inside out under {load}")),
     }

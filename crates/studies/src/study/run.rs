@@ -12,7 +12,7 @@ use super::stages::stages;
 use super::time::TimePlan;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Support, masses};
+use crate::model::{Deformation, Support, masses};
 
 /// Runs the scene. Work is done only for what the scene names.
 ///
@@ -93,11 +93,13 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
             (body.displacements, vec![None; cases.len()], None)
         }
     };
+    let is_linear = energy.is_none();
     let answers = cases.iter().zip(fem).zip(followed).enumerate();
     let loads = answers.map(|(i, ((case, fem), followed))| BodyLoad {
         name: case.name.clone(),
         gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
         measured: case.measured(&fem, mesh.dimension),
+        deformation: is_linear.then(|| Deformation::largest(&mesh, &fem)),
         followed,
         fem,
     });

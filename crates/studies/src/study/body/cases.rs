@@ -82,7 +82,8 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         }
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
         let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;
-        cases.push(Case { name: load.name.clone(), support, forces, measured });
+        let is_prescribed = matches!(load.action, Action::Displacement(_));
+        cases.push(Case { name: load.name.clone(), support, forces, is_prescribed, measured });
     }
     Ok((fixed, cases))
 }

@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Support, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
+use crate::study::metrics::square;
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
@@ -17,6 +18,8 @@ const SOLVED: f64 = 1e-6;
 /// The finite element solutions, and what the comparison with a network reuses.
 pub struct LinearBody {
     pub displacements: Vec<Vec<f64>>,
+    /// J; see [`Case::work`].
+    works: Vec<Option<f64>>,
     moduli: Moduli,
     seconds: Vec<f64>,
     /// The equations and factor of each load, as an index into these: loads of equal support share them.
@@ -44,8 +47,8 @@ impl LinearBody {
     /// # Errors
     /// Some motion has no stiffness, or the equations do not fit into memory.
     pub fn solve(mesh: &Mesh, moduli: Moduli, cases: &[Case], progress: &mut Progress) -> Result<LinearBody> {
-        let (displacements, seconds, systems, system_of) = Default::default();
-        let mut body = LinearBody { displacements, moduli, seconds, systems, system_of };
+        let (displacements, works, seconds, systems, system_of) = Default::default();
+        let mut body = LinearBody { displacements, works, moduli, seconds, systems, system_of };
         if cases.is_empty() {
             return Ok(body);
         }
@@ -83,6 +86,7 @@ impl LinearBody {
                 ));
             }
             body.seconds.push(assembly + setup[body.system_of[i]] + start.elapsed().as_secs_f64());
+            body.works.push(case.work(&u, || Some(square(&entries, &u))));
             body.displacements.push(u);
         }
         progress(Event::stage("finite elements", cases.len(), cases.len()));
@@ -130,9 +134,11 @@ impl LinearBody {
             let seconds_lem = assembly + setup + start.elapsed().as_secs_f64();
             let displacement = solution.filter(|(u, residual)| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
             let displacement = displacement.map(|(u, _)| u);
+            let work = displacement.as_ref().and_then(|u| case.work(u, || Some(square(&entries, u))));
             answers.loads.push(LoadOutcome {
                 name: case.name.clone(),
                 error: displacement.as_ref().and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
+                work_error: case.work_error(self.works[i], work),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,

@@ -2,12 +2,12 @@
 
 use super::levels::plan;
 use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step};
-use super::quantities::{Quantities, product, square};
+use super::quantities::Quantities;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
 use crate::solve::Ending;
-use crate::study::metrics::displacement_error;
+use crate::study::metrics::{displacement_error, product, square};
 use crate::study::outcome::Outcome;
 use crate::study::progress::{Event, Progress};
 use crate::study::run::run;

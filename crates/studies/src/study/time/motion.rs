@@ -5,14 +5,17 @@ use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Outc
 use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;
-use crate::model::{Body, Elastic, LinearElastic, Network, Support, finite_elements};
-use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
+use crate::model::{Body, Deformation, Elastic, LinearElastic, Network, Support, finite_elements};
+use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, mean_and_largest};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, MotionRecipe};
 use std::time::Instant;
 
 /// A displacement of so many times the body's size is none.
 const AWAY: f64 = 1e9;
+/// Where linear finite elements are strained or turned by more than this, in rad, springs that turn go another way by half of it: what
+/// of their error is the fit's is worked out without that.
+const TURNING: f64 = 0.01;
 
 /// What moves a scene's models.
 pub struct Planned {
@@ -63,9 +66,14 @@ pub fn move_models(
         if planned.draws {
             made.states.clone_from(&states);
         }
+        if energy.is_none() {
+            made.deformation = states.iter().map(|u| Deformation::largest(mesh, u)).reduce(Deformation::max);
+        }
         models.push(made);
         reference = states;
     }
+    let turns = |deformation: Deformation| deformation.exceeds(TURNING) && !planned.recipe.options.linear;
+    let turning = models.first().and_then(|body| body.deformation).is_some_and(turns);
     let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(square).fold(0.0, f64::max).sqrt();
     for (i, fit) in outcome.fits.iter().enumerate() {
         let growth = growth(&fit.network, mesh, planned)?;
@@ -78,10 +86,21 @@ pub fn move_models(
         let model = fit.network.prepared();
         let (mut made, states) = run.follow((&fit.fit.name, growth), &model, damping, options, keeps, progress)?;
         made.fit = Some(i);
-        for ((record, u), fem) in made.records.iter_mut().zip(&states).zip(&reference) {
-            let away: f64 = u.iter().zip(fem).map(|(a, b)| (a - b) * (a - b)).sum();
-            let rms = (away / mesh.point_count() as f64).sqrt();
-            record.error = (largest > 0.0).then(|| 100.0 * rms / largest);
+        let errors = |states: &[Vec<f64>]| -> Vec<f64> {
+            let rms = |(u, fem): (&Vec<f64>, &Vec<f64>)| {
+                let away: f64 = u.iter().zip(fem).map(|(a, b)| (a - b) * (a - b)).sum();
+                100.0 * (away / mesh.point_count() as f64).sqrt() / largest
+            };
+            if largest > 0.0 { states.iter().zip(&reference).map(rms).collect() } else { Vec::new() }
+        };
+        made.records.iter_mut().zip(errors(&states)).for_each(|(record, error)| record.error = Some(error));
+        if turning && made.ending == MotionEnding::Complete {
+            let linear = Options { linear: true, ..options };
+            let damping = planned.damping(Some(&fit.network), mesh)?;
+            let name = format!("{} without turning", fit.fit.name);
+            let (linear, states) = run.follow((&name, growth), &model, damping, linear, true, progress)?;
+            let complete = linear.ending == MotionEnding::Complete;
+            made.linear_error = mean_and_largest(&errors(&states)).filter(|_| complete);
         }
         if planned.draws {
             made.states = states;
@@ -134,6 +153,8 @@ impl Run<'_> {
             ending: MotionEnding::Complete,
             unsolved: 0,
             growth,
+            deformation: None,
+            linear_error: None,
             records: Vec::new(),
             states: Vec::new(),
         };
