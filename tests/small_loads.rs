@@ -55,7 +55,7 @@ fn away(a: &[f64], b: &[f64]) -> f64 {
 /// that is nothing by the tolerance times the condition of these equations, far below 1e-8.
 #[test]
 fn loads_of_any_size_have_their_equilibrium() {
-    let check = |what: &str, model: &dyn Elastic, mesh: &Mesh, young: f64, has_linear: bool| {
+    let check = |what: &str, model: &dyn Elastic, mesh: &Mesh, young: f64| {
         let (support, unit) = pulled(mesh);
         let expected = linear(model, mesh, &support, &unit);
         for decade in 1..=14 {
@@ -66,7 +66,7 @@ fn loads_of_any_size_have_their_equilibrium() {
             assert!(!found.is_rounded, "{what} {share:e}: {:?}", found.residuals);
             let wanted: Vec<f64> = expected.iter().map(|u| u * share * young).collect();
             let error = away(&found.displacement, &wanted);
-            assert!(!has_linear || decade < 3 || error < 100.0 * share + 1e-8, "{what} {share:e}: {error:e}");
+            assert!(decade < 3 || error < 100.0 * share + 1e-8, "{what} {share:e}: {error:e}");
         }
     };
     for (name, laws) in [
@@ -75,18 +75,16 @@ fn loads_of_any_size_have_their_equilibrium() {
         ("tet4", &["neo-hookean", "ogden"]),
         ("quad4", &["neo-hookean", "yeoh"]),
     ] {
-        for young in [2e11, 1e3, 1e-3] {
-            for poisson in [0.0, 0.3, 0.49] {
-                let mesh = block(name, 0.0);
-                let material = Material::for_body(mesh.dimension, young, poisson, None, None).unwrap();
-                for law in laws {
-                    let energy = Energy::load(law, material).unwrap();
-                    let body = Body { mesh: &mesh, energy: &energy, state: material.state() };
-                    check(&format!("{name} {law} {young} {poisson}"), &body, &mesh, young, true);
-                }
-                if name != "tet10" {
-                    check(&format!("network of {name} {young}"), &network(&mesh, material), &mesh, young, true);
-                }
+        for (young, poisson) in [(2e11, 0.3), (1e3, 0.49), (1e-3, 0.0)] {
+            let mesh = block(name, 0.0);
+            let material = Material::for_body(mesh.dimension, young, poisson, None, None).unwrap();
+            for law in laws {
+                let energy = Energy::load(law, material).unwrap();
+                let body = Body { mesh: &mesh, energy: &energy, state: material.state() };
+                check(&format!("{name} {law} {young} {poisson}"), &body, &mesh, young);
+            }
+            if name != "tet10" {
+                check(&format!("network of {name} {young}"), &network(&mesh, material), &mesh, young);
             }
         }
     }
