@@ -467,7 +467,7 @@ fn an_indefinite_network_is_told() {
     assert_eq!((sound.steps, &sound.ending), (2, &MotionEnding::Complete));
     assert!(outcome.frequencies[1].found.is_err() && outcome.frequencies[2].found.is_ok());
     let notes = report::notes(&outcome).join("\n");
-    for part in ["indefinite, a motion that releases energy grows by e every", "208 negative springs", "was not begun"]
+    for part in ["indefinite, the fastest-growing motion grows by a factor of e every", "208 spring", "was not started"]
     {
         assert!(notes.contains(part), "{notes}");
     }

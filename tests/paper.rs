@@ -137,8 +137,8 @@ fn published_methods_tell_what_they_take_for_granted() {
     let (_folder, path) = written(TRIANGLES);
     let outcome = run(&Scene::load(&path).unwrap(), &mut quiet).unwrap();
     let notes = report::notes(&outcome);
-    let note = "lloyd: lloyd is made for Poisson's ratio 0.3333, the material's is 0.3; 18 of 18 elements do not have the shape it \
-                is made for (lengths off by up to 24 %)";
+    let note = "lloyd: lloyd assumes Poisson's ratio 0.3333, and the material has 0.3; 18 of 18 elements do not have the shape that \
+                it assumes (lengths differ by up to 24 %)";
     assert!(notes.iter().any(|n| n == note), "{notes:?}");
     assert!(report::report(&outcome).contains("\"elements_of_other_shape\": 18"));
     let names = |path: &Path| -> Vec<String> {

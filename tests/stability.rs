@@ -184,11 +184,11 @@ fn misfits_are_counted() {
     let hanging = "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 8 7\n3 3 2 1 1 7 8 6 3";
     let tiny = "9 0 0 0\n10 -1e-9 0 0\n11 0 -1e-9 0";
     let cases = [
-        (mesh(0.0, "", hanging), "1 points hang", true),
-        (mesh(1e7, "", hanging), "1 points hang", true),
-        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points hang", true),
-        (mesh(0.0, "", "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 6 3"), "hang", false),
-        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points are at the place of another", true),
+        (mesh(0.0, "", hanging), "1 points lie in the middle of edges", true),
+        (mesh(1e7, "", hanging), "1 points lie in the middle of edges", true),
+        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points lie in the middle of edges", true),
+        (mesh(0.0, "", "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 6 3"), "hanging nodes", false),
+        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points coincide with another point", true),
     ];
     for (text, words, told) in cases {
         fs::write(folder.path().join("m.msh"), text).unwrap();

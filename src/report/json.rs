@@ -7,7 +7,7 @@ use super::load_record::{FollowedRecord, MeasuredRecord, ReadingRecord};
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::number::finite;
 use crate::mesh::Mesh;
-use crate::study::{BodyLoad, GaugeResult, Outcome};
+use crate::study::{BodyLoad, GaugeResult, Outcome, extent};
 use serde::{Deserialize, Serialize};
 
 /// Of the report's keys; it changes when a key is removed or its meaning changes.
@@ -20,6 +20,10 @@ pub struct Report {
     pub version: u32,
     /// The title.
     pub scene: String,
+    /// The size of the box around the body along each axis, m.
+    pub extent: Vec<f64>,
+    /// What was assumed because no input says it, as a sentence.
+    pub assumed: Option<String>,
     pub nodes: usize,
     pub elements: usize,
     pub element_types: Vec<String>,
@@ -88,6 +92,8 @@ impl Report {
         Report {
             version: VERSION,
             scene: outcome.scene.clone(),
+            extent: extent(mesh),
+            assumed: outcome.assumed.clone(),
             nodes: mesh.point_count(),
             elements: mesh.cell_count(),
             element_types: mesh.blocks.iter().map(|block| block.element.name.clone()).collect(),

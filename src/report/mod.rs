@@ -54,6 +54,7 @@ use crate::error::Result;
 use crate::file::{create_folder, write_whole};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
+use crate::text::printable_lines;
 use std::path::{Path, PathBuf};
 
 /// Writes what `output` asks for into `folder`, and returns the paths.
@@ -112,7 +113,7 @@ fn write_files<N: AsRef<Path>>(folder: &Path, files: &[(N, String)]) -> Result<V
     create_folder(folder)?;
     let write = |(name, text): &(N, String)| {
         let path = folder.join(name);
-        write_whole(&path, text.as_bytes())?;
+        write_whole(&path, printable_lines(text).as_bytes())?;
         Ok(path)
     };
     files.iter().map(write).collect()

@@ -69,16 +69,16 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
         if let (Some(growth), Some(fit)) = (model.growth, model.fit) {
             let negative = outcome.fits[fit].network.negative();
             notes.push(format!(
-                "{name}: indefinite, a motion that releases energy grows by e every {:.1e} s at rest; it has {negative} \
-                 negative springs",
+                "{name}: indefinite, the fastest-growing motion grows by a factor of e every {:.1e} s at rest; {negative} spring \
+                 constants are negative",
                 1.0 / growth
             ));
         }
         if let MotionEnding::Refused(why) = &model.ending {
-            notes.push(format!("{name}: its motion was not begun: {why}"));
+            notes.push(format!("{name}: the motion was not started: {why}"));
         }
         if model.unsolved > 0 {
-            notes.push(format!("{name}: the equations of {} steps were not solved to the tolerance", model.unsolved));
+            notes.push(format!("{name}: in {} steps the equations were not solved to the tolerance", model.unsolved));
         }
     }
     notes

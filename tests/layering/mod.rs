@@ -10,10 +10,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 21] = [
+const LAYERS: [&str; 23] = [
     "shipped",
+    "text",
     "error",
     "named",
+    "quantity",
     "file",
     "scalar",
     "symbolic",

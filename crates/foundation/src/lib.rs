@@ -4,6 +4,8 @@
 
 pub mod error;
 pub mod file;
-mod named;
+pub mod named;
+pub mod quantity;
 pub mod scalar;
 pub mod symbolic;
+pub mod text;

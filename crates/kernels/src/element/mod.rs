@@ -5,6 +5,7 @@ mod constant;
 mod definition;
 mod formula;
 mod groups;
+mod invariance;
 mod kind;
 mod proof;
 mod quadrature;
@@ -25,6 +26,7 @@ pub use tabulation::{ShapeFunctions, Tabulation};
 
 use crate::error::{Error, Result};
 use crate::file;
+use crate::named::unknown;
 use crate::symbolic::{Polynomial, Scope};
 use definition::Definition;
 use groups::spring_groups;
@@ -79,7 +81,7 @@ impl Element {
             None => {
                 let names: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
                 let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
-                Err(Error::expected("element", expected, format!("\"{name_or_path}\"")))
+                Err(unknown(expected, names, name_or_path).at_key("element"))
             }
         }
     }
@@ -95,8 +97,12 @@ impl Element {
     /// Parses and proves the text of an element file.
     ///
     /// # Errors
-    /// Names the key, what was expected and what was found.
+    /// Names the line, the key, what was expected and what was found.
     pub fn parse(text: &str) -> Result<Element> {
+        Element::proved(text).map_err(|e| file::on_line_of_key(e, text))
+    }
+
+    fn proved(text: &str) -> Result<Element> {
         let definition: Definition = file::parse_toml(text)?;
         let dimension = definition.cell.dimension();
         proof::coordinates(&definition)?;
@@ -217,10 +223,11 @@ impl Element {
     /// A name is no group of this element.
     pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
         let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
-        if let Some(unknown) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
+        if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
             let known: Vec<_> = self.springs.iter().map(|g| format!("\"{}\"", g.name)).collect();
             let expected = format!("groups of {}: {}", self.name, known.join(", "));
-            return Err(Error::expected("springs", expected, format!("\"{unknown}\"")));
+            let groups = self.springs.iter().map(|g| g.name.as_str());
+            return Err(unknown(expected, groups, wrong).at_key("springs"));
         }
         Ok(self.springs.iter().filter(|g| names.contains(&g.name)).collect())
     }

@@ -186,26 +186,3 @@ impl Material {
 fn body(dimension: usize) -> &'static str {
     if dimension == 1 { "one of lines" } else { "a solid one" }
 }
-
-/// A pressure such as `10e3`, `10kPa` or `"0.2 MPa"`, in Pa.
-///
-/// # Errors
-/// It is not a number followed by nothing, Pa, kPa, MPa or GPa.
-pub fn parse_pressure(text: &str) -> Result<f64> {
-    let trimmed = text.trim();
-    let digits = trimmed.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    // In "10e3" the last letter belongs to the number; in "10kPa" all letters are the unit.
-    let (number, unit) =
-        if trimmed.parse::<f64>().is_ok() { (trimmed, "") } else { (digits, &trimmed[digits.len()..]) };
-    let factor = match unit {
-        "" | "Pa" => Some(1.0),
-        "kPa" => Some(1e3),
-        "MPa" => Some(1e6),
-        "GPa" => Some(1e9),
-        _ => None,
-    };
-    match (number.trim().parse::<f64>(), factor) {
-        (Ok(value), Some(factor)) => Ok(value * factor),
-        _ => Err(Error::new(format!("expected a pressure such as 10000, 10kPa or 0.01MPa, found \"{text}\""))),
-    }
-}

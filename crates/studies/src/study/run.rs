@@ -27,9 +27,13 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
 /// # Errors
 /// As there, and the checkpoint is wrong or cannot be written.
 pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
+    worked_out(scene, controls, progress).map_err(|e| scene.with_line(e))
+}
+
+fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     controls.check()?;
     let mesh = scene.build_mesh()?;
-    let material = scene.material(mesh.cell_dimension())?;
+    let material = scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
     let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
@@ -107,6 +111,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     }
     let mut outcome = Outcome {
         scene: scene.title().into(),
+        assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
         material,
@@ -118,7 +123,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         frequencies: Vec::new(),
     };
     if controls.cancelled() {
-        progress(Event::Note("ended early: no motion, no frequencies"));
+        progress(Event::Note("ended early, without motion and frequencies"));
     } else {
         plan.follow(scene, energy.as_ref(), &mut outcome, progress)?;
     }

@@ -6,7 +6,7 @@ use super::load::LoadEntry;
 use super::motion::MotionEntry;
 use super::output::Output;
 use super::part::Part;
-use super::value::Pressure;
+use super::value::{self, Pressure};
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::solve::Newton;
@@ -38,9 +38,14 @@ pub struct MaterialEntry {
     pub young: Pressure,
     pub poisson: f64,
     pub plane: Option<Plane>,
+    /// m.
+    #[serde(default, deserialize_with = "value::optional_length")]
     pub thickness: Option<f64>,
     /// The cross-section of rods, m².
+    #[serde(default, deserialize_with = "value::optional_area")]
     pub area: Option<f64>,
+    /// kg/m³.
+    #[serde(default, deserialize_with = "value::optional_density")]
     pub density: Option<f64>,
     /// A shipped energy's name, or a path relative to the scene that ends in .toml. Loads are at large deformation then.
     pub law: Option<String>,

@@ -1,6 +1,7 @@
 //! The `[gauge]` of a scene: where the strain of a specimen is measured.
 
 use super::part::Part;
+use super::value;
 use crate::error::{Error, Result};
 use serde::Deserialize;
 
@@ -11,6 +12,7 @@ pub struct GaugeEntry {
     #[serde(rename = "where")]
     pub condition: Option<String>,
     pub axis: String,
+    #[serde(deserialize_with = "value::area")]
     pub area: f64,
 }
 

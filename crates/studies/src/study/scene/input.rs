@@ -1,6 +1,7 @@
 //! Where the mesh of a scene comes from.
 
 use super::elements::{load_element, load_elements};
+use super::value;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
 use serde::Deserialize;
@@ -16,7 +17,7 @@ pub struct MeshInput {
     pub generated: Option<BoxEntry>,
     pub disc: Option<DiscEntry>,
     /// Mesh units to metres.
-    #[serde(default = "one")]
+    #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     pub scale: f64,
     /// Element files to look in before the shipped ones, relative to the scene.
     #[serde(default)]

@@ -1,7 +1,7 @@
 //! A load of a scene.
 
 use super::part::Part;
-use super::value::{PrescribedComponent, Varying};
+use super::value::{self, PrescribedComponent, Varying};
 use crate::error::{Error, Result};
 use crate::model::{Action, Component};
 use crate::symbolic::Scope;
@@ -39,7 +39,7 @@ pub struct MeasuredEntry {
     /// Relative to the scene.
     pub file: PathBuf,
     /// Metres per unit of the file.
-    #[serde(default = "one")]
+    #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     pub scale: f64,
     /// Of several.
     pub array: Option<String>,

@@ -1,7 +1,7 @@
 //! The keys of `[motion]`: how a scene moves in time.
 
 use super::part::Part;
-use super::value::Varying;
+use super::value::{self, Varying};
 use crate::dynamics::{Integrator, LEAST_TOLERANCE, Options, Solver};
 use crate::error::{Error, Result};
 use crate::model::Lumping;
@@ -59,7 +59,9 @@ pub struct AppliedForce {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEntry {
+    #[serde(deserialize_with = "value::time")]
     duration: f64,
+    #[serde(deserialize_with = "value::time")]
     step: f64,
     integrator: Option<String>,
     iterations: Option<usize>,
@@ -72,6 +74,7 @@ pub struct MotionEntry {
     mass: Option<String>,
     gravity: Option<Vec<f64>>,
     damping: Option<DampingEntry>,
+    #[serde(default, deserialize_with = "value::optional_time")]
     every: Option<f64>,
     watch: Option<WatchEntry>,
     finite_elements: Option<bool>,

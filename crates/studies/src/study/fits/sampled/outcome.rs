@@ -38,13 +38,13 @@ impl SampledOutcome {
     pub fn notes(&self) -> Vec<String> {
         let loads = (!self.loads.is_empty()).then(|| {
             format!(
-                "fitted to the shapes of the finite elements under {}: its errors there are not held out",
+                "fitted to the shapes of the finite elements under {}: its errors under them are not predictions",
                 self.loads.join(", ")
             )
         });
         let agreeing = self.agreeing.filter(|share| *share < 1.0).map(|agreeing| {
             format!(
-                "in the worst element {:.0} % of the starts found the best parameters, the others worse ones",
+                "in the worst element {:.0} % of the starts reached the best parameters, and the others ended at worse ones",
                 100.0 * agreeing
             )
         });
