@@ -436,7 +436,7 @@ fn an_explicit_step_beyond_its_limit_is_refused_with_the_limit() {
     let line = String::from_utf8(seen.stderr).unwrap();
     assert_eq!(seen.status.code(), Some(2));
     assert!(
-        line.starts_with("error: scene.toml: motion.step: expected at most ") && line.contains("found 1e-2 s"),
+        line.starts_with("error: scene.toml:15: motion.step: expected at most ") && line.contains("found 1e-2 s"),
         "{line}"
     );
     assert!(!folder.path().join("out").exists());

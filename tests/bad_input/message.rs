@@ -34,13 +34,11 @@ impl Place {
         }
         let text = self.file.as_deref().and_then(&text_of).map(|text| String::from_utf8_lossy(text).into_owned());
         let line = |text: &String| text.lines().nth(self.line.unwrap_or(0).wrapping_sub(1)).map(String::from);
-        let Some((text, line)) = text.and_then(|text| line(&text).map(|line| (text, line))) else { return false };
+        let Some(line) = text.as_ref().and_then(line) else { return false };
         let names = self.names();
-        let is_written = |name: &&&str| text.contains(&format!("{name} =")) || text.contains(&format!("{name}]"));
-        let nearest = names.iter().rev().find(is_written);
         let continues = line.starts_with([' ', '\t', '[']);
         (&self.file, &self.key) == (&expected.file, &expected.key)
-            && (continues || nearest.is_some_and(|name| line.contains(name)))
+            && (continues || names.iter().any(|name| line.contains(name)))
     }
 
     /// The parts of the key, without numbers.

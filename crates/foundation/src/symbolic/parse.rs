@@ -6,7 +6,6 @@
 use super::predicate::{Comparison, Predicate};
 use super::{Expr, Function};
 use crate::error::{Error, ErrorKind, Result};
-use crate::named::suggestion;
 use evalexpr::{Node, Operator};
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -160,10 +159,7 @@ impl Scope {
         known.extend(self.definitions.iter().map(|(n, _)| n.as_str()));
         Err(Error::new(match known.as_slice() {
             [] => format!("expected a constant, found the name \"{name}\""),
-            _ => {
-                let hint = suggestion(known.iter().copied(), name);
-                format!("expected one of {}, found the name \"{name}\"{hint}", known.join(", "))
-            }
+            _ => format!("expected one of {}, found the name \"{name}\"", known.join(", ")),
         }))
     }
 }
