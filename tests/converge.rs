@@ -494,9 +494,9 @@ fn what_cannot_converge_is_refused() {
     refused(&["large.toml", "--levels", "5"], &pattern);
     refused(
         &["huge.toml"],
-        "error: huge.toml: mesh: expected at most 200000 unknowns …, found 3090903 unknowns on the first level",
+        "error: huge.toml:1: mesh: expected at most 200000 unknowns …, found 3090903 unknowns on the first level",
     );
-    refused(&["huge.toml", "--levels", "3"], "error: huge.toml: mesh: …");
+    refused(&["huge.toml", "--levels", "3"], "error: huge.toml:1: mesh: …");
     refused(&["missing.toml"], "error: missing.toml: …");
 }
 

@@ -408,7 +408,7 @@ fn wrong_keys_are_told() {
         let (folder, _) = written(text);
         let seen = program(folder.path(), &["run", "scene.toml"]);
         let line = String::from_utf8_lossy(&seen.stderr).into_owned();
-        let expected = format!("error: scene.toml{}{message}\n", if message.starts_with(':') { "" } else { ": " });
+        let expected = format!("error: scene.toml{}{message}…\n", if message.starts_with(':') { "" } else { ":…: " });
         let clean = fs::read_dir(folder.path()).unwrap().count() == 1 && seen.stdout.is_empty();
         if reads(&line, &expected).is_err() || seen.status.code() != Some(2) || !clean {
             wrong.push(format!("expected {expected}found    {line} {:?} {clean}", seen.status));

@@ -119,7 +119,7 @@ fn poor_cells_are_told_refused_or_skipped() {
     let all = springs();
     let output = fitted(place, &["--below", "skip"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(text.contains("1 cells of poor quality, flat or tangled, were left out"), "{text}");
+    assert!(text.contains("1 cells that are flat, tangled or of poor quality were left out"), "{text}");
     assert!(text.contains("5 points") && !text.contains("belong to no element") && springs() < all, "{text}");
     let errors = [
         (
@@ -219,6 +219,6 @@ fn a_scene_names_its_gate() {
     ] {
         let output = scene(quality);
         assert_eq!(output.status.code(), Some(2));
-        reads(&String::from_utf8_lossy(&output.stderr), &format!("error: s.toml: {error}\n")).unwrap();
+        reads(&String::from_utf8_lossy(&output.stderr), &format!("error: s.toml:3: {error}\n")).unwrap();
     }
 }
