@@ -28,6 +28,7 @@ mod residual;
 mod rest;
 mod sampled;
 mod settings;
+mod sizes;
 mod solver;
 mod spectral;
 mod tension;
