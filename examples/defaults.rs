@@ -1,7 +1,7 @@
 //! The study behind the default objective: every linear scene of the folder `scenes`, fitted in 64 ways.
 //!
 //! `cargo run --release --example defaults` prints, for each element type, the geometric mean of %e_rms over the loads
-//! of its scenes, the worst of them, and how many networks are not sound. Scenes can be named:
+//! of its scenes, the worst of them, and how many networks are not stable. Scenes can be named:
 //! `cargo run --release --example defaults -- scenes/square_quad.toml`.
 
 use springfit::element::SpringKind;
@@ -12,11 +12,11 @@ use springfit::study::{NamedFit, Scene, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The percentages of one fit on the scenes of one element type, and how many of its networks are unsound.
+/// The percentages of one fit on the scenes of one element type, and how many of its networks are not stable.
 #[derive(Default)]
 struct Row {
     errors: Vec<f64>,
-    unsound: usize,
+    unstable: usize,
 }
 
 fn main() -> Result<()> {
@@ -37,15 +37,15 @@ fn main() -> Result<()> {
         for (order, fit) in outcome.fits.iter().enumerate() {
             let (_, row) = rows.entry((element.name.clone(), order)).or_insert((fit.fit.name.clone(), Row::default()));
             row.errors.extend(fit.loads.iter().map(|l| l.error.map_or(f64::INFINITY, |e| e.rms)));
-            let sound = fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Sound);
-            row.unsound += usize::from(!sound);
+            let stable = fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Stable);
+            row.unstable += usize::from(!stable);
         }
     }
-    println!("{:8} {:28} {:>12} {:>8} {:>8}", "element", "fit", "mean %e_rms", "worst", "unsound");
+    println!("{:8} {:28} {:>12} {:>8} {:>8}", "element", "fit", "mean %e_rms", "worst", "unstable");
     for ((element, _), (fit, row)) in rows {
         let mean = (row.errors.iter().map(|e| e.ln()).sum::<f64>() / row.errors.len() as f64).exp();
         let worst = row.errors.iter().copied().fold(0.0, f64::max);
-        println!("{element:8} {fit:28} {mean:12.2} {worst:8.2} {:8}", row.unsound);
+        println!("{element:8} {fit:28} {mean:12.2} {worst:8.2} {:8}", row.unstable);
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ pub mod prelude;
 pub mod report;
 
 pub use springfit_bodies::{dynamics, mesh, model, positive, solve, whole};
-pub use springfit_foundation::{error, scalar, symbolic};
+pub use springfit_foundation::{error, quantity, range, scalar, symbolic, text};
 pub use springfit_kernels::{element, fit, material, springs, stiffness};
 pub use springfit_studies::study;
 

@@ -4,6 +4,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::error::{Error, Result};
 use springfit::report;
 use springfit::study::{Event, Outcome};
+use springfit::text::{printable, printable_lines};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -77,7 +78,7 @@ impl Terminal {
         if let Some(bar) = &self.bar {
             bar.set_length(total as u64);
             bar.set_position(done as u64);
-            bar.set_message(name.to_string());
+            bar.set_message(printable(name).into_owned());
             bar.set_prefix(left);
         }
     }
@@ -95,7 +96,7 @@ impl Terminal {
     /// Standard output cannot be written.
     pub fn print(&mut self, text: &str) -> Result<()> {
         self.clear();
-        match std::io::stdout().write_all(text.as_bytes()) {
+        match std::io::stdout().write_all(printable_lines(text).as_bytes()) {
             Ok(()) => Ok(()),
             Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
             Err(e) => Err(Error::io(format!("standard output cannot be written: {e}"), e)),
@@ -132,5 +133,5 @@ fn words(time: Duration) -> String {
 
 /// A line on standard error; if nobody can read it, nothing is lost.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", printable_lines(line));
 }

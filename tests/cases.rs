@@ -104,7 +104,27 @@ fn a_network_that_releases_energy_is_told() {
     assert!(stability.energy_ratio[0] < 0.0 && !outcome.loose_points.is_empty());
     let nonnegative = Fit { nonnegative: true, ..Fit::new(MODAL) };
     let outcome = fitted("cylinder_hex", nonnegative, true);
-    assert_eq!((outcome.network.negative(), outcome.stability.unwrap().standing), (0, Standing::Sound));
+    assert_eq!((outcome.network.negative(), outcome.stability.unwrap().standing), (0, Standing::Stable));
+}
+
+/// Where everything is held nothing moves, and nothing can move freely.
+#[test]
+fn a_body_that_is_wholly_held_is_no_mechanism() {
+    for law in ["", "law = \"neo-hookean\""] {
+        for motion in ["", "[motion]\nduration = 0.01\nstep = 0.005\n"] {
+            let text = format!(
+                "[mesh]\nbox = {{ element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+                 density = 1000\n{law}\n[[fit]]\nobjective = \"exact\"\n[[fit]]\nobjective = \"offdiag\"\n[[fix]]\nwhere = \"z >= 0\"\n\
+                 [[load]]\ngroup = \"zmax\"\ndisplacement = [0, 0, 0]\n{motion}"
+            );
+            let outcome = run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+            for fit in &outcome.fits {
+                assert!(!["mechanism", "stalled", "indefinite"].contains(&fit.status()), "{law}: {}", fit.status());
+                assert!(fit.loads[0].displacement.as_ref().unwrap().iter().all(|u| *u == 0.0), "{law}");
+            }
+            assert!(springfit::report::notes(&outcome).iter().all(|note| !note.contains("mechanism")), "{law}");
+        }
+    }
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn element(name: &str) -> Arc<Element> {
 
 fn mesh_of(dimension: usize, points: Vec<f64>, blocks: Vec<CellBlock>) -> Mesh {
     let (groups, quality) = (BTreeMap::new(), Quality::default());
-    Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, quality }
+    Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, numbering: None, quality }
 }
 
 /// Two cells in each direction; a chain of three cells in the plane for one that fills no box.
@@ -494,9 +494,9 @@ fn what_cannot_converge_is_refused() {
     refused(&["large.toml", "--levels", "5"], &pattern);
     refused(
         &["huge.toml"],
-        "error: huge.toml: mesh: expected at most 200000 unknowns …, found 3090903 unknowns on the first level",
+        "error: huge.toml:1: mesh: expected at most 200000 unknowns …, found 3090903 unknowns on the first level",
     );
-    refused(&["huge.toml", "--levels", "3"], "error: huge.toml: mesh: …");
+    refused(&["huge.toml", "--levels", "3"], "error: huge.toml:1: mesh: …");
     refused(&["missing.toml"], "error: missing.toml: …");
 }
 

@@ -1,5 +1,6 @@
 //! Runs again over the files that fuzzing has kept: each reaches code that no other does, or once went wrong.
 
+mod door;
 mod element;
 mod expression;
 mod gmsh;
@@ -29,6 +30,11 @@ fn replay(target: &str, check: fn(&[u8])) {
     }
     assert!(count > 10, "the corpus was not found");
     assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn calls_of_public_functions() {
+    replay("door", door::check);
 }
 
 #[test]

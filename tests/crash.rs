@@ -347,13 +347,13 @@ fn an_interrupt_ends_a_long_fit_at_its_best_point() {
     let mut program = begun(&case);
     send(&mut program, "INT");
     let ended = program.wait_with_output().unwrap();
-    assert!(ended.status.success() && told(&ended).contains("ended before its time"), "{ended:?}");
+    assert!(ended.status.success() && told(&ended).contains("it was ended early"), "{ended:?}");
     let seen = case.folder.path().join("seen");
     fs::rename(case.out(), &seen).unwrap();
     case.fresh(false);
     fs::copy(seen.join("state.json"), case.out().join("state.json")).unwrap();
     let resumed = case.program().output().unwrap();
-    assert!(resumed.status.success() && !told(&resumed).contains("ended before its time"), "{resumed:?}");
+    assert!(resumed.status.success() && !told(&resumed).contains("it was ended early"), "{resumed:?}");
     case.outputs = files(&case.out());
     case.check(&seen, false, "interrupted");
     assert!(files(&seen).keys().eq(case.outputs.keys()));

@@ -186,7 +186,7 @@ fn the_command_prints_formulas_and_refuses_what_has_none() {
         (&["hex8", "--plane", "stress"][..], "--plane: expected a plane element, found hex8"),
         (
             &["quad4", "--springs", "edges"],
-            "--springs: expected groups of quad4: \"edge\", \"diagonal\", \"bulk\", found \"edges\"",
+            "--springs: expected groups of quad4: \"edge\", \"diagonal\", \"bulk\", found \"edges\"; did you mean \"edge\"?",
         ),
         (
             &["pentagon5"],

@@ -625,6 +625,7 @@ fn lumped_masses_are_positive() {
             groups: Default::default(),
             reversed: 0,
             unused_points: 0,
+            numbering: None,
             quality: Default::default(),
         };
         let rows = masses(&mesh, 1000.0, 0.5);

@@ -17,7 +17,7 @@ fn scene_mesh(name: &str) -> Mesh {
     Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap()
 }
 
-/// Tetrahedra with the nodes of the unit tetrahedron, each with nodes of its own.
+/// The unit tetrahedron and, each with nodes of its own, others turned half about its last edge, with which they share two places.
 fn tetrahedra(count: usize) -> Mesh {
     let block = SourceBlock {
         dimension: 3,
@@ -26,9 +26,10 @@ fn tetrahedra(count: usize) -> Mesh {
         connectivity: (0..4 * count).collect(),
         groups: Vec::new(),
     };
-    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    Mesh::resolve(&MeshSource { format: Format::Gmsh, points: corners.repeat(count), blocks: vec![block] }, &[], 1.0)
-        .unwrap()
+    let corners = |side: f64| [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, 1.0]];
+    let points = (0..count).flat_map(|i| corners(if i == 0 { 1.0 } else { -1.0 })).collect();
+    let source = MeshSource { format: Format::Gmsh, points, numbers: Vec::new(), blocks: vec![block] };
+    Mesh::resolve(&source, &[], 1.0).unwrap()
 }
 
 /// A folder of files to read.

@@ -68,7 +68,11 @@ fn shapes_come_from_loads_and_lists() {
     let (_folder, scene) = bar(&of_loads, &[]);
     let outcome = run(&scene, &mut |_| {}).unwrap();
     assert_eq!(outcome.fits[0].kind.sampled().unwrap().loads, ["pull"]);
-    assert!(report::notes(&outcome).iter().any(|note| note.contains("under pull: its errors there are not held out")));
+    assert!(
+        report::notes(&outcome)
+            .iter()
+            .any(|note| note.contains("under pull: its errors under them are not predictions"))
+    );
     assert!(report::report(&outcome).contains("\"agreeing_starts\""));
     let pulled = errors(&outcome, "sampled")[0];
 
@@ -104,8 +108,9 @@ fn a_load_that_is_not_reached_is_told() {
     let scene = scene.with_newton(newton);
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let notes = report::notes(&outcome);
-    let told =
-        |start: &str| notes.iter().any(|note| note.starts_with(start) && note.contains("no equilibrium found beyond"));
+    let told = |start: &str| {
+        notes.iter().any(|note| note.starts_with(start) && note.contains("no equilibrium was found beyond"))
+    };
     assert!(told("finite elements: ") && told("frobenius: "), "{notes:?}");
     assert!(outcome.fits[0].loads.iter().all(|load| load.error.is_none() && load.displacement.is_none()));
     assert!(report::report(&outcome).contains("\"converged\": false"));

@@ -238,12 +238,12 @@ fn scene(fit: &str) -> springfit::error::Result<Scene> {
     Scene::parse(&text, &Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/scene.toml"))
 }
 
-/// A scene has the network, its notes and a sound answer.
+/// A scene has the network, its notes and a stable answer.
 #[test]
 fn scenes_ask_for_networks_without_negative_springs() {
     let outcome = run(&scene("nonnegative = true").unwrap(), &mut |_| {}).unwrap();
     let fit = &outcome.fits[0];
-    assert_eq!((fit.network.negative(), fit.status(), fit.fit.name.as_str()), (0, "sound", "exact k>=0"));
+    assert_eq!((fit.network.negative(), fit.status(), fit.fit.name.as_str()), (0, "stable", "exact k>=0"));
     let FittedKind::Exact(exact) = &fit.kind else { panic!("an exact fit") };
     let positive = exact.positive.unwrap();
     assert!(positive.route == Route::Springs && positive.negative > 50, "{positive:?}");

@@ -75,6 +75,7 @@ fn single(element: &Arc<Element>, x: Vec<f64>) -> Mesh {
         groups: Default::default(),
         reversed: 0,
         unused_points: 0,
+        numbering: None,
         quality: Default::default(),
     }
 }

@@ -87,6 +87,7 @@ fn single(element: &Element, x: &[f64]) -> Mesh {
         groups: BTreeMap::new(),
         reversed: 0,
         unused_points: 0,
+        numbering: None,
         quality: Default::default(),
     }
 }

@@ -122,7 +122,7 @@ fn samplings_out_of_range_are_told() {
     let families = |list: &[Family]| Sampling { source: Source::Families(list.to_vec()), ..Sampling::default() };
     let bounds = vec![("b".to_string(), [0.0, 1.0])];
     for (fit, error) in [
-        (shapes(Sampling { shapes: 0, ..Sampling::default() }), "shapes: expected at least one shape, found 0"),
+        (shapes(Sampling { shapes: 0, ..Sampling::default() }), "shapes: … found 0"),
         (shapes(Sampling { stretch: [0.0, 3.0], ..Sampling::default() }), "stretch: … -2 to 2, found 0 to 3"),
         (
             shapes(Sampling { perturbation: -1.0, ..Sampling::default() }),

@@ -119,7 +119,7 @@ fn poor_cells_are_told_refused_or_skipped() {
     let all = springs();
     let output = fitted(place, &["--below", "skip"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(text.contains("1 cells of poor quality, flat or tangled, were left out"), "{text}");
+    assert!(text.contains("1 cells that are flat, tangled or of poor quality were left out"), "{text}");
     assert!(text.contains("5 points") && !text.contains("belong to no element") && springs() < all, "{text}");
     let errors = [
         (
@@ -184,11 +184,11 @@ fn misfits_are_counted() {
     let hanging = "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 8 7\n3 3 2 1 1 7 8 6 3";
     let tiny = "9 0 0 0\n10 -1e-9 0 0\n11 0 -1e-9 0";
     let cases = [
-        (mesh(0.0, "", hanging), "1 points hang", true),
-        (mesh(1e7, "", hanging), "1 points hang", true),
-        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points hang", true),
-        (mesh(0.0, "", "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 6 3"), "hang", false),
-        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points are at the place of another", true),
+        (mesh(0.0, "", hanging), "1 points lie on edges or faces", true),
+        (mesh(1e7, "", hanging), "1 points lie on edges or faces", true),
+        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points lie on edges or faces", true),
+        (mesh(0.0, "", "1 3 2 1 1 1 2 3 4\n2 3 2 1 1 2 5 6 3"), "hanging nodes", false),
+        (mesh(0.0, tiny, &format!("{hanging}\n4 2 2 1 1 9 11 10")), "1 points coincide with another point", true),
     ];
     for (text, words, told) in cases {
         fs::write(folder.path().join("m.msh"), text).unwrap();
@@ -219,6 +219,6 @@ fn a_scene_names_its_gate() {
     ] {
         let output = scene(quality);
         assert_eq!(output.status.code(), Some(2));
-        reads(&String::from_utf8_lossy(&output.stderr), &format!("error: s.toml: {error}\n")).unwrap();
+        reads(&String::from_utf8_lossy(&output.stderr), &format!("error: s.toml:3: {error}\n")).unwrap();
     }
 }

@@ -53,12 +53,14 @@ impl Compare {
         report::check_outputs(&folder, names, &inputs)?;
         let mut progress = |event: Event| terminal.show(event);
         if self.law.is_some() && is_scene(path) {
-            return Err(Error::at("--law", "goes with an element; a scene names it in its material"));
+            return Err(Error::at("--law", "belongs to an element; a scene names its law in [material]"));
         }
         let comparison = if is_scene(path) {
             let scene = Scene::load(path)?;
             report::check_outputs(&folder, names, &scene.inputs())?;
-            Comparison::of_scene(&study::compare_scene(&scene, &mut progress)?)
+            let outcome = study::compare_scene(&scene, &mut progress)?;
+            outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
+            Comparison::of_scene(&outcome)
         } else {
             let element = Element::load(&self.what)?;
             let plane = self.plane.map(Into::into);
@@ -67,7 +69,8 @@ impl Compare {
             if let Some(law) = &self.law {
                 let element = Arc::new(element);
                 let study = study::compare_stretches(&element, material, law, self.stretch, &mut progress);
-                let study = study.map_err(|e| e.placed(Error::of_option))?;
+                let law = |e: Error| if e.key() == Some("energy") { e.at_key("--law") } else { e.of_option() };
+                let study = study.map_err(|e| e.placed(law))?;
                 let paths = report::write_stretches(&study, &folder);
                 terminal.print(&report::stretches_text(&study))?;
                 terminal.written(&paths?)?;

@@ -5,12 +5,14 @@ use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::material::{Material, parse_pressure};
 use springfit::mesh::{Gate, Mesh, MeshSource, Selection};
-use springfit::model::{self, Support};
-use springfit::report::{NetworkFile, NetworkFormat};
+use springfit::model::Support;
+use springfit::quantity::Quantity;
+use springfit::range;
+use springfit::report::{self, NetworkFile, NetworkFormat};
 use springfit::study::{
-    Controls, Event, FitEntry, NamedFit, Outcome, Recipe, Reference, WholeBody, fit_mesh, load_elements,
+    BodyConstants, Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, assumed, fit_mesh,
+    load_elements, point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -80,19 +82,20 @@ pub struct Fit {
     /// Plane mesh or surface: stress or strain [default: stress]
     #[arg(long)]
     plane: Option<State>,
-    /// Plane mesh or surface: thickness in m [default: 1]
+    /// Plane mesh or surface: thickness such as "0.5 mm" [default of plane meshes: 1 m; required for surfaces in space]
     #[arg(long, allow_hyphen_values = true)]
-    thickness: Option<f64>,
-    /// Mesh of lines: cross-section in m² [default: 1]
+    thickness: Option<String>,
+    /// Mesh of lines: cross-section such as "2 mm^2" [default: 1 m^2]
     #[arg(long, allow_hyphen_values = true)]
-    area: Option<f64>,
-    /// In kg/m³; gives the points masses
+    area: Option<String>,
+    /// Density such as "1060 kg/m^3"; gives the points masses
     #[arg(long, allow_hyphen_values = true)]
-    density: Option<f64>,
-    /// Mesh units to metres
-    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
-    scale: f64,
-    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]
+    density: Option<String>,
+    /// Length of one mesh unit, such as mm or 0.001
+    #[arg(long, default_value = "1", allow_hyphen_values = true)]
+    scale: String,
+    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]. Cells that are flat or tangled,
+    /// that have the nodes of another or are folded over their neighbours are left out with skip and refused otherwise
     #[arg(long)]
     below: Option<String>,
     /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
@@ -113,25 +116,38 @@ impl Fit {
         let inputs: Vec<PathBuf> = [self.mesh.clone()].into_iter().chain(elements).collect();
         springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
         springfit::check_file(&self.output)?;
-        let young = parse_pressure(&self.young).map_err(|e| e.under("--young"))?;
+        let given =
+            |quantity: Quantity, key: &str, text: &str| quantity.parse(text).map_err(|e| e.under(format!("--{key}")));
+        let asked =
+            |quantity, key, text: &Option<String>| text.as_deref().map(|text| given(quantity, key, text)).transpose();
+        let young = given(Quantity::Pressure, "young", &self.young)?;
         let named = self.named_fit()?;
-        self.check()?;
+        let scale = given(Quantity::MeshUnit, "scale", &self.scale)?;
+        let density = asked(Quantity::Density, "density", &self.density)?;
+        check(scale, density)?;
+        let constants = BodyConstants {
+            young,
+            poisson: self.poisson,
+            plane: self.plane.map(Into::into),
+            thickness: asked(Quantity::Length, "thickness", &self.thickness)?,
+            area: asked(Quantity::Area, "area", &self.area)?,
+        };
         let whole = named.recipe.whole().is_some();
         let sampled = !whole && named.recipe.sampled().is_some();
-        let exact = matches!(named.recipe, Recipe::Exact(_));
         if whole == self.fix.is_empty() {
-            let problem = "goes with the objective \"whole\", and that with it: a group of the mesh that is held";
+            let problem = match whole {
+                true => "expected a group of the mesh that is held, which the objective \"whole\" requires, found none",
+                false => "belongs to the objective \"whole\", found with another",
+            };
             return Err(Error::at("--fix", problem));
         }
         if sampled && self.law.is_none() {
-            let problem = "goes with the objective \"sampled\": the energy whose forces are sampled";
-            return Err(Error::at("--law", problem));
+            let expected = "the energy whose forces the objective \"sampled\" samples, such as neo-hookean";
+            return Err(Error::expected("--law", expected, "none"));
         }
-        let mesh = self.mesh()?;
-        let plane = self.plane.map(Into::into);
-        let material = Material::for_body(mesh.cell_dimension(), young, self.poisson, plane, self.thickness)
-            .and_then(|m| self.area.map_or(Ok(m), |area| m.with_area(area)))
-            .map_err(Error::of_option)?;
+        let mesh = self.mesh(scale)?;
+        let material = constants.material(&mesh).map_err(Error::of_option)?;
+        let assumed = assumed(&mesh, constants.thickness, constants.area);
         let support = self.support(&mesh)?;
         let controls = Arc::new(Controls::default());
         if whole {
@@ -140,25 +156,17 @@ impl Fit {
         let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
-        let fit = fit.map_err(|e| if sampled || whole || exact { e.placed(Error::of_option) } else { e })?;
-        let masses = self.density.map(|density| model::masses(&mesh, density, material.thickness()));
-        // The file first: who reads the table may have gone away.
-        let file = NetworkFile { mesh: &mesh, masses: masses.as_deref(), fit: &fit, loads: &[] };
-        format.write(&self.output, &file)?;
+        let fit = fit.map_err(|e| e.placed(of_option))?;
+        let masses = density.map(|density| point_masses(&mesh, density, material)).transpose().map_err(of_option)?;
         let outcome = Outcome::of_fit(self.mesh.display().to_string(), mesh, material, masses, fit);
+        let outcome = Outcome { assumed, ..outcome };
+        let (masses, notes) = (outcome.masses.as_deref(), report::notes(&outcome));
+        // The file first: who reads the table may have gone away.
+        let file = NetworkFile { mesh: &outcome.mesh, masses, fit: &outcome.fits[0], loads: &[], notes: &notes };
+        format.write(&self.output, &file)?;
         terminal.print_outcome(&outcome)?;
         terminal.written(std::slice::from_ref(&self.output))?;
         Ok(ExitCode::SUCCESS)
-    }
-
-    fn check(&self) -> Result<()> {
-        if !(self.scale > 0.0 && self.scale.is_finite()) {
-            return Err(Error::expected("--scale", "a positive number of metres per mesh unit", self.scale));
-        }
-        match self.density.filter(|d| !(*d > 0.0 && d.is_finite())) {
-            Some(density) => Err(Error::expected("--density", "a positive number of kg/m³", density)),
-            None => Ok(()),
-        }
     }
 
     /// What the options say of the fit.
@@ -182,15 +190,15 @@ impl Fit {
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
             .with("law", self.law.clone());
-        Ok(entry.fits(Path::new("")).map_err(|e| e.placed(Error::of_option))?.remove(0))
+        Ok(entry.fits(Path::new("")).map_err(|e| e.placed(of_option))?.remove(0))
     }
 
-    fn mesh(&self) -> Result<Mesh> {
+    fn mesh(&self, scale: f64) -> Result<Mesh> {
         let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
         let source = MeshSource::read(&self.mesh)?;
         let asked = self.below.is_some() || self.least.is_some();
         let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
-        let mesh = Mesh::resolve_within(&source, &own, self.scale, asked.then_some(gate));
+        let mesh = Mesh::resolve_within(&source, &own, scale, asked.then_some(gate));
         mesh.map_err(|e| e.in_file(&self.mesh))
     }
 
@@ -204,4 +212,22 @@ impl Fit {
         }
         Ok(support)
     }
+}
+
+/// The same fault with the option that the key stands for, as it is typed.
+fn of_option(error: Error) -> Error {
+    let command = <Fit as Args>::augment_args(clap::Command::new("fit"));
+    // Options have the last part of a key's path.
+    let last = error.key().map(|key| key.rsplit('.').next().unwrap_or(key).to_string());
+    match last.map(|name| if name == "count" { "shapes".to_string() } else { name }) {
+        Some(name) if command.get_arguments().any(|argument| argument.get_long() == Some(&name)) => {
+            error.at_key(format!("--{name}"))
+        }
+        _ => error,
+    }
+}
+
+fn check(scale: f64, density: Option<f64>) -> Result<()> {
+    range::positive("--scale", scale, "metres per mesh unit")?;
+    density.map_or(Ok(()), |density| range::positive("--density", density, "kg/m³").map(|_| ()))
 }

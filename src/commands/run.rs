@@ -47,7 +47,7 @@ impl Run {
         } else if self.checkpoint.is_some() {
             return Err(Error::at(
                 "--checkpoint",
-                "goes with fits whose objective is \"whole\", found none in the scene",
+                "belongs to fits whose objective is \"whole\", found none in the scene",
             ));
         }
         let outcome = run_with(&scene, &controls, &mut |event| terminal.show(event))?;

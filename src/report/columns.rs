@@ -1,5 +1,6 @@
 //! Tables as text, in columns.
 
+use crate::text::{printable, printable_lines};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent};
 
@@ -37,7 +38,9 @@ pub(super) fn texts(columns: &[Heading]) -> Vec<&str> {
 pub(super) fn aligned(columns: &[Heading], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
-    table.set_content_arrangement(ContentArrangement::Disabled).set_header(texts(columns)).add_rows(rows);
+    let header = columns.iter().map(|heading| printable_lines(&heading.text));
+    let rows = rows.iter().map(|row| row.iter().map(|cell| printable(cell)).collect::<Vec<_>>());
+    table.set_content_arrangement(ContentArrangement::Disabled).set_header(header).add_rows(rows);
     for (column, heading) in table.column_iter_mut().zip(columns) {
         column.set_cell_alignment(match heading.alignment {
             Alignment::Left => CellAlignment::Left,

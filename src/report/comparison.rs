@@ -2,9 +2,11 @@
 
 use super::columns::{Heading, aligned, texts};
 use super::rows::csv;
+use super::table::summary_line;
 use super::write_files;
 use crate::error::{Error, Result};
 use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
+use crate::text::printable;
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +17,8 @@ pub const COMPARISON_FILES: [&str; 2] = ["table.csv", "plot.svg"];
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     pub title: String,
+    /// What is compared, under the title of the table.
+    pub about: Option<String>,
     pub columns: Vec<Heading>,
     pub rows: Vec<Vec<String>>,
     /// What the plot shows: a name per point, seconds per element, and the error.
@@ -30,21 +34,23 @@ impl Comparison {
         let columns = [
             Heading::words("objective"),
             Heading::words("solver"),
-            Heading::numbers("median us"),
-            Heading::numbers("least us"),
-            Heading::numbers("largest us"),
+            Heading::numbers("us/element median"),
+            Heading::numbers("us/element least"),
+            Heading::numbers("us/element largest"),
             Heading::numbers("Frobenius mean"),
             Heading::numbers("Frobenius max"),
             Heading::numbers("2-norm mean"),
             Heading::numbers("2-norm max"),
-            Heading::numbers("gap"),
-            Heading::numbers("k < 0"),
-            Heading::numbers("E / asked"),
+            Heading::numbers("gap max"),
+            Heading::numbers("% k < 0"),
+            Heading::numbers("E / material"),
             Heading::numbers("nu"),
             Heading::numbers("Zener"),
         ];
         let row = |o: &MethodOutcome| {
             let [least, median, largest] = o.seconds.map(|s| format!("{:.3}", 1e6 * s));
+            // One run has no spread.
+            let of_several = |time: String| if o.runs > 1 { time } else { "-".into() };
             let share = |v: f64| format!("{v:.4}");
             let modulus = |of: &dyn Fn(&EffectiveModuli) -> f64| {
                 o.moduli.as_ref().map_or("-".into(), |m| format!("{:.3}", of(m)))
@@ -53,14 +59,14 @@ impl Comparison {
                 o.name.clone(),
                 o.solver.to_string(),
                 median,
-                least,
-                largest,
+                of_several(least),
+                of_several(largest),
                 share(o.frobenius.mean),
                 share(o.frobenius.max),
                 share(o.spectral.mean),
                 share(o.spectral.max),
                 o.gap.map_or("-".into(), |gap| format!("{gap:.1e}")),
-                format!("{:.1}%", 100.0 * o.negative),
+                format!("{:.1}", 100.0 * o.negative),
                 modulus(&|m| m.young / young),
                 modulus(&|m| m.poisson),
                 modulus(&|m| m.zener),
@@ -75,6 +81,7 @@ impl Comparison {
         };
         Comparison {
             title,
+            about: None,
             columns: columns.into(),
             rows: outcomes.iter().map(row).collect(),
             points: outcomes.iter().map(|o| (name(o), o.seconds[1], o.spectral.mean)).collect(),
@@ -112,11 +119,14 @@ impl Comparison {
             }
         }
         let error = "%e_rms, geometric mean of the loads".into();
-        Comparison { title: outcome.scene.clone(), columns, rows, points, error }
+        let title = printable(&outcome.scene).into_owned();
+        let about = Some(summary_line(outcome));
+        Comparison { title, about, columns, rows, points, error }
     }
 
     pub fn table(&self) -> String {
-        format!("{}\n\n{}", self.title, aligned(&self.columns, &self.rows))
+        let about = self.about.as_ref().map_or(String::new(), |about| format!("{about}\n"));
+        format!("{}\n{about}\n{}", self.title, aligned(&self.columns, &self.rows))
     }
 
     pub fn csv(&self) -> String {

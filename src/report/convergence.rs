@@ -3,9 +3,11 @@
 use super::columns::{Heading, aligned};
 use super::convergence_plot::plot;
 use super::rows::csv;
+use super::table::size;
 use super::write_files;
 use crate::error::Result;
 use crate::study::{Convergence, Limit, LimitKind, LoadConvergence, ModelConvergence, rates};
+use crate::text::printable;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +26,7 @@ pub fn convergence_text(convergence: &Convergence) -> String {
         Heading::numbers("displacements\n%e_rms"),
         Heading::words("network"),
     ];
-    let mut text = format!("{}\n", convergence.scene);
+    let mut text = format!("{}\n{} on every level\n", printable(&convergence.scene), size(&convergence.extent));
     for load in &convergence.loads {
         let rows: Vec<Vec<String>> =
             load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect();
@@ -83,7 +85,7 @@ fn share(percent: Option<f64>) -> String {
 fn truth_text(truth: Option<&Limit>, reference: Option<&str>) -> String {
     let of = reference.map_or(String::new(), |title| format!(" of \"{title}\""));
     let Some(limit) = truth else {
-        return "no truth, for the finite elements do not reach the load on every level".into();
+        return "there is no reference, because the finite elements do not reach the load on every level".into();
     };
     let finest = format!("the truth is taken to be {:.6e} J of the finest finite elements{of}", limit.value);
     let uncertain = format!("{} %", share(Some(100.0 * (limit.uncertainty / limit.value).abs())));

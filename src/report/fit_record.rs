@@ -17,7 +17,7 @@ pub struct FitRecord {
     pub name: String,
     /// The spring groups, if not all that are not optional.
     pub groups: Option<Vec<String>>,
-    /// `fitted`, `sound`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
+    /// `fitted`, `stable`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
     pub status: String,
     pub springs: usize,
     /// For the constants, without assembly.

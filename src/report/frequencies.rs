@@ -30,8 +30,8 @@ pub(super) fn frequency_table(outcome: &Outcome) -> String {
 fn rigid(outcome: &Outcome) -> String {
     match outcome.frequencies[0].rigid {
         0 => String::new(),
-        1 => ", but for one rigid motion that nothing holds".into(),
-        count => format!(", but for {count} rigid motions that nothing holds"),
+        1 => ", without those of one rigid motion that no support prevents".into(),
+        count => format!(", without those of {count} rigid motions that no support prevents"),
     }
 }
 

@@ -3,15 +3,17 @@
 use super::agreement::{Agreement, SAME, agreements};
 use super::fit_record::FitRecord;
 use super::frequencies::FrequencyRecord;
+use super::linear_theory::DeformationRecord;
 use super::load_record::{FollowedRecord, MeasuredRecord, ReadingRecord};
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::number::finite;
+use super::table::notes;
 use crate::mesh::Mesh;
-use crate::study::{BodyLoad, GaugeResult, Outcome};
+use crate::study::{BodyLoad, GaugeResult, Outcome, extent};
 use serde::{Deserialize, Serialize};
 
 /// Of the report's keys; it changes when a key is removed or its meaning changes.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// `report.json`. A value that does not exist or is not finite is null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,6 +22,10 @@ pub struct Report {
     pub version: u32,
     /// The title.
     pub scene: String,
+    /// The size of the box around the body along each axis, m.
+    pub extent: Vec<f64>,
+    /// What was assumed because no input says it, as a sentence.
+    pub assumed: Option<String>,
     pub nodes: usize,
     pub elements: usize,
     pub element_types: Vec<String>,
@@ -36,6 +42,8 @@ pub struct Report {
     pub law: Option<String>,
     /// How far the finite elements followed each load; empty at small deformation.
     pub loads_followed: Vec<FollowedRecord>,
+    /// How far linear finite elements are deformed.
+    pub deformations: Vec<DeformationRecord>,
     /// Stages that the scene did not ask for, with the reason.
     pub left_out: Vec<String>,
     /// Loads under which displacements were measured.
@@ -49,6 +57,8 @@ pub struct Report {
     /// Of each model that moved.
     pub motion: Vec<MotionRecord>,
     pub fits: Vec<FitRecord>,
+    /// What a reader must know before trusting a figure, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// The quality of the mesh.
@@ -57,10 +67,18 @@ pub struct QualityRecord {
     /// From 0, flat, to 1, right angles.
     pub worst: Option<f64>,
     pub worst_cell: Option<String>,
-    pub poor_elements: usize,
+    /// Null if the quality was not measured, as that of a mesh that is generated.
+    pub poor_elements: Option<usize>,
+    /// Left out: of poor quality, flat or tangled.
     pub skipped_elements: usize,
-    pub coincident_nodes: usize,
-    pub hanging_nodes: usize,
+    /// Left out: elements with the nodes of another.
+    pub duplicate_elements: usize,
+    /// Left out: elements folded over their neighbours.
+    pub folded_elements: usize,
+    /// Null if coordinates are too coarse to tell.
+    pub coincident_nodes: Option<usize>,
+    /// On edges and faces that do not have them; null if they were not looked for.
+    pub hanging_nodes: Option<usize>,
 }
 
 /// Whether whole-object fits from several starts give the same errors.
@@ -88,6 +106,8 @@ impl Report {
         Report {
             version: VERSION,
             scene: outcome.scene.clone(),
+            extent: extent(mesh),
+            assumed: outcome.assumed.clone(),
             nodes: mesh.point_count(),
             elements: mesh.cell_count(),
             element_types: mesh.blocks.iter().map(|block| block.element.name.clone()).collect(),
@@ -99,6 +119,7 @@ impl Report {
             poisson: material.poisson(),
             law: outcome.law.clone(),
             loads_followed: outcome.loads.iter().filter_map(|load| Some(load.followed.as_ref()?.into())).collect(),
+            deformations: DeformationRecord::all(outcome),
             left_out: outcome.left_out.clone(),
             measured: outcome.loads.iter().filter_map(MeasuredRecord::of).collect(),
             gauge: outcome.loads.iter().filter_map(gauge).map(|reading| reading.map(ReadingRecord::from)).collect(),
@@ -107,6 +128,7 @@ impl Report {
             motion_options: outcome.motion.as_ref().map(MotionOptionsRecord::from),
             motion: models.map(MotionRecord::from).collect(),
             fits: outcome.fits.iter().map(fit).collect(),
+            notes: notes(outcome),
         }
     }
 }
@@ -117,8 +139,10 @@ impl QualityRecord {
         QualityRecord {
             worst: quality.worst.as_ref().and_then(|worst| finite(worst.quality)),
             worst_cell: quality.worst.as_ref().map(|worst| worst.cell.to_string()),
-            poor_elements: quality.poor,
+            poor_elements: quality.worst.as_ref().map(|_| quality.poor),
             skipped_elements: quality.skipped,
+            duplicate_elements: quality.duplicates,
+            folded_elements: quality.folded,
             coincident_nodes: quality.coincident,
             hanging_nodes: quality.hanging,
         }

@@ -33,6 +33,8 @@ pub struct FollowedRecord {
     pub iterations: usize,
     /// Iterations whose tangent was shifted.
     pub shifted: usize,
+    /// Whether the forces balance to their rounding only, which is more than the tolerance.
+    pub rounded: bool,
     pub inverted_elements: usize,
 }
 
@@ -43,6 +45,10 @@ pub struct LoadRecord {
     /// Percent of the largest displacement.
     pub e_rms: Option<f64>,
     pub e_max: Option<f64>,
+    /// Percent of the largest displacement, at the point that moves most in the finite elements.
+    pub e_tip: Option<f64>,
+    /// By how many percent the work of the load, twice the energy of a linear model, is larger than in the finite elements.
+    pub e_energy: Option<f64>,
     /// To assemble, factorise and solve, each as if this were the only load.
     pub seconds_fem: f64,
     pub seconds_lem: f64,
@@ -77,6 +83,7 @@ impl From<&Followed> for FollowedRecord {
             residual: finite(followed.residual),
             iterations: followed.iterations,
             shifted: followed.shifted,
+            rounded: followed.is_rounded,
             inverted_elements: followed.inverted,
         }
     }
@@ -88,6 +95,8 @@ impl From<&LoadOutcome> for LoadRecord {
             name: load.name.clone(),
             e_rms: load.error.and_then(|e| finite(e.rms)),
             e_max: load.error.and_then(|e| finite(e.max)),
+            e_tip: load.error.and_then(|e| finite(e.tip)),
+            e_energy: load.work_error.and_then(finite),
             seconds_fem: load.seconds_fem,
             seconds_lem: load.seconds_lem,
             followed: load.followed.as_ref().map(FollowedRecord::from),

@@ -42,11 +42,11 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
     let of = match (m.young, m.poisson) {
         (Some(young), Some(poisson)) => format!("E = {young:.4e} Pa, nu = {poisson:.3}"),
         (Some(young), None) => format!("E = {young:.4e} Pa"),
-        (None, _) => "some strain meets no resistance".into(),
+        (None, _) => "a strain has no stiffness".into(),
     };
     let asked = outcome.material;
     Some(format!(
-        "{name}: not the material asked for: {off} ({of}; asked {:e} Pa, {}). The objective \"exact\" gives the material",
+        "{name}: the network is not the material: {off} ({of}; the material has {:e} Pa, {}). The objective \"exact\" gives the material",
         asked.young(),
         asked.poisson()
     ))

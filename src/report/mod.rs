@@ -11,6 +11,8 @@ mod derivation;
 mod fit_record;
 mod frequencies;
 mod json;
+mod linear_theory;
+mod load_errors;
 mod load_record;
 mod material_record;
 mod materials;
@@ -38,6 +40,7 @@ pub use derivation::Derivation;
 pub use fit_record::FitRecord;
 pub use frequencies::FrequencyRecord;
 pub use json::{AgreementRecord, QualityRecord, Report, VERSION, report};
+pub use linear_theory::DeformationRecord;
 pub use load_record::{FollowedRecord, LoadRecord, MeasuredRecord, ReadingRecord};
 pub use material_record::NetworkMaterialRecord;
 pub use motion::motion_csv;
@@ -56,6 +59,7 @@ use crate::error::Result;
 use crate::file::{create_folder, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
+use crate::text::printable_lines;
 use outputs::Stems;
 use std::path::{Path, PathBuf};
 
@@ -76,7 +80,7 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     }
     for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| tables) {
         let path = folder.join(format!("{stem}.csv"));
-        write_with(&path, |to| network_csv(&fit.network, to))?;
+        write_with(&path, |to| network_csv(&outcome.mesh, &fit.network, to))?;
         written.push(path);
     }
     for (model, stem) in moved() {
@@ -111,7 +115,7 @@ fn write_files<N: AsRef<Path>>(folder: &Path, files: &[(N, String)]) -> Result<V
     create_folder(folder)?;
     let write = |(name, text): &(N, String)| {
         let path = folder.join(name);
-        write_whole(&path, text.as_bytes())?;
+        write_whole(&path, printable_lines(text).as_bytes())?;
         Ok(path)
     };
     files.iter().map(write).collect()

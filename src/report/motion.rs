@@ -1,7 +1,9 @@
 //! How a scene's models moved: a table, notes and a file over time for each.
 
 use super::columns::{Heading, aligned};
+use super::linear_theory::turning_note;
 use super::rows::csv;
+use crate::scalar::norm;
 use crate::study::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
 
 /// One row per model; empty without a motion.
@@ -42,9 +44,10 @@ fn row(model: &ModelMotion) -> Vec<String> {
     let none = || "-".to_string();
     let speed = if model.steps > 0 { format!("{:.0}", model.steps_per_second()) } else { none() };
     let mut row = vec![model.name.clone(), model.steps.to_string(), speed];
-    match (model.records.first(), model.records.last()) {
+    // The state at the start says nothing of the end.
+    match (model.records.first(), model.records.last().filter(|_| model.has_moved())) {
         (Some(first), Some(last)) => {
-            let momentum = last.account.momentum.iter().map(|p| p * p).sum::<f64>().sqrt();
+            let momentum = norm(&last.account.momentum);
             let balance = last.account.balance;
             row.push(format!("{:.3e}", last.account.kinetic));
             row.push(format!("{:.3e} / {:.3e}", first.account.elastic, last.account.elastic));
@@ -69,16 +72,29 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
         if let (Some(growth), Some(fit)) = (model.growth, model.fit) {
             let negative = outcome.fits[fit].network.negative();
             notes.push(format!(
-                "{name}: indefinite, a motion that releases energy grows by e every {:.1e} s at rest; it has {negative} \
-                 negative springs",
+                "{name}: indefinite, the fastest-growing motion grows by a factor of e every {:.1e} s at rest; {negative} spring \
+                 constants are negative",
                 1.0 / growth
             ));
         }
-        if let MotionEnding::Refused(why) = &model.ending {
-            notes.push(format!("{name}: its motion was not begun: {why}"));
+        notes.extend(turning_note(model, motion.models[0].deformation));
+        let known = || model.records.last().map_or(0.0, |record| record.account.time);
+        match &model.ending {
+            MotionEnding::Complete => {}
+            MotionEnding::Refused(why) => notes.push(format!("{name}: the motion was not started: {why}")),
+            MotionEnding::NoResponse => notes.push(format!(
+                "{name}: the model has no response after {} steps; its motion is known up to {:?} s",
+                model.steps,
+                known()
+            )),
+            MotionEnding::RanAway => notes.push(format!(
+                "{name}: its numbers grew beyond all bounds after {} steps; its motion is known up to {:?} s",
+                model.steps,
+                known()
+            )),
         }
         if model.unsolved > 0 {
-            notes.push(format!("{name}: the equations of {} steps were not solved to the tolerance", model.unsolved));
+            notes.push(format!("{name}: in {} steps the equations were not solved to the tolerance", model.unsolved));
         }
     }
     notes

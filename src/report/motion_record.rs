@@ -61,6 +61,9 @@ pub struct MotionRecord {
     pub e_rms: Vec<Option<f64>>,
     pub e_rms_mean: Option<f64>,
     pub e_rms_max: Option<f64>,
+    /// The same with springs that do not turn, where they turn beside linear finite elements: what of the error is the fit's.
+    pub linear_e_rms_mean: Option<f64>,
+    pub linear_e_rms_max: Option<f64>,
 }
 
 impl From<&MotionOutcome> for MotionOptionsRecord {
@@ -118,6 +121,8 @@ impl From<&ModelMotion> for MotionRecord {
             e_rms: number(&|r| r.error),
             e_rms_mean: model.error().and_then(|[mean, _]| finite(mean)),
             e_rms_max: model.error().and_then(|[_, max]| finite(max)),
+            linear_e_rms_mean: model.linear_error.and_then(|[mean, _]| finite(mean)),
+            linear_e_rms_max: model.linear_error.and_then(|[_, max]| finite(max)),
         }
     }
 }

@@ -8,8 +8,8 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-/// One spring per line: `kind,points,constant,rest`. Points count from 0. A length spring has N/m and m, a spring on
-/// an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
+/// One spring per line: `kind,points,constant,rest`. Points count from 0 among those of the mesh, which has no points without a cell.
+/// A length spring has N/m and m, a spring on an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad; a coupling, on the sum of two lengths, N/m and m.
 ///
 /// A spring of the kinds `point-content`, `point-area` and `patch`, which exact networks have, measures what the columns do not tell:
 /// [`network_json`] does.
@@ -17,13 +17,17 @@ use std::io::{self, Write};
 /// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
 /// rest then.
 ///
+/// Of a mesh from a file the last column, `nodes`, has the numbers that the points have in the file: the node tags of a Gmsh file, the
+/// places from 0 of a VTK file. They are those to look up in the mesh: `points` differ from them where tags are not 1, 2, …, and where
+/// nodes of no cell were left out.
+///
 /// # Errors
 /// The writer fails.
-pub fn network_csv(network: &Network, to: &mut dyn Write) -> io::Result<()> {
+pub fn network_csv(mesh: &Mesh, network: &Network, to: &mut dyn Write) -> io::Result<()> {
     let lawful = network.others.iter().any(|spring| spring.law.is_some());
     let row = |kind: &str, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
-        let points: Vec<_> = points.iter().map(usize::to_string).collect();
-        let mut row = vec![kind.into(), points.join(" "), format!("{constant:e}"), format!("{rest:e}")];
+        let places: Vec<_> = points.iter().map(usize::to_string).collect();
+        let mut row = vec![kind.into(), places.join(" "), format!("{constant:e}"), format!("{rest:e}")];
         if lawful {
             let parameters = law.map_or(String::new(), |(law, values)| {
                 let named = law.parameters.iter().zip(values).map(|(name, value)| format!("{name}={value:e}"));
@@ -31,6 +35,10 @@ pub fn network_csv(network: &Network, to: &mut dyn Write) -> io::Result<()> {
             });
             row.extend([law.map_or(String::new(), |(law, _)| law.text.clone()), parameters]);
         }
+        row.extend(mesh.numbering.as_ref().map(|numbering| {
+            let numbers: Vec<_> = points.iter().map(|&p| numbering.nodes[p].to_string()).collect();
+            numbers.join(" ")
+        }));
         row
     };
     let lengths = network.lengths.iter().map(|s| row("length", &s.points, s.constant, s.rest, None));
@@ -38,9 +46,11 @@ pub fn network_csv(network: &Network, to: &mut dyn Write) -> io::Result<()> {
         let law = s.law.as_deref().map(|law| (law, &s.parameters[..]));
         row(s.kind.name(), &s.points, s.constant, s.rest, law)
     });
-    let header = ["kind", "points", "constant", "rest", "law", "parameters"];
-    let mut table = csv::WriterBuilder::new().flexible(true).from_writer(to);
-    table.write_record(&header[..if lawful { 6 } else { 4 }])?;
+    let mut header = vec!["kind", "points", "constant", "rest"];
+    header.extend(lawful.then_some(["law", "parameters"]).iter().flatten());
+    header.extend(mesh.numbering.as_ref().map(|_| "nodes"));
+    let mut table = csv::Writer::from_writer(to);
+    table.write_record(&header)?;
     lengths.chain(others).try_for_each(|row| table.write_record(row))?;
     table.flush()
 }
@@ -53,16 +63,22 @@ struct NetworkRecord<'a> {
     /// `[points][axes]`.
     #[serde(serialize_with = "points")]
     points: &'a Mesh,
+    /// What `nodes` are; null of a mesh that is no file.
+    numbering: Option<&'static str>,
+    /// The numbers of the points in the file.
+    nodes: Option<&'a [u64]>,
     masses: Option<&'a [f64]>,
     #[serde(serialize_with = "springs")]
     springs: &'a Network,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    notes: &'a [String],
 }
 
 /// A spring; only one with a law of force has the keys of the law, and only one of a kind of exact networks those of its measure.
 #[derive(Debug, Serialize)]
 struct SpringRecord<'a> {
     kind: &'static str,
-    /// From 0.
+    /// Places in the list of points, from 0.
     points: &'a [usize],
     constant: f64,
     rest: f64,
@@ -151,12 +167,28 @@ impl<'a> SpringRecord<'a> {
     }
 }
 
-/// Points (m), masses (kg, if known) and springs, units as in [`network_csv`].
+/// Points (m), their numbers in the file (`nodes`, of which `numbering` says what they are), masses (kg, if known) and springs, units
+/// as in [`network_csv`]; and what a reader must know of the fit, one sentence each, if there is something. The points of a spring are
+/// places in the list of points, from 0.
 ///
 /// # Errors
 /// The writer fails.
-pub fn network_json(mesh: &Mesh, masses: Option<&[f64]>, network: &Network, to: &mut dyn Write) -> io::Result<()> {
-    let record = NetworkRecord { units: units(), points: mesh, masses, springs: network };
+pub fn network_json(
+    mesh: &Mesh,
+    masses: Option<&[f64]>,
+    network: &Network,
+    notes: &[String],
+    to: &mut dyn Write,
+) -> io::Result<()> {
+    let record = NetworkRecord {
+        units: units(),
+        points: mesh,
+        numbering: mesh.numbering.as_ref().map(|numbering| numbering.title()),
+        nodes: mesh.numbering.as_ref().map(|numbering| &numbering.nodes[..]),
+        masses,
+        springs: network,
+        notes,
+    };
     serde_json::to_writer(&mut *to, &record)?;
     to.write_all(b"\n")
 }

@@ -16,6 +16,8 @@ pub struct NetworkFile<'a> {
     pub fit: &'a FitOutcome,
     /// The loads whose displacements are written, where the format holds them.
     pub loads: &'a [BodyLoad],
+    /// What a reader must know of the fit, where the format holds it.
+    pub notes: &'a [String],
 }
 
 /// A format, known by the ending of its files.
@@ -32,9 +34,14 @@ pub const NETWORK_FORMATS: [NetworkFormat; 3] = [
     },
     NetworkFormat {
         ending: "json",
-        write: |path, file| write_with(path, |to| network_json(file.mesh, file.masses, &file.fit.network, to)),
+        write: |path, file| {
+            write_with(path, |to| network_json(file.mesh, file.masses, &file.fit.network, file.notes, to))
+        },
     },
-    NetworkFormat { ending: "csv", write: |path, file| write_with(path, |to| network_csv(&file.fit.network, to)) },
+    NetworkFormat {
+        ending: "csv",
+        write: |path, file| write_with(path, |to| network_csv(file.mesh, &file.fit.network, to)),
+    },
 ];
 
 impl NetworkFormat {

@@ -1,7 +1,7 @@
 //! Grids for ParaView.
 
-use crate::mesh::Mesh;
 use crate::mesh::vtk::{Array, Grid};
+use crate::mesh::{Mesh, Numbering};
 use crate::model::{LengthSpring, MeasureSpring, Network, smoothed_pressure};
 use crate::study::{BodyLoad, FitOutcome, Outcome};
 
@@ -12,6 +12,7 @@ const POINTS: u8 = 2;
 pub fn displacement_grid(outcome: &Outcome) -> Grid {
     let mesh = &outcome.mesh;
     let mut grid = cell_grid(mesh, &mesh.points);
+    grid.point_data.extend(nodes(mesh));
     for load in &outcome.loads {
         grid.point_data.push(vectors(format!("u fem {} (m)", load.name), &load.fem, mesh.dimension));
     }
@@ -62,9 +63,10 @@ pub(super) fn spring_grid(mesh: &Mesh, network: &Network, x: &[f64]) -> Grid {
     grid
 }
 
-/// The springs with the displacements of both models.
+/// The springs with the displacements of both models, and as `node` the numbers of the points in the file.
 pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, loads: &[BodyLoad]) -> Grid {
     let mut grid = spring_grid(mesh, &fit.network, &mesh.points);
+    grid.point_data.extend(nodes(mesh));
     if let Some(masses) = masses {
         grid.point_data.push(scalar("mass (kg)", masses.to_vec()));
     }
@@ -75,6 +77,12 @@ pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, loads
         }
     }
     grid
+}
+
+/// The numbers of the points in the file: node tags of Gmsh, places from 0 of VTK; `None` of a mesh that is no file.
+fn nodes(mesh: &Mesh) -> Option<Array> {
+    let numbers = |numbering: &Numbering| numbering.nodes.iter().map(|&number| number as f64).collect();
+    mesh.numbering.as_ref().map(|numbering| scalar("node", numbers(numbering)))
 }
 
 fn scalar(name: &str, values: Vec<f64>) -> Array {

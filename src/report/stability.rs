@@ -29,7 +29,7 @@ pub fn stability_text(outcome: &StabilityOutcome) -> String {
     let mut text = format!("{}\n\n{}", outcome.title, aligned(&header, &families(outcome)));
     let reasons = reasons(outcome);
     if !reasons.is_empty() {
-        text += "\nWhere there is no answer, or something to be told\n";
+        text += "\nCases without an answer, and cases with a remark\n";
     }
     for (family, words, count) in reasons {
         writeln!(text, "  {:<16} {count:>4}  {words}", family.name()).expect("a String grows");

@@ -3,35 +3,56 @@
 use super::agreement::{Agreement, SAME, agreements};
 use super::columns::{Heading, aligned};
 use super::frequencies::{frequency_notes, frequency_table};
+use super::linear_theory::linear_notes;
+use super::load_errors::load_error_table;
 use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
 use crate::fit::Spread;
 use crate::mesh::Quality;
 use crate::solve::{Ending, Standing};
-use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading};
+use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading, extent};
+use crate::text::printable;
 use std::fmt::Write;
+
+/// The mesh, the size of the body and the material.
+pub(super) fn summary_line(outcome: &Outcome) -> String {
+    let mesh = &outcome.mesh;
+    let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
+    let material = outcome.material;
+    format!(
+        "{} points, {}, {}; E = {} Pa, nu = {}{}",
+        mesh.point_count(),
+        cells.join(", "),
+        size(&extent(mesh)),
+        material.young(),
+        material.poisson(),
+        outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
+    )
+}
 
 /// What was modelled, in a line or two.
 pub fn summary(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
-    let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
-    let material = outcome.material;
-    let mut text = format!(
-        "{}\n{} points, {}; E = {} Pa, nu = {}{}\n",
-        outcome.scene,
-        mesh.point_count(),
-        cells.join(", "),
-        material.young(),
-        material.poisson(),
-        outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
-    );
-    if mesh.reversed > 0 {
-        writeln!(text, "{} elements were numbered the other way round and have been turned", mesh.reversed)
-            .expect("a String grows");
+    let mut text = format!("{}\n{}\n", printable(&outcome.scene), summary_line(outcome));
+    let turned = "elements had their nodes in inverted order and were reversed";
+    match &mesh.quality.turned {
+        _ if mesh.reversed == 0 => {}
+        None => writeln!(text, "{} {turned}", mesh.reversed).expect("a String grows"),
+        Some(which) => {
+            writeln!(text, "{} of {} {turned}: {which}", mesh.reversed, mesh.cell_count()).expect("a String grows")
+        }
     }
     if mesh.unused_points > 0 {
         writeln!(text, "{} points of the file belong to no element and were left out", mesh.unused_points)
             .expect("a String grows");
+    }
+    if let Some(numbering) = mesh.numbering.as_ref().filter(|numbering| !numbering.is_contiguous()) {
+        let title = numbering.title();
+        writeln!(
+            text,
+            "springs name their points from 0 as \"points\" and by the numbers of the file as \"nodes\": {title}"
+        )
+        .expect("a String grows");
     }
     for line in quality(&mesh.quality) {
         writeln!(text, "{line}").expect("a String grows");
@@ -39,23 +60,42 @@ pub fn summary(outcome: &Outcome) -> String {
     text
 }
 
+/// The sizes along the axes, such as `0.120 x 0.075 x 0.062 m`: the largest has three digits.
+pub(super) fn size(extent: &[f64]) -> String {
+    let largest = extent.iter().fold(0.0, |largest: f64, x| largest.max(*x));
+    let decimals = (2.0 - largest.log10().floor()).clamp(0.0, 9.0) as usize;
+    let along = |x: &f64| match largest {
+        1e-4..1e6 => format!("{x:.decimals$}"),
+        _ => format!("{x:.2e}"),
+    };
+    format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
+}
+
 /// What is wrong with the cells and points of a mesh, one line each.
 fn quality(quality: &Quality) -> Vec<String> {
     let mut lines = Vec::new();
     if quality.skipped > 0 {
-        lines.push(format!("{} cells of poor quality, flat or tangled, were left out", quality.skipped));
+        lines.push(format!("{} cells that are flat, tangled or of poor quality were left out", quality.skipped));
+    }
+    if quality.duplicates > 0 {
+        lines.push(format!("{} cells have the nodes of another and were left out", quality.duplicates));
+    }
+    if quality.folded > 0 {
+        lines.push(format!("{} cells are folded over their neighbours and were left out", quality.folded));
     }
     if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
         lines.push(format!(
-            "{} cells have a quality below {:e}, the worst {:.1e} ({}): their constants lose as many digits",
+            "{} cells have a quality below {:e}, the worst {:.1e} ({}): their spring constants lose accuracy in proportion",
             quality.poor, quality.least, worst.quality, worst.cell
         ));
     }
-    if quality.coincident > 0 {
-        lines.push(format!("{} points are at the place of another: the body is open there", quality.coincident));
+    if let Some(count) = quality.coincident.filter(|count| *count > 0) {
+        lines.push(format!("{count} points coincide with another point: the body is not connected there"));
     }
-    if quality.hanging > 0 {
-        lines.push(format!("{} points hang in the middle of edges that do not have them", quality.hanging));
+    if let Some(count) = quality.hanging.filter(|count| *count > 0) {
+        lines.push(format!(
+            "{count} points lie on edges or faces whose cells do not have them as nodes (hanging nodes)"
+        ));
     }
     lines
 }
@@ -72,17 +112,23 @@ pub fn table(outcome: &Outcome) -> String {
         header.push(Heading::numbers("sampled forces %\nfitted / held out"));
     }
     for load in &outcome.loads {
-        header.push(Heading::numbers(format!("{}\n%e_rms / %e_max", load.name)));
+        header.push(Heading::numbers(format!("{}\n%e_rms / %e_max", printable(&load.name))));
         if load.reading().is_some() {
-            header.push(Heading::numbers(format!("{}, gauge\nE Pa / nu", load.name)));
+            header.push(Heading::numbers(format!("{}, gauge\nE Pa / nu", printable(&load.name))));
         }
     }
     if !outcome.loads.is_empty() {
         header.push(Heading::words("network"));
     }
     let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
-    let under =
-        [material_table(outcome), times(outcome), gauge(outcome), frequency_table(outcome), motion_table(outcome)];
+    let under = [
+        load_error_table(outcome),
+        material_table(outcome),
+        times(outcome),
+        gauge(outcome),
+        frequency_table(outcome),
+        motion_table(outcome),
+    ];
     aligned(&header, &rows) + &under.concat()
 }
 
@@ -119,7 +165,10 @@ fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
 fn gauge(outcome: &Outcome) -> String {
     let line = |load: &BodyLoad| {
         let Reading { young, poisson } = load.reading()?;
-        Some(format!("Gauge of the finite elements under {}: E = {young:.4e} Pa, nu = {poisson:.3}.\n", load.name))
+        Some(format!(
+            "Gauge reading of the finite elements under {}: E = {young:.4e} Pa, nu = {poisson:.3}.\n",
+            load.name
+        ))
     };
     outcome.loads.iter().filter_map(line).collect()
 }
@@ -147,17 +196,26 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         let measured = load.measured?;
         let error = measured.error.map_or("-".into(), |e| format!("%e_rms / %e_max {:.2} / {:.2}", e.rms, e.max));
         Some(format!(
-            "errors under {} are those from what was measured at {} points; finite elements: {error}",
+            "errors under {} are relative to the displacements measured at {} points; finite elements: {error}",
             load.name, measured.points
         ))
     });
     let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
     let starts = agreements(outcome);
     let silent = outcome.loads.iter().filter(|load| load.gauge == Some(GaugeResult::NoReading)).map(|load| {
-        let why = "it needs a force along its axis that acts at one side of it alone";
-        format!("the gauge says nothing under {}: {why}", load.name)
+        let why = "it requires a force along its axis that acts on one side of it only";
+        format!("the gauge has no reading under {}: {why}", load.name)
     });
-    let notes = finite.chain(silent).chain(measured).chain(own).chain(starts.iter().map(agreed));
+    let notes = outcome
+        .assumed
+        .iter()
+        .cloned()
+        .chain(finite)
+        .chain(linear_notes(outcome))
+        .chain(silent)
+        .chain(measured)
+        .chain(own)
+        .chain(starts.iter().map(agreed));
     notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
 }
 
@@ -165,14 +223,17 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
 fn trouble(load: &str, followed: &Followed) -> Option<String> {
     match (followed.ending, followed.inverted) {
         (Ending::Stalled, _) if followed.residual.is_nan() => {
-            Some(format!("no finite response at {:.3} of the load {load}", followed.load))
+            Some(format!("the response is not finite at {:.3} of the load {load}", followed.load))
         }
         (Ending::Stalled, _) => Some(format!(
-            "no equilibrium found beyond {:.3} of the load {load} (residual {:.1e} there)",
+            "no equilibrium was found beyond {:.3} of the load {load} (residual {:.1e} there)",
             followed.load, followed.residual
         )),
+        (Ending::Converged, 0) if followed.is_rounded => {
+            Some(format!("under {load} the forces balance to their rounding only, {:.1e} of them", followed.residual))
+        }
         (_, 0) => None,
-        (_, count) => Some(format!("{count} elements are turned inside out under {load}")),
+        (_, count) => Some(format!("{count} elements are inverted under {load}")),
     }
 }
 
@@ -181,15 +242,18 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     let mut notes = Vec::new();
     if fit.deficient > 0 {
         notes.push(format!(
-            "{name}: in {} elements this objective does not determine the springs; of all optima the least was taken",
+            "{name}: in {} elements the objective has more than one optimum; the one with the smallest constants is used",
             fit.deficient
         ));
     }
     if fit.reused > 0 {
-        notes.push(format!("{name}: {} elements have the shape of another and took its constants over", fit.reused));
+        notes.push(format!(
+            "{name}: {} elements are congruent to another element and have the same constants",
+            fit.reused
+        ));
     }
     if fit.unreached > 0 {
-        notes.push(format!("{name}: in {} elements the iteration stopped short of the optimum", fit.unreached));
+        notes.push(format!("{name}: in {} elements the iteration ended before it reached the optimum", fit.unreached));
     }
     let own = fit.kind.notes(outcome.mesh.cell_count(), outcome.material);
     notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
@@ -197,7 +261,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     if let Some(m) = &fit.moduli {
         let (young, thickness) = (outcome.material.young(), outcome.material.thickness());
         notes.push(format!(
-            "{name}: the whole network has E = {:.4e} Pa, nu = {:.3}, Zener {:.3}; asked {young:e} Pa, {}, 1",
+            "{name}: the whole network has E = {:.4e} Pa, nu = {:.3}, Zener ratio {:.3}; the material has {young:e} Pa, {}, 1",
             m.young / thickness,
             m.poisson,
             m.zener,
@@ -213,22 +277,22 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     let points = points(outcome, &fit.loose_points);
     let [least, _] = stability.energy_ratio;
     let remedy = if fit.network.negative() > 0 {
-        format!("; it has {} negative springs, which \"nonnegative = true\" forbids", fit.network.negative())
+        format!("; {} spring constants are negative, which \"nonnegative = true\" prevents", fit.network.negative())
     } else {
         String::new()
     };
     match stability.standing {
-        Standing::Sound => {}
+        Standing::Stable => {}
         Standing::Soft => notes.push(format!(
-            "{name}: near-mechanism, some motion meets only {least:.1e} of the body's resistance; its displacements are \
-             not to be trusted. Loosest: {points}{remedy}"
+            "{name}: near-mechanism, a motion has only {least:.1e} of the body's stiffness; the displacements are unreliable. \
+             Loosest: {points}{remedy}"
         )),
         Standing::Indefinite => notes.push(format!(
-            "{name}: indefinite, some motion releases energy ({least:.1e} of what the body stores): it has an equilibrium \
-             but runs away from it. Moving most: {points}{remedy}"
+            "{name}: indefinite, a motion releases energy ({least:.1e} of the energy that it stores in the body): the \
+             equilibrium is unstable. Moving most: {points}{remedy}"
         )),
         Standing::Singular => notes.push(format!(
-            "{name}: mechanism, some motion meets no resistance, so no displacement is given. Moving freely: {points}{remedy}"
+            "{name}: mechanism, a motion has no stiffness, so no displacements are given. Moving freely: {points}{remedy}"
         )),
     }
     notes
@@ -239,7 +303,7 @@ fn agreed(agreement: &Agreement) -> String {
     let verdict = match agreement.difference <= SAME {
         true => format!("agree within {percent:.0} %"),
         false if percent.is_finite() => format!("do not agree: they differ by up to {percent:.0} %"),
-        false => "do not agree: one of them is not known".into(),
+        false => "cannot be compared: one of them is not known".into(),
     };
     format!("{}: held-out errors {verdict} ({})", agreement.fits.join(", "), agreement.load)
 }
@@ -247,7 +311,7 @@ fn agreed(agreement: &Agreement) -> String {
 fn points(outcome: &Outcome, points: &[usize]) -> String {
     let place = |&p: &usize| {
         let x: Vec<String> = outcome.mesh.point(p).iter().map(|x| format!("{x:.4}")).collect();
-        format!("{} ({})", p + 1, x.join(", "))
+        format!("{} ({})", outcome.mesh.point_number(p), x.join(", "))
     };
     let named: Vec<_> = points.iter().take(3).map(place).collect();
     let rest = if points.len() > 3 { format!(" and {} more", points.len() - 3) } else { String::new() };

@@ -23,6 +23,38 @@ impl Place {
         place
     }
 
+    /// Whether it is the place that is expected. A value of a TOML file is always named with its line; where none is expected, the line
+    /// has to be one on which the key, or else the table around it, is written.
+    pub fn is<'a>(&self, expected: &Place, text_of: impl Fn(&str) -> Option<&'a [u8]>) -> bool {
+        if expected.line.is_some() || expected.key.is_none() || self.line.is_none() {
+            let is_file =
+                expected.file.as_deref().is_some_and(|file| file.ends_with(".toml") && text_of(file).is_some());
+            let lines_needed = is_file && expected.key.is_some();
+            return self == expected && (self.line.is_some() || !lines_needed || self.is_missing(&text_of));
+        }
+        let text = self.file.as_deref().and_then(&text_of).map(|text| String::from_utf8_lossy(text).into_owned());
+        let line = |text: &String| text.lines().nth(self.line.unwrap_or(0).wrapping_sub(1)).map(String::from);
+        let Some(line) = text.as_ref().and_then(line) else { return false };
+        let names = self.names();
+        let continues = line.starts_with([' ', '\t', '[']);
+        (&self.file, &self.key) == (&expected.file, &expected.key)
+            && (continues || names.iter().any(|name| line.contains(name)))
+    }
+
+    /// The parts of the key, without numbers.
+    fn names(&self) -> Vec<&str> {
+        let key = self.key.as_deref().unwrap_or_default();
+        key.split('.').map(|part| part.split('[').next().unwrap_or(part)).collect()
+    }
+
+    /// Whether the file has nothing of the key: there is no line to name.
+    fn is_missing<'a>(&self, text_of: &impl Fn(&str) -> Option<&'a [u8]>) -> bool {
+        let text = self.file.as_deref().and_then(text_of).map(String::from_utf8_lossy).unwrap_or_default();
+        self.names()
+            .first()
+            .is_none_or(|name| !text.contains(&format!("{name} =")) && !text.contains(&format!("[{name}")))
+    }
+
     /// The place that `text` begins with, and what follows it.
     fn read<'a>(text: &'a str, files: &[&str]) -> (Place, &'a str) {
         let mut place = Place::default();

@@ -46,7 +46,7 @@ fn options_by_their_names() {
         ("1kPa", "0.3", &["--rest", "long", "--objective", "offdiag"], "--rest", "found \"long\""),
         ("1kPa", "0.3", &["--rest", "free", "--objective", "spectral"], "--rest", "found \"free\""),
         ("1kPa", "0.3", &["--rest", "free", "--objective", "baudet"], "--rest", "\"baudet\""),
-        ("1kPa", "0.3", &["--objective", "offdiag", "--springs", "edge,diagonal"], "springs", "found \"diagonal\""),
+        ("1kPa", "0.3", &["--objective", "offdiag", "--springs", "edge,diagonal"], "--springs", "found \"diagonal\""),
         ("1kPa", "0.3", &["--scale", "-1"], "--scale", "found -1"),
         ("1kPa", "0.3", &["--density", "-1"], "--density", "kg/m³, found -1"),
         ("1kPa", "0.3", &["--element", "tet9"], "--element", "found \"tet9\""),

@@ -95,7 +95,9 @@ impl Refusals {
         let seen = run(files, arguments);
         let names: Vec<&str> = files.iter().map(|(name, _)| name.trim_end_matches('/')).collect();
         let message = Message::parse(&seen.stderr, &names);
-        let named = message.is_some_and(|message| message.place == Place::parse(place, &names) && message.has(words));
+        let place_of = |name: &str| files.iter().find(|(file, _)| *file == name).map(|(_, text)| *text);
+        let named = message
+            .is_some_and(|message| message.place.is(&Place::parse(place, &names), place_of) && message.has(words));
         if seen.code != Some(2) || !seen.stdout.is_empty() || seen.changed || !named {
             let Seen { code, stdout, stderr, changed } = seen;
             let stderr: String = stderr.chars().take(500).collect();

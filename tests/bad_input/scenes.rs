@@ -71,7 +71,7 @@ fn quantities_out_of_range() {
         &[
             ("10e3", "1e-160", "scene.toml: material.young", "found 1e-160"),
             ("10e3", "1e160", "scene.toml: material.young", "found 1e160"),
-            ("[mesh]", "[mesh]\nscale = 1e-100", "scene.toml: mesh.box.size", "found 1e-100"),
+            ("[mesh]", "[mesh]\nscale = 1e-100", "scene.toml: mesh.scale", "found 1e-100"),
         ],
     );
 }
@@ -101,7 +101,7 @@ fn boxes() {
             (cells, "cells = [1, 1, 1], origin = [0]", "scene.toml: mesh.box.origin", "3 entries for tet4, found 1"),
             ("[mesh]", "[mesh]\nscale = -1", "scene.toml: mesh.scale", "found -1"),
             ("[mesh]", "[mesh]\nscale = nan", "scene.toml: mesh.scale", "found NaN"),
-            ("[mesh]", "[mesh]\nscale = 1e300", "scene.toml: mesh.box.size", "found 1e300"),
+            ("[mesh]", "[mesh]\nscale = 1e300", "scene.toml: mesh.scale", "found 1e300"),
             ("[mesh]", "[mesh]\nfile = \"mesh.msh\"", "scene.toml: mesh", "found file and box"),
             (
                 "box = { element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] }\n",

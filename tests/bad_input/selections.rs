@@ -105,12 +105,54 @@ fn loads_that_vary_and_measurements() {
             (load, "traction = [0, 0, \"x*\"]", "scene.toml: load[0].traction[2]", "column 3"),
             (load, "traction = [0, 0, \"w\"]", "scene.toml: load[0].traction[2]", "name \"w\" in \"w\""),
             (load, "traction = [0, 0, \"1/(z - 1)\"]", "scene.toml: load[0]", "not finite"),
+            // Finite at every quadrature point, and without bound at a node.
+            (load, "traction = [0, 0, \"1/x\"]", "scene.toml: load[0]", "found inf along z at [0.0, 0.0, 1.0] m"),
+            (
+                load,
+                "traction = [\"sqrt(x - 1e-9)\", 0, 0]",
+                "scene.toml: load[0]",
+                "found NaN along x at [0.0, 0.0, 1.0] m",
+            ),
+            (
+                "group = \"zmax\"\ntraction = [0, 0, 1]",
+                "body = [0, \"1/x\", 0]",
+                "scene.toml: load[0]",
+                "found inf along y",
+            ),
             (load, "traction = [0, 0, 1]\nmeasured = { file = \"u.csv\" }", "u.csv", "cannot be read"),
         ],
     );
     refusals.expect_of_edits(
         PLATE,
         &[("traction = [0, 1]", "traction = [0, \"z\"]", "scene.toml: load[0].traction[1]", "found z")],
+    );
+    refusals.finish();
+}
+
+/// What a support holds is not moved, and no force acts on it alone.
+#[test]
+fn loads_that_contradict_supports() {
+    let load = "group = \"zmax\"\ntraction = [0, 0, 1]";
+    let all = "group = \"zmin\"\n[[load]]\ngroup = \"zmax\"\ntraction = [0, 0, 1]";
+    let held = "which [[fix]] holds";
+    let moved = "group = \"zmin\"\ndisplacement = [0, \"free\", 1e-3]";
+    let edge = "where = \"x == 0\"\ndisplacement = [1e-3, 0, 0]";
+    let still = "nothing that can move";
+    let mut refusals = Refusals::default();
+    refusals.expect_of_edits(
+        BRICK,
+        &[
+            (load, moved, "scene.toml: load[0].displacement[2]", held),
+            (
+                load,
+                edge,
+                "scene.toml: load[0].displacement[0]",
+                "moves point 1 at [0.0, 0.0, 0.0] m along x by 0.001 m",
+            ),
+            (load, "group = \"zmin\"\ntraction = [0, 0, 1]", "scene.toml: load[0].traction", still),
+            (load, "group = \"zmin\"\nforce = [1, 0, 0]", "scene.toml: load[0].force", still),
+            (all, "where = \"z >= 0\"\n[[load]]\nbody = [1, 0, 0]", "scene.toml: load[0].body", still),
+        ],
     );
     refusals.finish();
 }

@@ -15,21 +15,21 @@ fn whole_messages_read_well() {
         (
             scene("poisson = 0.3", "poison = 0.3"),
             "scene.toml:5: material.poison: unknown field \"poison\", expected one of \"young\", \"poisson\", \
-             \"plane\", \"thickness\", \"area\", \"density\", \"law\"",
+             \"plane\", \"thickness\", \"area\", \"density\", \"law\"; did you mean \"poisson\"?",
         ),
         (scene("young = 10e3\n", ""), "scene.toml:3: material: missing field \"young\""),
         (scene("[mesh]", "[mesh"), "scene.toml:1: expected TOML: unclosed table, expected \"]\""),
         (
             scene("\"modal\"", "\"modal\"\nhigher = 0"),
-            "scene.toml: fit[0].higher: expected a scale above 0 and at most 1, found 0",
+            "scene.toml:8: fit[0].higher: expected a scale above 0 and at most 1, found 0",
         ),
         (
             scene("\"modal\"", "\"frobenius\"\nhigher = 0.1"),
-            "scene.toml: fit[0].higher: belongs to the objective \"modal\", found with \"frobenius\"",
+            "scene.toml:8: fit[0].higher: belongs to the objective \"modal\", found with \"frobenius\"",
         ),
         (
             scene("group = \"zmin\"", "where = \"z <\""),
-            "scene.toml: fix[0].where: column 4: expected a number, a name or '(', found the end in \"z <\"",
+            "scene.toml:9: fix[0].where: column 4: expected a number, a name or '(', found the end in \"z <\"",
         ),
         (
             scene("[[fix]]\ngroup = \"zmin\"\n", ""),
@@ -38,13 +38,13 @@ fn whole_messages_read_well() {
         ),
         (
             scene("[0, 0, 1]", "[0, 1]"),
-            "scene.toml: load[0].traction: expected 3 entries for a mesh of dimension 3, found 2",
+            "scene.toml:12: load[0].traction: expected 3 entries for a mesh of dimension 3, found 2",
         ),
         (
             scene("traction = [0, 0, 1]", "traction = [0, 0, 1]\nmeasured = { file = \"u.csv\" }"),
             "u.csv: cannot be read: No such file or directory (os error 2)",
         ),
-        (element("\"xi\" }", "\"2*xi\" }"), "own.toml: nodes[1].shape: is 2 at nodes[1], expected 1"),
+        (element("\"xi\" }", "\"2*xi\" }"), "own.toml:9: nodes[1].shape: is 2 at nodes[1], expected 1"),
         (
             mesh(msh(&flat, &["4 2 0 1 1 2 3 4"])),
             "mesh.msh: tet4 cell 1 at [0.0, 0.0, 0.0] m: the element has no volume (its Jacobian vanishes)",

@@ -10,11 +10,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 23] = [
+const LAYERS: [&str; 26] = [
     "shipped",
+    "text",
     "error",
     "bound",
+    "range",
     "named",
+    "quantity",
     "file",
     "memory",
     "scalar",

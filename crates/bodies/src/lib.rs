@@ -10,5 +10,5 @@ pub mod solve;
 pub mod whole;
 
 // The layers below, by the same names as everywhere.
-use springfit_foundation::{bound, error, file, memory, named, scalar, symbolic};
+use springfit_foundation::{bound, error, file, memory, named, range, scalar, symbolic};
 use springfit_kernels::{element, fit, material, springs, stiffness};

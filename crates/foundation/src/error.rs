@@ -1,5 +1,6 @@
 //! What is wrong with an input: the kind of fault, its place, what was expected there and what was found.
 
+use crate::text::printable;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -48,7 +49,7 @@ pub struct Error {
 impl Error {
     /// A fault without a key, in words; [`ErrorKind::Invalid`] unless [`of_kind`](Error::of_kind) changes it.
     pub fn new(problem: impl Into<String>) -> Self {
-        let problem = on_one_line(problem.into());
+        let problem = line(problem.into());
         Error { kind: ErrorKind::Invalid, file: None, line: None, key: None, problem, source: None }
     }
 
@@ -60,7 +61,7 @@ impl Error {
 
     /// A fault at `key`, in words.
     pub fn at(key: impl Into<String>, problem: impl Into<String>) -> Self {
-        Error { key: Some(on_one_line(key.into())), ..Error::new(problem) }
+        Error { key: Some(line(key.into())), ..Error::new(problem) }
     }
 
     /// A fault at `key`: `expected …, found …`.
@@ -76,13 +77,13 @@ impl Error {
 
     /// The same fault at another key.
     pub fn at_key(mut self, key: impl Into<String>) -> Self {
-        self.key = Some(on_one_line(key.into()));
+        self.key = Some(line(key.into()));
         self
     }
 
     /// The same fault with more words after the problem.
     pub fn followed_by(mut self, words: impl fmt::Display) -> Self {
-        self.problem = on_one_line(format!("{}{words}", self.problem));
+        self.problem = line(format!("{}{words}", self.problem));
         self
     }
 
@@ -100,7 +101,7 @@ impl Error {
 
     /// Puts `parent` before the key: `shape` under `nodes[3]` is `nodes[3].shape`.
     pub fn under(mut self, parent: impl fmt::Display) -> Self {
-        self.key = Some(on_one_line(match self.key {
+        self.key = Some(line(match self.key {
             Some(key) if key.starts_with('[') => format!("{parent}{key}"),
             Some(key) => format!("{parent}.{key}"),
             None => parent.to_string(),
@@ -147,15 +148,16 @@ impl Error {
 }
 
 /// Names and texts that are quoted from a file may have line ends in them.
-fn on_one_line(text: String) -> String {
-    if text.contains(char::is_control) { text.replace(char::is_control, "\u{fffd}") } else { text }
+fn line(text: String) -> String {
+    printable(&text).into_owned()
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match (&self.file, self.line) {
-            (Some(file), Some(line)) => write!(f, "{}:{line}: ", file.display())?,
-            (Some(file), None) => write!(f, "{}: ", file.display())?,
+        let file = self.file.as_ref().map(|file| file.display().to_string());
+        match (file.as_deref().map(printable), self.line) {
+            (Some(file), Some(line)) => write!(f, "{file}:{line}: ")?,
+            (Some(file), None) => write!(f, "{file}: ")?,
             (None, Some(line)) => write!(f, "line {line}: ")?,
             (None, None) => {}
         }

@@ -1,4 +1,4 @@
-//! What every layer of springfit needs: errors, files, kinds of numbers, symbolic expressions.
+//! What every layer of springfit needs: errors, files, ranges, kinds of numbers, symbolic expressions.
 
 #![forbid(unsafe_code)]
 
@@ -6,6 +6,9 @@ pub mod bound;
 pub mod error;
 pub mod file;
 pub mod memory;
-mod named;
+pub mod named;
+pub mod quantity;
+pub mod range;
 pub mod scalar;
 pub mod symbolic;
+pub mod text;

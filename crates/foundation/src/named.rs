@@ -1,5 +1,36 @@
 //! Closed lists of names that are both read and printed.
 
+use crate::error::Error;
+use std::fmt::Display;
+
+/// A name that is none of `names`: `expected …, found "…"`, and the name that was probably meant.
+pub fn unknown<'a>(expected: impl Display, names: impl IntoIterator<Item = &'a str>, found: &str) -> Error {
+    Error::new(format!("expected {expected}, found \"{found}\"{}", suggestion(names, found)))
+}
+
+/// `; did you mean "…"?` with the one of `names` that is nearest to `found`, or nothing where none is near.
+///
+/// The distance is that of Damerau and Levenshtein, the number of letters that are added, left out, changed or swapped; near is
+/// at most a third of the longer name.
+pub fn suggestion<'a>(names: impl IntoIterator<Item = &'a str>, found: &str) -> String {
+    let plain = |name: &str| name.to_lowercase().replace(['_', ' '], "-");
+    let wanted = plain(found);
+    let near = |name: &'a str| {
+        let distance = strsim::osa_distance(&plain(name), &wanted);
+        let longer = name.chars().count().max(found.chars().count());
+        (distance <= (longer / 3).max(1) && longer > 1).then_some((distance, name))
+    };
+    // Long names would take long to compare, and were not meant.
+    let nearest = || names.into_iter().filter_map(near).min_by_key(|(distance, _)| *distance);
+    match (found.len() <= LONGEST).then(nearest).flatten() {
+        Some((_, name)) => format!("; did you mean \"{name}\"?"),
+        None => String::new(),
+    }
+}
+
+/// Letters of the longest name that a suggestion is looked for.
+const LONGEST: usize = 100;
+
 /// `NAMES`, `all()`, `name()` and `named(text)` of an enum, from one list of names and values.
 ///
 /// A variant with fields has the values of its fields after its name: they are what the name alone stands for.
@@ -34,8 +65,8 @@ macro_rules! named {
                 match name {
                     $($name => Ok($type::$variant { $($($field: $value),+)? }),)+
                     other => {
-                        let names = <$type>::NAMES.join(", ");
-                        Err($crate::error::Error::new(format!("expected one of {names}, found \"{other}\"")))
+                        let names = <$type>::NAMES;
+                        Err($crate::named::unknown(format!("one of {}", names.join(", ")), names.iter().copied(), other))
                     }
                 }
             }

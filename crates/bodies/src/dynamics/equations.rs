@@ -31,14 +31,12 @@ pub(super) trait Equations: std::fmt::Debug {
     /// Adds this share of the largest entry of the diagonal to all of it.
     fn shift(&mut self, share: f64);
 
-    /// What solutions with this A have in common; false where A is known not to be positive definite.
+    /// What solutions with this A have in common; false where there is none.
     fn prepare(&mut self) -> bool;
 
-    /// After [`Equations::prepare`], whether solving for `x`, a force that nothing is orthogonal to, meets positive curvature alone;
-    /// `x` is lost.
-    fn is_definite(&mut self, x: &mut [f64]) -> bool {
-        self.solve(x, None).end != End::Indefinite
-    }
+    /// Whether A is positive definite, where that is proved: `is_prepared` is what [`Equations::prepare`] has said of it. `x`, a force
+    /// that nothing is orthogonal to, is lost.
+    fn is_definite(&mut self, is_prepared: bool, x: &mut [f64]) -> Option<bool>;
 
     /// `x ← A⁻¹ x`, in the order of the rows; `guess` gives what may be near it for each degree of freedom.
     fn solve(&mut self, x: &mut [f64], guess: Option<&[f64]>) -> Solved;

@@ -133,6 +133,11 @@ impl Equations for Factored {
             .is_ok()
     }
 
+    /// Cholesky's factor is the proof.
+    fn is_definite(&mut self, is_prepared: bool, _: &mut [f64]) -> Option<bool> {
+        Some(is_prepared)
+    }
+
     fn solve(&mut self, x: &mut [f64], _: Option<&[f64]>) -> Solved {
         let rows = x.len();
         let x = MatMut::from_column_major_slice_mut(x, rows, 1);

@@ -161,11 +161,17 @@ impl<const D: usize> Equations for Gradients<D> {
         self.incomplete.refill(&self.pattern, &self.blocks[..count])
     }
 
-    fn is_definite(&mut self, x: &mut [f64]) -> bool {
+    /// Before a direction of negative curvature is met, the residual along it does not become less: so small a residual of a random
+    /// force proves that there is none. Iterations that do not lead there prove nothing.
+    fn is_definite(&mut self, is_prepared: bool, x: &mut [f64]) -> Option<bool> {
         let tolerance = std::mem::replace(&mut self.tolerance, DEFINITE);
-        let solved = self.solve(x, None);
+        let end = is_prepared.then(|| self.solve(x, None).end);
         self.tolerance = tolerance;
-        solved.end != End::Indefinite
+        match end? {
+            End::Exact => Some(true),
+            End::Indefinite => Some(false),
+            End::Rough => None,
+        }
     }
 
     fn solve(&mut self, x: &mut [f64], guess: Option<&[f64]>) -> Solved {

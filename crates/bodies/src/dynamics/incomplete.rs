@@ -39,7 +39,7 @@ impl<const D: usize> Incomplete<D> {
         Incomplete { pivots: zeros(rows), beyond: zeros(pattern.columns.len()), updates, starts }
     }
 
-    /// Of A, blocks of the diagonal first; false where it has none even with a hundred times its diagonal: A is not positive definite.
+    /// Of A, blocks of the diagonal first; false where it has none even with a hundred times its diagonal.
     pub fn refill(&mut self, pattern: &Pattern, blocks: &[Block<D>]) -> bool {
         SHIFTS.iter().any(|shift| self.factorize(pattern, blocks, 1.0 + shift))
     }

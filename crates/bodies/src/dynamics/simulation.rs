@@ -7,6 +7,7 @@ use super::limit::longest_step;
 use super::motion::{Motion, Options};
 use super::resistance::Resistance;
 use super::settle::{Outcome, Step, Target, Trial};
+use super::solver::Solver;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::displaced;
 use crate::solve::generator;
@@ -93,7 +94,7 @@ impl<'a> Simulation<'a> {
                 let expected = format!("at most {longest:.6e} s, beyond which symplectic Euler is unstable");
                 return Err(unstable(expected));
             }
-        } else if options.linear && !simulation.is_definite(options.integrator.coefficients(options.step, true)) {
+        } else if options.linear && !simulation.is_definite(options.integrator.coefficients(options.step, true))? {
             let expected = "a step short enough for a model that releases energy as it moves";
             return Err(unstable(expected.into()));
         }
@@ -159,13 +160,29 @@ impl<'a> Simulation<'a> {
         Forces { external: &self.target.external, elastic: &self.trial.force, viscous: &self.viscous }
     }
 
-    /// Whether a linear model has steps: conjugate gradients from a force that nothing is orthogonal to would meet what releases energy.
-    fn is_definite(&mut self, coefficients: [f64; 2]) -> bool {
+    /// Whether a linear model has steps. What its solver cannot tell, Cholesky's factor does, so that the answer does not depend on the
+    /// solver.
+    ///
+    /// # Errors
+    /// The factor does not fit into memory, or the solver has no equations of a model that has steps.
+    fn is_definite(&mut self, coefficients: [f64; 2]) -> Result<bool> {
         let is_prepared = self.factor(coefficients);
-        let Some(equations) = self.equations.as_mut().filter(|_| is_prepared) else { return false };
+        let Some(equations) = &mut self.equations else { return Ok(true) };
         let mut random = generator();
         let mut x: Vec<f64> = equations.order().iter().map(|_| random()).collect();
-        equations.is_definite(&mut x)
+        if let Some(is_definite) = equations.is_definite(is_prepared, &mut x) {
+            return Ok(is_definite);
+        }
+        let resistance = &self.resistance;
+        let mut proof = Solver::Factor.equations(&resistance.places(), &resistance.held, self.motion.dimension())?;
+        resistance.assemble(coefficients, &resistance.rest.values, proof.as_mut());
+        match proof.prepare() {
+            true if !is_prepared => {
+                let problem = "its equations have no incomplete factor, which conjugate gradients need";
+                Err(Error::at("model", problem).of_kind(ErrorKind::Infeasible))
+            }
+            is_definite => Ok(is_definite),
+        }
     }
 
     /// Prepares the matrix of a linear model, unless that is done.

@@ -2,10 +2,12 @@
 
 use super::affine::Affine;
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::places::Places;
 use super::quality::Quality;
 use crate::bound;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
+use crate::range;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -38,6 +40,7 @@ impl BoxMesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            numbering: None,
             quality: Quality::default(),
         };
         let mut connectivity = Vec::new();
@@ -72,6 +75,7 @@ impl BoxMesh {
         mesh.groups = self.groups(&mesh);
         mesh.orient(false)?;
         mesh.reversed = 0;
+        mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
         Ok(mesh)
     }
 
@@ -86,15 +90,8 @@ impl BoxMesh {
         if let Some((key, found)) = lengths.iter().find(|(_, found)| *found != d) {
             return Err(Error::expected(*key, format!("{d} entries for {}", self.element.name), found));
         }
-        if let Some(size) = self.size.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
-            return Err(Error::expected("size", "positive lengths in m", size));
-        }
-        if let Some(size) = self.size.iter().find(|s| !(1e-30..=1e30).contains(*s)) {
-            return Err(Error::expected("size", "lengths from 1e-30 to 1e30 m", format!("{size:?}")));
-        }
-        if let Some(origin) = self.origin.iter().find(|x| !x.is_finite()) {
-            return Err(Error::expected("origin", "finite coordinates in m", origin));
-        }
+        self.size.iter().try_for_each(|size| range::positive("size", *size, "m").map(|_| ()))?;
+        self.origin.iter().try_for_each(|x| range::bounded("origin", *x, "m").map(|_| ()))?;
         let total = self.cells.iter().try_fold(1usize, |a, &n| a.checked_mul(n)).unwrap_or(usize::MAX);
         if total == 0 || total > MOST_CELLS {
             let expected = format!("1 to {MOST_CELLS} cells in all");

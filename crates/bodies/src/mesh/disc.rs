@@ -1,10 +1,12 @@
 //! Round discs and domes of triangles.
 
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
+use super::places::Places;
 use super::quality::Quality;
 use crate::bound;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
+use crate::range;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -48,12 +50,8 @@ impl DiscMesh {
         if self.element.cell != Cell::Triangle || self.element.nodes() != 3 {
             return Err(Error::expected("element", "a triangle of three nodes", &self.element.name));
         }
-        if !(1e-30..=1e30).contains(&self.radius) {
-            return Err(Error::expected("radius", "a length from 1e-30 to 1e30 m", format!("{:?}", self.radius)));
-        }
-        if !(self.height.abs() <= 1e30) {
-            return Err(Error::expected("height", "a length up to 1e30 m", format!("{:?}", self.height)));
-        }
+        range::positive("radius", self.radius, "m")?;
+        range::largest("height", [self.height], "m")?;
         let total = self.rings.iter().try_fold(1usize, |sum, n| sum.checked_add(*n)).unwrap_or(usize::MAX);
         if self.rings.is_empty() || self.rings.iter().any(|n| *n < 3) || total > MOST_POINTS {
             let expected = format!("rings of three points or more, {MOST_POINTS} in all at most");
@@ -71,6 +69,7 @@ impl DiscMesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            numbering: None,
             quality: Quality::default(),
         };
         let rim = self.rings[self.rings.len() - 1];
@@ -83,6 +82,7 @@ impl DiscMesh {
         mesh.groups.insert("body".into(), Group { points: (0..total).collect(), cells, ..Group::default() });
         mesh.orient(false)?;
         mesh.reversed = 0;
+        mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
         Ok(mesh)
     }
 

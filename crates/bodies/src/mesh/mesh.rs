@@ -1,5 +1,6 @@
 //! Points, cells and groups of a mesh.
 
+use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
 use std::collections::BTreeMap;
@@ -19,6 +20,8 @@ pub struct Mesh {
     pub reversed: usize,
     /// Points of the file that belong to no cell and were left out.
     pub unused_points: usize,
+    /// Of the points in the file; `None` of a mesh that is generated or refined.
+    pub numbering: Option<Numbering>,
     pub quality: Quality,
 }
 
@@ -81,6 +84,33 @@ impl Mesh {
         &self.points[index * self.dimension..(index + 1) * self.dimension]
     }
 
+    /// The number of a point in its file; without one, from 1.
+    pub fn point_number(&self, index: usize) -> u64 {
+        self.numbering.as_ref().map_or(index as u64 + 1, |numbering| numbering.nodes[index])
+    }
+
+    /// The points of one cell, in the order of its element's nodes.
+    pub(super) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
+        let n = self.blocks[block].element.nodes();
+        &self.blocks[block].connectivity[cell * n..(cell + 1) * n]
+    }
+
+    pub(super) fn cell_indices(&self) -> impl Iterator<Item = CellIndex> {
+        let counts = self.blocks.iter().map(|block| block.cells().len()).enumerate();
+        counts.flat_map(|(block, count)| (0..count).map(move |cell| CellIndex { block, cell }))
+    }
+
+    /// The points of one side.
+    pub(super) fn side_nodes(&self, index: &SideIndex) -> Vec<usize> {
+        let nodes = self.cell_nodes(index.cell);
+        self.blocks[index.cell.block].element.sides()[index.side].nodes.iter().map(|&a| nodes[a]).collect()
+    }
+
+    pub(super) fn side_indices(&self) -> impl Iterator<Item = SideIndex> {
+        let sides = |cell: CellIndex| 0..self.blocks[cell.block].element.sides().len();
+        self.cell_indices().flat_map(move |cell| sides(cell).map(move |side| SideIndex { cell, side }))
+    }
+
     /// Leaves out the points that belong to no cell.
     pub(super) fn drop_unused_points(&mut self) {
         let total = self.points.len() / self.dimension;
@@ -91,10 +121,16 @@ impl Mesh {
             if *new == 0 {
                 *new = used;
                 self.points.copy_within(old * self.dimension..(old + 1) * self.dimension, used * self.dimension);
+                if let Some(numbering) = &mut self.numbering {
+                    numbering.nodes[used] = numbering.nodes[old];
+                }
                 used += 1;
             }
         }
         self.points.truncate(used * self.dimension);
+        if let Some(numbering) = &mut self.numbering {
+            numbering.nodes.truncate(used);
+        }
         self.unused_points = total - used;
         self.blocks.iter_mut().flat_map(|b| &mut b.connectivity).for_each(|p| *p = new[*p]);
         for group in self.groups.values_mut() {

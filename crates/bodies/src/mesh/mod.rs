@@ -1,14 +1,20 @@
 //! Meshes of known elements: points, cells and named groups, in metres.
 
 mod affine;
+mod alike;
 mod boxes;
 mod disc;
+mod duplicates;
 mod field;
+mod folds;
 pub mod gmsh;
 mod grouping;
+mod hanging;
 mod inspection;
 #[allow(clippy::module_inception)]
 mod mesh;
+mod numbering;
+mod places;
 mod quality;
 mod reader;
 mod reading;
@@ -22,6 +28,7 @@ pub use boxes::BoxMesh;
 pub use disc::DiscMesh;
 pub use field::Field;
 pub use mesh::{CellBlock, CellIndex, Group, Mesh, SideIndex};
+pub use numbering::Numbering;
 pub use quality::{Below, Gate, Quality, Worst};
 pub use selection::Selection;
 pub use source::{Format, MeshSource, SourceBlock};

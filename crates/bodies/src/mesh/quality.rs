@@ -10,7 +10,7 @@ pub enum Below {
     Warn,
     /// The mesh is not taken.
     Refuse,
-    /// They are left out, as are cells that are flat or tangled.
+    /// They are left out, as are cells that are flat or tangled, repeat another or are folded over their neighbours.
     Skip,
 }
 
@@ -62,10 +62,16 @@ pub struct Quality {
     pub least: f64,
     /// Cells left out: of poor quality, flat or tangled.
     pub skipped: usize,
-    /// Points at the place of another.
-    pub coincident: usize,
-    /// Points in the middle of an edge of a cell that does not have them.
-    pub hanging: usize,
+    /// Cells left out because they have the nodes of another.
+    pub duplicates: usize,
+    /// Cells left out because they are folded over their neighbours.
+    pub folded: usize,
+    /// The cells that were turned, in words, where they are not all.
+    pub turned: Option<String>,
+    /// Points at the place of another; `None` where that was not looked for, or where coordinates are too coarse to tell.
+    pub coincident: Option<usize>,
+    /// Points on an edge or a face of a cell that does not have them; `None` as there.
+    pub hanging: Option<usize>,
 }
 
 /// The cell of least quality.

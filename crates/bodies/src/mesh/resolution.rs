@@ -1,25 +1,28 @@
 //! The elements of the cells of a file.
 
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
+use super::numbering::Numbering;
+use super::places::Places;
 use super::quality::{Below, Gate, Quality};
 use super::source::{Format, MeshSource, SourceBlock};
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
+use crate::range;
 use crate::stiffness::{Fault, Geometry, Placement};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 impl Mesh {
     /// Gives each cell of a file its element: one of `own` if it serves the cell type, else a shipped one.
-    /// Coordinates are multiplied by `scale`. Cells of poor quality are told.
+    /// Coordinates are multiplied by `scale`. Cells of poor quality and points at the place of another are counted.
     ///
     /// # Errors
-    /// No element serves a cell type, or a cell is tangled or flat.
+    /// No element serves a cell type, or a cell is tangled or flat, repeats another or is folded over its neighbours.
     pub fn resolve(source: &MeshSource, own: &[Arc<Element>], scale: f64) -> Result<Mesh> {
         Mesh::resolve_within(source, own, scale, None)
     }
 
-    /// The same with a gate of one's own for the cells; then points that do not fit together are looked for as well.
+    /// The same with a gate of one's own for the cells; then points that hang on edges or faces are looked for as well.
     ///
     /// # Errors
     /// As there, unless the gate skips such cells; the gate refuses a cell, or none is left.
@@ -31,8 +34,9 @@ impl Mesh {
         let space = if dimension < 3 && in_one_plane(source) { 2 } else { 3 };
         let lengths = || source.points.iter().flatten().map(|x| (x * scale).abs());
         let largest = lengths().fold(0.0, f64::max);
-        if !(1e-30..=1e30).contains(&largest) {
-            let expected = "coordinates of which the largest is between 1e-30 and 1e30 m";
+        if !range::contains(largest) {
+            let expected =
+                format!("coordinates of which the largest is between {:e} and {:e} m", range::LEAST, range::LARGEST);
             return Err(Error::expected("points", expected, format!("{largest:?} m")));
         }
         let mut mesh = Mesh {
@@ -42,6 +46,7 @@ impl Mesh {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            numbering: numbering(source),
             quality: Quality::default(),
         };
         let mut served: BTreeMap<u32, usize> = BTreeMap::new();
@@ -73,14 +78,17 @@ impl Mesh {
             }
         }
         mesh.drop_unused_points();
-        let faulty = mesh.orient(gate.is_some_and(|gate| gate.below == Below::Skip))?;
-        if !faulty.is_empty() {
-            mesh.quality.skipped = faulty.len();
-            mesh.remove(&faulty)?;
-        }
+        let skip = gate.is_some_and(|gate| gate.below == Below::Skip);
+        let places = Places::of(&mesh);
+        mesh.settle_duplicates(places.as_ref().map(|places| &places.first[..]), skip)?;
+        mesh.settle_orientation(skip)?;
         mesh.pass(gate.unwrap_or_default())?;
+        // Cells that were left out have taken points with them.
+        let left_out = mesh.quality.skipped + mesh.quality.duplicates + mesh.quality.folded > 0;
+        let places = if left_out { Places::of(&mesh) } else { places };
+        mesh.quality.coincident = places.as_ref().map(Places::coincident);
         if gate.is_some() {
-            mesh.find_misfits();
+            mesh.quality.hanging = places.map(|places| mesh.hanging(&places));
         }
         Ok(mesh)
     }
@@ -103,10 +111,41 @@ impl Mesh {
         }
     }
 
-    /// Turns reversed cells and makes sure that every cell has a volume; returns those that have none if they are to be left out.
+    /// Turns reversed cells. Where some are reversed and others are not, those that are folded over their neighbours are refused or
+    /// left out.
+    fn settle_orientation(&mut self, skip: bool) -> Result<()> {
+        let turned = self.orient(skip)?;
+        if turned.is_empty() || turned.len() == self.cell_count() {
+            return Ok(());
+        }
+        let folded = self.folded();
+        if folded.is_empty() {
+            self.quality.turned = Some(self.named(&turned));
+            return Ok(());
+        }
+        if !skip {
+            let found = format!(
+                "{} of {} folded over their neighbours: {}; below = \"skip\" leaves them out",
+                folded.len(),
+                self.cell_count(),
+                self.named(&folded)
+            );
+            return Err(Error::expected("cells", "cells that lie on both sides of what they share", found));
+        }
+        let is_turned: HashSet<CellIndex> = turned.into_iter().collect();
+        self.reversed = is_turned.len() - folded.iter().filter(|cell| is_turned.contains(cell)).count();
+        self.quality.folded = folded.len();
+        self.remove(&folded).map(drop)
+    }
+
+    /// Turns reversed cells and makes sure that every cell has a volume; those that have none may be left out. The cells that were
+    /// turned are returned.
+    ///
+    /// # Errors
+    /// A cell has no volume and may not be left out, or no other cell is left.
     pub(super) fn orient(&mut self, skip: bool) -> Result<Vec<CellIndex>> {
-        let d = self.dimension;
-        let mut faulty = Vec::new();
+        let mut turned = Vec::new();
+        let mut faulty: Vec<(CellIndex, Fault)> = Vec::new();
         for (index, block) in self.blocks.iter_mut().enumerate() {
             let element = block.element.clone();
             let table = &element.tabulation;
@@ -117,29 +156,43 @@ impl Mesh {
                 placement.place(table, points, nodes, &mut x).and_then(|()| geometry.set(table, &x))
             };
             for (cell, nodes) in block.connectivity.chunks_exact_mut(element.nodes()).enumerate() {
+                let at = CellIndex { block: index, cell };
                 let twice = |(i, node): (usize, &usize)| nodes[..i].contains(node);
                 let fault = match (set(&self.points, nodes), &element.reflection) {
                     _ if nodes.iter().enumerate().any(twice) => Some(Fault::Collapsed),
                     (Ok(()), _) => continue,
                     (Err(Fault::Reversed), Some(reflection)) => {
-                        let turned: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();
-                        nodes.copy_from_slice(&turned);
-                        self.reversed += 1;
-                        set(&self.points, nodes).err()
+                        let other: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();
+                        nodes.copy_from_slice(&other);
+                        let fault = set(&self.points, nodes).err();
+                        turned.extend(fault.is_none().then_some(at));
+                        fault
                     }
                     (Err(fault), _) => Some(fault),
                 };
-                if fault.is_some() && skip {
-                    faulty.push(CellIndex { block: index, cell });
-                } else if let Some(fault) = fault {
-                    let first = &self.points[nodes[0] * d..][..d];
-                    let key = format!("{} cell {} at {first:?} m", element.name, cell + 1);
-                    return Err(Error::at(key, fault.to_string()));
-                }
+                faulty.extend(fault.map(|fault| (at, fault)));
             }
         }
-        Ok(faulty)
+        self.reversed = turned.len();
+        let Some((first, fault)) = faulty.first() else { return Ok(turned) };
+        if !skip {
+            let others = match faulty.len() - 1 {
+                0 => String::new(),
+                count => format!("; the cells with such a fault are {} of {}", count + 1, self.cell_count()),
+            };
+            return Err(Error::at(self.cell_name(*first), fault.to_string()).followed_by(others));
+        }
+        self.quality.skipped += faulty.len();
+        let cells: Vec<CellIndex> = faulty.into_iter().map(|(cell, _)| cell).collect();
+        let new = self.remove(&cells)?;
+        Ok(turned.into_iter().map(|at| CellIndex { cell: new[at.block][at.cell], ..at }).collect())
     }
+}
+
+/// The numbers of the points in the file, if there is one.
+fn numbering(source: &MeshSource) -> Option<Numbering> {
+    let known = source.numbers.len() == source.points.len();
+    known.then(|| Numbering { format: source.format, nodes: source.numbers.clone() })
 }
 
 fn entry(element: &Element, format: Format) -> Option<&FormatEntry> {

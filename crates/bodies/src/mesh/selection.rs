@@ -1,7 +1,8 @@
 //! Parts of a mesh, by group name or by a condition on the coordinates.
 
 use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::named::unknown;
 use crate::symbolic::Predicate;
 use std::collections::HashMap;
 
@@ -94,6 +95,6 @@ fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group> {
             [] => "a condition in \"where\", for this mesh has no groups".to_string(),
             _ => format!("a group of the mesh: {}", known.join(", ")),
         };
-        Error::expected("group", expected, format!("\"{name}\""))
+        unknown(expected, mesh.groups.keys().map(String::as_str), name).at_key("group")
     })
 }

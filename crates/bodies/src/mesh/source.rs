@@ -13,6 +13,8 @@ pub struct MeshSource {
     pub format: Format,
     /// Coordinates in mesh units; always three.
     pub points: Vec<[f64; 3]>,
+    /// Of the points in the file, `[points]`: tags in Gmsh's formats, places from 0 in VTK's. Empty where there is no file.
+    pub numbers: Vec<u64>,
     pub blocks: Vec<SourceBlock>,
 }
 

@@ -1,12 +1,14 @@
 //! Loads as nodal forces, consistent with the shape functions; the same for both models.
 
-use super::system::each_cell;
-use crate::element::{SideTable, Tabulation};
+use super::integration::each_cell_points;
+use crate::element::{Integrand, SideTable, Tabulation};
 use crate::error::{Error, Result};
-use crate::mesh::{Mesh, Selection, SideIndex};
+use crate::mesh::{CellIndex, Mesh, Selection, SideIndex};
+use crate::range;
 use crate::springs::{dot, norm, unit};
 use crate::stiffness::gather;
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Polynomial};
+use std::cell::RefCell;
 
 /// What acts on the selected part of the mesh; one entry per direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +37,48 @@ impl Component {
             Component::Varying(expression) => expression.evaluate(x),
         }
     }
+
+    /// The degree of the polynomial that it is, or that stands in for it.
+    fn degree(&self) -> usize {
+        match self {
+            Component::Constant(_) => 0,
+            Component::Varying(expression) => {
+                Polynomial::expand(expression, 3).map_or(SMOOTH, |polynomial| polynomial.degree() as usize)
+            }
+        }
+    }
+}
+
+/// The degree up to which a load that is no polynomial is integrated exactly.
+const SMOOTH: usize = 8;
+
+/// The largest degree of the components.
+fn load_of(components: &[Component]) -> Integrand {
+    Integrand::Load(components.iter().map(Component::degree).max().unwrap_or(0))
+}
+
+/// The components of a load, and the values that they have had.
+struct Values<'a> {
+    components: &'a [Component],
+    met: RefCell<Vec<f64>>,
+}
+
+impl Values<'_> {
+    fn of(components: &[Component]) -> Values<'_> {
+        Values { components, met: RefCell::default() }
+    }
+
+    fn at(&self, x: &[f64]) -> Vec<f64> {
+        let values: Vec<f64> = self.components.iter().map(|component| component.at(x)).collect();
+        self.met.borrow_mut().extend(&values);
+        values
+    }
+
+    /// # Errors
+    /// Values are not finite or outside the range of quantities.
+    fn check(self, unit: &str) -> Result<()> {
+        range::largest("load", self.met.into_inner(), unit)
+    }
 }
 
 impl Action {
@@ -51,6 +95,9 @@ impl Action {
 
 /// `f_a = ∫ N_a t dA` and `f_a = ∫ N_a b dV`, `[points · dimension]`, N. A displacement gives none.
 ///
+/// The rules are chosen by the degree of the load as a polynomial of the place, whatever the rule of the stiffness:
+/// [`crate::element::Element::integration_table`]. What is no polynomial is integrated as one of degree 8.
+///
 /// `thickness` in m, 1 for a solid.
 ///
 /// # Errors
@@ -63,7 +110,11 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             if sides.is_empty() {
                 return nothing("sides");
             }
-            side_forces(mesh, &sides, &|x, _| traction.iter().map(|t| t.at(x)).collect(), thickness)
+            finite_at(mesh, traction, sides.iter().flat_map(|side| side_points(mesh, side).0))?;
+            let values = Values::of(traction);
+            let forces = side_forces(mesh, &sides, load_of(traction), &|x, _| values.at(x), thickness);
+            values.check("Pa")?;
+            forces
         }
         Action::Force(force) => {
             let sides = part.sides(mesh)?;
@@ -85,7 +136,12 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
                 return nothing("cells");
             }
             cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
-            body_forces(mesh, &chosen, body, thickness)
+            let nodes = |c: &CellIndex| mesh.blocks[c.block].cells().nth(c.cell).unwrap_or_default();
+            finite_at(mesh, body, cells.iter().flat_map(|c| nodes(c).iter().copied()))?;
+            let body = Values::of(body);
+            let forces = body_forces(mesh, &chosen, &body, thickness);
+            body.check("N/m³")?;
+            forces
         }
         Action::Displacement(_) => {
             if part.points(mesh)?.is_empty() {
@@ -94,25 +150,42 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             vec![0.0; mesh.points.len()]
         }
     };
-    match forces.iter().all(|f| f.is_finite()) {
-        true => Ok(forces),
-        false => Err(Error::at("load", "is not finite everywhere on the selected part")),
+    match forces.iter().position(|f| !f.is_finite()) {
+        None => Ok(forces),
+        Some(dof) => Err(not_finite(mesh, dof / mesh.dimension, "near", &format!("a nodal force of {}", forces[dof]))),
     }
 }
 
-fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &[Component], thickness: f64) -> Vec<f64> {
+/// That a load is finite at the nodes of what it acts on, which no quadrature point may reach.
+fn finite_at(mesh: &Mesh, components: &[Component], mut points: impl Iterator<Item = usize>) -> Result<()> {
+    let varies = |component: &Component| matches!(component, Component::Varying(_));
+    if !components.iter().any(varies) {
+        return Ok(());
+    }
+    let mut seen = vec![false; mesh.point_count()];
+    let fault = points.find_map(|p| {
+        let is_new = !std::mem::replace(&mut seen[p], true);
+        let values = is_new.then(|| components.iter().map(|component| component.at(mesh.point(p))));
+        values?.zip(["x", "y", "z"]).find(|(value, _)| !value.is_finite()).map(|(value, axis)| (p, value, axis))
+    });
+    fault.map_or(Ok(()), |(p, value, axis)| Err(not_finite(mesh, p, "at", &format!("{value} along {axis}"))))
+}
+
+fn not_finite(mesh: &Mesh, point: usize, place: &str, found: &str) -> Error {
+    let at = mesh.point(point);
+    Error::at("load", format!("is not finite everywhere on the selected part: found {found} {place} {at:?} m"))
+}
+
+fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &Values, thickness: f64) -> Vec<f64> {
     let d = mesh.dimension;
     let mut forces = vec![0.0; mesh.points.len()];
-    each_cell(mesh, |cell, nodes, geometry| {
-        if !chosen[cell.block][cell.cell] {
-            return;
-        }
-        let values = mesh.blocks[cell.block].element.tabulation.values.chunks_exact(nodes.len());
-        for (values, volume) in values.zip(&geometry.volumes) {
-            let at = |k: usize| nodes.iter().zip(values).map(|(&p, n)| n * mesh.point(p)[k]).sum();
+    let is_chosen = |cell: CellIndex| chosen[cell.block][cell.cell];
+    each_cell_points(mesh, load_of(body.components), is_chosen, |cell| {
+        for (values, volume) in cell.each() {
+            let at = |k: usize| cell.nodes.iter().zip(values).map(|(&p, n)| n * mesh.point(p)[k]).sum();
             let x: Vec<f64> = (0..d).map(at).collect();
-            let b: Vec<f64> = body.iter().map(|b| thickness * b.at(&x)).collect();
-            for (&node, n) in nodes.iter().zip(values) {
+            let b: Vec<f64> = body.at(&x).into_iter().map(|b| thickness * b).collect();
+            for (&node, n) in cell.nodes.iter().zip(values) {
                 (0..d).for_each(|k| forces[node * d + k] += n * volume * b[k]);
             }
         }
@@ -146,18 +219,27 @@ fn side_weights(mesh: &Mesh, sides: &[SideIndex]) -> Vec<(usize, f64)> {
 /// Force per area, Pa, as a function of the place and of the normal, which points outwards and, on a surface in space, along it.
 pub type Traction<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
 
-/// `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N.
+/// `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N; on flat sides exact for tractions of degree 2 in
+/// the place.
 pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: f64) -> Vec<f64> {
     let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
-    side_forces(mesh, &sides, traction, thickness)
+    side_forces(mesh, &sides, Integrand::Load(2), traction, thickness)
 }
 
-fn side_forces(mesh: &Mesh, sides: &[SideIndex], traction: &Traction, thickness: f64) -> Vec<f64> {
+fn side_forces(
+    mesh: &Mesh,
+    sides: &[SideIndex],
+    integrand: Integrand,
+    traction: &Traction,
+    thickness: f64,
+) -> Vec<f64> {
     let d = mesh.dimension;
     let mut forces = vec![0.0; mesh.points.len()];
+    let tables: Vec<Vec<Tabulation>> =
+        mesh.blocks.iter().map(|block| block.element.side_integration_tables(integrand)).collect();
     for index in sides {
         let (nodes, x, centre) = side_points(mesh, index);
-        let table = &side_of(mesh, index).tabulation;
+        let table = &tables[index.cell.block][index.side];
         let (count, tangents) = (nodes.len(), table.dimension);
         let values = table.values.chunks_exact(count);
         let gradients = table.gradients.chunks_exact(count * tangents);

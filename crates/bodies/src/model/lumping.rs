@@ -1,7 +1,7 @@
 //! Masses at the points instead of a mass matrix.
 
-use super::masses;
-use super::system::{each_cell, shares};
+use super::integration::each_cell_points;
+use crate::element::Integrand;
 use crate::mesh::Mesh;
 
 /// How the mass of a cell is shared among its nodes.
@@ -18,22 +18,41 @@ pub enum Lumping {
 
 crate::named!(Lumping { "row-sum" => RowSum, "hrz" => Hrz });
 
-/// Nodal masses, `[points]`, kg. `thickness` in m, 1 for a solid; `density` in kg/m³.
+/// Nodal masses, `[points]`, kg. `thickness` in m, 1 for a solid; `density` in kg/m³. The integrals have rules of their own, exact for
+/// the shape functions whatever the rule of the stiffness: [`crate::element::Element::integration_table`].
 pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping) -> Vec<f64> {
-    if lumping == Lumping::RowSum {
-        return masses(mesh, density, thickness);
-    }
     let mut masses = vec![0.0; mesh.point_count()];
-    each_cell(mesh, |cell, nodes, geometry| {
-        let values = &mesh.blocks[cell.block].element.tabulation.values;
-        let mut diagonal = vec![0.0; nodes.len()];
-        for (n, v) in values.chunks_exact(nodes.len()).zip(&geometry.volumes) {
-            diagonal.iter_mut().zip(n).for_each(|(m, n)| *m += v * n * n);
-        }
-        let mut volume = 0.0;
-        shares(mesh, cell, geometry, |_, share| volume += share);
-        let scale = density * thickness * volume / diagonal.iter().sum::<f64>();
-        nodes.iter().zip(&diagonal).for_each(|(&p, m)| masses[p] += scale * m);
-    });
+    match lumping {
+        Lumping::RowSum => each_cell_points(
+            mesh,
+            Integrand::Load(0),
+            |_| true,
+            |cell| {
+                for (values, v) in cell.each() {
+                    cell.nodes.iter().zip(values).for_each(|(&p, n)| masses[p] += density * thickness * (v * n));
+                }
+            },
+        ),
+        Lumping::Hrz => each_cell_points(
+            mesh,
+            Integrand::Mass,
+            |_| true,
+            |cell| {
+                let (mut diagonal, mut volume) = (vec![0.0; cell.nodes.len()], 0.0);
+                for (values, v) in cell.each() {
+                    diagonal.iter_mut().zip(values).for_each(|(m, n)| *m += v * n * n);
+                    volume += v;
+                }
+                let scale = density * thickness * volume / diagonal.iter().sum::<f64>();
+                cell.nodes.iter().zip(&diagonal).for_each(|(&p, m)| masses[p] += scale * m);
+            },
+        ),
+    }
     masses
+}
+
+/// Nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix, which for a
+/// tetrahedron are a quarter of its mass. `thickness` in m, 1 for a solid; `density` in kg/m³.
+pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
+    lumped_masses(mesh, density, thickness, Lumping::RowSum)
 }

@@ -1,9 +1,11 @@
 //! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
 
 mod assembly;
+mod deformation;
 mod elastic;
 mod fibres;
 mod forces;
+mod integration;
 mod linear;
 mod load;
 mod lumping;
@@ -18,11 +20,12 @@ mod support;
 mod system;
 mod tension;
 
+pub use deformation::Deformation;
 pub use elastic::{Body, Elastic};
 pub use fibres::fibre_springs;
 pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
-pub use lumping::{Lumping, lumped_masses};
+pub use lumping::{Lumping, lumped_masses, masses};
 pub use network::{LengthSpring, MeasureSpring, Network};
 pub(crate) use numbering::places;
 pub use patches::patch_springs;
@@ -31,7 +34,7 @@ pub use pressure::smoothed_pressure;
 pub(crate) use size::ADVICE;
 pub use size::check_body;
 pub use support::{Support, Unheld, unheld_bodies};
-pub use system::{finite_elements, masses};
+pub use system::finite_elements;
 pub use tension::RestTension;
 
 use faer::sparse::Triplet;

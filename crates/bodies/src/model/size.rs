@@ -1,6 +1,7 @@
 //! Whether the stiffness of a model fits into memory: asked before it is assembled.
 
 use super::network::Network;
+use super::system::{body_entries, triangle};
 use crate::error::Result;
 use crate::memory;
 use crate::mesh::Mesh;
@@ -11,19 +12,8 @@ const BYTES: u64 = 24 + 2 * (16 + 8 + 8 + 8);
 /// What to do where a model is too large.
 pub(crate) const ADVICE: &str = "take a mesh with fewer points, or a machine with more memory";
 
-/// Entries of the lower triangle of a matrix with so many rows.
-fn triangle(rows: usize) -> usize {
-    rows * (rows + 1) / 2
-}
-
 fn check(what: &str, entries: usize) -> Result<()> {
     memory::require(what, entries as u64 * BYTES, ADVICE).map_err(|e| e.at_key("mesh"))
-}
-
-/// The number of [`finite_elements`](super::finite_elements)' entries.
-pub(super) fn body_entries(mesh: &Mesh) -> usize {
-    let block = |block: &crate::mesh::CellBlock| block.cells().len() * triangle(block.element.nodes() * mesh.dimension);
-    mesh.blocks.iter().map(block).sum()
 }
 
 /// That the stiffness of the finite elements and its equations fit into memory.

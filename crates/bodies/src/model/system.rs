@@ -1,10 +1,9 @@
 //! The finite element model.
 
 use super::Entries;
-use super::size::body_entries;
 use crate::element::Tabulation;
 use crate::material::Moduli;
-use crate::mesh::{CellIndex, Mesh};
+use crate::mesh::{CellBlock, CellIndex, Mesh};
 use crate::stiffness::{self, Geometry, Placement};
 use faer::sparse::Triplet;
 use nalgebra::DMatrix;
@@ -19,6 +18,17 @@ pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], 
         stiffness::each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, visit)
             .expect("a mesh holds only cells with a volume");
     }
+}
+
+/// Entries of the lower triangle of a matrix with so many rows.
+pub(super) fn triangle(rows: usize) -> usize {
+    rows * (rows + 1) / 2
+}
+
+/// The number of [`finite_elements`]' entries.
+pub(super) fn body_entries(mesh: &Mesh) -> usize {
+    let block = |block: &CellBlock| block.cells().len() * triangle(block.element.nodes() * mesh.dimension);
+    mesh.blocks.iter().map(block).sum()
 }
 
 /// The assembled stiffness of the mesh, N/m; degree of freedom `point · dimension + direction`.
@@ -57,22 +67,4 @@ fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &DMatrix<f64
 /// The degrees of freedom of `nodes`, in order.
 pub(super) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
     nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
-}
-
-/// Nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix, which for a
-/// tetrahedron are a quarter of its mass. `thickness` in m, 1 for a solid; `density` in kg/m³.
-pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
-    let mut masses = vec![0.0; mesh.point_count()];
-    each_cell(mesh, |cell, nodes, geometry| {
-        shares(mesh, cell, geometry, |a, share| masses[nodes[a]] += density * thickness * share);
-    });
-    masses
-}
-
-/// Calls `visit(a, share)` with `N_a w |J|` for every node a and quadrature point of a cell.
-pub(super) fn shares(mesh: &Mesh, cell: CellIndex, geometry: &Geometry, mut visit: impl FnMut(usize, f64)) {
-    let values = mesh.blocks[cell.block].element.tabulation.values.chunks_exact(geometry.nodes);
-    for (values, v) in values.zip(&geometry.volumes) {
-        values.iter().enumerate().for_each(|(a, n)| visit(a, v * n));
-    }
 }

@@ -1,6 +1,7 @@
 //! Equilibrium and natural vibrations of either model, and how the two compare mode by mode.
 
 mod cholesky;
+mod internal;
 mod linear;
 mod modes;
 mod newton;

@@ -1,8 +1,9 @@
 //! Statics at large deformation: Newton's method with load steps and a line search, on the finite elements or on a network.
 
+use super::internal::{Form, Internal, Rest, masked};
 use super::linear::System;
 use crate::error::Result;
-use crate::model::{Elastic, Entries, Response, Support, displaced};
+use crate::model::{Elastic, Entries, Support};
 use crate::springs::{dot, norm};
 use faer::sparse::Triplet;
 
@@ -13,7 +14,7 @@ pub struct Newton {
     pub steps: usize,
     /// Iterations in one step.
     pub iterations: usize,
-    /// Largest residual, relative to the forces that act.
+    /// Largest residual, relative to the forces that act. Where their rounding is more, that counts, up to 1e-4.
     pub tolerance: f64,
 }
 
@@ -45,8 +46,14 @@ pub struct Equilibrium {
     pub residuals: Vec<Vec<f64>>,
     /// Iterations whose tangent was not positive definite and had to be shifted.
     pub shifted: usize,
+    /// Whether the forces balance to their rounding only, which is more than the tolerance.
+    pub is_rounded: bool,
 }
 
+/// An equilibrium whose forces are rounded by more than this share of those that act is none.
+const ROUGHEST: f64 = 1e-4;
+/// A prescribed displacement is reached to this share of the largest.
+const REACHED: f64 = 1e-14;
 /// A step of the load is not halved more often.
 const HALVINGS: u32 = 8;
 /// Nor is a Newton step.
@@ -61,7 +68,7 @@ impl Newton {
     /// # Errors
     /// The tangent does not fit into memory.
     pub fn solve(&self, model: &dyn Elastic, points: &[f64], support: &Support, forces: &[f64]) -> Result<Equilibrium> {
-        let mut statics = Statics { newton: *self, model, points, support, forces, known: None, shifted: 0 };
+        let mut statics = Statics::new(*self, Rest { model, points, support }, forces);
         let mut found = Equilibrium {
             ending: Ending::Converged,
             displacement: vec![0.0; points.len()],
@@ -69,20 +76,23 @@ impl Newton {
             load: 0.0,
             residuals: Vec::new(),
             shifted: 0,
+            is_rounded: false,
         };
         let first = 1.0 / self.steps.max(1) as f64;
         let mut step = first;
         while found.load < 1.0 {
             let target = if found.load + step > 1.0 - 1e-12 { 1.0 } else { found.load + step };
             let mut u = found.displacement.clone();
-            match statics.settle(target, &mut u)? {
-                (history, true) => {
+            let (history, balance) = statics.settle(target, &mut u)?;
+            match balance {
+                Balance::Exact | Balance::Rounded => {
                     found.residuals.push(history);
                     found.path.push(u.clone());
                     (found.displacement, found.load) = (u, target);
+                    found.is_rounded = balance == Balance::Rounded;
                     step = (2.0 * step).min(first);
                 }
-                (history, false) => {
+                Balance::None => {
                     step /= 2.0;
                     if step < first * 0.5f64.powi(HALVINGS as i32) {
                         found.residuals.push(history);
@@ -108,19 +118,29 @@ impl Newton {
         forces: &[f64],
         guess: &[f64],
     ) -> Result<Option<Vec<f64>>> {
-        let mut statics = Statics { newton: *self, model, points, support, forces, known: None, shifted: 0 };
+        let mut statics = Statics::new(*self, Rest { model, points, support }, forces);
         let mut u = guess.to_vec();
-        let (_, converged) = statics.settle(1.0, &mut u)?;
-        Ok(converged.then_some(u))
+        let (_, balance) = statics.settle(1.0, &mut u)?;
+        Ok((balance != Balance::None).then_some(u))
     }
+}
+
+/// Whether the forces balance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Balance {
+    /// To the tolerance.
+    Exact,
+    /// To their rounding.
+    Rounded,
+    None,
 }
 
 /// A model that is held and loaded.
 struct Statics<'a> {
     newton: Newton,
-    model: &'a dyn Elastic,
-    points: &'a [f64],
-    support: &'a Support,
+    rest: Rest<'a>,
+    /// The internal forces at rest, N: what the springs of a network hold against each other is no load.
+    tension: Vec<f64>,
     forces: &'a [f64],
     /// The equations of the last tangent: all have the same pattern.
     known: Option<System>,
@@ -128,49 +148,83 @@ struct Statics<'a> {
     shifted: usize,
 }
 
-impl Statics<'_> {
-    /// Newton's method at one load; the residuals, and whether they came below the tolerance.
-    fn settle(&mut self, load: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, bool)> {
-        let Statics { newton, model, points, support, forces, known, shifted } = self;
-        let mut history = Vec::new();
-        let Some(mut now) = model.respond(&displaced(points, u)) else { return Ok((history, false)) };
+impl<'a> Statics<'a> {
+    fn new(newton: Newton, rest: Rest<'a>, forces: &'a [f64]) -> Statics<'a> {
+        let mut tension = vec![0.0; forces.len()];
+        if !rest.model.forces(rest.points, &mut tension) {
+            tension.fill(0.0);
+        }
+        Statics { newton, rest, tension, forces, known: None, shifted: 0 }
+    }
+
+    /// Newton's method at one load; the residuals, and whether the forces balance. Where the rounding of the forces hides what is left of
+    /// them, they are worked out from the displacements.
+    fn settle(&mut self, load: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, Balance)> {
+        let Statics { newton, rest: model, tension, forces, known, shifted } = self;
+        let support = model.support;
+        let (mut history, mut form) = (Vec::new(), Form::Position);
+        let Some(mut now) = model.at(u, form) else { return Ok((history, Balance::None)) };
         for _ in 0..newton.iterations {
             // What is still to be moved of the prescribed displacements.
             let moves: Vec<Option<f64>> =
                 support.prescribed.iter().zip(&*u).map(|(p, u)| p.map(|p| load * p - u)).collect();
-            let moved = moves.iter().flatten().all(|m| m.abs() <= 1e-14 * (1.0 + norm(u)));
-            let rest: Vec<f64> = forces.iter().zip(&now.force).map(|(f, g)| load * f - g).collect();
-            let free = |v: &[f64]| norm(&masked(v, support));
-            let acting = norm(&now.force).max(load * norm(forces));
-            let residual = if acting > 0.0 { free(&rest) / acting } else { 0.0 };
-            history.push(residual);
-            if moved && residual <= newton.tolerance {
-                return Ok((history, true));
+            let held = support.prescribed.iter().zip(&*u).filter_map(|(p, u)| p.map(|p| (load * p).abs().max(u.abs())));
+            let farthest = held.fold(0.0, f64::max);
+            let moved = moves.iter().flatten().all(|m| m.abs() <= REACHED * farthest);
+            let left = |force: &[f64]| -> Vec<f64> { forces.iter().zip(force).map(|(f, g)| load * f - g).collect() };
+            let acting = |force: &[f64]| {
+                let own: Vec<f64> = force.iter().zip(&*tension).map(|(g, t)| g - t).collect();
+                norm(&own).max(load * norm(forces))
+            };
+            let mut rest = left(&now.force);
+            let is_hidden = |now: &Internal, rest: &[f64]| moved && model.free(rest) <= now.rounding;
+            let is_balanced =
+                |now: &Internal, rest: &[f64]| moved && model.free(rest) <= newton.tolerance * acting(&now.force);
+            if form == Form::Position && is_hidden(&now, &rest) && !is_balanced(&now, &rest) {
+                form = Form::Displacement;
+                let Some(finer) = model.at(u, form) else { return Ok((history, Balance::None)) };
+                now = finer;
+                rest = left(&now.force);
             }
-            let Some((step, shift)) = direction(&now.tangent, moves, &rest, known)? else {
-                return Ok((history, false));
+            let (size, acting) = (model.free(&rest), acting(&now.force));
+            history.push(if acting > 0.0 { size / acting } else { 0.0 });
+            if is_balanced(&now, &rest) {
+                return Ok((history, Balance::Exact));
+            }
+            let hidden = is_hidden(&now, &rest);
+            let rounded = if hidden && now.rounding <= ROUGHEST * acting { Balance::Rounded } else { Balance::None };
+            let Some((step, shift)) = direction(&now.response.tangent, moves, &rest, known)? else {
+                return Ok((history, rounded));
             };
             *shifted += usize::from(shift);
             // Of the energy less the work of the load; while supports move it says nothing.
-            let potential = |r: &Response, u: &[f64]| r.energy - load * dot(forces, u);
+            let potential = |r: &Internal, u: &[f64]| r.response.energy - load * dot(forces, u);
             let (before, slope) = (potential(&now, u), -dot(&masked(&rest, support), &step));
             let mut length = 1.0;
-            let accepted = (0..SHORTER).find_map(|_| {
+            // What the rounding hides only a whole step can better.
+            let accepted = (0..if hidden { 1 } else { SHORTER }).find_map(|_| {
                 let tried: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + length * s).collect();
-                let response = model.respond(&displaced(points, &tried));
-                let good = response.as_ref().is_some_and(|r| {
-                    let after: Vec<f64> = forces.iter().zip(&r.force).map(|(f, g)| load * f - g).collect();
-                    let falls = potential(r, &tried) <= before + DESCENT * length * slope;
+                let internal = model.at(&tried, form);
+                let good = internal.as_ref().is_some_and(|r| {
+                    let falls = !hidden && potential(r, &tried) <= before + DESCENT * length * slope;
                     // Next to the end the energy's rounding hides its fall.
-                    !moved || falls || free(&after) < 0.5 * free(&rest)
+                    !moved || falls || model.free(&left(&r.force)) < 0.5 * size
                 });
                 length /= 2.0;
-                response.filter(|_| good).map(|r| (tried, r))
+                internal.filter(|_| good).map(|r| (tried, r))
             });
-            let Some((tried, response)) = accepted else { return Ok((history, false)) };
-            (*u, now) = (tried, response);
+            (*u, now) = match accepted {
+                Some(better) => better,
+                // The rounding of a model may be above its bound.
+                None if form == Form::Position => {
+                    form = Form::Displacement;
+                    let Some(finer) = model.at(u, form) else { return Ok((history, rounded)) };
+                    (u.clone(), finer)
+                }
+                None => return Ok((history, rounded)),
+            };
         }
-        Ok((history, false))
+        Ok((history, Balance::None))
     }
 }
 
@@ -202,9 +256,4 @@ fn direction(
             return Ok(None);
         }
     }
-}
-
-/// The entries of the free degrees of freedom, zero elsewhere.
-fn masked(v: &[f64], support: &Support) -> Vec<f64> {
-    v.iter().enumerate().map(|(i, v)| if support.is_fixed(i) { 0.0 } else { *v }).collect()
 }

@@ -24,7 +24,7 @@ pub struct Stability {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
     /// Positive definite, and no motion much softer than in the body.
-    Sound,
+    Stable,
     /// Positive definite, but some motion meets less than a hundredth of the body's resistance.
     Soft,
     /// Some motion releases energy: without its supports' help the network runs away.
@@ -36,7 +36,7 @@ pub enum Standing {
 /// The extreme ratios of the energies of `network` and `body`, both with the same support.
 ///
 /// A factor of the network iterates the pencil as `K⁻¹R`, which finds the ratios next to zero, of either sign, to full
-/// precision; without one `R⁻¹K` finds the least.
+/// precision; without one `R⁻¹K` finds the least. Where everything is held the ratios are 1.
 pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System, body_factor: &Factor) -> Stability {
     let positive = factor.is_some_and(Factor::is_positive_definite);
     let spectrum = match factor {
@@ -51,21 +51,21 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
             x
         }),
     };
-    let Some([low, high]) = spectrum else {
-        return Stability { standing: Standing::Singular, energy_ratio: [0.0; 2], softest: vec![0.0; body.size()] };
-    };
-    let (ratios, softest) = match factor {
-        Some(_) if positive => ([1.0 / high.value, 1.0 / low.value], high.vector),
+    let (ratios, softest) = match (factor, spectrum) {
+        // Everything is held: no motion tells the two apart.
+        _ if body.size() == 0 => ([1.0; 2], Vec::new()),
+        (_, None) => ([0.0; 2], vec![0.0; body.size()]),
+        (Some(_), Some([low, high])) if positive => ([1.0 / high.value, 1.0 / low.value], high.vector),
         // One end of K⁻¹R is the negative ratio nearest to zero, the other the positive one.
-        Some(_) if low.value < 0.0 => ([1.0 / low.value, 1.0 / high.value], low.vector),
-        Some(_) => ([1.0 / high.value, 1.0 / low.value], high.vector),
-        None => ([low.value, high.value], low.vector),
+        (Some(_), Some([low, high])) if low.value < 0.0 => ([1.0 / low.value, 1.0 / high.value], low.vector),
+        (Some(_), Some([low, high])) => ([1.0 / high.value, 1.0 / low.value], high.vector),
+        (None, Some([low, high])) => ([low.value, high.value], low.vector),
     };
     let standing = match ratios[0].abs() {
         least if !(least >= NOTHING) => Standing::Singular,
-        _ if !positive => Standing::Indefinite,
+        _ if !positive && body.size() > 0 => Standing::Indefinite,
         least if least < SOFT => Standing::Soft,
-        _ => Standing::Sound,
+        _ => Standing::Stable,
     };
     Stability { standing, energy_ratio: ratios, softest }
 }

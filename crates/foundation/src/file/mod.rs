@@ -6,10 +6,13 @@ mod partial;
 pub use identity::check_apart;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::named::suggestion;
 use partial::Partial;
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
 
 /// More than a mesh has that fits into memory with its model; what is no file on a disk may never end.
 const LARGEST_FILE: u64 = 4_000_000_000;
@@ -192,7 +195,7 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
     let deserializer = toml::Deserializer::parse(text).map_err(not_toml)?;
     serde_path_to_error::deserialize(deserializer).map_err(|e| {
         let span = line(e.inner().span());
-        place(keyed(&e), span)
+        on_line_of_key(place(keyed(&e), span), text)
     })
 }
 
@@ -204,10 +207,73 @@ pub fn parse_table<T: serde::de::DeserializeOwned>(table: toml::Table) -> Result
     serde_path_to_error::deserialize(table).map_err(|e| keyed(&e))
 }
 
+/// Names the line of the value that the error's key leads to in the TOML text, or of the nearest table around it, unless the error has a
+/// line or a file.
+pub fn on_line_of_key(error: Error, text: &str) -> Error {
+    if error.line().is_some() || error.file().is_some() {
+        return error;
+    }
+    let line = error.key().and_then(|key| line_of_key(text, key));
+    line.into_iter().fold(error, Error::on_line)
+}
+
+/// The line of the value of this key in the TOML text, or of the nearest table around it.
+pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
+    place_of(text, key).map(|place| text[..place].matches('\n').count() + 1)
+}
+
+/// Where the value of this key, such as `nodes[3].shape`, or the nearest table around it begins, in bytes.
+fn place_of(text: &str, key: &str) -> Option<usize> {
+    let root = DeTable::parse(text).ok()?;
+    let mut place = None;
+    let mut entry = next_entry(root.get_ref(), key);
+    while let Some((name, value, rest)) = entry {
+        // A table that other headers imply has no place of its own.
+        place = Some(if value.get_ref().is_table() {
+            name.span().start.min(value.span().start)
+        } else {
+            value.span().start
+        });
+        let (mut value, mut rest) = (value, rest);
+        while let (DeValue::Array(items), Some((number, after))) =
+            (value.get_ref(), rest.strip_prefix('[').and_then(|r| r.split_once(']')))
+        {
+            let Some(item) = number.parse::<usize>().ok().and_then(|i| items.get(i)) else { return place };
+            place = Some(item.span().start);
+            (value, rest) = (item, after);
+        }
+        entry = value.get_ref().as_table().and_then(|table| next_entry(table, rest.strip_prefix('.').unwrap_or(rest)));
+    }
+    place
+}
+
+/// The longest name of the table that `key` begins with, its value, and the rest of the key.
+fn next_entry<'t, 'i, 'k>(
+    table: &'t DeTable<'i>,
+    key: &'k str,
+) -> Option<(&'t Spanned<DeString<'i>>, &'t Spanned<DeValue<'i>>, &'k str)> {
+    let fits = |(name, value): (&'t Spanned<DeString<'i>>, &'t Spanned<DeValue<'i>>)| {
+        let rest = key.strip_prefix(name.get_ref().as_ref())?;
+        (rest.is_empty() || rest.starts_with(['.', '['])).then_some((name, value, rest))
+    };
+    table.iter().filter_map(fits).min_by_key(|(.., rest)| rest.len())
+}
+
 fn keyed(error: &serde_path_to_error::Error<toml::de::Error>) -> Error {
     let key = error.path().to_string();
-    let problem = one_line(error.inner().message());
+    let message = error.inner().message();
+    let problem = one_line(message) + &meant(message);
     if key == "." { Error::new(problem) } else { Error::at(key, problem) }
+}
+
+/// What an unknown key or name was probably meant to be: serde quotes it first, and the known ones after it.
+fn meant(message: &str) -> String {
+    let is_unknown = ["unknown field", "unknown variant"].iter().any(|words| message.starts_with(words));
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    match quoted.next().filter(|_| is_unknown) {
+        Some(found) => suggestion(quoted, found),
+        None => String::new(),
+    }
 }
 
 fn one_line(message: &str) -> String {

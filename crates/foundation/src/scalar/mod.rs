@@ -6,11 +6,13 @@
 mod coordinates;
 mod double_double;
 mod lanes;
+mod norm;
 mod sum;
 
 pub use coordinates::{Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use lanes::{Lanes, Packed, PackedWork, widest};
+pub use norm::{distance, norm, scaled_norm};
 pub use sum::Sum;
 
 use num_rational::BigRational;

@@ -8,12 +8,13 @@ mod expand;
 mod fraction;
 mod jet;
 mod parse;
+mod precise;
 mod predicate;
 mod print;
 mod program;
 
 pub use fraction::{Fraction, Polynomial};
-pub use jet::Jet;
+pub use jet::{Differentiable, Jet};
 pub use parse::{Scope, parse_rational, variables_of};
 pub use predicate::Predicate;
 pub use program::Program;

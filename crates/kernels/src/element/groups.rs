@@ -2,6 +2,7 @@
 
 use super::definition::{Definition, NodeLists, SpringEntry};
 use super::formula::coordinate_names;
+use super::invariance::expect_invariant;
 use super::kind::{Kind, SpringKind, Symmetry};
 use super::symmetry::permutations;
 use crate::error::{Error, Result};
@@ -48,7 +49,7 @@ pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<S
         if nodes.is_empty() && groups.iter().any(SpringGroup::is_content) {
             return Err(Error::at(key("kind"), "the cell's content has a spring already"));
         }
-        let measure = measure_of(i, entry, definition, &nodes)?;
+        let measure = measure_of(i, entry, definition, &nodes, positions)?;
         let classes = match entry.class {
             Some(_) => classes(entry, &nodes, &permutations(definition.cell, positions)),
             None => vec![nodes],
@@ -146,8 +147,14 @@ fn nodes_of(
     Ok(lists.clone())
 }
 
-/// The user's measure, and that no other kind has one.
-fn measure_of(i: usize, entry: &SpringEntry, definition: &Definition, nodes: &[Vec<usize>]) -> Result<Option<Expr>> {
+/// The user's measure, that no rigid motion changes it, and that no other kind has one.
+fn measure_of(
+    i: usize,
+    entry: &SpringEntry,
+    definition: &Definition,
+    nodes: &[Vec<usize>],
+    positions: &[f64],
+) -> Result<Option<Expr>> {
     let key = format!("springs[{i}].measure");
     match (&entry.measure, entry.kind) {
         (None, SpringKind::Measure) => Err(Error::expected(key, "an expression of x0, y0, x1, …", "none")),
@@ -158,8 +165,12 @@ fn measure_of(i: usize, entry: &SpringEntry, definition: &Definition, nodes: &[V
                 let expected = format!("{count} nodes as in the first list");
                 return Err(Error::expected(format!("springs[{i}].nodes[{p}]"), expected, nodes[p].len()));
             }
-            let scope = Scope::new(&coordinate_names(count, definition.cell.dimension()));
-            Ok(Some(scope.expression(text).map_err(|e| e.under(key))?))
+            let d = definition.cell.dimension();
+            let scope = Scope::new(&coordinate_names(count, d));
+            let measure = scope.expression(text).map_err(|e| e.under(&key))?;
+            let places: Vec<f64> = nodes[0].iter().flat_map(|a| positions[a * d..(a + 1) * d].to_vec()).collect();
+            expect_invariant(&measure, &places, d).map_err(|e| e.under(&key))?;
+            Ok(Some(measure))
         }
         (Some(_), kind) => {
             Err(Error::at(key, format!("belongs to the kind \"measure\", found with \"{}\"", kind.name())))

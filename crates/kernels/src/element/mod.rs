@@ -5,6 +5,8 @@ mod constant;
 mod definition;
 mod formula;
 mod groups;
+mod integrand;
+mod invariance;
 mod kind;
 mod proof;
 mod quadrature;
@@ -17,6 +19,7 @@ pub use definition::{FormatEntry, Formats};
 pub use formula::coordinate_names;
 pub(crate) use formula::{Formula, dot};
 pub use groups::SpringGroup;
+pub use integrand::Integrand;
 pub use kind::{Kind, SpringKind, Symmetry};
 pub use quadrature::Quadrature;
 pub use springfit_shipped::{ELEMENTS as SHIPPED, ElementFile};
@@ -25,6 +28,7 @@ pub use tabulation::{ShapeFunctions, Tabulation};
 
 use crate::error::{Error, Result};
 use crate::file;
+use crate::named::unknown;
 use crate::symbolic::{Polynomial, Scope};
 use definition::Definition;
 use groups::spring_groups;
@@ -53,6 +57,8 @@ pub struct Element {
     /// The order of nodes that turns the element inside out, if it has one.
     pub reflection: Option<Vec<usize>>,
     sides: OnceLock<Vec<SideTable>>,
+    /// The degree of the shape functions that loads and masses reckon with.
+    order: OnceLock<usize>,
 }
 
 /// A side of the element: its nodes, and the shape functions along it.
@@ -79,7 +85,7 @@ impl Element {
             None => {
                 let names: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
                 let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
-                Err(Error::expected("element", expected, format!("\"{name_or_path}\"")))
+                Err(unknown(expected, names, name_or_path).at_key("element"))
             }
         }
     }
@@ -95,8 +101,12 @@ impl Element {
     /// Parses and proves the text of an element file.
     ///
     /// # Errors
-    /// Names the key, what was expected and what was found.
+    /// Names the line, the key, what was expected and what was found.
     pub fn parse(text: &str) -> Result<Element> {
+        Element::proved(text).map_err(|e| file::on_line_of_key(e, text))
+    }
+
+    fn proved(text: &str) -> Result<Element> {
         let definition: Definition = file::parse_toml(text)?;
         let dimension = definition.cell.dimension();
         proof::coordinates(&definition)?;
@@ -139,6 +149,7 @@ impl Element {
             springs,
             formats: definition.formats,
             sides: OnceLock::new(),
+            order: OnceLock::new(),
         })
     }
 
@@ -182,7 +193,15 @@ impl Element {
         let (origin, tangents) = side.embedding(self.cell);
         let on_side = |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < 1e-9;
         let nodes: Vec<usize> = (0..self.nodes()).filter(on_side).collect();
-        let local = Quadrature::of_degree(side.cell, 2 * self.degree());
+        let tabulation = self.side_tabulation(side, &nodes, 2 * self.degree());
+        SideTable { nodes, tabulation }
+    }
+
+    /// The functions of `nodes` along the side at the points of the rule of that degree.
+    fn side_tabulation(&self, side: &Side, nodes: &[usize], degree: usize) -> Tabulation {
+        let d = self.dimension();
+        let (origin, tangents) = side.embedding(self.cell);
+        let local = Quadrature::of_degree(side.cell, degree);
         let points = local
             .points
             .chunks_exact(d - 1)
@@ -197,7 +216,7 @@ impl Element {
             values: nodes.iter().map(|&a| self.functions.values[a].clone()).collect(),
             gradients: nodes.iter().map(|&a| self.functions.gradients[a].clone()).collect(),
         };
-        SideTable { nodes, tabulation: Tabulation::new(&functions, &rule, None).along(&tangents) }
+        Tabulation::new(&functions, &rule, None).along(&tangents)
     }
 
     /// Whether all shape functions are polynomials.
@@ -217,10 +236,11 @@ impl Element {
     /// A name is no group of this element.
     pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
         let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
-        if let Some(unknown) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
+        if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
             let known: Vec<_> = self.springs.iter().map(|g| format!("\"{}\"", g.name)).collect();
             let expected = format!("groups of {}: {}", self.name, known.join(", "));
-            return Err(Error::expected("springs", expected, format!("\"{unknown}\"")));
+            let groups = self.springs.iter().map(|g| g.name.as_str());
+            return Err(unknown(expected, groups, wrong).at_key("springs"));
         }
         Ok(self.springs.iter().filter(|g| names.contains(&g.name)).collect())
     }

@@ -195,7 +195,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 // As they are, for their differences are exact in more digits.
                 gather(self.packing.points, d, nodes, &mut given);
             }
-            if let Some(verdict) = delicate.constants(&given, (&x, &geometry), &measured, constants) {
+            if let Some(verdict) = delicate.constants(&given, (&x, &geometry), constants) {
                 return Ok(verdict);
             }
         }

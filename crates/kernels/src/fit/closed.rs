@@ -4,6 +4,7 @@ use super::least_squares::{equations, normal_equations};
 use super::nodal::{Nodal, is_shorter};
 use super::normal::Normal;
 use super::settings::Fit;
+use super::sizes::of_size;
 use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
 use crate::material::Moduli;
@@ -73,24 +74,9 @@ impl<T: Real> Closed<T> {
         if self.steps == Steps::Nodes {
             return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, moduli, &mut self.normal);
         }
-        // A copy for each of the common sizes, in which the loops unroll: for few nodes they are all overhead.
-        macro_rules! of_size {
-            ($d:literal, $n:expr) => {
-                x[0].vectorize(
-                    #[inline(always)]
-                    || self.solve_in::<$d>($n, table, springs, x, geometry, moduli),
-                )
-            };
-        }
-        let regular = match (springs.dimension, springs.nodes) {
-            (2, 3) if T::UNROLLED => of_size!(2, 3),
-            (2, 4) if T::UNROLLED => of_size!(2, 4),
-            (3, 4) if T::UNROLLED => of_size!(3, 4),
-            (3, 8) if T::UNROLLED => of_size!(3, 8),
-            (1, n) => of_size!(1, n),
-            (2, n) => of_size!(2, n),
-            (_, n) => of_size!(3, n),
-        };
+        let regular = of_size!(T, x[0], (springs.dimension, springs.nodes), |D, n| {
+            self.solve_in::<D>(n, table, springs, x, geometry, moduli)
+        });
         regular && self.finish(springs)
     }
 

@@ -1,8 +1,9 @@
 //! `min ½ kᵀ M k − bᵀ k` over `k ≥ 0`: block principal pivoting, checked by its optimality conditions, with a conic
 //! solver behind it for what pivoting cannot settle.
 
+use super::dense::at_rounding;
 use super::normal::{Normal, Rank};
-use crate::scalar::Real;
+use crate::scalar::{Real, Scalar};
 use clarabel::algebra::{CscMatrix, MatrixMathMut};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 
@@ -16,8 +17,7 @@ pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
     normal.solve_determined(solve_scalable)
 }
 
-/// The optimum of equations in numbers of more digits, those of `f64` deciding which constants are zero where there is a bound; and
-/// the least pivot, as in [`Normal::least_pivot`].
+/// The optimum of equations in numbers of more digits; and the least pivot, as in [`Normal::least_pivot`].
 pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding: f64) -> (Vec<f64>, Rank, f64) {
     let (near, mut free) = (normal.rounded(), normal.clone());
     if !free.solve_to(rounding) {
@@ -28,21 +28,37 @@ pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding:
     if !nonnegative || k.iter().all(|k| *k >= 0.0) {
         return (k, Rank::Full, pivot);
     }
-    let (mut k, rank) = solve_nonnegative(&near);
-    let set: Vec<usize> = (0..k.len()).filter(|&s| k[s] > 0.0).collect();
-    let mut free = normal.restricted(&set);
-    if free.solve_to(rounding) {
-        let found = free.rounded().rhs;
-        if found.iter().all(|k| *k >= 0.0) {
-            set.iter().zip(found).for_each(|(&s, found)| k[s] = found);
+    let (scaled, scale) = normal.scaled();
+    match pivot_to(&scaled, rounding) {
+        Some(k) => (k.iter().zip(&scale).map(|(k, scale)| (k.clone() * scale).rounded()).collect(), Rank::Full, pivot),
+        None => {
+            let (k, rank) = solve_nonnegative(&near);
+            (k, rank, pivot)
         }
     }
-    (k, rank, pivot)
+}
+
+/// The optimum in which the constants that are zero in `near` are zero, if that is the one under `k ≥ 0`: `Some(None)` if it is not.
+/// None where the others are linearly dependent.
+pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Option<Vec<T>>> {
+    let (scaled, scale) = normal.scaled();
+    let set: Vec<usize> = (0..near.len()).filter(|&s| near[s] > 0.0).collect();
+    let mut free = scaled.restricted(&set);
+    if !free.solve_to(T::epsilon()) {
+        return None;
+    }
+    let mut k = vec![scaled.rhs[0].zero(); near.len()];
+    set.iter().zip(&free.rhs).for_each(|(&s, value)| k[s] = value.clone());
+    let tolerance = OPTIMALITY * scaled.rhs.iter().fold(0.0f64, |a, b| a.max(b.rounded().abs()));
+    let slopes = scaled.gradient(&k);
+    let is_optimal = k.iter().all(|k| k.rounded() >= 0.0)
+        && slopes.iter().zip(near).all(|(slope, k)| *k > 0.0 || slope.rounded() >= -tolerance);
+    Some(is_optimal.then(|| k.into_iter().zip(&scale).map(|(k, scale)| k * scale).collect()))
 }
 
 fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
     let (scaled, scale) = normal.scaled();
-    let (mut k, rank) = match pivot(&scaled) {
+    let (mut k, rank) = match pivot_to(&scaled, f64::given()) {
         Some(k) => (k, Rank::Full),
         None => (interior_point(&scaled).unwrap_or_else(|| vec![0.0; normal.size()]), Rank::Deficient),
     };
@@ -50,22 +66,24 @@ fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
     (k, rank)
 }
 
-fn pivot(normal: &Normal) -> Option<Vec<f64>> {
+/// Where what is given errs by `rounding`.
+fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
     let m = normal.size();
-    let tolerance = OPTIMALITY * normal.rhs.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    let tolerance = at_rounding::<T>(OPTIMALITY) * normal.rhs.iter().fold(0.0f64, |a, b| a.max(b.rounded().abs()));
     let mut positive = vec![true; m];
     let (mut fewest, mut patience) = (m + 1, 3);
     for _ in 0..100 + 10 * m {
         let set: Vec<usize> = (0..m).filter(|&s| positive[s]).collect();
         let mut free = normal.restricted(&set);
-        if !free.solve_regular() {
+        if !free.solve_to(rounding) {
             return None;
         }
-        let mut k = vec![0.0; m];
-        set.iter().zip(&free.rhs).for_each(|(&s, &value)| k[s] = value);
+        let mut k = vec![normal.rhs[0].zero(); m];
+        set.iter().zip(&free.rhs).for_each(|(&s, value)| k[s] = value.clone());
         let slope = normal.gradient(&k);
-        let wrong: Vec<usize> =
-            (0..m).filter(|&s| if positive[s] { k[s] < 0.0 } else { slope[s] < -tolerance }).collect();
+        let wrong: Vec<usize> = (0..m)
+            .filter(|&s| if positive[s] { k[s].rounded() < 0.0 } else { slope[s].rounded() < -tolerance })
+            .collect();
         if wrong.is_empty() {
             return Some(k);
         }

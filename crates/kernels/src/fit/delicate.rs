@@ -4,7 +4,7 @@ use super::constrained::solve_precisely;
 use super::least_squares::normal_equations;
 use super::method::Verdict;
 use super::normal::Normal;
-use super::precision::{differences, solved};
+use super::precision::{differences, measured, solved};
 use super::settings::Fit;
 use super::weight::Route;
 use crate::element::Element;
@@ -23,15 +23,9 @@ pub struct DelicateCells<'a> {
 
 impl DelicateCells<'_> {
     /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `plain` and `shape` are that
-    /// from its first in `f64`, `measured` as [`Method::solve`] needs it. None where
-    /// the Jacobian vanishes, or springs on functions are seen block by block, which is known in `f64` alone.
-    pub fn constants(
-        &self,
-        x: &[f64],
-        (plain, shape): (&[f64], &Geometry),
-        measured: &[f64],
-        constants: &mut [f64],
-    ) -> Option<Verdict> {
+    /// from its first in `f64`. None where the Jacobian vanishes, a spring has no gradient, or springs on functions are seen block by
+    /// block, which is known in `f64` alone.
+    pub fn constants(&self, x: &[f64], (plain, shape): (&[f64], &Geometry), constants: &mut [f64]) -> Option<Verdict> {
         let DelicateCells { element, springs, moduli, fit } = *self;
         let any = DoubleDouble::from(0.0);
         let x = differences(&any, element.dimension(), x);
@@ -41,7 +35,8 @@ impl DelicateCells<'_> {
         }
         let route = fit.objective.route(!springs.functions.is_empty());
         let Route::Closed(weight) = route else {
-            let method = solved(springs, &x, &geometry, moduli, measured, fit)?;
+            let measured = measured(springs, &x)?;
+            let method = solved(springs, &x, &geometry, moduli, &measured, fit)?;
             return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
         };
         let mut normal = Normal::default();

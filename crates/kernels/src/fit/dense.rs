@@ -96,6 +96,11 @@ fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]
     least
 }
 
+/// The least pivot of one lane relative to its diagonal entry, after [`factorize`].
+pub fn least_pivot<T>(a: &[T], n: usize, inverse: &[T], lane: impl Fn(&T) -> f64) -> f64 {
+    (0..n).map(|s| 1.0 / (lane(&inverse[s]) * lane(&a[s * n + s]))).fold(1.0, f64::min)
+}
+
 /// `b ← A⁻¹ b` with the factors of [`factorize`].
 #[inline(always)]
 pub fn solve<T: Scalar>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {

@@ -5,7 +5,9 @@
 //! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
 //! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
 
-use super::dense::{add_outers, at_rounding, factorize, inner, invert, room_below, row_products, solve, tie, trace};
+use super::dense::{
+    add_outers, at_rounding, factorize, inner, invert, least_pivot, room_below, row_products, solve, tie, trace,
+};
 use super::objective::Balance;
 use super::reduction::Reduced;
 use crate::scalar::Real;
@@ -25,7 +27,7 @@ pub struct Divergence<T> {
     pub kappa: Vec<T>,
     /// Positive where the optimum was reached.
     pub reached: T,
-    balance: Balance,
+    pub balance: Balance,
     nonnegative: bool,
     matrix: Vec<T>,
     pivots: Vec<T>,
@@ -62,6 +64,11 @@ impl<T: Real> Divergence<T> {
             trial: room(c),
             room: room(p * p),
         }
+    }
+
+    /// The least pivot of the last Hessian of one lane, relative to its diagonal entry.
+    pub fn least_pivot(&self, lane: impl Fn(&T) -> f64) -> f64 {
+        least_pivot(&self.hessian, self.kappa.len(), &self.hessian_pivots, lane)
     }
 
     /// Solves for the element in `reduced`, which must be seen through the weight `relative`, in every lane.

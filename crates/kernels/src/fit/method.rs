@@ -1,6 +1,7 @@
 //! The objectives that need R itself, on one element or on one per lane.
 
-use super::constrained::{solve_nonnegative, solve_precisely};
+use super::bounded_divergence::settle;
+use super::constrained::{bounded_optimum, solve_nonnegative, solve_precisely};
 use super::dense::{factorize, inner, row_products};
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
@@ -22,6 +23,8 @@ const SOFTEST: f64 = 1e-4;
 
 /// A pivot of the normal equations below this has cost more than seven digits.
 const LEAST_PIVOT: f64 = 1e-6;
+/// The same, of every objective, where springs measure functions: their gradients have lost some digits before.
+const LEAST_MEASURED_PIVOT: f64 = 1e-4;
 /// A softest motion of so many rounding errors is known to nine digits.
 const KNOWN: f64 = 1e9;
 
@@ -55,6 +58,8 @@ pub struct Method<T> {
     reduced: Reduced<T>,
     weight: MotionWeight,
     nonnegative: bool,
+    /// Whether springs measure functions.
+    measures: bool,
     solver: Solver<T>,
 }
 
@@ -92,7 +97,8 @@ impl<T: Real> Method<T> {
                 Solver::Divergence(Divergence::like(any, &reduced, balance, fit.nonnegative))
             }
         };
-        Some(Method { reduced, weight, nonnegative: fit.nonnegative, solver })
+        let measures = !springs.functions.is_empty();
+        Some(Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver })
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] needs it.
@@ -141,6 +147,32 @@ impl<T: Real> Method<T> {
         Some(self.reduced.unknowns.iter().map(constant).collect())
     }
 
+    /// The constants under `k ≥ 0`, `[springs]`, N/m, if it is those of `near` above zero that the optimum has there: `Some(None)` where
+    /// its conditions do not hold. None where springs are linearly dependent, or the optimum is proved otherwise.
+    pub fn bounded_constants(mut self, near: &[f64]) -> Option<Option<Vec<T>>> {
+        let any = self.reduced.size.clone();
+        let mut kappa = vec![any.zero(); self.reduced.scales.len()];
+        for (&unknown, k) in self.reduced.unknowns.iter().zip(near) {
+            kappa[unknown] = any.constant(k) / &self.reduced.scales[unknown];
+        }
+        let found = match &mut self.solver {
+            Solver::LeastSquares { normal, .. } => {
+                let near: Vec<f64> = kappa.iter().map(Real::rounded).collect();
+                bounded_optimum(normal, &near)?
+            }
+            Solver::Divergence(solver) => {
+                let Reduced { order, unknowns, .. } = &self.reduced;
+                let set: Vec<bool> = kappa.iter().map(|k| k.rounded() > 0.0).collect();
+                let is_optimal = settle(self.reduced.rows(), *order, unknowns, solver.balance, &mut kappa);
+                let is_same = kappa.iter().zip(set).all(|(k, positive)| (k.rounded() > 0.0) == positive);
+                (is_optimal && is_same).then_some(kappa)
+            }
+            Solver::Spectral(_) => return None,
+        };
+        let constant = |kappa: &Vec<T>, unknown: &usize| kappa[*unknown].clone() * &self.reduced.scales[*unknown];
+        Some(found.map(|kappa| self.reduced.unknowns.iter().map(|unknown| constant(&kappa, unknown)).collect()))
+    }
+
     /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have; `independent`
     /// tells whether its springs are, whatever they are fitted to.
     pub fn finish_alone(mut self, independent: impl Fn() -> bool, constants: &mut [f64]) -> Verdict {
@@ -159,6 +191,13 @@ impl<T: Real> Method<T> {
             verdict.reached &= pivot > KNOWN * rounding.min(T::epsilon());
             return verdict;
         }
+        if let Solver::Divergence(solver) = &mut self.solver
+            && self.nonnegative
+        {
+            let Reduced { order, unknowns, .. } = &self.reduced;
+            let is_settled = settle(self.reduced.rows(), *order, unknowns, solver.balance, &mut solver.kappa);
+            solver.reached = solver.reached.constant(if is_settled { &1.0 } else { &-1.0 });
+        }
         let found = self.finish(Real::rounded, || 1.0, constants);
         verdict = Verdict { reached: found.reached && is_known, ..found };
         if let Some(certificate) = &mut verdict.certificate {
@@ -172,8 +211,8 @@ impl<T: Real> Method<T> {
                 break;
             }
             certificate.value *= 2.0;
-            verdict.reached = false;
         }
+        verdict.reached &= certificate.gap() <= GAP;
         verdict.certificate = Some(certificate);
         verdict
     }
@@ -214,7 +253,8 @@ impl<T: Real> Method<T> {
                 let (kappa, rank) = match self.nonnegative {
                     true => solve_nonnegative(&normal),
                     false if eliminated.solve_regular() => {
-                        verdict.delicate |= eliminated.least_pivot() < LEAST_PIVOT;
+                        let least = if self.measures { LEAST_MEASURED_PIVOT } else { LEAST_PIVOT };
+                        verdict.delicate |= eliminated.least_pivot() < least;
                         (eliminated.rhs, Rank::Full)
                     }
                     false => normal.solve(),
@@ -234,6 +274,9 @@ impl<T: Real> Method<T> {
                 // A nonnegative optimum stays in the middle of the optima, away from the bounds.
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
                 let ambiguous = doubtful && least_frobenius(&problem, &mut optimum);
+                verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
+                // How far an optimum of nothing is reached is rounding.
+                verdict.delicate |= optimum.value <= EXACT;
                 let Optimum { kappa, value, bound } = optimum;
                 let certificate = Certificate { value: size * value, bound: size * bound, ambiguous, size };
                 verdict.reached = certificate.gap() <= GAP;
@@ -242,7 +285,16 @@ impl<T: Real> Method<T> {
             }
             Solver::Divergence(solver) => {
                 verdict.reached = lane(&solver.reached) > 0.0;
-                solver.kappa.iter().map(&lane).collect()
+                verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
+                let mut kappa: Vec<f64> = solver.kappa.iter().map(&lane).collect();
+                // Numbers of more digits have settled theirs.
+                if self.nonnegative && T::epsilon() >= T::given() {
+                    let rows: Vec<f64> = self.reduced.rows().iter().map(&lane).collect();
+                    verdict.reached =
+                        settle(&rows, self.reduced.order, &self.reduced.unknowns, solver.balance, &mut kappa);
+                    verdict.delicate |= !verdict.reached;
+                }
+                kappa
             }
         };
         for (constant, &unknown) in constants.iter_mut().zip(&self.reduced.unknowns) {

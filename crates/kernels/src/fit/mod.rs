@@ -1,6 +1,7 @@
 //! Spring constants from the stiffness of each element.
 
 mod batch;
+mod bounded_divergence;
 mod cells;
 mod closed;
 mod closed_form;
@@ -28,6 +29,7 @@ mod residual;
 mod rest;
 mod sampled;
 mod settings;
+mod sizes;
 mod solver;
 mod spectral;
 mod tension;
@@ -42,7 +44,7 @@ pub use method::Certificate;
 pub use normal::Rank;
 pub use norms::Norm;
 pub use objective::{Balance, Choices, Objective};
-pub use precision::{condition, constants_of_kind, distance_from_optimum};
+pub use precision::{bounded_constants, condition, constants_of_kind, distance_from_optimum};
 pub use residual::{ElementErrors, Spread, element_errors};
 pub use rest::Rest;
 pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};

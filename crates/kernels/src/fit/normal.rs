@@ -140,6 +140,26 @@ impl<T: Clone> Normal<T> {
 }
 
 impl<T: Real> Normal<T> {
+    pub fn entry(&self, s: usize, t: usize) -> T {
+        self.gram[s.max(t) * self.size() + s.min(t)].clone()
+    }
+
+    /// The same equations for `k_s/scale_s`, in which `M` has a unit diagonal, and the scales.
+    pub fn scaled(&self) -> (Normal<T>, Vec<T>) {
+        let m = self.size();
+        let scale: Vec<T> = (0..m).map(|s| self.rhs[s].one() / &self.entry(s, s).sqrt()).collect();
+        let gram = (0..m * m).map(|st| self.entry(st / m, st % m) * &scale[st / m] * &scale[st % m]).collect();
+        let rhs = self.rhs.iter().zip(&scale).map(|(b, s)| b.clone() * s).collect();
+        (Normal::new(gram, rhs), scale)
+    }
+
+    /// `½ kᵀ M k − bᵀ k`'s gradient `M k − b`.
+    pub fn gradient(&self, k: &[T]) -> Vec<T> {
+        let term = |s: usize, sum: T, (t, k): (usize, &T)| sum + &(self.entry(s, t) * k);
+        let row = |s: usize| k.iter().enumerate().fold(k[s].zero(), |sum, tk| term(s, sum, tk));
+        self.rhs.iter().enumerate().map(|(s, b)| row(s) - b).collect()
+    }
+
     /// The equations, or what stands in their place, in `f64`.
     pub fn rounded(&self) -> Normal {
         let all = |values: &[T]| values.iter().map(Real::rounded).collect();
@@ -155,25 +175,6 @@ impl<T: Real> Normal<T> {
 }
 
 impl Normal {
-    pub fn entry(&self, s: usize, t: usize) -> f64 {
-        self.gram[s.max(t) * self.size() + s.min(t)]
-    }
-
-    /// The same equations for `k_s/scale_s`, in which `M` has a unit diagonal, and the scales.
-    pub fn scaled(&self) -> (Normal, Vec<f64>) {
-        let m = self.size();
-        let scale: Vec<f64> = (0..m).map(|s| 1.0 / self.entry(s, s).sqrt()).collect();
-        let gram = (0..m * m).map(|st| self.entry(st / m, st % m) * scale[st / m] * scale[st % m]).collect();
-        let rhs = self.rhs.iter().zip(&scale).map(|(b, s)| b * s).collect();
-        (Normal::new(gram, rhs), scale)
-    }
-
-    /// `½ kᵀ M k − bᵀ k`'s gradient `M k − b`.
-    pub fn gradient(&self, k: &[f64]) -> Vec<f64> {
-        let row = |s: usize| k.iter().enumerate().map(|(t, k)| self.entry(s, t) * k).sum::<f64>();
-        self.rhs.iter().enumerate().map(|(s, b)| row(s) - b).collect()
-    }
-
     /// `2 bᵀd − dᵀ M d`: by how much `‖r − J d‖²` is less than `‖r‖²`, where `M = JᵀJ`, `b = Jᵀr`.
     pub fn fall(&self, d: &[f64]) -> f64 {
         let along = |v: &[f64]| v.iter().zip(d).map(|(v, d)| v * d).sum::<f64>();

@@ -51,6 +51,11 @@ impl Fit {
         self.objective.is_costly() || self.solver != Solver::Native
     }
 
+    /// [`Fit::spread`] of any kind of number.
+    pub(super) fn spread_of<T: Clone>(&self, springs: &Springs, k: &[T]) -> Vec<T> {
+        (0..springs.len()).map(|s| k[if self.tied { springs.groups[s] } else { s }].clone()).collect()
+    }
+
     /// One constant per spring from the solution of the equations, which has one per group where they are tied.
     pub(super) fn spread(&self, springs: &Springs, constants: &mut [f64], k: &[f64]) {
         for (s, constant) in constants.iter_mut().enumerate() {

@@ -3,6 +3,7 @@
 use super::{Material, Moduli};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
+use crate::named::unknown;
 use crate::symbolic::{Expr, Jet, Program, Scope};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use serde::Deserialize;
@@ -83,7 +84,7 @@ impl Energy {
             None => {
                 let names: Vec<_> = MATERIALS.iter().map(|(name, _)| *name).collect();
                 let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
-                Err(Error::expected("energy", expected, format!("\"{name_or_path}\"")))
+                Err(unknown(expected, names, name_or_path).at_key("energy"))
             }
         }
     }
@@ -91,8 +92,12 @@ impl Energy {
     /// Parses the text of a material file and proves that the body at rest is free of stress.
     ///
     /// # Errors
-    /// Names the key, what was expected and what was found.
+    /// Names the line, the key, what was expected and what was found.
     pub fn parse(text: &str, material: Material) -> Result<Energy> {
+        Energy::proved(text, material).map_err(|e| file::on_line_of_key(e, text))
+    }
+
+    fn proved(text: &str, material: Material) -> Result<Energy> {
         let definition: Definition = file::parse_toml(text)?;
         let names: Vec<&str> =
             INVARIANTS.iter().chain(&MODULI).copied().chain(definition.parameters.keys().map(String::as_str)).collect();

@@ -6,6 +6,7 @@ pub use energy::{Energy, Tangent};
 pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};
+use crate::range::positive;
 use serde::Deserialize;
 
 /// How a body of fewer dimensions relates to the solid it stands for.
@@ -84,15 +85,6 @@ impl Material {
     /// # Errors
     /// `E ≤ 0`, `ν ≤ −1`, `ν ≥ 1/2` (plane stress: `ν > 1/2`), thickness not positive, or a value that is not finite.
     pub fn new(young: f64, poisson: f64, state: State) -> Result<Material> {
-        let positive = |key: &str, value: f64, unit: &str| match value {
-            v if !(v > 0.0 && v.is_finite()) => {
-                Err(Error::expected(key, format!("a positive number of {unit}"), value))
-            }
-            v if !(1e-30..=1e30).contains(&v) => {
-                Err(Error::expected(key, format!("a number from 1e-30 to 1e30 {unit}"), format!("{v:?}")))
-            }
-            _ => Ok(()),
-        };
         positive("young", young, "Pa")?;
         let in_range = match state {
             State::PlaneStress { .. } | State::Rod { .. } => poisson > -1.0 && poisson <= 0.5,
@@ -185,27 +177,4 @@ impl Material {
 
 fn body(dimension: usize) -> &'static str {
     if dimension == 1 { "one of lines" } else { "a solid one" }
-}
-
-/// A pressure such as `10e3`, `10kPa` or `"0.2 MPa"`, in Pa.
-///
-/// # Errors
-/// It is not a number followed by nothing, Pa, kPa, MPa or GPa.
-pub fn parse_pressure(text: &str) -> Result<f64> {
-    let trimmed = text.trim();
-    let digits = trimmed.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    // In "10e3" the last letter belongs to the number; in "10kPa" all letters are the unit.
-    let (number, unit) =
-        if trimmed.parse::<f64>().is_ok() { (trimmed, "") } else { (digits, &trimmed[digits.len()..]) };
-    let factor = match unit {
-        "" | "Pa" => Some(1.0),
-        "kPa" => Some(1e3),
-        "MPa" => Some(1e6),
-        "GPa" => Some(1e9),
-        _ => None,
-    };
-    match (number.trim().parse::<f64>(), factor) {
-        (Ok(value), Some(factor)) => Ok(value * factor),
-        _ => Err(Error::new(format!("expected a pressure such as 10000, 10kPa or 0.01MPa, found \"{text}\""))),
-    }
 }

@@ -17,7 +17,7 @@ pub use vector::{distance, dot, norm, unit};
 use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
-use crate::symbolic::{Expr, Jet};
+use crate::symbolic::{Differentiable, Expr, Jet};
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
@@ -312,19 +312,21 @@ impl Springs {
     ///
     /// # Panics
     /// A length is another.
-    pub fn function_gradients(&self, x: &[f64], rows: &mut [f64]) -> bool {
+    pub fn function_gradients<T: Differentiable>(&self, x: &[T], rows: &mut [T]) -> bool {
         let d = self.dimension;
         let size = self.nodes * d;
         for (row, spring) in rows.chunks_exact_mut(size).zip(&self.functions) {
-            let at: Vec<f64> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).copied().collect();
+            let at: Vec<T> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).cloned().collect();
             let gradient = Jet::gradient(&spring.function, &at);
             for (&a, g) in spring.nodes.iter().zip(gradient.chunks_exact(d)) {
                 // Added: a coupling may name a node twice.
-                row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row += g);
+                row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row = row.clone() + g);
             }
         }
         let springs = rows[..self.functions.len() * size].chunks_exact(size);
-        springs.map(|row| row.iter().map(|g| g * g).sum::<f64>()).all(|square| square > 0.0 && square.is_finite())
+        springs
+            .map(|row| row.iter().map(|g| g.rounded().powi(2)).sum::<f64>())
+            .all(|square| square > 0.0 && square.is_finite())
     }
 }
 

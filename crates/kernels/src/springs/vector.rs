@@ -1,18 +1,10 @@
 //! Vectors of any length.
 
+pub use crate::scalar::{distance, norm};
+
 /// `a · b`.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// `‖v‖`.
-pub fn norm(v: &[f64]) -> f64 {
-    dot(v, v).sqrt()
-}
-
-/// `‖b − a‖`.
-pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt()
 }
 
 /// `v/‖v‖`.

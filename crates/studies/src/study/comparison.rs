@@ -35,6 +35,7 @@ pub struct MethodOutcome {
     pub solver: &'static str,
     /// Seconds per element over the runs: least, median, largest.
     pub seconds: [f64; 3],
+    pub runs: usize,
     pub frobenius: Spread,
     pub spectral: Spread,
     /// The largest relative duality gap, where there is one.
@@ -120,6 +121,7 @@ pub fn measure_recipes(
         outcomes.push(MethodOutcome {
             name,
             solver,
+            runs: seconds.len(),
             seconds: [seconds[0], seconds[seconds.len() / 2], seconds[seconds.len() - 1]],
             frobenius: Spread::of(&errors.frobenius),
             spectral: Spread::of(&errors.spectral),
@@ -145,15 +147,15 @@ fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<Name
 pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     if scene.loads().is_empty() {
         let problem = "expected at least one [[load]] to compare under, found none";
-        return Err(Error::at("load", problem).in_file(scene.path()));
+        return Err(scene.placed(Error::at("load", problem)));
     }
     let mesh = scene.build_mesh()?;
     let higher_modes = mesh.blocks.iter().any(|block| block.element.has_higher_modes());
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
     // Loads made from the mesh are linear, and need supports that hold the body without those of the scene.
-    let material = scene.material(mesh.cell_dimension())?;
-    let support = load_cases(scene, &mesh, material)?.0;
+    let material = scene.material_of(&mesh)?;
+    let support = load_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
     let held = match body.held("loads") {

@@ -1,4 +1,10 @@
-use crate::scalar::Sum;
+//! How far a network is from the finite elements under a load.
+
+use crate::model::Entries;
+use crate::scalar::{Sum, scaled_norm};
+
+/// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
+pub const SOLVED: f64 = 1e-6;
 
 /// Distances of the network's points from those of the finite elements, in percent of the largest displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -7,18 +13,43 @@ pub struct DisplacementError {
     pub rms: f64,
     /// `100 max_i |u_i^FEM − u_i^LEM| / max_i |u_i^FEM|`.
     pub max: f64,
+    /// `100 |u_t^FEM − u_t^LEM| / |u_t^FEM|`, t the point that moves most in the finite elements.
+    pub tip: f64,
 }
 
 /// Natsupakpong and Çavuşoğlu (2010), section 3. `fem` and `lem` are `[points × dimension]`, m; `None` if the finite
-/// elements do not move.
+/// elements do not move, or a displacement or an error is not finite.
 pub fn displacement_error(fem: &[f64], lem: &[f64], dimension: usize) -> Option<DisplacementError> {
+    if !fem.iter().chain(lem).all(|u| u.is_finite()) {
+        return None;
+    }
     let square = |a: &[f64]| a.iter().map(|x| x * x).collect::<Sum>().value();
-    let largest = fem.chunks_exact(dimension).map(square).fold(0.0, f64::max).sqrt();
+    let length = |a: &[f64]| scaled_norm(a, square);
+    let largest = fem.chunks_exact(dimension).map(length).fold(0.0, f64::max);
     if largest == 0.0 {
         return None;
     }
     let difference: Vec<f64> = fem.iter().zip(lem).map(|(a, b)| (a - b) / largest).collect();
     let points = (fem.len() / dimension) as f64;
-    let worst = difference.chunks_exact(dimension).map(square).fold(0.0, f64::max).sqrt();
-    Some(DisplacementError { rms: 100.0 * (square(&difference) / points).sqrt(), max: 100.0 * worst })
+    let sizes = fem.chunks_exact(dimension).map(length).enumerate();
+    let (tip, _) = sizes.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+    let tip = length(&difference[tip * dimension..(tip + 1) * dimension]);
+    let worst = difference.chunks_exact(dimension).map(length).fold(0.0, f64::max);
+    let rms = scaled_norm(&difference, |a| square(a) / points);
+    let error = DisplacementError { rms: 100.0 * rms, max: 100.0 * worst, tip: 100.0 * tip };
+    Some(error).filter(|error| error.rms.is_finite() && error.max.is_finite())
+}
+
+/// `Σ f_i u_i`.
+pub fn product(f: &[f64], u: &[f64]) -> f64 {
+    f.iter().zip(u).map(|(f, u)| f * u).collect::<Sum>().value()
+}
+
+/// `uᵀ K u` of a symmetric matrix by its lower triangle.
+pub fn square(stiffness: &Entries, u: &[f64]) -> f64 {
+    let term = |entry: &faer::sparse::Triplet<usize, usize, f64>| {
+        let both = if entry.row == entry.col { 1.0 } else { 2.0 };
+        both * entry.val * u[entry.row] * u[entry.col]
+    };
+    stiffness.iter().map(term).collect::<Sum>().value()
 }

@@ -1,13 +1,16 @@
 //! Whole studies: a scene from its file to the errors and times of each fit.
 
 mod body;
+mod body_material;
 mod check;
 mod checkpoint;
 mod choice;
 mod comparison;
 mod convergence;
+mod extent;
 mod fits;
 mod fitting;
+mod masses;
 mod metrics;
 mod moduli;
 mod outcome;
@@ -25,6 +28,7 @@ mod tensor;
 mod time;
 
 pub use body::LargeBody;
+pub use body_material::{BodyConstants, assumed};
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
@@ -32,6 +36,7 @@ pub use convergence::{
     Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
     limit_of, most_unknowns, rates,
 };
+pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
     KindRecord, LoadSelection, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord,
@@ -40,6 +45,7 @@ pub use fits::{
     WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
+pub use masses::point_masses;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{

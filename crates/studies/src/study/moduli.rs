@@ -8,6 +8,7 @@ use crate::mesh::{BoxMesh, CellBlock, Mesh, Selection, SideIndex};
 use crate::model::{Entries, Network, Support, finite_elements, masses};
 use crate::solve::System;
 use crate::springs::Springs;
+use crate::study::metrics::SOLVED;
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
@@ -108,7 +109,11 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
         }
         let system = System::new(entries, &support)?;
         let Some(factor) = system.factorize()? else { return Ok(None) };
-        solutions.push(system.solve(&factor, &vec![0.0; mesh.points.len()]).0);
+        let (u, left) = system.solve(&factor, &vec![0.0; mesh.points.len()]);
+        if !(left <= SOLVED) {
+            return Ok(None);
+        }
+        solutions.push(u);
     }
     let energy = |u: &[f64], v: &[f64]| -> f64 {
         let entry = |e: &Triplet<usize, usize, f64>| {

@@ -4,6 +4,7 @@ use super::body::{Case, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
 use super::fits::{Reference, WholeBody};
 use super::fitting::fit_mesh;
+use super::masses::point_masses;
 use super::moduli::moduli_of_body;
 use super::outcome::{BodyLoad, Outcome};
 use super::progress::{Event, Progress};
@@ -12,7 +13,7 @@ use super::stages::stages;
 use super::time::TimePlan;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Support, masses};
+use crate::model::{Deformation, Support};
 
 /// Runs the scene. Work is done only for what the scene names.
 ///
@@ -27,9 +28,13 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
 /// # Errors
 /// As there, and the checkpoint is wrong or cannot be written.
 pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
+    worked_out(scene, controls, progress).map_err(|e| scene.with_line(e))
+}
+
+fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     controls.check()?;
     let mesh = scene.build_mesh()?;
-    let material = scene.material(mesh.cell_dimension())?;
+    let material = scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
     let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
@@ -42,7 +47,8 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         }
         None => None,
     };
-    let masses = scene.density().map(|density| masses(&mesh, density, material.thickness()));
+    let masses = scene.density().map(|density| point_masses(&mesh, density, material)).transpose();
+    let masses = masses.map_err(|e| scene.at("material", e))?;
     let linear =
         |progress: &mut Progress| LinearBody::solve(&mesh, material.moduli(), &cases, progress).map_err(in_scene);
     // Of the fits only those to the whole object need the body's displacements.
@@ -94,11 +100,13 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
             (body.displacements, vec![None; cases.len()], None)
         }
     };
+    let is_linear = energy.is_none();
     let answers = cases.iter().zip(fem).zip(followed).enumerate();
     let loads = answers.map(|(i, ((case, fem), followed))| BodyLoad {
         name: case.name.clone(),
         gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
         measured: case.measured(&fem, mesh.dimension),
+        deformation: is_linear.then(|| Deformation::largest(&mesh, &fem)),
         followed,
         fem,
     });
@@ -108,6 +116,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
     }
     let mut outcome = Outcome {
         scene: scene.title().into(),
+        assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
         material,
@@ -119,7 +128,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
         frequencies: Vec::new(),
     };
     if controls.cancelled() {
-        progress(Event::Note("ended early: no motion, no frequencies"));
+        progress(Event::Note("ended early, without motion and frequencies"));
     } else {
         plan.follow(scene, energy.as_ref(), &mut outcome, progress)?;
     }

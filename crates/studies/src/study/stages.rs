@@ -41,7 +41,7 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
         None => stages.push(skip("motion", "the scene has no [motion]")),
     }
     match scene.output().frequencies {
-        0 => stages.push(skip("natural frequencies", "not asked for in [output]")),
+        0 => stages.push(skip("natural frequencies", "not requested in [output]")),
         count => stages.push(run(format!("{count} natural frequencies of each model"))),
     }
     for (asked, what) in [
@@ -49,7 +49,7 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
         (scene.output().vtu, "VTU files"),
         (scene.output().csv, "CSV files"),
     ] {
-        stages.push(if asked { run(what.into()) } else { skip(what, "not asked for in [output]") });
+        stages.push(if asked { run(what.into()) } else { skip(what, "not requested in [output]") });
     }
     stages
 }

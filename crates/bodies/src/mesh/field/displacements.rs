@@ -6,6 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::file::{ending, read, read_text};
 use crate::mesh::mesh::Mesh;
 use crate::mesh::vtk;
+use crate::range;
 use std::path::Path;
 
 /// Displacements of some points of a mesh, as measured or simulated.
@@ -46,9 +47,7 @@ impl Field {
     /// # Errors
     /// As there.
     pub fn read_named(path: &Path, mesh: &Mesh, scale: f64, array: Option<&str>) -> Result<Field> {
-        if !(scale > 0.0 && scale.is_finite()) {
-            return Err(Error::expected("scale", "a positive number", scale));
-        }
+        range::positive("scale", scale, "metres per unit of the file")?;
         let mut reading = Reading::new(mesh, scale);
         let done = match ending(path).as_str() {
             "csv" => table::read(&read_text(path)?, array, &mut reading),

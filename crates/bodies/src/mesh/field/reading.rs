@@ -3,6 +3,7 @@
 use super::locator::Locator;
 use crate::error::{Error, Result};
 use crate::mesh::mesh::Mesh;
+use crate::range;
 
 /// Names of the directions in columns.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -26,11 +27,9 @@ impl Reading<'_> {
     /// A length of the file in m; `None` for what is not measured.
     pub fn length(&self, value: f64) -> Result<Option<f64>> {
         let length = value * self.scale;
-        if length.is_infinite() {
-            return Err(Error::new(format!(
-                "expected a finite length, found {value:?} times the scale {:?}",
-                self.scale
-            )));
+        if length.abs() > range::LARGEST {
+            let found = format!("found {value:?} times the scale {:?}", self.scale);
+            return Err(Error::new(format!("expected a length of at most {:e} m, {found}", range::LARGEST)));
         }
         Ok((!length.is_nan()).then_some(length))
     }
@@ -68,11 +67,12 @@ impl Reading<'_> {
     /// `[points · dimension]`, m.
     ///
     /// # Errors
-    /// There is none.
+    /// There is none, or all are too small for their squares.
     pub fn displacements(self) -> Result<Vec<Option<f64>>> {
         if self.displacements.iter().all(Option::is_none) {
             return Err(Error::new("the file measures no displacement of any point"));
         }
+        range::largest("displacement", self.displacements.iter().flatten().copied(), "m")?;
         Ok(self.displacements)
     }
 }

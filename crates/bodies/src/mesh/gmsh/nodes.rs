@@ -6,6 +6,8 @@ use std::collections::HashMap;
 
 pub(super) struct Nodes {
     pub points: Vec<[f64; 3]>,
+    /// Of the points.
+    pub tags: Vec<u64>,
     places: Places,
 }
 
@@ -25,7 +27,7 @@ impl Nodes {
     ///
     /// # Errors
     /// A tag occurs twice.
-    pub fn new(tags: &[u64], points: Vec<[f64; 3]>) -> Result<Nodes> {
+    pub fn new(tags: Vec<u64>, points: Vec<[f64; 3]>) -> Result<Nodes> {
         let twice = |tag: u64| Error::at("$Nodes", format!("node {tag} occurs twice")).of_kind(ErrorKind::Syntax);
         let first = tags.iter().copied().min().unwrap_or(0);
         let span = tags.iter().copied().max().unwrap_or(0) - first;
@@ -48,7 +50,7 @@ impl Nodes {
             }
             Places::Sparse(places)
         };
-        Ok(Nodes { points, places })
+        Ok(Nodes { points, tags, places })
     }
 
     /// The index into `points` of the node with this tag, which the element that `reader` has just read names.

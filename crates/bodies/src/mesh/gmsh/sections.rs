@@ -120,7 +120,7 @@ impl File {
             let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
             blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups });
         }
-        Ok(MeshSource { format: Format::Gmsh, points: nodes.points, blocks })
+        Ok(MeshSource { format: Format::Gmsh, points: nodes.points, numbers: nodes.tags, blocks })
     }
 }
 

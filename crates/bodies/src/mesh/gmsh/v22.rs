@@ -32,7 +32,7 @@ pub(super) fn nodes(reader: &mut Reader, parametric: bool) -> Result<Nodes> {
         }
         reader.count_one();
     }
-    Nodes::new(&tags, points)
+    Nodes::new(tags, points)
 }
 
 pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>> {

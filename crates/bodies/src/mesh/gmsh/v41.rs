@@ -81,7 +81,7 @@ pub(super) fn nodes(reader: &mut Reader) -> Result<Nodes> {
     if points.len() as u64 != total {
         return Err(reader.expected(&format!("{total} nodes"), &points.len().to_string()));
     }
-    Nodes::new(&tags, points)
+    Nodes::new(tags, points)
 }
 
 pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>> {

@@ -6,6 +6,7 @@ mod memberships;
 mod pattern;
 
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
+use super::places::Places;
 use super::quality::{Below, Gate};
 use crate::element::{Cell, Element};
 use crate::error::Result;
@@ -32,7 +33,7 @@ impl Mesh {
     /// # Errors
     /// A cell cannot be divided, a group has sides that no cell has, or a part of a curved cell has no volume.
     pub fn refined(&self) -> Result<Mesh> {
-        let mut fine = Mesh { blocks: Vec::new(), ..self.clone() };
+        let mut fine = Mesh { blocks: Vec::new(), numbering: None, ..self.clone() };
         let mut elements: Vec<Arc<Element>> = self.blocks.iter().map(|block| block.element.clone()).collect();
         let divisions: Vec<Division> =
             self.blocks.iter().map(|block| Division::of(&block.element, &mut elements)).collect::<Result<_>>()?;
@@ -70,6 +71,11 @@ impl Mesh {
         fine.unused_points = self.unused_points;
         fine.orient(false).map_err(|e| e.followed_by(" after the cells were divided"))?;
         fine.reversed = self.reversed;
+        if self.quality.coincident.is_some() {
+            fine.quality.coincident = Places::of(&fine).map(|places| places.coincident());
+        }
+        // Of the coarse mesh; the cells of the fine one were not asked.
+        fine.quality.hanging = None;
         if self.quality.worst.is_some() {
             fine.pass(Gate { least: self.quality.least, below: Below::Warn })?;
         }

@@ -79,11 +79,13 @@ impl<'a> Document<'a> {
         let mut at = 0;
         loop {
             let Some(tag) = next_tag(bytes, at) else {
-                let problem = match open.first() {
-                    Some(_) => "the file ends before </VTKFile>",
-                    None => "expected <VTKFile>, found none",
-                };
-                return Err(Error::new(problem));
+                return Err(match open.last() {
+                    Some(name) => {
+                        let name = shown(name);
+                        Error::expected(&name, format!("</{name}>"), "the end of the file").on_line(line_of(bytes, at))
+                    }
+                    None => Error::expected("VTKFile", "<VTKFile>", "none"),
+                });
             };
             at = tag.end;
             let placed = |error: Error| error.on_line(line_of(bytes, tag.start));
@@ -91,7 +93,7 @@ impl<'a> Document<'a> {
                 let expected = open.pop().map_or("<VTKFile>".to_string(), |name| format!("</{}>", shown(name)));
                 let found = format!("</{}>", shown(name));
                 if expected != found {
-                    return Err(placed(Error::new(format!("expected {expected}, found {found}"))));
+                    return Err(placed(Error::expected(shown(name), expected, found)));
                 }
                 document.continue_text(&open, at);
             } else {
@@ -114,10 +116,10 @@ impl<'a> Document<'a> {
     fn add(&mut self, open: &[&[u8]], tag: &Tag) -> Result<usize> {
         match (open, tag.name) {
             ([], b"VTKFile") => self.root(tag)?,
-            ([], other) => return Err(Error::new(format!("expected <VTKFile>, found <{}>", shown(other)))),
+            ([], other) => return Err(Error::expected("VTKFile", "<VTKFile>", format!("<{}>", shown(other)))),
             ([b"VTKFile"], b"AppendedData") => return self.appended_data(tag),
             ([b"VTKFile", b"UnstructuredGrid"], b"Piece") if self.pieces.len() == MOST_PIECES => {
-                return Err(Error::new(format!("expected at most {MOST_PIECES} pieces, found more")));
+                return Err(Error::expected("Piece", format!("at most {MOST_PIECES} pieces"), "more"));
             }
             ([b"VTKFile", b"UnstructuredGrid"], b"Piece") => {
                 let count = |name| number(tag, name).map_err(|error| error.under("Piece"));
@@ -140,16 +142,18 @@ impl<'a> Document<'a> {
             None => Ok(false),
             Some(value) if value == known[0] => Ok(false),
             Some(value) if value == known[1] => Ok(true),
-            Some(other) => Err(Error::expected("VTKFile", format!("{name} {} or {}", known[0], known[1]), other)),
+            Some(other) => Err(Error::expected(format!("VTKFile.{name}"), known.join(" or "), quoted(&other))),
         };
-        let kind = tag.attribute("type").unwrap_or_default();
-        if kind != "UnstructuredGrid" {
-            return Err(Error::expected("VTKFile", "type UnstructuredGrid", kind));
+        let kind = tag.attribute("type");
+        if kind.as_deref() != Some("UnstructuredGrid") {
+            return Err(Error::expected("VTKFile.type", "UnstructuredGrid", shown_value(kind)));
         }
         let compressed = match tag.attribute("compressor") {
             None => false,
             Some(name) if name == "vtkZLibDataCompressor" => true,
-            Some(other) => return Err(Error::expected("VTKFile", "compressor vtkZLibDataCompressor or none", other)),
+            Some(other) => {
+                return Err(Error::expected("VTKFile.compressor", "vtkZLibDataCompressor or none", quoted(&other)));
+            }
         };
         let wide = one_of("header_type", ["UInt32", "UInt64"])?;
         self.storage = Storage { compressed, wide, big_endian: one_of("byte_order", ["LittleEndian", "BigEndian"])? };
@@ -158,17 +162,20 @@ impl<'a> Document<'a> {
 
     /// The data begin after an underscore. Raw data may look like tags; they end where the last end tag is.
     fn appended_data(&mut self, tag: &Tag) -> Result<usize> {
-        let encoding = tag.attribute("encoding").unwrap_or_default();
-        let in_base64 = match encoding.as_str() {
-            "base64" => true,
-            "raw" => false,
-            _ => return Err(Error::expected("AppendedData", "encoding base64 or raw", encoding)),
+        let encoding = tag.attribute("encoding");
+        let in_base64 = match encoding.as_deref() {
+            Some("base64") => true,
+            Some("raw") => false,
+            _ => return Err(Error::expected("AppendedData.encoding", "base64 or raw", shown_value(encoding))),
         };
         let end = if in_base64 || tag.empty {
             text_after(self.bytes, tag.end).end
         } else {
             let end = self.bytes[tag.end..].windows(APPENDED_END.len()).rposition(|window| window == APPENDED_END);
-            tag.end + end.ok_or_else(|| Error::new("the file ends before </AppendedData>"))?
+            tag.end
+                + end.ok_or_else(|| {
+                    Error::expected("AppendedData", "</AppendedData> after the data", "the end of the file")
+                })?
         };
         let data = self.bytes[tag.end..end].trim_ascii_start().strip_prefix(b"_");
         self.appended = data.map(|bytes| Stored { bytes, in_base64 });
@@ -247,22 +254,23 @@ impl Section {
 
 fn array(section: Section, tag: &Tag, bytes: &[u8]) -> Result<ArrayTag> {
     let name = tag.attribute("Name").unwrap_or_default();
-    let scalar = tag.attribute("type").unwrap_or_default();
-    let scalar = ScalarType::of_xml(&scalar)
-        .ok_or_else(|| Error::expected("type", "one of Int8 to Int64, UInt8 to UInt64, Float32, Float64", scalar));
+    let scalar = tag.attribute("type");
+    let scalar = ScalarType::of_xml(scalar.as_deref().unwrap_or_default()).ok_or_else(|| {
+        Error::expected("type", "one of Int8 to Int64, UInt8 to UInt64, Float32, Float64", shown_value(scalar))
+    });
     let components = match tag.attribute("NumberOfComponents") {
         Some(_) => number(tag, "NumberOfComponents"),
         None => Ok(1),
     };
     let text = if tag.empty { tag.end..tag.end } else { text_after(bytes, tag.end) };
-    let format = tag.attribute("format").unwrap_or_default();
-    let place = match format.to_ascii_lowercase().as_str() {
+    let format = tag.attribute("format");
+    let place = match format.as_deref().unwrap_or_default().to_ascii_lowercase().as_str() {
         "ascii" => Ok(Place::Text(text)),
         "binary" => Ok(Place::Base64(text)),
         "appended" => {
             number(tag, "offset").map(|offset| Place::Appended(usize::try_from(offset).unwrap_or(usize::MAX)))
         }
-        _ => Err(Error::expected("format", "ascii, binary or appended", format)),
+        _ => Err(Error::expected("format", "ascii, binary or appended", shown_value(format))),
     };
     let placed = |error: Error| error.under(section.key(&name));
     let (scalar, components) = (scalar.map_err(placed)?, components.map_err(placed)?);
@@ -275,12 +283,23 @@ fn array(section: Section, tag: &Tag, bytes: &[u8]) -> Result<ArrayTag> {
 
 /// An attribute that is a whole number.
 fn number(tag: &Tag, name: &str) -> Result<u64> {
-    let value = tag.attribute(name).unwrap_or_default();
-    value.trim().parse().map_err(|_| Error::expected(name, "a whole number", format!("\"{value}\"")))
+    let value = tag.attribute(name);
+    let number = value.as_deref().unwrap_or_default().trim().parse();
+    number.map_err(|_| Error::expected(name, "a whole number", shown_value(value)))
 }
 
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at].iter().filter(|&&b| b == b'\n').count()
+}
+
+/// The value of an attribute in an error.
+fn shown_value(value: Option<String>) -> String {
+    value.map_or("none".into(), |value| quoted(&value))
+}
+
+/// The start of a text, in quotes.
+fn quoted(value: &str) -> String {
+    format!("\"{}\"", value.chars().take(40).collect::<String>())
 }
 
 /// The start of a name, on one line.

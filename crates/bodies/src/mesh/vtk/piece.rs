@@ -105,7 +105,8 @@ pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
         let groups = values.into_iter().map(|(place, value)| format!("{}={value}", arrays[place])).collect();
         Some(SourceBlock { dimension, cell_type: cell_type.into(), nodes_per_cell, connectivity, groups })
     });
-    Ok(MeshSource { format: Format::Vtk, blocks: blocks.collect(), points })
+    let numbers = (0..points.len() as u64).collect();
+    Ok(MeshSource { format: Format::Vtk, blocks: blocks.collect(), points, numbers })
 }
 
 fn check_lengths(piece: &Piece) -> Result<()> {

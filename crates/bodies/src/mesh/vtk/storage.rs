@@ -1,9 +1,9 @@
 //! Arrays as a `.vtu` stores them: in base64 or raw, as bytes after their number or as blocks of zlib after a header.
 
 use crate::error::{Error, Result};
-use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::general_purpose::{GeneralPurpose, PAD};
+use base64::{DecodeError, Engine};
 use flate2::{Decompress, FlushDecompress, Status};
 use std::borrow::Cow;
 
@@ -67,7 +67,7 @@ impl<'a> Stored<'a> {
         if !self.in_base64 {
             return Ok(Cow::Borrowed(run));
         }
-        let mut bytes = BASE64.decode(run).map_err(|error| Error::new(format!("expected base64, found: {error}")))?;
+        let mut bytes = BASE64.decode(run).map_err(|error| not_base64(&error, run))?;
         if bytes.len() < count {
             return Err(Error::new(format!("expected base64 of {count} bytes, found {}", bytes.len())));
         }
@@ -166,6 +166,20 @@ impl<'a> Data<'a> {
     }
 }
 
+/// What stands in the place of base64.
+fn not_base64(error: &DecodeError, run: &[u8]) -> Error {
+    let found = match error {
+        DecodeError::InvalidByte(place, byte) | DecodeError::InvalidLastSymbol(place, byte) => {
+            let byte =
+                if byte.is_ascii_graphic() { format!("\"{}\"", char::from(*byte)) } else { format!("byte {byte}") };
+            format!("{byte} as character {}", place + 1)
+        }
+        DecodeError::InvalidLength(_) => format!("{} characters, no multiple of four", run.len()),
+        DecodeError::InvalidPadding => "a wrong number of \"=\" at the end".into(),
+    };
+    Error::new(format!("expected base64, found {found}"))
+}
+
 /// Bytes as one run of base64.
 pub(super) fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
@@ -191,7 +205,10 @@ fn inflated(bytes: &[u8], compressed: &[usize], block: usize, size: usize) -> Re
                 let expected = format!("the end of compressed block {i} after {} bytes of data", output.len());
                 return Err(Error::new(format!("expected {expected}, found none")));
             }
-            Err(error) => return Err(Error::new(format!("compressed block {i} is damaged: {error}"))),
+            Err(_) => {
+                let place = format!("after {} bytes of compressed block {i}", zlib.total_in());
+                return Err(Error::new(format!("expected data in the format of zlib, found other bytes {place}")));
+            }
         }
     }
     Ok(data)

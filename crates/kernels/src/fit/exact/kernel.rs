@@ -5,6 +5,7 @@ use super::volume::Shares;
 use crate::element::Element;
 use crate::fit::packing::Packing;
 use crate::fit::precision::differences;
+use crate::fit::sizes::of_size;
 use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
@@ -49,7 +50,6 @@ impl PackedWork for ExactBatch<'_> {
         let mut geometry = Geometry::like(&zero, table);
         // Constants and parameters of a cell, those of areas left out.
         let mut numbers = vec![zero.clone(); m + p];
-        let (edges, first) = (self.springs.pairs.len(), self.springs.pairs.len() + self.springs.areas.len());
         let mut own = vec![zero.clone(); n];
         let (mut plain, mut plain_own, mut plain_numbers) = (Geometry::new(table), vec![0.0; n], vec![0.0; m + p]);
         let mut x = vec![0.0; packing.x.len()];
@@ -57,10 +57,8 @@ impl PackedWork for ExactBatch<'_> {
         while cell < cells {
             let count = T::COUNT.min(cells - cell);
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
-            if packing.gather(nodes) && geometry.update(table, &packing.x) {
-                let (constants, parameters) = numbers.split_at_mut(m);
-                stiffen(&geometry, self.coefficients.lengths, &mut constants[..edges], &mut own);
-                self.contents(&geometry, &mut constants[first..], parameters);
+            let (constants, parameters) = numbers.split_at_mut(m);
+            if packing.gather(nodes) && self.solve(&packing.x, &mut geometry, constants, parameters, &mut own) {
                 for lane in 0..count {
                     let at = cell + lane;
                     let stored = self.constants[at * m..][..m].iter_mut().zip(&*constants);
@@ -83,8 +81,7 @@ impl PackedWork for ExactBatch<'_> {
                         plain = precise;
                     }
                     let (constants, parameters) = plain_numbers.split_at_mut(m);
-                    stiffen(&plain, self.coefficients.lengths, &mut constants[..edges], &mut plain_own);
-                    self.contents(&plain, &mut constants[first..], parameters);
+                    self.constants_of(&plain, constants, parameters, &mut plain_own);
                     self.constants[at * m..][..m].copy_from_slice(constants);
                     self.parameters[at * p..][..p].copy_from_slice(parameters);
                     self.areas(at, &x, |q| plain.volumes[q]);
@@ -122,31 +119,65 @@ impl ExactBatch<'_> {
         })
     }
 
+    /// Fills in the geometry of the cells with their nodes at `x`, and their constants and parameters, areas left out; `own` has room
+    /// for a number for each node. False if a Jacobian is not safely positive.
+    fn solve<T: Real>(
+        &self,
+        x: &[T],
+        geometry: &mut Geometry<T>,
+        constants: &mut [T],
+        parameters: &mut [T],
+        own: &mut [T],
+    ) -> bool {
+        let table = &self.element.tabulation;
+        of_size!(T, x[0], (table.dimension, table.nodes), |D, n| geometry.update_in::<D>(n, table, x) && {
+            self.constants_in::<T, D>(n, geometry, constants, parameters, own);
+            true
+        })
+    }
+
+    /// The constants and parameters of a cell with this geometry, as [`ExactBatch::solve`] has them.
+    fn constants_of<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T], own: &mut [T]) {
+        of_size!(T, geometry.volumes[0], (geometry.dimension, geometry.nodes), |D, n| {
+            self.constants_in::<T, D>(n, geometry, constants, parameters, own)
+        });
+    }
+
+    #[inline(always)]
+    fn constants_in<T: Real, const D: usize>(
+        &self,
+        n: usize,
+        geometry: &Geometry<T>,
+        constants: &mut [T],
+        parameters: &mut [T],
+        own: &mut [T],
+    ) {
+        let (edges, rest) = constants.split_at_mut(n * (n - 1) / 2);
+        stiffen_in::<T, D>(n, geometry, self.coefficients.lengths, edges, own);
+        self.contents(geometry, &mut rest[self.springs.areas.len()..], parameters);
+    }
+
     /// The constants and parameters of the springs on content: at the quadrature points and then of the cell.
+    #[inline(always)]
     fn contents<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T]) {
-        geometry.volumes[0].vectorize(
-            #[inline(always)]
-            || {
-                let (volumes, count) = (&geometry.volumes, if self.coefficients.law.is_some() { 2 } else { 1 });
-                let volumetric = if geometry.volumetric.is_empty() { volumes } else { &geometry.volumetric };
-                let mut springs = constants.iter_mut().zip(parameters.chunks_exact_mut(count));
-                for &q in &self.springs.points {
-                    if let Some((constant, parameters)) = springs.next() {
-                        let content = volumes[q].magnitude().choose(&volumes[q], &volumetric[q]);
-                        let volumes = [&volumes[q], &volumetric[q]];
-                        self.content(self.shares.points, &content, volumes, constant, parameters);
-                    }
-                }
-                if let Some((constant, parameters)) = springs.next() {
-                    let (mut content, mut whole) = (volumes[0].clone(), volumetric[0].clone());
-                    for (v, w) in volumes.iter().zip(volumetric).skip(1) {
-                        content = content + v;
-                        whole = whole + w;
-                    }
-                    self.content(self.shares.cell, &content, [&content, &whole], constant, parameters);
-                }
-            },
-        );
+        let (volumes, count) = (&geometry.volumes, if self.coefficients.law.is_some() { 2 } else { 1 });
+        let volumetric = if geometry.volumetric.is_empty() { volumes } else { &geometry.volumetric };
+        let mut springs = constants.iter_mut().zip(parameters.chunks_exact_mut(count));
+        for &q in &self.springs.points {
+            if let Some((constant, parameters)) = springs.next() {
+                let content = volumes[q].magnitude().choose(&volumes[q], &volumetric[q]);
+                let volumes = [&volumes[q], &volumetric[q]];
+                self.content(self.shares.points, &content, volumes, constant, parameters);
+            }
+        }
+        if let Some((constant, parameters)) = springs.next() {
+            let (mut content, mut whole) = (volumes[0].clone(), volumetric[0].clone());
+            for (v, w) in volumes.iter().zip(volumetric).skip(1) {
+                content = content + v;
+                whole = whole + w;
+            }
+            self.content(self.shares.cell, &content, [&content, &whole], constant, parameters);
+        }
     }
 
     /// A spring that measures this content, with the volumes of the two terms: its constant, and `k L₀` or `a` and `b` of its law.
@@ -207,36 +238,17 @@ impl ExactBatch<'_> {
 /// Springs on areas at each quadrature point: of three columns of the cofactor matrix and of three sums of two.
 const AREAS: usize = 6;
 
-/// The springs between all pairs of nodes, see [`stiffen`].
+/// The springs between all pairs of nodes, see [`stiffen_in`].
 pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
-    let mut pairs = vec![geometry.volumes[0].zero(); geometry.nodes * (geometry.nodes - 1) / 2];
-    let mut own = vec![geometry.volumes[0].zero(); geometry.nodes];
-    stiffen(geometry, mu, &mut pairs, &mut own);
+    let (zero, n) = (geometry.volumes[0].zero(), geometry.nodes);
+    let (mut pairs, mut own) = (vec![zero.clone(); n * (n - 1) / 2], vec![zero; n]);
+    of_size!(T, geometry.volumes[0], (geometry.dimension, n), |D, n| {
+        stiffen_in::<T, D>(n, geometry, mu, &mut pairs, &mut own)
+    });
     pairs
 }
 
 /// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero. `own` has room for the same of each node with itself.
-fn stiffen<T: Real>(geometry: &Geometry<T>, mu: f64, pairs: &mut [T], own: &mut [T]) {
-    // A copy for each of the common sizes, in which the loops unroll: for few nodes they are all overhead.
-    macro_rules! of_size {
-        ($d:literal, $n:expr) => {
-            geometry.volumes[0].vectorize(
-                #[inline(always)]
-                || stiffen_in::<T, $d>($n, geometry, mu, pairs, own),
-            )
-        };
-    }
-    match (geometry.dimension, geometry.nodes) {
-        (2, 3) if T::UNROLLED => of_size!(2, 3),
-        (2, 4) if T::UNROLLED => of_size!(2, 4),
-        (3, 4) if T::UNROLLED => of_size!(3, 4),
-        (3, 8) if T::UNROLLED => of_size!(3, 8),
-        (1, n) => of_size!(1, n),
-        (2, n) => of_size!(2, n),
-        (_, n) => of_size!(3, n),
-    }
-}
-
 #[inline(always)]
 fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64, pairs: &mut [T], own: &mut [T]) {
     let zero = geometry.volumes[0].zero();

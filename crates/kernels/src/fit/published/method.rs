@@ -4,6 +4,7 @@ use super::corners::Joint;
 use super::shape::Shape;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
+use crate::named::unknown;
 
 /// A published way to choose spring constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +86,7 @@ impl Method {
     pub fn of_name(name: &str) -> Result<Method> {
         Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
             let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
-            Error::expected("method", format!("one of {}", names.join(", ")), format!("\"{name}\""))
+            unknown(format!("one of {}", names.join(", ")), names, name).at_key("method")
         })
     }
 

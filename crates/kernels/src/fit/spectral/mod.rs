@@ -18,7 +18,9 @@ pub use ambiguity::least_frobenius;
 pub use problem::{Optimum, Problem};
 pub use refinement::refine;
 
-use super::dense::{at_half, at_rounding, factorize, inner, mirror, room_below, row_products, solve, tie, trace};
+use super::dense::{
+    at_half, at_rounding, factorize, inner, least_pivot, mirror, room_below, row_products, solve, tie, trace,
+};
 use super::jacobi::eigenvectors;
 use super::reduction::Reduced;
 use crate::scalar::Real;
@@ -95,6 +97,11 @@ impl<T: Real> Spectral<T> {
             gram_pivots: room(c),
             room: room((p * p).max(m * p).max((c + 1) * (c + 1))),
         }
+    }
+
+    /// The least pivot of the Gram matrix of the unknowns' matrices in one lane, relative to its diagonal entry.
+    pub fn least_pivot(&self, lane: impl Fn(&T) -> f64) -> f64 {
+        least_pivot(&self.gram, self.kappa.len(), &self.gram_pivots, lane)
     }
 
     /// Solves for the element in `reduced`, in every lane.

@@ -2,7 +2,7 @@
 
 use crate::mesh::Field;
 use crate::model::Support;
-use crate::study::metrics::{DisplacementError, displacement_error};
+use crate::study::metrics::{DisplacementError, displacement_error, product};
 use crate::study::outcome::Measured;
 
 /// A load on this mesh: what is held, and the nodal forces.
@@ -10,11 +10,26 @@ pub struct Case {
     pub name: String,
     pub support: Support,
     pub forces: Vec<f64>,
+    /// Whether it is given displacements: its work is that of the forces which hold them.
+    pub is_prescribed: bool,
     /// Displacements that were measured under it, `[points · dimension]`, m, where known.
     pub measured: Option<Field>,
 }
 
 impl Case {
+    /// The work of the final forces along the final displacements, J, twice the energy of a linear model: `f·u`, or `gᵀu` under given
+    /// displacements, which `held` works out; `None` where it is not finite.
+    pub fn work(&self, u: &[f64], held: impl FnOnce() -> Option<f64>) -> Option<f64> {
+        let work = if self.is_prescribed { held()? } else { product(&self.forces, u) };
+        Some(work).filter(|work| work.is_finite())
+    }
+
+    /// By how many percent the work of a network is larger than that of the finite elements. Measured displacements have none.
+    pub fn work_error(&self, fem: Option<f64>, found: Option<f64>) -> Option<f64> {
+        let error = 100.0 * (found? / fem? - 1.0);
+        Some(error).filter(|error| self.measured.is_none() && error.is_finite())
+    }
+
     /// How far displacements are from those measured under the load, at the points that were measured, or else from those of the
     /// finite elements.
     pub fn error(&self, fem: &[f64], found: &[f64], dimension: usize) -> Option<DisplacementError> {

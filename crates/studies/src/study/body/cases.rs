@@ -65,10 +65,21 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         let mut support = fixed.clone();
         if let Action::Displacement(given) = &load.action {
             for p in points {
-                for (k, u) in given.iter().enumerate().filter(|(_, u)| u.is_some()) {
-                    support.prescribed[p * d + k] = *u;
+                for (k, u) in given.iter().enumerate().filter_map(|(k, u)| Some((k, (*u)?))) {
+                    let dof = p * d + k;
+                    if fixed.prescribed[dof].is_some_and(|held| held != u) {
+                        let (axis, number, place) = (["x", "y", "z"][k], mesh.point_number(p), mesh.point(p));
+                        let problem =
+                            format!("moves point {number} at {place:?} m along {axis} by {u:?} m, which [[fix]] holds");
+                        return Err(at(Error::at(format!("displacement[{k}]"), problem)));
+                    }
+                    support.prescribed[dof] = Some(u);
                 }
             }
+        }
+        let acts = |(dof, force): (usize, &f64)| *force != 0.0 && !support.is_fixed(dof);
+        if forces.iter().any(|force| *force != 0.0) && !forces.iter().enumerate().any(acts) {
+            return Err(at(Error::at(key, "acts on nothing that can move")));
         }
         if let Some(body) = unheld_bodies(mesh, &support).first() {
             let expected = "supports that hold every body";
@@ -82,7 +93,8 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         }
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
         let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;
-        cases.push(Case { name: load.name.clone(), support, forces, measured });
+        let is_prescribed = matches!(load.action, Action::Displacement(_));
+        cases.push(Case { name: load.name.clone(), support, forces, is_prescribed, measured });
     }
     Ok((fixed, cases))
 }

@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Body, Elastic, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton};
+use crate::study::metrics::product;
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
@@ -20,6 +21,8 @@ pub struct LargeBody {
     pub displacements: Vec<Vec<f64>>,
     pub followed: Vec<Followed>,
     seconds: Vec<f64>,
+    /// J; see [`Case::work`].
+    works: Vec<Option<f64>>,
     /// Name of each load and the displacements on the way to it.
     paths: Vec<(String, Vec<Vec<f64>>)>,
 }
@@ -27,8 +30,8 @@ pub struct LargeBody {
 impl LargeBody {
     /// A body without loads.
     pub fn at_rest(energy: Energy, state: State) -> LargeBody {
-        let (newton, displacements, followed, seconds, paths) = Default::default();
-        LargeBody { energy, state, newton, displacements, followed, seconds, paths }
+        let (newton, displacements, followed, seconds, works, paths) = Default::default();
+        LargeBody { energy, state, newton, displacements, followed, seconds, works, paths }
     }
 
     /// # Errors
@@ -56,6 +59,7 @@ impl LargeBody {
             let found = newton.solve(&model, &mesh.points, &case.support, &case.forces)?;
             body.seconds.push(start.elapsed().as_secs_f64());
             body.followed.push(Followed::of(&found, &model));
+            body.works.push(work(case, &model, &mesh.points, &found.displacement));
             body.displacements.push(found.displacement);
             body.paths.push((case.name.clone(), found.path));
         }
@@ -102,9 +106,11 @@ impl LargeBody {
             let displacement = complete(&followed).then_some(found.displacement);
             let known = case.measured.is_some() || complete(&self.followed[i]);
             let compared = displacement.as_ref().filter(|_| known);
+            let own = compared.and_then(|u| work(case, model, &mesh.points, u));
             loads.push(LoadOutcome {
                 name: case.name.clone(),
                 error: compared.and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
+                work_error: case.work_error(self.works[i], own),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,
@@ -116,6 +122,13 @@ impl LargeBody {
     }
 }
 
+fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f64> {
+    case.work(u, || {
+        let mut force = vec![0.0; u.len()];
+        model.forces(&displaced(points, u), &mut force).then(|| product(&force, u))
+    })
+}
+
 impl Followed {
     /// `body` has the cells that may be turned inside out.
     fn of(found: &Equilibrium, body: &Body) -> Followed {
@@ -125,6 +138,7 @@ impl Followed {
             residual: found.residuals.last().and_then(|r| r.last()).copied().unwrap_or(f64::NAN),
             iterations: found.residuals.iter().map(Vec::len).sum(),
             shifted: found.shifted,
+            is_rounded: found.is_rounded,
             inverted: body.inverted(&displaced(&body.mesh.points, &found.displacement)),
         }
     }

@@ -7,16 +7,16 @@ use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Support, check_body, finite_elements};
 use crate::solve::{Factor, Stability, Standing, System, compare_energies};
+use crate::study::metrics::{SOLVED, square};
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
-/// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
-const SOLVED: f64 = 1e-6;
-
 /// The finite element solutions, and what the comparison with a network reuses.
 pub struct LinearBody {
     pub displacements: Vec<Vec<f64>>,
+    /// J; see [`Case::work`].
+    works: Vec<Option<f64>>,
     moduli: Moduli,
     seconds: Vec<f64>,
     /// The equations and factor of each load, as an index into these: loads of equal support share them.
@@ -44,8 +44,8 @@ impl LinearBody {
     /// # Errors
     /// Some motion has no stiffness, or the equations do not fit into memory.
     pub fn solve(mesh: &Mesh, moduli: Moduli, cases: &[Case], progress: &mut Progress) -> Result<LinearBody> {
-        let (displacements, seconds, systems, system_of) = Default::default();
-        let mut body = LinearBody { displacements, moduli, seconds, systems, system_of };
+        let (displacements, works, seconds, systems, system_of) = Default::default();
+        let mut body = LinearBody { displacements, works, moduli, seconds, systems, system_of };
         if cases.is_empty() {
             return Ok(body);
         }
@@ -78,6 +78,7 @@ impl LinearBody {
                 ));
             }
             body.seconds.push(assembly + setup[body.system_of[i]] + start.elapsed().as_secs_f64());
+            body.works.push(case.work(&u, || Some(square(&entries, &u))));
             body.displacements.push(u);
         }
         progress(Event::stage("finite elements", cases.len(), cases.len()));
@@ -126,9 +127,11 @@ impl LinearBody {
             let seconds_lem = assembly + setup + start.elapsed().as_secs_f64();
             let displacement = solution.filter(|(u, residual)| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
             let displacement = displacement.map(|(u, _)| u);
+            let work = displacement.as_ref().and_then(|u| case.work(u, || Some(square(&entries, u))));
             answers.loads.push(LoadOutcome {
                 name: case.name.clone(),
                 error: displacement.as_ref().and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
+                work_error: case.work_error(self.works[i], work),
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,
@@ -159,7 +162,7 @@ fn definite(system: &System, mesh: &Mesh) -> Result<Factor> {
 }
 
 fn moving_points(system: &System, stability: &Stability, dimension: usize) -> Vec<usize> {
-    if stability.standing == Standing::Sound {
+    if stability.standing == Standing::Stable {
         return Vec::new();
     }
     let mut squares = std::collections::BTreeMap::new();

@@ -1,7 +1,7 @@
 //! The properties of an element file together.
 
 use super::property::{Mark, Property};
-use super::{shape, space, springs};
+use super::{integrals, shape, space, springs};
 use crate::element::Element;
 use crate::error::Error;
 use std::sync::Arc;
@@ -41,5 +41,6 @@ pub fn inspect(file: &str, loaded: Result<Element, Error>) -> Inspection {
     properties.extend(space::properties(&element));
     properties.extend(shape::properties(&element));
     properties.extend(springs::properties(&element));
+    properties.extend(integrals::properties(&element));
     Inspection { file: file.into(), title: element.title.clone(), properties }
 }

@@ -1,6 +1,7 @@
 //! The proof of an element file: every property that its use relies on, with the figure found.
 
 mod inspection;
+mod integrals;
 mod property;
 mod shape;
 mod space;

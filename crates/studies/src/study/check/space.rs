@@ -50,7 +50,6 @@ fn unity(element: &Element) -> Property {
 fn completeness(element: &Element) -> Property {
     let d = element.dimension();
     let samples = samples(element);
-    let monomial = |x: &[f64], e: &[i32]| x.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();
     let reproduced = |e: &[i32]| {
         let defect = |at: &[f64]| {
             let nodal = element.positions.chunks_exact(d).zip(&element.functions.values);
@@ -63,8 +62,12 @@ fn completeness(element: &Element) -> Property {
     Property::new("complete to degree", degree >= 1, degree.to_string()).with(degree as f64)
 }
 
+pub fn monomial(x: &[f64], e: &[i32]) -> f64 {
+    x.iter().zip(e).map(|(x, e)| x.powi(*e)).product()
+}
+
 /// All exponents that sum to `degree`.
-fn exponents(d: usize, degree: i32) -> Vec<Vec<i32>> {
+pub fn exponents(d: usize, degree: i32) -> Vec<Vec<i32>> {
     if d == 1 {
         return vec![vec![degree]];
     }
@@ -129,7 +132,7 @@ fn degree(element: &Element) -> Property {
 }
 
 /// Where the quadrature points are: what the linear functions reproduce there.
-fn places(element: &Element) -> Vec<Vec<f64>> {
+pub fn places(element: &Element) -> Vec<Vec<f64>> {
     let d = element.dimension();
     let coordinate = |values: &[f64], k: usize| -> f64 {
         values.iter().zip(element.positions.chunks_exact(d)).map(|(n, x)| n * x[k]).sum()
@@ -143,7 +146,6 @@ fn reached(element: &Element) -> usize {
     let (d, table) = (element.dimension(), &element.tabulation);
     let fine = Quadrature::of_degree(element.cell, 24);
     let places = places(element);
-    let monomial = |x: &[f64], e: &[i32]| x.iter().zip(e).map(|(x, e)| x.powi(*e)).product::<f64>();
     let exact = |e: &Vec<i32>| {
         let own: f64 = places.iter().zip(&table.weights).map(|(x, w)| w * monomial(x, e)).sum();
         let fine: f64 = fine.points.chunks_exact(d).zip(&fine.weights).map(|(x, w)| w * monomial(x, e)).sum();

@@ -45,7 +45,7 @@ pub fn plan(scene: &Scene, asked: Option<usize>, usual: usize) -> Result<usize> 
             _ => {
                 let level = if first > most { "first" } else { "second" };
                 let found = format!("{second} unknowns on the {level} level");
-                Error::expected("mesh", format!("at most {limit}"), found).in_file(scene.path())
+                scene.placed(Error::expected("mesh", format!("at most {limit}"), found))
             }
         };
         error.of_kind(ErrorKind::Limit)

@@ -9,6 +9,8 @@ const ROUNDING: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Convergence {
     pub scene: String,
+    /// Of the box around the body, m.
+    pub extent: Vec<f64>,
     /// The title of the material's law; `None` at small deformation.
     pub law: Option<String>,
     /// The scene whose finite elements give the truth, where they are not those of the scene itself.

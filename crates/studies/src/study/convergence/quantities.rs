@@ -3,9 +3,10 @@
 use crate::error::Result;
 use crate::material::Material;
 use crate::mesh::Mesh;
-use crate::model::{Action, Entries, nodal_forces};
+use crate::model::{Action, nodal_forces};
 use crate::scalar::Sum;
 use crate::study::body::load_cases;
+use crate::study::metrics::product;
 use crate::study::scene::{LoadCase, Scene};
 
 /// A load on a mesh, as what measures displacements.
@@ -62,18 +63,4 @@ impl Quantities {
         };
         Some((0..self.dimension).map(|k| along(k).powi(2)).sum::<f64>().sqrt())
     }
-}
-
-/// `Σ f_i u_i`.
-pub fn product(f: &[f64], u: &[f64]) -> f64 {
-    f.iter().zip(u).map(|(f, u)| f * u).collect::<Sum>().value()
-}
-
-/// `uᵀ K u` of a symmetric matrix by its lower triangle.
-pub fn square(stiffness: &Entries, u: &[f64]) -> f64 {
-    let term = |entry: &faer::sparse::Triplet<usize, usize, f64>| {
-        let both = if entry.row == entry.col { 1.0 } else { 2.0 };
-        both * entry.val * u[entry.row] * u[entry.col]
-    };
-    stiffness.iter().map(term).collect::<Sum>().value()
 }

@@ -2,12 +2,13 @@
 
 use super::levels::plan;
 use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step};
-use super::quantities::{Quantities, product, square};
+use super::quantities::Quantities;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
 use crate::solve::Ending;
-use crate::study::metrics::displacement_error;
+use crate::study::extent::extent as extent_of;
+use crate::study::metrics::{displacement_error, product, square};
 use crate::study::outcome::Outcome;
 use crate::study::progress::{Event, Progress};
 use crate::study::run::run;
@@ -34,7 +35,7 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     }
     if scene.loads().is_empty() {
         let problem = "expected at least one [[load]] to converge under, found none";
-        return Err(Error::at("load", problem).in_file(scene.path()));
+        return Err(scene.placed(Error::at("load", problem)));
     }
     let scene = scene.clone().without_motion().without_gauge().with_output(Output::default());
     let count = plan(&scene, levels, USUAL_LEVELS)?;
@@ -42,7 +43,8 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         progress(Event::Note(&format!("{count} levels are run, for one more would take long; --levels asks for more")));
     }
     let title = scene.title().into();
-    let mut convergence = Convergence { scene: title, law: None, reference: None, levels: vec![], loads: vec![] };
+    let (extent, levels, loads) = Default::default();
+    let mut convergence = Convergence { scene: title, extent, law: None, reference: None, levels, loads };
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
@@ -69,6 +71,10 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         let (cells, points, unknowns) = (mesh.cell_count(), mesh.point_count(), mesh.points.len());
         convergence.levels.push(Level { size, cells, points, unknowns, seconds });
         progress(Event::Note(&format!("{number}: {cells} cells, {unknowns} unknowns, {seconds:.1} s")));
+        if level == 0 {
+            convergence.extent = extent_of(mesh);
+            outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
+        }
         convergence.law = outcome.law;
     }
     let loads = scene.loads().iter().zip(models);
@@ -90,7 +96,7 @@ pub fn converge_to(
     let names: Vec<&str> = reference.loads().iter().map(|load| load.name.as_str()).collect();
     if let Some(load) = scene.loads().iter().find(|load| !names.contains(&load.name.as_str())) {
         let expected = format!("a load \"{}\" as in the scene", load.name);
-        return Err(Error::expected("load", expected, names.join(", ")).in_file(reference.path()));
+        return Err(reference.placed(Error::expected("load", expected, names.join(", "))));
     }
     let body = reference.clone().with_fits(Vec::new());
     let known = converge(&body, None, &mut |event: Event| match event {

@@ -12,12 +12,12 @@ use crate::error::{Error, Result};
 use crate::file;
 use crate::fit::Objective;
 use crate::fit::published::Method;
+use crate::named::{suggestion, unknown};
 use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
-use toml::{Spanned, Table, Value};
+use toml::{Table, Value};
 
 /// A `[[fit]]`: what all fits have, and the keys of its kind, which its objective tells.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +27,6 @@ pub struct FitEntry {
     /// The spring groups; all that are not optional, if absent.
     pub springs: Option<Vec<String>>,
     keys: Table,
-    /// Where the values are in the text of the file, in bytes.
-    places: BTreeMap<String, usize>,
 }
 
 /// The keys that all fits have.
@@ -56,11 +54,12 @@ impl Kind {
     /// # Errors
     /// There is no such objective.
     fn of(objective: &str) -> Result<Kind> {
-        let unknown = || {
+        let no_kind = || {
             let expected = Kind::all().flat_map(Kind::objectives).collect::<Vec<_>>().join(", ");
-            Error::expected("objective", format!("one of {expected}"), format!("\"{objective}\""))
+            let names = Kind::all().flat_map(Kind::objectives);
+            unknown(format!("one of {expected}"), names, objective).at_key("objective")
         };
-        Kind::all().find(|kind| kind.objectives().contains(&objective)).ok_or_else(unknown)
+        Kind::all().find(|kind| kind.objectives().contains(&objective)).ok_or_else(no_kind)
     }
 
     fn objectives(self) -> Vec<&'static str> {
@@ -86,14 +85,15 @@ impl Kind {
 
     fn unknown(self, key: &str) -> Error {
         let known: Vec<String> = COMMON.iter().chain(self.keys()).map(|known| format!("\"{known}\"")).collect();
-        Error::at(key, format!("unknown field \"{key}\", expected one of {}", known.join(", ")))
+        let hint = suggestion(COMMON.iter().chain(self.keys()).copied(), key);
+        Error::at(key, format!("unknown field \"{key}\", expected one of {}{hint}", known.join(", ")))
     }
 }
 
 impl FitEntry {
     pub fn new(objective: impl Into<String>) -> FitEntry {
-        let (name, springs, keys, places) = Default::default();
-        FitEntry { name, objective: objective.into(), springs, keys, places }
+        let (name, springs, keys) = Default::default();
+        FitEntry { name, objective: objective.into(), springs, keys }
     }
 
     /// With this value of a key, if there is one.
@@ -108,31 +108,23 @@ impl FitEntry {
         FitEntry { springs, ..self }
     }
 
-    /// That each key is known and of the right type; `text` is that of the file.
+    /// That each key is known and of the right type.
     ///
     /// # Errors
-    /// Names the key and its line.
-    pub fn check(&self, text: &str) -> Result<()> {
+    /// Names the key.
+    pub fn check(&self) -> Result<()> {
         // An unknown objective is reported where its kind is needed.
         let Ok(kind) = Kind::of(&self.objective) else { return Ok(()) };
         let known = match self.keys.keys().find(|key| owners(key).next().is_none()) {
             Some(key) => Err(kind.unknown(key)),
             None => Ok(()),
         };
-        let typed = known.and_then(|()| match kind {
+        known.and_then(|()| match kind {
             Kind::Stiffness => self.typed::<StiffnessEntry>().map(|_| ()),
             Kind::Sampled => self.typed::<SampledEntry>().map(|_| ()),
             Kind::Whole => self.whole().map(|_| ()),
             Kind::Published => Ok(()),
             Kind::Exact => self.typed::<ExactEntry>().map(|_| ()),
-        });
-        let line = |key: &str| {
-            let top = key.split(['.', '[']).next().unwrap_or(key);
-            self.places.get(top).map(|place| text[..*place].matches('\n').count() + 1)
-        };
-        typed.map_err(|e| match e.key().and_then(line) {
-            Some(line) => e.on_line(line),
-            None => e,
         })
     }
 
@@ -230,9 +222,8 @@ impl<'de> Visitor<'de> for EntryVisitor {
                 "objective" => objective = Some(map.next_value()?),
                 "springs" => entry.springs = Some(map.next_value()?),
                 _ => {
-                    let value: Spanned<Value> = map.next_value()?;
-                    entry.places.insert(key.clone(), value.span().start);
-                    entry.keys.insert(key, value.into_inner());
+                    let value = map.next_value()?;
+                    entry.keys.insert(key, value);
                 }
             }
         }

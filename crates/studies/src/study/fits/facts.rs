@@ -1,6 +1,7 @@
 //! What a fit may need of its scene.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::named::unknown;
 
 /// The parts of a scene that a fit may need.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +22,7 @@ impl SceneFacts<'_> {
         match names.iter().find(|name| !self.loads.contains(&name.as_str())) {
             Some(name) => {
                 let expected = format!("loads of the scene ({})", self.loads.join(", "));
-                Err(Error::expected(key, expected, format!("\"{name}\"")))
+                Err(unknown(expected, self.loads.iter().copied(), name).at_key(key))
             }
             None => Ok(()),
         }

@@ -47,7 +47,7 @@ impl FitOutcome {
         }
         match self.stability.as_ref().map(|s| s.standing) {
             None => "fitted",
-            Some(Standing::Sound) => "sound",
+            Some(Standing::Stable) => "stable",
             Some(Standing::Soft) => "near-mechanism",
             Some(Standing::Indefinite) => "indefinite",
             Some(Standing::Singular) => "mechanism",

@@ -1,6 +1,7 @@
 //! The answers of the body and of its networks to a load.
 
 use super::gauge::{GaugeResult, Reading};
+use crate::model::Deformation;
 use crate::solve::Ending;
 use crate::study::metrics::DisplacementError;
 
@@ -16,6 +17,8 @@ pub struct BodyLoad {
     pub gauge: Option<GaugeResult>,
     /// `None` where nothing was measured; otherwise errors under this load are those from the measurement.
     pub measured: Option<Measured>,
+    /// How far the finite elements are deformed, at small deformation: beyond a bound the linear theory does not hold.
+    pub deformation: Option<Deformation>,
 }
 
 /// Displacements that were measured under a load.
@@ -35,6 +38,9 @@ pub struct LoadOutcome {
     pub displacement: Option<Vec<f64>>,
     /// `None` where the network does not stand or nothing moves.
     pub error: Option<DisplacementError>,
+    /// By how many percent the work of the load, which is its compliance, is larger than in the finite elements: `f·u`, or that of the
+    /// forces which hold given displacements. `None` also where displacements were measured.
+    pub work_error: Option<f64>,
     /// To assemble, factorise and solve, each as if this were the only load.
     pub seconds_fem: f64,
     pub seconds_lem: f64,
@@ -55,6 +61,8 @@ pub struct Followed {
     pub iterations: usize,
     /// Iterations whose tangent was not positive definite and had to be shifted.
     pub shifted: usize,
+    /// Whether the forces balance to their rounding only, which is more than the tolerance.
+    pub is_rounded: bool,
     /// Cells that are turned inside out at a quadrature point.
     pub inverted: usize,
 }

@@ -1,6 +1,7 @@
 //! The finite elements and the networks of a scene over time.
 
 use crate::dynamics::Account;
+use crate::model::Deformation;
 use crate::study::scene::MotionRecipe;
 
 /// The motion of a scene's models.
@@ -26,6 +27,11 @@ pub struct ModelMotion {
     pub ending: MotionEnding,
     /// Steps whose equations were not solved to the tolerance.
     pub unsolved: usize,
+    /// The largest of the finite elements at the records, where they are linear.
+    pub deformation: Option<Deformation>,
+    /// Of a network whose springs turn, the mean and largest error over the records where they do not, as the linear finite elements:
+    /// what of the error is the fit's. `None` where the finite elements turn as well, or hardly.
+    pub linear_error: Option<[f64; 2]>,
     /// Of a network that releases energy, how fast the fastest motion grows at rest, 1/s.
     pub growth: Option<f64>,
     pub records: Vec<Record>,
@@ -54,17 +60,37 @@ pub struct Record {
     pub error: Option<f64>,
 }
 
+impl Record {
+    /// Whether all energies, momenta and displacements in it are finite.
+    pub fn is_finite(&self) -> bool {
+        let account = &self.account;
+        let balance = account.balance.iter().flat_map(|b| [b.work, b.dissipated, b.drift]);
+        let moved = account.momentum.iter().chain(&account.angular_momentum).chain(&self.watched).copied();
+        [account.total()].into_iter().chain(balance).chain(moved).all(f64::is_finite)
+    }
+}
+
 impl ModelMotion {
     pub fn steps_per_second(&self) -> f64 {
         self.steps as f64 / self.seconds
     }
 
+    /// Whether a state after the start is known.
+    pub fn has_moved(&self) -> bool {
+        self.records.len() > 1
+    }
+
     /// Mean and largest error over the records.
     pub fn error(&self) -> Option<[f64; 2]> {
         let errors: Option<Vec<f64>> = self.records.iter().map(|record| record.error).collect();
-        let errors = errors.filter(|errors| !errors.is_empty())?;
-        Some([errors.iter().sum::<f64>() / errors.len() as f64, errors.iter().copied().fold(0.0, f64::max)])
+        mean_and_largest(&errors?)
     }
+}
+
+/// `None` of none.
+pub fn mean_and_largest(errors: &[f64]) -> Option<[f64; 2]> {
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    (!errors.is_empty()).then(|| [mean, errors.iter().copied().fold(0.0, f64::max)])
 }
 
 impl MotionEnding {

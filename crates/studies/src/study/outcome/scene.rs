@@ -11,6 +11,8 @@ use crate::mesh::Mesh;
 #[derive(Debug)]
 pub struct Outcome {
     pub scene: String,
+    /// What was assumed because no input says it, as a sentence.
+    pub assumed: Option<String>,
     pub mesh: Mesh,
     pub material: Material,
     /// `[points]`, kg; `None` if the scene gives no density.
@@ -32,7 +34,20 @@ impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
         let (law, loads, motion, frequencies, left_out) = Default::default();
-        Outcome { scene: name, mesh, material, masses, law, loads, fits: vec![fit], motion, frequencies, left_out }
+        let assumed = None;
+        Outcome {
+            scene: name,
+            assumed,
+            mesh,
+            material,
+            masses,
+            law,
+            loads,
+            fits: vec![fit],
+            motion,
+            frequencies,
+            left_out,
+        }
     }
 
     /// The place of the load of this name.

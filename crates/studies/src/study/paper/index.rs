@@ -2,6 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::file;
+use crate::named::unknown;
+use crate::range::LARGEST;
 use crate::study::fits::FitEntry;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -56,9 +58,6 @@ pub struct RowEntry {
     #[serde(default)]
     pub why: BTreeMap<String, String>,
 }
-
-/// No printed figure is larger.
-const LARGEST: f64 = 1e30;
 
 /// How the figures of a table come about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -119,10 +118,14 @@ impl Index {
     /// # Errors
     /// As [`Index::load`], without the file.
     pub fn parse(text: &str) -> Result<Index> {
+        Index::checked(text).map_err(|e| file::on_line_of_key(e, text))
+    }
+
+    fn checked(text: &str) -> Result<Index> {
         let index: Index = file::parse_toml(text)?;
         for (i, table) in index.table.iter().enumerate() {
             for (j, fit) in table.fit.iter().enumerate() {
-                fit.check(text).map_err(|e| e.under(format!("table[{i}].fit[{j}]")))?;
+                fit.check().map_err(|e| e.under(format!("table[{i}].fit[{j}]")))?;
             }
         }
         index.check()?;
@@ -137,7 +140,7 @@ impl Index {
         match names.iter().find(|name| self.table.iter().all(|table| table.name != **name)) {
             Some(name) => {
                 let known: Vec<&str> = self.table.iter().map(|table| table.name.as_str()).collect();
-                Err(Error::expected("table", format!("one of {}", known.join(", ")), format!("\"{name}\"")))
+                Err(unknown(format!("one of {}", known.join(", ")), known, name).at_key("table"))
             }
             None => Ok(()),
         }

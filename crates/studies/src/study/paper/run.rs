@@ -5,7 +5,7 @@ use super::material::material;
 use super::outcome::{Paper, PaperRow, PaperScene, PaperTable};
 use super::surface::{of_surface, surface};
 use crate::error::{Error, Result};
-use crate::file::{create_folder, write_whole};
+use crate::file::{create_folder, on_line_of_key, read_text, write_whole};
 use crate::solve::{Ending, Standing};
 use crate::study::comparison::{MethodOutcome, measure_recipes};
 use crate::study::fits::{NamedFit, Recipe};
@@ -68,7 +68,10 @@ pub fn run_paper(index: &Index, names: &[String], path: &Path, progress: &mut Pr
             continue;
         }
         let found = paper.run(table, path.parent().unwrap_or(Path::new("")), progress);
-        paper.tables.push(found.map_err(|e| e.placed(|e| e.under(format!("table[{i}]")).in_file(path)))?);
+        // The text tells the line, where the index is a file.
+        let text = || read_text(path).unwrap_or_default();
+        let placed = |e: Error| on_line_of_key(e.under(format!("table[{i}]")), &text()).in_file(path);
+        paper.tables.push(found.map_err(|e| e.placed(placed))?);
     }
     Ok(paper)
 }
@@ -163,7 +166,7 @@ fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec
         let published = fit.fit.recipe.published().is_some();
         let stands = match found.followed {
             Some(followed) => followed.ending == Ending::Converged,
-            None => fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Sound),
+            None => fit.stability.as_ref().is_some_and(|s| s.standing == Standing::Stable),
         };
         Ok(PaperRow::new(row, &fit.fit.name, figures, published, stands))
     };

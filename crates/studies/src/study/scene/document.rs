@@ -14,14 +14,18 @@ use crate::material::{Energy, Material};
 use crate::mesh::Mesh;
 use crate::model::{Action, Component};
 use crate::solve::Newton;
+use crate::study::body_material::{BodyConstants, assumed};
 use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
 use crate::study::own_name::expect_own_name;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A mesh, a material, fits, supports and loads; proved as far as it can be without reading the mesh.
 #[derive(Debug, Clone)]
 pub struct Scene {
     path: PathBuf,
+    /// Of the file, for the lines of what turns out to be wrong later.
+    text: Arc<str>,
     title: String,
     mesh: MeshInput,
     material: MaterialEntry,
@@ -48,13 +52,13 @@ impl Scene {
     /// # Errors
     /// Those of [`Scene::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Scene> {
-        Scene::checked(text, path).map_err(|e| e.in_file(path))
+        Scene::checked(text, path).map_err(|e| file::on_line_of_key(e, text).in_file(path))
     }
 
     fn checked(text: &str, path: &Path) -> Result<Scene> {
         let entry: SceneFile = file::parse_toml(text)?;
         for (i, fit) in entry.fit.iter().enumerate() {
-            fit.check(text).map_err(|e| e.under(format!("fit[{i}]")))?;
+            fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
         }
         let mesh = entry.mesh;
         mesh.check()?;
@@ -86,6 +90,7 @@ impl Scene {
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Scene {
             path: path.to_path_buf(),
+            text: text.into(),
             title: entry.title.unwrap_or(stem),
             mesh,
             material: entry.material,
@@ -196,7 +201,7 @@ impl Scene {
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume.
     pub fn build_mesh(&self) -> Result<Mesh> {
-        self.mesh.build(&self.path)
+        self.mesh.build(&self.path).map_err(|e| self.with_line(e))
     }
 
     /// Whether something in it is written in metres besides its mesh: conditions, and loads that vary.
@@ -217,16 +222,25 @@ impl Scene {
         scene
     }
 
-    /// The material of a body of that dimension.
+    /// The material of the body that is meshed.
+    ///
+    /// # Errors
+    /// Those of [`Scene::material`], and a surface in space has no thickness.
+    pub fn material_of(&self, mesh: &Mesh) -> Result<Material> {
+        self.constants().material(mesh).map_err(|e| self.at("material", e))
+    }
+
+    /// The material of a body of that dimension, one metre thick where the scene does not say.
     ///
     /// # Errors
     /// A constant is out of range, or the plane state does not go with the dimension.
     pub fn material(&self, dimension: usize) -> Result<Material> {
-        let entry = &self.material;
-        let material = Material::for_body(dimension, entry.young.0, entry.poisson, entry.plane, entry.thickness);
-        material
-            .and_then(|m| entry.area.map_or(Ok(m), |area| m.with_area(area)))
-            .map_err(|e| e.under("material").in_file(&self.path))
+        self.constants().of_dimension(dimension).map_err(|e| self.at("material", e))
+    }
+
+    fn constants(&self) -> BodyConstants {
+        let MaterialEntry { young, poisson, plane, thickness, area, .. } = &self.material;
+        BodyConstants { young: young.0, poisson: *poisson, plane: *plane, thickness: *thickness, area: *area }
     }
 
     /// The name of the material's law, where the scene gives one: loads are at large deformation then.
@@ -242,7 +256,7 @@ impl Scene {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let load = |law: &str| {
             Energy::load(&law_at(law, folder), material)
-                .map_err(|e| e.placed(|e| Error::at("material.law", e.problem()).in_file(&self.path)))
+                .map_err(|e| e.placed(|e| self.placed(e.at_key("material.law"))))
         };
         self.law().map(load).transpose()
     }
@@ -260,14 +274,31 @@ impl Scene {
         files
     }
 
+    /// What the scene leaves to a default that the answers depend on.
+    pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
+        assumed(mesh, self.material.thickness, self.material.area)
+    }
+
     /// kg/m³, where the scene gives one.
     pub fn density(&self) -> Option<f64> {
         self.material.density
     }
 
-    /// Names the scene in an error about one of its entries.
+    /// Names the scene and the line in an error about one of its entries.
     pub fn at(&self, key: &str, error: Error) -> Error {
-        error.under(key).in_file(&self.path)
+        self.placed(error.under(key))
+    }
+
+    /// Names the scene and the line in an error that names no file.
+    pub fn placed(&self, error: Error) -> Error {
+        error.placed(|error| file::on_line_of_key(error, &self.text).in_file(&self.path))
+    }
+
+    /// Names the line in an error about this scene.
+    pub(in crate::study) fn with_line(&self, error: Error) -> Error {
+        let is_own = error.line().is_none() && error.file() == Some(&self.path);
+        let line = error.key().filter(|_| is_own).and_then(|key| file::line_of_key(&self.text, key));
+        line.into_iter().fold(error, Error::on_line)
     }
 }
 

@@ -6,10 +6,11 @@ use super::load::LoadEntry;
 use super::motion::MotionEntry;
 use super::output::Output;
 use super::part::Part;
-use super::value::Pressure;
+use super::value::{self, Pressure};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
+use crate::range;
 use crate::solve::Newton;
 use crate::study::fits::FitEntry;
 use serde::Deserialize;
@@ -39,9 +40,14 @@ pub struct MaterialEntry {
     pub young: Pressure,
     pub poisson: f64,
     pub plane: Option<Plane>,
+    /// m.
+    #[serde(default, deserialize_with = "value::optional_length")]
     pub thickness: Option<f64>,
     /// The cross-section of rods, m².
+    #[serde(default, deserialize_with = "value::optional_area")]
     pub area: Option<f64>,
+    /// kg/m³.
+    #[serde(default, deserialize_with = "value::optional_density")]
     pub density: Option<f64>,
     /// A shipped energy's name, or a path relative to the scene that ends in .toml. Loads are at large deformation then.
     pub law: Option<String>,
@@ -73,12 +79,7 @@ impl MaterialEntry {
         // Plane stress admits more of ν than a solid; a solid is checked again when the mesh is known.
         let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
         Material::for_body(2, self.young.0, self.poisson, state, self.thickness).map_err(|e| e.under("material"))?;
-        match self.density {
-            Some(density) if !(density > 0.0 && density.is_finite()) => {
-                Err(Error::expected("material.density", "a positive number of kg/m³", density))
-            }
-            _ => Ok(()),
-        }
+        self.density.map_or(Ok(()), |density| range::positive("material.density", density, "kg/m³").map(|_| ()))
     }
 }
 

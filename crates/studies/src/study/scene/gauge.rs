@@ -1,7 +1,9 @@
 //! The `[gauge]` of a scene: where the strain of a specimen is measured.
 
 use super::part::Part;
+use super::value;
 use crate::error::{Error, Result};
+use crate::range;
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
@@ -11,6 +13,7 @@ pub struct GaugeEntry {
     #[serde(rename = "where")]
     pub condition: Option<String>,
     pub axis: String,
+    #[serde(deserialize_with = "value::area")]
     pub area: f64,
 }
 
@@ -31,10 +34,6 @@ impl GaugeEntry {
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);
         let axis =
             axis.ok_or_else(|| Error::expected("axis", "\"x\", \"y\" or \"z\"", format!("\"{}\"", self.axis)))?;
-        if !(1e-30..=1e30).contains(&self.area) {
-            let expected = "a positive cross-section in m², from 1e-30 to 1e30";
-            return Err(Error::expected("area", expected, format!("{:?}", self.area)));
-        }
-        Ok(Gauge { part, axis, area: self.area })
+        Ok(Gauge { part, axis, area: range::positive("area", self.area, "m²")? })
     }
 }

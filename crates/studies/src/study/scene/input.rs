@@ -1,9 +1,11 @@
 //! Where the mesh of a scene comes from.
 
 use super::elements::{load_element, load_elements};
+use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
+use crate::range;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -17,7 +19,7 @@ pub struct MeshInput {
     pub generated: Option<BoxEntry>,
     pub disc: Option<DiscEntry>,
     /// Mesh units to metres.
-    #[serde(default = "one")]
+    #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     pub scale: f64,
     /// Element files to look in before the shipped ones, relative to the scene.
     #[serde(default)]
@@ -87,9 +89,7 @@ impl MeshInput {
             let found = if given.is_empty() { "none".into() } else { given.join(" and ") };
             return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\"", found));
         }
-        if !(self.scale > 0.0 && self.scale.is_finite()) {
-            return Err(Error::expected("mesh.scale", "a positive number of metres per mesh unit", self.scale));
-        }
+        range::positive("mesh.scale", self.scale, "metres per mesh unit")?;
         if let Some(quality) = &self.quality {
             if self.file.is_none() {
                 return Err(Error::at("mesh.quality", "belongs to a mesh in a \"file\": what is generated is regular"));

@@ -1,9 +1,10 @@
 //! A load of a scene.
 
 use super::part::Part;
-use super::value::{PrescribedComponent, Varying};
+use super::value::{self, PrescribedComponent, Varying};
 use crate::error::{Error, Result};
 use crate::model::{Action, Component};
+use crate::range;
 use crate::symbolic::Scope;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -39,7 +40,7 @@ pub struct MeasuredEntry {
     /// Relative to the scene.
     pub file: PathBuf,
     /// Metres per unit of the file.
-    #[serde(default = "one")]
+    #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     pub scale: f64,
     /// Of several.
     pub array: Option<String>,
@@ -51,31 +52,34 @@ fn one() -> f64 {
 
 impl LoadEntry {
     pub fn check(self, name: String) -> Result<LoadCase> {
-        let finite = |key: &str, v: Vec<f64>| match v.iter().find(|x| !x.is_finite()) {
-            Some(x) => Err(Error::expected(key, "finite numbers", x)),
-            None => Ok(v),
-        };
-        let varying = |key: &str, v: Vec<Varying>| -> Result<Vec<Component>> {
+        let varying = |key: &str, v: Vec<Varying>, unit: &str| -> Result<Vec<Component>> {
             let scope = Scope::new(&["x", "y", "z"]);
+            let number = |v: &Varying| if let Varying::Number(value) = v { Some(*value) } else { None };
             let component = |(i, v): (usize, Varying)| match v {
-                Varying::Number(value) => Ok(Component::Constant(finite(key, vec![value])?[0])),
+                Varying::Number(value) => Ok(Component::Constant(value)),
                 Varying::Text(text) => {
                     scope.expression(&text).map(Component::Varying).map_err(|e| e.under(format!("{key}[{i}]")))
                 }
             };
+            // Where some vary, what they are together is known on the mesh.
+            let varies = v.iter().any(|v| number(v).is_none());
+            v.iter().filter_map(number).try_for_each(|value| range::bounded(key, value, unit).map(|_| ()))?;
+            range::largest(key, v.iter().filter_map(number).filter(|_| !varies), unit)?;
             v.into_iter().enumerate().map(component).collect()
         };
         let mut actions = Vec::new();
         if let Some(v) = self.traction {
-            actions.push(Action::Traction(varying("traction", v)?));
+            actions.push(Action::Traction(varying("traction", v, "Pa")?));
         }
         if let Some(v) = self.force {
-            actions.push(Action::Force(finite("force", v)?));
+            range::largest("force", v.iter().copied(), "N")?;
+            actions.push(Action::Force(v));
         }
         if let Some(v) = self.body {
-            actions.push(Action::Body(varying("body", v)?));
+            actions.push(Action::Body(varying("body", v, "N/m³")?));
         }
         if let Some(v) = self.displacement {
+            range::largest("displacement", v.iter().filter_map(|g| g.0), "m")?;
             actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
         }
         if actions.len() != 1 {

@@ -1,11 +1,12 @@
 //! The keys of `[motion]`: how a scene moves in time.
 
 use super::part::Part;
-use super::value::Varying;
+use super::value::{self, Varying};
 use crate::bound::{self, check_count};
 use crate::dynamics::{Integrator, LEAST_TOLERANCE, Options, Solver};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Lumping;
+use crate::range;
 use crate::study::choice::choice;
 use crate::symbolic::{Expr, Scope, parse_rational};
 use serde::Deserialize;
@@ -60,7 +61,9 @@ pub struct AppliedForce {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEntry {
+    #[serde(deserialize_with = "value::time")]
     duration: f64,
+    #[serde(deserialize_with = "value::time")]
     step: f64,
     integrator: Option<String>,
     iterations: Option<usize>,
@@ -73,6 +76,7 @@ pub struct MotionEntry {
     mass: Option<String>,
     gravity: Option<Vec<f64>>,
     damping: Option<DampingEntry>,
+    #[serde(default, deserialize_with = "value::optional_time")]
     every: Option<f64>,
     watch: Option<WatchEntry>,
     finite_elements: Option<bool>,
@@ -117,8 +121,6 @@ struct ForceEntry {
     each: bool,
 }
 
-/// No time, acceleration or damping is larger; beyond, squares leave the range of numbers.
-const LARGEST: f64 = 1e30;
 /// Quotients of decimals are not exact.
 const SLACK: f64 = 1.0 - 1e-12;
 /// States that are written where the scene does not say.
@@ -145,10 +147,7 @@ impl MotionEntry {
     /// # Errors
     /// A value is unknown or out of range, or keys contradict each other.
     pub fn check(self) -> Result<MotionRecipe> {
-        let positive = |key: &str, value: f64| match (1.0 / LARGEST..=LARGEST).contains(&value) {
-            true => Ok(value),
-            false => Err(Error::expected(key, "a time above zero in s, from 1e-30 to 1e30", format!("{value:?}"))),
-        };
+        let positive = |key: &str, value: f64| range::positive(key, value, "s");
         let (duration, step) = (positive("duration", self.duration)?, positive("step", self.step)?);
         if duration < step * (1.0 - 1e-9) {
             return Err(Error::expected("duration", format!("at least one step of {step} s"), format!("{duration} s")));
@@ -171,9 +170,7 @@ impl MotionEntry {
             return Err(Error::expected("every", expected, found).of_kind(ErrorKind::Limit));
         }
         let gravity = self.gravity.unwrap_or_default();
-        if let Some(g) = gravity.iter().find(|g| !(g.abs() <= LARGEST)) {
-            return Err(Error::expected("gravity", "finite numbers of m/s², at most 1e30", format!("{g:?}")));
-        }
+        range::largest("gravity", gravity.iter().copied(), "m/s²")?;
         let finite_elements = self.finite_elements.unwrap_or(true);
         let damping = self.damping.map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
         let part = |group, condition, key: String| Part::required(group, condition).map_err(|e| e.under(key));
@@ -280,18 +277,14 @@ impl StepEntry<'_> {
 impl DampingEntry {
     fn check(self, finite_elements: bool) -> Result<DampingRecipe> {
         match (self.rayleigh, self.ratio) {
-            (Some(pair), None) => match pair.iter().find(|x| !(0.0..=LARGEST).contains(*x)) {
-                Some(x) => {
-                    let expected = "two numbers that are not negative, in 1/s and s, at most 1e30";
-                    Err(Error::expected("rayleigh", expected, format!("{x:?}")))
+            (Some(pair), None) => {
+                for (value, unit) in pair.into_iter().zip(["1/s", "s"]) {
+                    range::not_negative("rayleigh", value, unit)?;
                 }
-                None => Ok(DampingRecipe::Rayleigh(pair)),
-            },
+                Ok(DampingRecipe::Rayleigh(pair))
+            }
             (None, Some(ratio)) => {
-                if !(0.0..=LARGEST).contains(&ratio) {
-                    let expected = "a damping ratio that is not negative, at most 1e30";
-                    return Err(Error::expected("ratio", expected, format!("{ratio:?}")));
-                }
+                range::not_negative("ratio", ratio, "as a damping ratio")?;
                 if finite_elements {
                     let problem = "is that of springs, which finite elements have not: expected \"rayleigh\", or \
                                    finite_elements = false";
@@ -309,8 +302,8 @@ impl DampingEntry {
 
 fn expression(value: Varying, variables: &[&str]) -> Result<Expr> {
     match value {
-        Varying::Number(number) if !number.is_finite() => {
-            Err(Error::new(format!("expected a finite number, found {number}")))
+        Varying::Number(number) if !(number.abs() <= range::LARGEST) => {
+            Err(Error::new(format!("expected a number of at most {:e} in size, found {number:?}", range::LARGEST)))
         }
         Varying::Number(number) => Ok(Expr::Number(parse_rational(&format!("{number}"))?)),
         Varying::Text(text) => Scope::new(variables).expression(&text),

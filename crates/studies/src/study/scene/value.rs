@@ -1,6 +1,6 @@
 //! Numbers of a scene that may be written in more than one way.
 
-use crate::material::parse_pressure;
+use crate::quantity::Quantity;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
 use std::fmt;
@@ -71,10 +71,57 @@ impl<'de> Deserialize<'de> for Varying {
 
 impl<'de> Deserialize<'de> for Pressure {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Pressure, D::Error> {
-        deserializer.deserialize_any(NumberOrText {
-            expected: "a number of Pa or a text such as \"10kPa\"",
-            number: |v| Some(Pressure(v)),
-            text: |v| parse_pressure(v).map(Pressure).map_err(|e| Some(e.problem().to_string())),
-        })
+        read(Quantity::Pressure, deserializer).map(Pressure)
     }
+}
+
+/// A number in the SI unit, or a text with a unit.
+fn read<'de, D: Deserializer<'de>>(quantity: Quantity, deserializer: D) -> Result<f64, D::Error> {
+    deserializer.deserialize_any(QuantityVisitor(quantity))
+}
+
+struct QuantityVisitor(Quantity);
+
+impl Visitor<'_> for QuantityVisitor {
+    type Value = f64;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.0.expected())
+    }
+
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<f64, E> {
+        Ok(v as f64)
+    }
+
+    fn visit_f64<E: de::Error>(self, v: f64) -> Result<f64, E> {
+        Ok(v)
+    }
+
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<f64, E> {
+        self.0.parse(v).map_err(|e| E::custom(e.problem()))
+    }
+}
+
+/// For `deserialize_with` of keys that hold a quantity, in the SI unit.
+macro_rules! quantities {
+    ($($one:ident, $optional:ident: $quantity:ident),+ $(,)?) => {$(
+        // Not every quantity is both asked for and left out.
+        #[allow(dead_code)]
+        pub fn $one<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+            read(Quantity::$quantity, deserializer)
+        }
+
+        #[allow(dead_code)]
+        pub fn $optional<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+            read(Quantity::$quantity, deserializer).map(Some)
+        }
+    )+};
+}
+
+quantities! {
+    length, optional_length: Length,
+    area, optional_area: Area,
+    density, optional_density: Density,
+    time, optional_time: Time,
+    mesh_unit, optional_mesh_unit: MeshUnit,
 }

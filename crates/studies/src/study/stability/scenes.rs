@@ -95,7 +95,7 @@ fn of_fit(
         (_, Some(Standing::Soft)) => row(Verdict::Told("the network is near a mechanism".into())),
         (Some(error), _) => row(Verdict::Accurate).with_error(error, PROMISED),
         (None, _) if fit.deficient > 0 => row(Verdict::Dependent),
-        (None, Some(Standing::Sound)) => row(Verdict::Told("sound".into())),
+        (None, Some(Standing::Stable)) => row(Verdict::Told("stable".into())),
         (None, None) => row(Verdict::Told("not examined: the scene has no loads".into())),
     };
     row.negative = Some([fit.network.negative(), fit.network.len()]);

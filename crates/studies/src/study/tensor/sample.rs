@@ -125,6 +125,7 @@ impl<'a> Stars<'a> {
             groups: BTreeMap::new(),
             reversed: 0,
             unused_points: 0,
+            numbering: None,
             quality: Quality::default(),
         };
         let mut is_held: Vec<bool> =

@@ -5,14 +5,18 @@ use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Outc
 use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;
-use crate::model::{Body, Elastic, LinearElastic, Network, Support, check_body, finite_elements};
-use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
+use crate::model::{Body, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements};
+use crate::scalar::{norm, scaled_norm};
+use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, mean_and_largest};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, MotionRecipe};
 use std::time::Instant;
 
 /// A displacement of so many times the body's size is none.
 const AWAY: f64 = 1e9;
+/// Where linear finite elements are strained or turned by more than this, in rad, springs that turn go another way by half of it: what
+/// of their error is the fit's is worked out without that.
+const TURNING: f64 = 0.01;
 
 /// What moves a scene's models.
 pub struct Planned {
@@ -64,10 +68,15 @@ pub fn move_models(
         if planned.draws {
             made.states.clone_from(&states);
         }
+        if energy.is_none() {
+            made.deformation = states.iter().map(|u| Deformation::largest(mesh, u)).reduce(Deformation::max);
+        }
         models.push(made);
         reference = states;
     }
-    let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(square).fold(0.0, f64::max).sqrt();
+    let turns = |deformation: Deformation| deformation.exceeds(TURNING) && !planned.recipe.options.linear;
+    let turning = models.first().and_then(|body| body.deformation).is_some_and(turns);
+    let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(norm).fold(0.0, f64::max);
     for (i, fit) in outcome.fits.iter().enumerate() {
         let growth = growth(&fit.network, mesh, planned)?;
         if growth.is_some() {
@@ -79,10 +88,24 @@ pub fn move_models(
         let model = fit.network.prepared();
         let (mut made, states) = run.follow((&fit.fit.name, growth), &model, damping, options, keeps, progress)?;
         made.fit = Some(i);
-        for ((record, u), fem) in made.records.iter_mut().zip(&states).zip(&reference) {
-            let away: f64 = u.iter().zip(fem).map(|(a, b)| (a - b) * (a - b)).sum();
-            let rms = (away / mesh.point_count() as f64).sqrt();
-            record.error = (largest > 0.0).then(|| 100.0 * rms / largest);
+        // None where the finite elements do not move, or an error is not finite.
+        let errors = |states: &[Vec<f64>]| -> Vec<Option<f64>> {
+            let rms = |(u, fem): (&Vec<f64>, &Vec<f64>)| {
+                let apart: Vec<f64> = u.iter().zip(fem).map(|(a, b)| a - b).collect();
+                let rms = scaled_norm(&apart, |apart| square(apart) / mesh.point_count() as f64);
+                (largest > 0.0).then(|| 100.0 * rms / largest).filter(|error| error.is_finite())
+            };
+            states.iter().zip(&reference).map(rms).collect()
+        };
+        made.records.iter_mut().zip(errors(&states)).for_each(|(record, error)| record.error = error);
+        if turning && made.ending == MotionEnding::Complete {
+            let linear = Options { linear: true, ..options };
+            let damping = planned.damping(Some(&fit.network), mesh)?;
+            let name = format!("{} without turning", fit.fit.name);
+            let (linear, states) = run.follow((&name, growth), &model, damping, linear, true, progress)?;
+            let complete = linear.ending == MotionEnding::Complete;
+            let errors: Option<Vec<f64>> = errors(&states).into_iter().collect();
+            made.linear_error = errors.and_then(|errors| mean_and_largest(&errors)).filter(|_| complete);
         }
         if planned.draws {
             made.states = states;
@@ -135,6 +158,8 @@ impl Run<'_> {
             ending: MotionEnding::Complete,
             unsolved: 0,
             growth,
+            deformation: None,
+            linear_error: None,
             records: Vec::new(),
             states: Vec::new(),
         };
@@ -163,9 +188,9 @@ impl Run<'_> {
                     StepOutcome::Stalled => (made.steps, made.unsolved) = (made.steps + 1, made.unsolved + 1),
                     StepOutcome::Converged | StepOutcome::Linearized => made.steps += 1,
                 }
-                let farthest = simulation.state().displacement.iter().fold(0.0f64, |far, u| far.max(u.abs()));
-                let speed: f64 = simulation.state().velocity.iter().sum();
-                if !(farthest <= AWAY * extent && speed.is_finite()) {
+                let state = simulation.state();
+                let near = state.displacement.iter().all(|u| u.abs() <= AWAY * extent);
+                if !(near && state.velocity.iter().all(|v| v.is_finite())) {
                     made.ending = MotionEnding::RanAway;
                 }
             }
@@ -173,7 +198,12 @@ impl Run<'_> {
             if made.ending != MotionEnding::Complete {
                 break;
             }
-            made.records.push(self.record(&mut simulation));
+            let record = self.record(&mut simulation);
+            if !record.is_finite() {
+                made.ending = MotionEnding::RanAway;
+                break;
+            }
+            made.records.push(record);
             if keeps {
                 states.push(simulation.state().displacement.clone());
             }

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::material::{Energy, Material};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
+use crate::range;
 use crate::study::outcome::Outcome;
 use crate::study::progress::Progress;
 use crate::study::scene::{AppliedForce, MotionRecipe, Part, PrescribedMotion, Scene};
@@ -90,7 +91,11 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
     let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !planned.support.is_fixed(dof));
     if let Some(p) = (0..mesh.point_count()).find(|&p| moves(p) && !(planned.masses[p] > 0.0)) {
         let expected = "a mass above zero at every point that moves (\"hrz\" gives one)";
-        return Err(Error::expected("mass", expected, format!("{:e} kg at point {}", planned.masses[p], p + 1)));
+        return Err(Error::expected(
+            "mass",
+            expected,
+            format!("{:e} kg at point {}", planned.masses[p], mesh.point_number(p)),
+        ));
     }
     Ok(planned)
 }
@@ -121,6 +126,7 @@ fn add_prescribed_motion(
         return Err(entries("displacement", d, pull.displacement.len()));
     }
     let points = points(mesh, &pull.part)?;
+    let mut largest = 0.0f64;
     for (k, expression) in pull.displacement.iter().enumerate() {
         let Some(expression) = expression else { continue };
         let key = format!("displacement[{k}]");
@@ -135,7 +141,10 @@ fn add_prescribed_motion(
             let dof = p * d + k;
             let moves = |by: &str| {
                 let axis = ["x", "y", "z"][k];
-                Error::at(&key, format!("moves point {} at {:?} m along {axis}, which {by}", p + 1, mesh.point(p)))
+                Error::at(
+                    &key,
+                    format!("moves point {} at {:?} m along {axis}, which {by}", mesh.point_number(p), mesh.point(p)),
+                )
             };
             if fixed.is_fixed(dof) {
                 if still {
@@ -153,7 +162,8 @@ fn add_prescribed_motion(
                     at[1..=d].copy_from_slice(mesh.point(p));
                     let program = program.clone();
                     let curve = Curve::new(move |t| program.evaluate(&[t, at[1], at[2], at[3]]));
-                    finite(planned, &curve, points.len(), 1).map_err(|e| e.under(&key))?;
+                    let size = size(planned, &curve, points.len(), 1).map_err(|e| e.under(&key))?;
+                    largest = largest.max(size);
                     if !varies {
                         shared = Some(curve.clone());
                     }
@@ -164,7 +174,7 @@ fn add_prescribed_motion(
             planned.drive = std::mem::take(&mut planned.drive).displacement(dof, curve);
         }
     }
-    Ok(())
+    range::largest("displacement", [largest], "m")
 }
 
 /// Adds one `[[motion.force]]`.
@@ -174,10 +184,10 @@ fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<
         return Err(entries("force", d, push.force.len()));
     }
     let (points, selection) = (points(mesh, &push.part)?, push.part.selection(d)?);
-    let mut felt = false;
+    let (mut felt, mut largest) = (false, 0.0f64);
     for (k, expression) in push.force.iter().enumerate() {
         let curve = Curve::of(expression)?;
-        finite(planned, &curve, 1, 0).map_err(|e| e.under(format!("force[{k}]")))?;
+        largest = largest.max(size(planned, &curve, 1, 0).map_err(|e| e.under(format!("force[{k}]")))?);
         if *expression == Expr::integer(0) {
             continue;
         }
@@ -194,23 +204,30 @@ fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<
         planned.drive = std::mem::take(&mut planned.drive).forces(&forces, curve);
     }
     match felt {
-        true => Ok(()),
+        true => range::largest("force", [largest], "N"),
         false => Err(Error::at("force", "acts on nothing that can move")),
     }
 }
 
-/// That a curve, one of `count`, is finite whenever a step asks for it: up to `beyond` half steps after the end, from where a pull
-/// takes its velocity.
-fn finite(planned: &Planned, curve: &Curve, count: usize, beyond: usize) -> Result<()> {
+/// The largest size of a curve, one of `count`, whenever a step asks for it: up to `beyond` half steps after the end, from where a
+/// pull takes its velocity.
+///
+/// # Errors
+/// It is not finite somewhere, or larger than a quantity may be.
+fn size(planned: &Planned, curve: &Curve, count: usize, beyond: usize) -> Result<f64> {
     let (h, halves) = (planned.recipe.options.step, 2 * planned.recipe.steps + beyond);
     let trials = (TRIALS / count.max(1)).max(100);
     let stride = halves.div_ceil(trials);
     let mut times = (0..=halves).step_by(stride).chain([halves]).map(|i| i as f64 * h / 2.0);
-    let Some(t) = times.find(|t| !curve.at(*t).is_finite()) else { return Ok(()) };
+    let mut largest = 0.0f64;
+    let beyond_range = |t: &f64| {
+        largest = largest.max(curve.at(*t).abs());
+        !(curve.at(*t).abs() <= range::LARGEST)
+    };
+    let Some(t) = times.find(beyond_range) else { return Ok(largest) };
     // Without the last digits, which half steps leave.
     let shown: f64 = format!("{t:.9e}").parse().unwrap_or(t);
     let after = if t > planned.recipe.duration * (1.0 + 1e-9) { ", half a step after the end" } else { "" };
-    let problem =
-        format!("expected finite values at all times of the motion, found {} at {shown} s{after}", curve.at(t));
-    Err(Error::new(problem))
+    let expected = format!("finite values of at most {:e} in size at all times of the motion", range::LARGEST);
+    Err(Error::new(format!("expected {expected}, found {} at {shown} s{after}", curve.at(t))))
 }

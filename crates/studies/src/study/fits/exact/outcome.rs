@@ -37,7 +37,7 @@ impl ExactOutcome {
     pub fn notes(&self) -> Vec<String> {
         let other = self.is_other.then(|| {
             format!(
-                "the network has the energy {}, which is not the material's law: equal at rest alone",
+                "the network has the energy {}, which is not the material's law: they agree at rest only",
                 self.energy.name()
             )
         });

@@ -15,12 +15,12 @@ impl PublishedOutcome {
     pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
         let unmet = &self.unmet;
         let ratio = unmet.poisson.map(|assumed| {
-            format!("is made for Poisson's ratio {assumed:.4}, the material's is {}", material.poisson())
+            format!("assumes Poisson's ratio {assumed:.4}, and the material has {}", material.poisson())
         });
         let shape = (unmet.cells > 0).then(|| {
             let percent = 100.0 * unmet.deviation;
             format!(
-                "{} of {cells} elements do not have the shape it is made for (lengths off by up to {percent:.0} %)",
+                "{} of {cells} elements do not have the shape that it assumes (lengths differ by up to {percent:.0} %)",
                 unmet.cells
             )
         });

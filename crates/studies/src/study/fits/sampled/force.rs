@@ -2,6 +2,7 @@
 
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
+use crate::named::unknown;
 use crate::springs::{Force, Law, Springs};
 use std::sync::Arc;
 
@@ -82,7 +83,7 @@ impl ForceRecipe {
         match laws.iter().find(|(group, _)| !known.contains(&group.as_str())) {
             Some((group, _)) => {
                 let expected = format!("groups of the fit's springs, {}", known.join(", "));
-                Err(Error::expected("force", expected, format!("\"{group}\"")))
+                Err(unknown(expected, known.iter().copied(), group).at_key("force"))
             }
             None => Ok(()),
         }

@@ -33,21 +33,36 @@ impl SampledOutcome {
     }
 }
 
+/// A fit that leaves more of the forces than this share does not describe the body.
+const UNEXPLAINED: f64 = 0.1;
+
 impl SampledOutcome {
+    /// The largest share of the forces that the fit leaves in a cell, at the shapes it was fitted to and at those held out.
+    fn unexplained(&self) -> f64 {
+        self.held_out.iter().map(|spread| spread.max).fold(self.trained.max, f64::max)
+    }
+
     /// What a reader must know of it.
     pub fn notes(&self) -> Vec<String> {
+        let unexplained = Some(self.unexplained()).filter(|share| !(*share <= UNEXPLAINED)).map(|share| {
+            format!(
+                "in the worst element it leaves {:.2} % of the sampled forces unexplained: its springs or its law of force \
+                 cannot describe the material there",
+                100.0 * share
+            )
+        });
         let loads = (!self.loads.is_empty()).then(|| {
             format!(
-                "fitted to the shapes of the finite elements under {}: its errors there are not held out",
+                "fitted to the shapes of the finite elements under {}: its errors under them are not predictions",
                 self.loads.join(", ")
             )
         });
         let agreeing = self.agreeing.filter(|share| *share < 1.0).map(|agreeing| {
             format!(
-                "in the worst element {:.0} % of the starts found the best parameters, the others worse ones",
+                "in the worst element {:.0} % of the starts reached the best parameters, and the others ended at worse ones",
                 100.0 * agreeing
             )
         });
-        loads.into_iter().chain(agreeing).collect()
+        unexplained.into_iter().chain(loads).chain(agreeing).collect()
     }
 }

@@ -32,9 +32,10 @@ impl StiffnessOutcome {
     /// What a reader must know of it.
     pub fn notes(&self) -> Vec<String> {
         let gap = self.gap.map(|gap| {
-            let mut note = format!("certified, no constants do better by more than {gap:.1e} of the error");
+            let mut note =
+                format!("certified: no constants have an error that is smaller by more than a share of {gap:.1e}");
             if self.ambiguous > 0 {
-                let others = "others do as well: the least Frobenius error decides";
+                let others = "the optimum is not unique, and the one with the smallest Frobenius error is used";
                 note += &format!("; in {} elements {others}", self.ambiguous);
             }
             note

@@ -52,9 +52,9 @@ impl TensionOutcome {
                 notes.push(format!("{count} {text}"));
             }
         };
-        count(negative, "springs have a rest length below zero, which some simulators do not take");
-        count(steady, "springs pull with a constant force and have no rest length: they have a law of force");
-        count(self.idle, "elements have no springs: none but those of no force satisfy what the fit asks for");
+        count(negative, "springs have a negative rest length, which some simulators do not accept");
+        count(steady, "springs pull with a constant force, by a law of force, and have no rest length");
+        count(self.idle, "elements have no springs: only constants of zero satisfy the conditions of the fit");
         notes
     }
 }

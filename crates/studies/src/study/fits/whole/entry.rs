@@ -4,6 +4,7 @@ use super::recipe::{LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, Validati
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective};
+use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::{Method, Residual, WholeSettings};
@@ -62,7 +63,8 @@ impl WholeEntry {
     fn objective(&self, name: &str) -> Result<Start> {
         if !Objective::NAMES.contains(&name) {
             let expected = format!("one of {}, sampled, equal", Objective::NAMES.join(", "));
-            return Err(Error::expected("start", expected, format!("\"{name}\"")));
+            let names = Objective::NAMES.iter().copied().chain(["sampled", "equal"]);
+            return Err(unknown(expected, names, name).at_key("start"));
         }
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         Ok(Start::Fit(Fit { nonnegative: true, ..Fit::new(Objective::named(name, choices)?) }))

@@ -75,8 +75,8 @@ impl WholeOutcome {
                     self.steps
                 )
             }
-            None if !self.stands => "at the start it does not stand under each of them, so it is left as it was".into(),
-            None => format!("none of the rho tried did better than the start, {} steps", self.steps),
+            None if !self.stands => "the start is not stable under each of them, so its constants are unchanged".into(),
+            None => format!("no rho gave smaller errors than the start, in {} steps", self.steps),
         };
         let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
         let [before, after] = [0, 1].map(|i| largest(&self.frequencies[i]));
@@ -85,10 +85,13 @@ impl WholeOutcome {
             count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
         };
         let ended = match (self.cancelled, self.limited) {
-            (true, _) => "; ended before its time",
-            (_, true) => "; a smaller rho goes beyond the range that is allowed",
+            (true, _) => "; it was ended early",
+            (_, true) => "; a smaller rho exceeds the range that is allowed",
             _ => "",
         };
-        vec![format!("fitted to {}, whose errors are not held out{validated}: {done}{ended}", self.loads.join(", "))]
+        vec![format!(
+            "fitted to {}, so that errors under them are not predictions{validated}: {done}{ended}",
+            self.loads.join(", ")
+        )]
     }
 }

@@ -1,0 +1,50 @@
+//! Cells that repeat another.
+
+use super::alike::Alike;
+use super::mesh::{CellIndex, Mesh};
+use crate::error::{Error, Result};
+use std::collections::HashMap;
+
+impl Mesh {
+    /// Refuses cells that have the points of an earlier one, in any order, or leaves them out: they would double stiffness and mass.
+    /// Points at one place count as one, `first` names the first of each. The cell that is kept takes over the groups of those that
+    /// are left out.
+    ///
+    /// # Errors
+    /// There are such cells, and they may not be left out.
+    pub(super) fn settle_duplicates(&mut self, first: Option<&[usize]>, skip: bool) -> Result<()> {
+        let points = |at: CellIndex, set: &mut Vec<usize>| {
+            set.extend(self.cell_nodes(at).iter().map(|&p| first.map_or(p, |first| first[p])));
+        };
+        let mut repeated: Vec<(CellIndex, CellIndex)> = Vec::new();
+        Alike::of(self.cell_indices(), points).each(points, |cells| {
+            repeated.extend(cells[1..].iter().map(|cell| (*cell, cells[0])));
+        });
+        if repeated.is_empty() {
+            return Ok(());
+        }
+        repeated.sort_unstable_by_key(|(cell, _)| (cell.block, cell.cell));
+        let cells: Vec<CellIndex> = repeated.iter().map(|(cell, _)| *cell).collect();
+        if !skip {
+            let (_, kept) = repeated[0];
+            let (element, number) = (&self.blocks[kept.block].element.name, kept.cell + 1);
+            let has = if cells.len() == 1 { "has" } else { "have" };
+            let found = format!(
+                "{} of {} that {has} the nodes of another, or nodes at the same places: {} (the first repeats {element} cell \
+                 {number}); below = \"skip\" leaves them out",
+                cells.len(),
+                self.cell_count(),
+                self.named(&cells)
+            );
+            return Err(Error::expected("cells", "each cell once", found));
+        }
+        let kept: HashMap<CellIndex, CellIndex> = repeated.into_iter().collect();
+        for group in self.groups.values_mut() {
+            group.cells.iter_mut().for_each(|cell| *cell = kept.get(cell).copied().unwrap_or(*cell));
+            group.cells.sort_unstable_by_key(|cell| (cell.block, cell.cell));
+            group.cells.dedup();
+        }
+        self.quality.duplicates = cells.len();
+        self.remove(&cells).map(drop)
+    }
+}

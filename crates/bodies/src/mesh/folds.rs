@@ -1,0 +1,88 @@
+//! Cells that are folded over their neighbours.
+
+use super::alike::Alike;
+use super::mesh::{CellIndex, Mesh, SideIndex};
+use crate::springs::{distance, dot};
+use std::collections::HashMap;
+
+/// A height below this share of the lengths is none.
+const FLAT: f64 = 1e-9;
+
+impl Mesh {
+    /// The cells that lie on the same side of what they share with a neighbour: the lesser part of each connected body where all
+    /// cells that share a side lie on both sides of it.
+    ///
+    /// A cell may be numbered the other way round and lie where it should; then it is not among them.
+    pub(super) fn folded(&self) -> Vec<CellIndex> {
+        let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
+        // Neighbours of each cell, and whether the two overlap.
+        let mut beside: HashMap<CellIndex, Vec<(CellIndex, bool)>> = HashMap::new();
+        let mut any = false;
+        Alike::of(self.side_indices(), points).each(points, |sides| {
+            for side in &sides[1..] {
+                let overlap = self.overlap(&sides[0], side);
+                any |= overlap;
+                beside.entry(sides[0].cell).or_default().push((side.cell, overlap));
+                beside.entry(side.cell).or_default().push((sides[0].cell, overlap));
+            }
+        });
+        if !any {
+            return Vec::new();
+        }
+        let mut folded = Vec::new();
+        let mut part: HashMap<CellIndex, bool> = HashMap::new();
+        for start in self.cell_indices() {
+            if part.contains_key(&start) {
+                continue;
+            }
+            // Through sides with the cells on both sides of them one stays in a part; through the others one comes into the other part.
+            let mut parts: [Vec<CellIndex>; 2] = Default::default();
+            part.insert(start, false);
+            let mut next = vec![start];
+            while let Some(cell) = next.pop() {
+                let own = part[&cell];
+                parts[usize::from(own)].push(cell);
+                for (other, overlap) in beside.get(&cell).into_iter().flatten() {
+                    part.entry(*other).or_insert_with(|| {
+                        next.push(*other);
+                        own != *overlap
+                    });
+                }
+            }
+            let [one, other] = parts;
+            folded.extend(if one.len() < other.len() { one } else { other });
+        }
+        folded.sort_unstable_by_key(|cell| (cell.block, cell.cell));
+        folded
+    }
+
+    /// Whether the cells of two sides with the same points lie on the same side of it.
+    fn overlap(&self, one: &SideIndex, other: &SideIndex) -> bool {
+        let nodes = self.side_nodes(one);
+        let origin = self.point(nodes[0]);
+        let from = |x: &[f64]| -> Vec<f64> { x.iter().zip(origin).map(|(x, o)| x - o).collect() };
+        let along = nodes.iter().map(|&p| from(self.point(p)));
+        let Some(along) = along.max_by(|a, b| dot(a, a).total_cmp(&dot(b, b))) else { return false };
+        let normal = match self.dimension {
+            2 => vec![-along[1], along[0]],
+            _ => {
+                let cross = |b: Vec<f64>| {
+                    let a = &along;
+                    vec![a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+                };
+                let normals = nodes.iter().map(|&p| cross(from(self.point(p))));
+                let Some(normal) = normals.max_by(|a, b| dot(a, a).total_cmp(&dot(b, b))) else { return false };
+                normal
+            }
+        };
+        let height = |cell: CellIndex| {
+            let nodes = self.cell_nodes(cell);
+            let mean = |k: usize| nodes.iter().map(|&p| self.point(p)[k]).sum::<f64>() / nodes.len() as f64;
+            let centre: Vec<f64> = (0..self.dimension).map(mean).collect();
+            let height = dot(&normal, &from(&centre));
+            let size = dot(&normal, &normal).sqrt() * distance(&centre, origin);
+            if height.abs() <= FLAT * size { 0.0 } else { height.signum() }
+        };
+        height(one.cell) * height(other.cell) > 0.0
+    }
+}

@@ -1,0 +1,153 @@
+//! Points on sides of cells that do not have them.
+
+use super::alike::Alike;
+use super::mesh::{CellIndex, Mesh, SideIndex};
+use super::places::{Places, spatial};
+use crate::element::{Cell, Element};
+use crate::springs::{distance, dot};
+use std::collections::{HashMap, HashSet};
+
+/// How far from a side a point may be that hangs on it, in parts of the side's extent.
+const TOLERANCE: f64 = 1e-6;
+/// Of Newton's method for the nearest place of a curved side.
+const ITERATIONS: usize = 20;
+
+/// A side on the boundary, or a cell of a curve, which nothing should lie on but its own points.
+struct Host<'a> {
+    element: &'a Element,
+    /// The shape of the side, and the map from its own coordinates to those of the cell.
+    cell: Cell,
+    origin: Vec<f64>,
+    tangents: Vec<Vec<f64>>,
+    /// Nodes of the element, and the points that they are.
+    nodes: Vec<usize>,
+    points: Vec<usize>,
+}
+
+impl Mesh {
+    /// Points on an edge or a face of a cell that does not have them, at any place of it; points at the place of one of its own do
+    /// not count. Only sides on the boundary are asked: no point lies on a side that two cells share, unless a cell is folded.
+    pub(super) fn hanging(&self, places: &Places) -> usize {
+        let hosts = self.hosts();
+        let mut candidates: Vec<usize> = hosts.iter().flat_map(|host| host.points.iter().copied()).collect();
+        candidates.sort_unstable();
+        candidates.dedup();
+        let boxes: Vec<[[f64; 3]; 2]> = hosts.iter().map(|host| self.surroundings(host)).collect();
+        let mean = boxes.iter().map(|[low, high]| distance(low, high)).sum::<f64>() / boxes.len().max(1) as f64;
+        let bin = |x: f64| (x / mean).floor() as i64;
+        let mut bins: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        for &p in &candidates {
+            bins.entry(spatial(self.point(p)).map(bin)).or_default().push(p);
+        }
+        let mut hanging = HashSet::new();
+        for (host, [low, high]) in hosts.iter().zip(&boxes) {
+            let reach = places.rounding.max((TOLERANCE * distance(low, high)).min(0.1 * places.shortest_edge));
+            let (from, to) = (low.map(|x| bin(x - reach)), high.map(|x| bin(x + reach)));
+            let mut test = |p: usize| {
+                let x = spatial(self.point(p));
+                let inside = (0..3).all(|k| (low[k] - reach..=high[k] + reach).contains(&x[k]));
+                let own = || host.points.iter().any(|q| places.first[*q] == places.first[p]);
+                if inside && !hanging.contains(&p) && !own() && self.lies_on(p, host, reach) {
+                    hanging.insert(p);
+                }
+            };
+            let count = (0..3).map(|k| (to[k] - from[k]) as f64 + 1.0).product::<f64>();
+            // A side much larger than most would pass more bins than there are points.
+            if count > candidates.len() as f64 {
+                candidates.iter().for_each(|&p| test(p));
+                continue;
+            }
+            for i in from[0]..=to[0] {
+                for j in from[1]..=to[1] {
+                    for k in from[2]..=to[2] {
+                        bins.get(&[i, j, k]).into_iter().flatten().for_each(|&p| test(p));
+                    }
+                }
+            }
+        }
+        hanging.len()
+    }
+
+    fn hosts(&self) -> Vec<Host<'_>> {
+        let element = |at: CellIndex| &*self.blocks[at.block].element;
+        if self.cell_dimension() == 1 {
+            let host = |at: CellIndex| {
+                let points = self.cell_nodes(at).to_vec();
+                let nodes = (0..points.len()).collect();
+                let (origin, tangents) = (vec![0.0], vec![vec![1.0]]);
+                Host { element: element(at), cell: Cell::Interval, origin, tangents, nodes, points }
+            };
+            return self.cell_indices().map(host).collect();
+        }
+        let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
+        let mut hosts = Vec::new();
+        Alike::of(self.side_indices(), points).each(points, |sides| {
+            if let [index] = sides {
+                let element = element(index.cell);
+                let side = element.cell.sides()[index.side];
+                let (origin, tangents) = side.embedding(element.cell);
+                let nodes = element.sides()[index.side].nodes.clone();
+                let points = self.side_nodes(index);
+                hosts.push(Host { element, cell: side.cell, origin, tangents, nodes, points });
+            }
+        });
+        hosts
+    }
+
+    /// A box around a side. A curved one bulges beyond its nodes.
+    fn surroundings(&self, host: &Host) -> [[f64; 3]; 2] {
+        let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            host.points.iter().map(|&p| spatial(self.point(p))[k]).fold(start, pick)
+        };
+        let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
+        let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
+        let bulge = if host.points.len() > host.cell.corners().len() { 0.25 * distance(&low, &high) } else { 0.0 };
+        [low.map(|x| x - bulge), high.map(|x| x + bulge)]
+    }
+
+    /// Whether the nearest place `x(s) = Σ_a N_a(s) x_a` of a side is within `reach` of the point and between the side's ends.
+    fn lies_on(&self, point: usize, host: &Host, reach: f64) -> bool {
+        let (d, goal) = (self.dimension, self.point(point));
+        let mut s = host.cell.centre();
+        for _ in 0..ITERATIONS {
+            let xi: Vec<f64> = (0..host.origin.len())
+                .map(|l| host.origin[l] + s.iter().zip(&host.tangents).map(|(s, t)| s * t[l]).sum::<f64>())
+                .collect();
+            let functions = &host.element.functions;
+            let mut rest = goal.to_vec();
+            let mut slopes = vec![vec![0.0; d]; s.len()];
+            for (&a, &p) in host.nodes.iter().zip(&host.points) {
+                let x = self.point(p);
+                let value = functions.values[a].evaluate(&xi);
+                rest.iter_mut().zip(x).for_each(|(r, x)| *r -= value * x);
+                let gradient: Vec<f64> = functions.gradients[a].iter().map(|g| g.evaluate(&xi)).collect();
+                for (slope, tangent) in slopes.iter_mut().zip(&host.tangents) {
+                    let along = dot(&gradient, tangent);
+                    slope.iter_mut().zip(x).for_each(|(slope, x)| *slope += along * x);
+                }
+            }
+            // (x′ᵀ x′) Δs = x′ᵀ (goal − x)
+            let step: Vec<f64> = match &slopes[..] {
+                [one] => vec![dot(one, &rest) / dot(one, one)],
+                [one, two] => {
+                    let (a, b, c) = (dot(one, one), dot(one, two), dot(two, two));
+                    let (f, g, determinant) = (dot(one, &rest), dot(two, &rest), a * c - b * b);
+                    vec![(c * f - b * g) / determinant, (a * g - b * f) / determinant]
+                }
+                _ => return false,
+            };
+            if !step.iter().all(|step| step.is_finite()) {
+                return false;
+            }
+            if step.iter().all(|step| step.abs() < 1e-10) {
+                // The ends belong to the side, to the tolerance.
+                let centre = host.cell.centre();
+                let inner: Vec<f64> =
+                    s.iter().zip(&centre).map(|(s, c)| c + (s - c) * (1.0 - 4.0 * TOLERANCE)).collect();
+                return host.cell.contains(&inner) && dot(&rest, &rest).sqrt() <= reach;
+            }
+            s.iter_mut().zip(&step).for_each(|(s, step)| *s += step);
+        }
+        false
+    }
+}

@@ -1,0 +1,87 @@
+//! Points at the same place.
+
+use super::mesh::Mesh;
+use crate::springs::distance;
+use std::collections::HashMap;
+
+/// What the coordinates of a mesh can tell apart.
+pub(super) struct Places {
+    /// For each point the first one at its place, `[points]`.
+    pub first: Vec<usize>,
+    /// Of the edges that have a length, m.
+    pub shortest_edge: f64,
+    /// The rounding of the coordinates, m.
+    pub rounding: f64,
+}
+
+impl Places {
+    /// Places count as one within 1e-9 of the body and a tenth of the shortest edge. `None` where the coordinates are too coarse to
+    /// tell points apart.
+    pub fn of(mesh: &Mesh) -> Option<Places> {
+        let place = |p: usize| spatial(mesh.point(p));
+        let points: Vec<[f64; 3]> = (0..mesh.point_count()).map(place).collect();
+        let least: [f64; 3] = std::array::from_fn(|k| points.iter().map(|x| x[k]).fold(f64::INFINITY, f64::min));
+        let extent = points.iter().flat_map(|x| (0..3).map(|k| x[k] - least[k])).fold(0.0, f64::max);
+        let rounding = 16.0 * f64::EPSILON * mesh.points.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let shortest_edge = shortest_edge(mesh);
+        let unit = (1e-9 * extent).min(0.1 * shortest_edge).max(rounding);
+        // Also refuses what is no number.
+        if !(unit > 0.0 && unit <= 0.1 * shortest_edge) {
+            return None;
+        }
+        // Bins are so wide that few points are near the border of theirs, and so narrow that few share one.
+        let width = (1000.0 * unit).min(0.5 * shortest_edge);
+        let bin = |x: &[f64; 3], k: usize, shift: f64| ((x[k] - least[k] + shift) / width).floor() as i64;
+        let mut bins: HashMap<[i64; 3], usize> = HashMap::with_capacity(points.len());
+        // The point before in the same bin.
+        let mut before = vec![usize::MAX; points.len()];
+        let mut first: Vec<usize> = (0..points.len()).collect();
+        for (p, x) in points.iter().enumerate() {
+            let mut found = usize::MAX;
+            let range = |k: usize| bin(x, k, -unit)..=bin(x, k, unit);
+            for i in range(0) {
+                for j in range(1) {
+                    for k in range(2) {
+                        let mut other = bins.get(&[i, j, k]).copied().unwrap_or(usize::MAX);
+                        while other != usize::MAX {
+                            if distance(&points[other], x) <= unit {
+                                found = found.min(first[other]);
+                            }
+                            other = before[other];
+                        }
+                    }
+                }
+            }
+            if found != usize::MAX {
+                first[p] = found;
+            }
+            let own = bins.entry([bin(x, 0, 0.0), bin(x, 1, 0.0), bin(x, 2, 0.0)]).or_insert(usize::MAX);
+            before[p] = std::mem::replace(own, p);
+        }
+        Some(Places { first, shortest_edge, rounding })
+    }
+
+    /// How many points are at the place of another.
+    pub fn coincident(&self) -> usize {
+        self.first.iter().enumerate().filter(|(p, first)| p != *first).count()
+    }
+}
+
+/// m; infinite where no edge has a length.
+fn shortest_edge(mesh: &Mesh) -> f64 {
+    let mut shortest = f64::INFINITY;
+    for block in &mesh.blocks {
+        let corner = |c: usize| block.element.corner_node(c);
+        let edges: Vec<[usize; 2]> =
+            block.element.cell.edges().iter().filter_map(|[a, b]| Some([corner(*a)?, corner(*b)?])).collect();
+        for nodes in block.cells() {
+            let lengths = edges.iter().map(|[a, b]| distance(mesh.point(nodes[*a]), mesh.point(nodes[*b])));
+            shortest = lengths.filter(|length| *length > 0.0).fold(shortest, f64::min);
+        }
+    }
+    shortest
+}
+
+pub(super) fn spatial(x: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
+}

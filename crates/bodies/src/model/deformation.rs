@@ -1,0 +1,67 @@
+//! How far displacements are from those of the linear theory.
+
+use super::system::{dofs, each_cell};
+use crate::mesh::Mesh;
+use crate::stiffness::Placement;
+use nalgebra::DMatrix;
+
+/// The largest strain and rotation at the quadrature points of a body's cells, from the gradient of the displacements alone:
+/// `H = ∂u/∂X`, strain `½ (H + Hᵀ)`, rotation `½ (H − Hᵀ)`. Of a surface or curve H is along its tangents; what its normal turns counts
+/// as rotation.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deformation {
+    /// The largest principal strain by size.
+    pub strain: f64,
+    /// The length of the rotation vector, rad.
+    pub rotation: f64,
+}
+
+impl Deformation {
+    /// The linear theory drops `½ Hᵀ H` of the strain `½ (H + Hᵀ + Hᵀ H)`. Beyond this strain ε that is more than a twentieth of ε, and
+    /// beyond this rotation θ, in rad, a bent or turned part seems stretched by more than `θ²/2`, half a percent, and moves by more than
+    /// `θ/2`, a twentieth, of its way in a direction that it does not go.
+    pub const LINEAR: f64 = 0.1;
+
+    /// Of the displacements u, `[points · dimension]`, m.
+    pub fn largest(mesh: &Mesh, u: &[f64]) -> Deformation {
+        let space = mesh.dimension;
+        let mut largest = Deformation::default();
+        each_cell(mesh, |cell, nodes, geometry| {
+            let (table, d) = (&mesh.blocks[cell.block].element.tabulation, geometry.dimension);
+            let local: Vec<f64> = dofs(nodes, space).map(|dof| u[dof]).collect();
+            let frame = if d < space {
+                let mut placement = Placement::new(table);
+                let mut x = vec![0.0; nodes.len() * d];
+                placement.place(table, &mesh.points, nodes, &mut x).expect("a mesh holds only cells with tangents");
+                DMatrix::from_row_slice(d, space, &placement.frame)
+            } else {
+                DMatrix::identity(d, d)
+            };
+            for (gradients, ..) in geometry.each_point() {
+                // ∂u_k/∂s_l = Σ_a u_ak ∂N_a/∂s_l
+                let h = DMatrix::from_fn(space, d, |k, l| {
+                    (0..nodes.len()).map(|a| local[a * space + k] * gradients[a * d + l]).sum::<f64>()
+                });
+                let along = &frame * &h;
+                let out = &h - frame.transpose() * &along;
+                let (strain, spin) = ((&along + along.transpose()) * 0.5, (&along - along.transpose()) * 0.5);
+                // ‖spin‖ counts each component of the rotation vector twice.
+                let rotation = (spin.norm_squared() / 2.0 + out.norm_squared()).sqrt();
+                let strain = strain.symmetric_eigenvalues().amax();
+                largest = largest.max(Deformation { strain, rotation });
+            }
+        });
+        largest
+    }
+
+    /// The larger of both strains and rotations; one that is no number counts as infinite.
+    pub fn max(self, other: Deformation) -> Deformation {
+        let larger = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) };
+        Deformation { strain: larger(self.strain, other.strain), rotation: larger(self.rotation, other.rotation) }
+    }
+
+    /// Whether the strain or the rotation is larger than `bound`.
+    pub fn exceeds(self, bound: f64) -> bool {
+        self.strain > bound || self.rotation > bound
+    }
+}

@@ -1,0 +1,51 @@
+//! Integrals over the cells of a mesh, by rules of their own degree.
+
+use crate::element::{Element, Integrand};
+use crate::mesh::{CellIndex, Mesh};
+use crate::springs::Content;
+use crate::stiffness::gather;
+
+/// The points of the rule in one cell.
+pub(super) struct CellPoints<'a> {
+    /// `[nodes]`, among the mesh's points.
+    pub nodes: &'a [usize],
+    /// `N_a(ξ_q)`, `[points × nodes]`.
+    values: &'a [f64],
+    /// `w_q |J_q|`, `[points]`, m³ (m² of a surface, m of a curve).
+    contents: &'a [f64],
+}
+
+impl CellPoints<'_> {
+    /// `N_a(ξ_q)`, `[nodes]`, and `w_q |J_q|` at each point.
+    pub fn each(&self) -> impl Iterator<Item = (&[f64], f64)> {
+        self.values.chunks_exact(self.nodes.len()).zip(self.contents.iter().copied())
+    }
+}
+
+/// Calls `visit` for every cell of the mesh that `chosen` names, with a rule for the integrand.
+///
+/// Cells whose Jacobian is positive at the points of the stiffness alone count with what is negative elsewhere.
+pub(super) fn each_cell_points(
+    mesh: &Mesh,
+    integrand: Integrand,
+    chosen: impl Fn(CellIndex) -> bool,
+    mut visit: impl FnMut(&CellPoints),
+) {
+    let d = mesh.dimension;
+    for (index, block) in mesh.blocks.iter().enumerate() {
+        let element: &Element = &block.element;
+        let table = element.integration_table(integrand);
+        let mut x = vec![0.0; table.nodes * d];
+        for (cell, nodes) in block.cells().enumerate() {
+            if !chosen(CellIndex { block: index, cell }) {
+                continue;
+            }
+            gather(&mesh.points, d, nodes, &mut x);
+            // Differences keep the digits of a cell far from the origin.
+            let first = x[..d].to_vec();
+            x.chunks_exact_mut(d).for_each(|x| x.iter_mut().zip(&first).for_each(|(x, o)| *x -= o));
+            let contents: Vec<f64> = (0..table.points()).map(|q| Content::of_point(&table, q, &x).value()).collect();
+            visit(&CellPoints { nodes, values: &table.values, contents: &contents });
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Quantities as texts, with or without a unit.
+
+use crate::error::{Error, Result};
+
+/// What is measured. A number without a unit is in the SI unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    Length,
+    Area,
+    Pressure,
+    Density,
+    Time,
+    /// The length of one unit of a mesh. A unit alone stands for one of it: `mm` is 0.001 m.
+    MeshUnit,
+}
+
+/// A unit as a power of ten of the SI unit, which comes first in each list.
+type Unit = (&'static str, i32);
+
+const LENGTHS: [Unit; 8] =
+    [("m", 0), ("km", 3), ("dm", -1), ("cm", -2), ("mm", -3), ("um", -6), ("µm", -6), ("nm", -9)];
+const AREAS: [Unit; 8] =
+    [("m^2", 0), ("m²", 0), ("cm^2", -4), ("cm²", -4), ("mm^2", -6), ("mm²", -6), ("um^2", -12), ("µm²", -12)];
+const PRESSURES: [Unit; 8] =
+    [("Pa", 0), ("kPa", 3), ("MPa", 6), ("GPa", 9), ("N/m^2", 0), ("N/m²", 0), ("N/mm^2", 6), ("N/mm²", 6)];
+const DENSITIES: [Unit; 4] = [("kg/m^3", 0), ("kg/m³", 0), ("g/cm^3", 3), ("g/cm³", 3)];
+const TIMES: [Unit; 4] = [("s", 0), ("ms", -3), ("us", -6), ("µs", -6)];
+
+impl Quantity {
+    fn units(self) -> &'static [Unit] {
+        match self {
+            Quantity::Length | Quantity::MeshUnit => &LENGTHS,
+            Quantity::Area => &AREAS,
+            Quantity::Pressure => &PRESSURES,
+            Quantity::Density => &DENSITIES,
+            Quantity::Time => &TIMES,
+        }
+    }
+
+    /// What a text of it looks like.
+    pub fn expected(self) -> &'static str {
+        match self {
+            Quantity::Length => "a length such as 0.005, \"5 mm\" or \"0.5cm\"",
+            Quantity::Area => "an area such as 1e-4, \"100 mm^2\" or \"1cm^2\"",
+            Quantity::Pressure => "a pressure such as 10000, \"10 kPa\" or \"0.01MPa\"",
+            Quantity::Density => "a density such as 1060, \"1060 kg/m^3\" or \"1.06 g/cm^3\"",
+            Quantity::Time => "a time such as 0.005, \"5 ms\" or \"5e-3 s\"",
+            Quantity::MeshUnit => "the length of one mesh unit such as 0.001, \"mm\" or \"25.4 mm\"",
+        }
+    }
+
+    /// The value in the SI unit.
+    ///
+    /// # Errors
+    /// The text is not a number followed by nothing or by a unit of this quantity.
+    pub fn parse(self, text: &str) -> Result<f64> {
+        let trimmed = text.trim();
+        if let Ok(value) = trimmed.parse() {
+            return Ok(value);
+        }
+        let read = |(unit, power): &Unit| {
+            let number = trimmed.strip_suffix(unit)?.trim_end();
+            let value: f64 = match (self, number) {
+                (Quantity::MeshUnit, "") => 1.0,
+                _ => number.parse().ok()?,
+            };
+            // A quotient by a whole power of ten is the double nearest to the decimal, as the same number without a unit is.
+            let factor = 10f64.powi(power.abs());
+            Some(if *power < 0 { value / factor } else { value * factor })
+        };
+        self.units().iter().find_map(read).ok_or_else(|| {
+            let units: Vec<&str> = self.units().iter().map(|(unit, _)| *unit).collect();
+            let expected = format!("{} (units: {})", self.expected(), units.join(", "));
+            Error::new(format!("expected {expected}, found \"{text}\""))
+        })
+    }
+}

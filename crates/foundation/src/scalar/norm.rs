@@ -1,0 +1,29 @@
+//! Lengths of vectors, whatever their size.
+
+/// Within these bounds no square that counts has left the range of numbers.
+const ORDINARY: std::ops::Range<f64> = 1e-140..1e140;
+
+/// `‖v‖`. Not finite only if an entry is not, or the length itself leaves the range of numbers.
+pub fn norm(v: &[f64]) -> f64 {
+    scaled_norm(v, |v| v.iter().map(|x| x * x).sum())
+}
+
+/// `‖b − a‖`, as [`norm`].
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let size = a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+    if ORDINARY.contains(&size) { size } else { norm(&a.iter().zip(b).map(|(a, b)| b - a).collect::<Vec<_>>()) }
+}
+
+/// The root of `squares`, a sum of squares of `v`; where these leave the range of numbers, that of `v` divided by its largest entry.
+pub fn scaled_norm(v: &[f64], squares: impl Fn(&[f64]) -> f64) -> f64 {
+    let size = squares(v).sqrt();
+    if ORDINARY.contains(&size) {
+        return size;
+    }
+    let largest = v.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    if !(largest > 0.0 && largest.is_finite()) || v.iter().any(|x| x.is_nan()) {
+        return size;
+    }
+    let shares: Vec<f64> = v.iter().map(|x| x / largest).collect();
+    largest * squares(&shares).sqrt()
+}

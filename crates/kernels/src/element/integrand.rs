@@ -1,0 +1,101 @@
+//! Tables for loads and masses: their rules are chosen by the degree of what is integrated, whatever the rule of the stiffness.
+
+use super::cell::Cell;
+use super::quadrature::Quadrature;
+use super::{Element, Side, SideTable, Tabulation};
+use crate::symbolic::Polynomial;
+
+/// What is integrated over a cell or over its sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Integrand {
+    /// `N_a b`, b a polynomial of this degree in the place x.
+    Load(usize),
+    /// `N_a N_b`.
+    Mass,
+}
+
+/// Integrals of functions that are no polynomials have settled where a rule of a higher degree changes them by this at most, relative to
+/// the content of the cell.
+const SETTLED: f64 = 1e-13;
+/// By how much the degree of that rule is higher.
+const FURTHER: usize = 6;
+/// The largest order that is tried, by the dimension: 34 points per direction in the plane, 15 in space.
+const MOST_ORDER: [usize; 3] = [28, 28, 11];
+
+impl Element {
+    /// The shape functions at the points of a rule that integrates the integrand with its Jacobian exactly over every isoparametric
+    /// cell, where the shape functions are polynomials in the reference coordinates, or of a pyramid in the collapsed ones; to rounding
+    /// where they are smooth. The degree is
+    /// - on boxes and pyramids, in each coordinate with order p: `p + m p + d p − 1`, or `2 p + d p − 1` for masses;
+    /// - on other cells, in all: `p + m p + d (p − 1)`, or `2 p + d (p − 1)`;
+    ///
+    /// m the degree of the load, which grows by p with the place, and d p − 1 or d (p − 1) that of the Jacobian's determinant.
+    pub fn integration_table(&self, integrand: Integrand) -> Tabulation {
+        let degree = self.degree_of(self.cell, integrand);
+        Tabulation::new(&self.functions, &Quadrature::of_degree(self.cell, degree), None)
+    }
+
+    /// The same for integrals along each side, in the order of [`Element::sides`], of its nodes alone.
+    pub fn side_integration_tables(&self, integrand: Integrand) -> Vec<Tabulation> {
+        let sides = self.cell.sides().iter().zip(self.sides());
+        let table = |(side, known): (&Side, &SideTable)| {
+            let degree = self.degree_of(side.cell, integrand).max(2 * self.degree());
+            self.side_tabulation(side, &known.nodes, degree)
+        };
+        sides.map(table).collect()
+    }
+
+    fn degree_of(&self, region: Cell, integrand: Integrand) -> usize {
+        let (p, d) = (self.order(), region.dimension());
+        let factor = match integrand {
+            Integrand::Load(m) => p.saturating_mul(m),
+            Integrand::Mass => p,
+        };
+        let jacobian = match region {
+            Cell::Interval => p - 1,
+            Cell::Quadrilateral | Cell::Hexahedron | Cell::Pyramid => d * p - 1,
+            Cell::Triangle | Cell::Tetrahedron | Cell::Wedge | Cell::Pentagon => d * (p - 1),
+        };
+        p.saturating_add(factor).saturating_add(jacobian)
+    }
+
+    /// The degree of the shape functions, in each coordinate of a box, or in all; where they are no polynomials, the least whose double
+    /// is the degree of a rule that has settled `∫ N_a dV` and `∫ N_a² dV`.
+    fn order(&self) -> usize {
+        *self.order.get_or_init(|| self.polynomial_order().unwrap_or_else(|| self.settled_order()).max(1))
+    }
+
+    fn polynomial_order(&self) -> Option<usize> {
+        let d = self.dimension();
+        let order = |n| {
+            let polynomial = Polynomial::expand(n, d)?;
+            let along = (0..d).map(|k| polynomial.degree_in(k)).max().unwrap_or(0);
+            Some(if self.cell.is_box() { along } else { polynomial.degree() } as usize)
+        };
+        let orders: Option<Vec<usize>> = self.functions.values.iter().map(order).collect();
+        orders?.into_iter().max()
+    }
+
+    fn settled_order(&self) -> usize {
+        let most = MOST_ORDER[self.dimension() - 1];
+        let changed = |order: &usize| {
+            let (now, further) = (self.moments(2 * order), self.moments(2 * order + FURTHER));
+            let change = now.iter().zip(&further).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            !(change <= SETTLED * self.cell.content())
+        };
+        (1..most).find(|order| !changed(order)).unwrap_or(most)
+    }
+
+    /// `∫ N_a dV` and `∫ N_a² dV` over the reference cell by the rule of that degree.
+    fn moments(&self, degree: usize) -> Vec<f64> {
+        let table = Tabulation::new(&self.functions, &Quadrature::of_degree(self.cell, degree), None);
+        let mut moments = vec![0.0; 2 * table.nodes];
+        for (values, w) in table.values.chunks_exact(table.nodes).zip(&table.weights) {
+            for (moments, n) in moments.chunks_exact_mut(2).zip(values) {
+                moments[0] += w * n;
+                moments[1] += w * n * n;
+            }
+        }
+        moments
+    }
+}

@@ -1,0 +1,150 @@
+//! The divergence under `κ ≥ 0` to its optimality conditions: `∂f/∂κ_i = 0` where κ_i > 0, and not below zero where κ_i = 0.
+//!
+//! The barrier tells which constants are about zero. From there a projected Newton method goes on (Bertsekas, SIAM J. Control Optim.
+//! 20, 221, 1982): constants that are zero and would fall stay, the others take the Newton step, as far as it leads to less. Each
+//! step ends at bounds, not before them, so that it is as long on flattened shapes, where optimal constants differ by decades.
+
+use super::dense::{add_outers, at_half, at_rounding, factorize, inner, invert, row_products, solve, tie, trace};
+use super::objective::Balance;
+use crate::scalar::Real;
+
+const STEPS: usize = 200;
+const HALVINGS: usize = 40;
+/// Pivots below this are rounding.
+const FLOOR: f64 = 1e-14;
+/// The share of the slope that a step must bring.
+const DESCENT: f64 = 1e-4;
+/// A decrement whose square is below this leaves the value without digits to fall by.
+const CLOSE: f64 = 1e-10;
+/// What a slope may be of the terms that it is the sum of. Rounding leaves less unless the Hessian is next to singular.
+const OPTIMAL: f64 = 1e-10;
+/// The step that is left, relative to the constants.
+const LEFT: f64 = 1e-10;
+
+/// The objective at a point, with slopes and curvatures by each unknown.
+struct Point<T> {
+    value: f64,
+    slope: Vec<T>,
+    /// The sums of the sizes of its terms.
+    terms: Vec<f64>,
+    /// `[unknowns × unknowns]`, lower triangle.
+    hessian: Vec<T>,
+}
+
+/// Improves κ, `[unknowns]`, from a point at which `A = Σ κ h hᵀ` is positive definite, to the optimum under `κ ≥ 0`; `h` are
+/// `[springs × p]`, in units of R̂. False where the optimality conditions are not reached.
+pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, kappa: &mut [T]) -> bool {
+    let at = |kappa: &[T]| Point::at(h, p, unknowns, balance.value(), kappa);
+    let count = kappa.len();
+    let zero = kappa[0].zero();
+    // What the bound holds is not there for the barrier alone: constants that a Newton step of their own takes beyond zero.
+    let mut from = kappa.to_vec();
+    let Some(start) = at(&from) else { return false };
+    for i in 0..count {
+        let fall = start.hessian[i * count + i].clone() * &from[i] - &start.slope[i];
+        from[i] = fall.choose(&from[i], &zero);
+    }
+    let mut point = match at(&from) {
+        Some(point) if point.value <= start.value => point,
+        _ => {
+            from = kappa.to_vec();
+            start
+        }
+    };
+    for _ in 0..STEPS {
+        let free: Vec<usize> =
+            (0..count).filter(|&i| from[i].exceeds(&zero) || zero.exceeds(&point.slope[i])).collect();
+        let Some(step) = point.newton(&free, count) else { return false };
+        let decrement: f64 = free.iter().zip(&step).map(|(&i, d)| -(point.slope[i].clone() * d).rounded()).sum();
+        let moved = |length: f64| {
+            let mut to = from.clone();
+            free.iter()
+                .zip(&step)
+                .for_each(|(&i, d)| to[i] = (from[i].clone() + &d.clone().scaled(&length)).greatest(&zero));
+            to
+        };
+        let size = 1.0 + point.value.abs();
+        let whole = moved(1.0);
+        let change = from.iter().zip(&whole).map(|(a, b)| (b.clone() - a).rounded().abs()).fold(0.0, f64::max);
+        let largest = from.iter().map(|k| k.rounded()).fold(0.0, f64::max);
+        if change <= at_rounding::<T>(LEFT) * largest && point.is_optimal(&from) {
+            kappa.clone_from_slice(&from);
+            return true;
+        }
+        let mut length = 1.0;
+        let next = (0..HALVINGS).find_map(|_| {
+            let to = moved(length);
+            let falls =
+                free.iter().map(|&i| (point.slope[i].clone() * &(to[i].clone() - &from[i])).rounded()).sum::<f64>();
+            let is_close = decrement < CLOSE * size && length == 1.0;
+            length /= 2.0;
+            let next = at(&to)?;
+            (is_close || next.value <= point.value + DESCENT * falls).then_some((to, next))
+        });
+        let Some((to, next)) = next else { break };
+        (from, point) = (to, next);
+    }
+    // As far as rounding leads: the conditions decide.
+    let is_optimal = point.is_optimal(&from);
+    kappa.clone_from_slice(&from);
+    is_optimal
+}
+
+impl<T: Real> Point<T> {
+    /// None where A is not positive definite.
+    fn at(h: &[T], p: usize, unknowns: &[usize], balance: f64, kappa: &[T]) -> Option<Point<T>> {
+        let (m, count, zero) = (unknowns.len(), kappa.len(), kappa[0].zero());
+        let room = |size: usize| vec![zero.clone(); size];
+        let (mut a, mut pivots, mut work, mut inverse) = (room(p * p), room(p), room(p * p), room(p * p));
+        add_outers(&mut a, h, p, kappa, unknowns, 1.0);
+        let content = trace(&a, p).rounded();
+        let least = factorize(&mut a, p, 0.0, &mut pivots);
+        if !(least.rounded() > at_rounding::<T>(FLOOR)) {
+            return None;
+        }
+        let log_determinant: f64 = pivots.iter().map(|pivot| -pivot.rounded().ln()).sum();
+        invert(&a, p, &pivots, &mut work, &mut inverse);
+        let (mut images, mut once, mut twice) = (room(m * p), room(m * m), room(m * m));
+        row_products(h, &inverse, p, false, &mut images);
+        row_products(h, &images, p, true, &mut once);
+        row_products(&images, &images, p, true, &mut twice);
+        let (log, reciprocal) = (zero.constant(&(1.0 - balance)), zero.constant(&(2.0 * balance)));
+        let mut hessian = room(count * count);
+        tie(&once, &twice, unknowns, count, count, &mut hessian, |a, b| {
+            a.clone() * &(log.clone() * a).plus_product(&reciprocal, b)
+        });
+        let (mut slope, mut terms) = (room(count), vec![0.0; count]);
+        for (s, &unknown) in unknowns.iter().enumerate() {
+            let row = &h[s * p..(s + 1) * p];
+            let (plain, first) = (inner(row, row), log.clone() * &once[s * m + s]);
+            let second = twice[s * m + s].clone().scaled(&balance);
+            terms[unknown] += plain.rounded() + first.rounded() + second.rounded();
+            slope[unknown] = slope[unknown].clone() + &plain - &first - &second;
+        }
+        let value = content + balance * trace(&inverse, p).rounded() - (1.0 - balance) * log_determinant;
+        value.is_finite().then_some(Point { value, slope, terms, hessian })
+    }
+
+    /// The Newton step of the free unknowns.
+    fn newton(&self, free: &[usize], count: usize) -> Option<Vec<T>> {
+        let n = free.len();
+        if n == 0 {
+            return Some(Vec::new());
+        }
+        let entry = |(i, j): (usize, usize)| self.hessian[free[i.max(j)] * count + free[i.min(j)]].clone();
+        let mut matrix: Vec<T> = (0..n * n).map(|ij| entry((ij / n, ij % n))).collect();
+        let mut pivots = vec![self.slope[0].zero(); n];
+        factorize(&mut matrix, n, at_rounding::<T>(FLOOR), &mut pivots);
+        let mut step: Vec<T> = free.iter().map(|&i| self.slope[i].negated()).collect();
+        solve(&matrix, n, &pivots, &mut step);
+        step.iter().all(|d| d.rounded().is_finite()).then_some(step)
+    }
+
+    fn is_optimal(&self, kappa: &[T]) -> bool {
+        let allowed = at_half::<T>(OPTIMAL);
+        kappa.iter().zip(&self.slope).zip(&self.terms).all(|((k, slope), terms)| {
+            let slope = slope.rounded();
+            slope >= -allowed * terms && (k.rounded() == 0.0 || slope <= allowed * terms)
+        })
+    }
+}

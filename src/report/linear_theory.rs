@@ -1,0 +1,77 @@
+//! Whether the linear theory holds for what the finite elements do.
+
+use super::number::finite;
+use crate::model::Deformation;
+use crate::study::{BodyLoad, ModelMotion, Outcome};
+use serde::{Deserialize, Serialize};
+
+/// How far linear finite elements are deformed under a load or in a motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DeformationRecord {
+    /// The load; null for the motion.
+    pub load: Option<String>,
+    /// The largest principal strain by size.
+    pub strain: Option<f64>,
+    /// The largest rotation, rad.
+    pub rotation: Option<f64>,
+    /// Whether that is beyond the linear theory.
+    pub beyond_linear: bool,
+}
+
+impl DeformationRecord {
+    fn new(load: Option<&str>, deformation: Deformation) -> DeformationRecord {
+        DeformationRecord {
+            load: load.map(str::to_string),
+            strain: finite(deformation.strain),
+            rotation: finite(deformation.rotation),
+            beyond_linear: deformation.exceeds(Deformation::LINEAR),
+        }
+    }
+
+    /// Of each load and of the motion, where they are linear.
+    pub(super) fn all(outcome: &Outcome) -> Vec<DeformationRecord> {
+        let loads = outcome.loads.iter().filter_map(of_load);
+        let motion = moved(outcome).and_then(|body| body.deformation);
+        loads
+            .map(|(load, deformation)| DeformationRecord::new(Some(&load.name), deformation))
+            .chain(motion.map(|deformation| DeformationRecord::new(None, deformation)))
+            .collect()
+    }
+}
+
+fn of_load(load: &BodyLoad) -> Option<(&BodyLoad, Deformation)> {
+    Some((load, load.deformation?))
+}
+
+fn moved(outcome: &Outcome) -> Option<&ModelMotion> {
+    outcome.motion.as_ref()?.models.first()
+}
+
+/// Which loads the linear theory is too small for, and the motion.
+pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
+    let loads = outcome.loads.iter().filter_map(of_load).map(|(load, deformation)| (load.name.as_str(), deformation));
+    let motion = moved(outcome).and_then(|body| Some(("the motion", body.deformation?)));
+    let beyond = loads.chain(motion).filter(|(_, deformation)| deformation.exceeds(Deformation::LINEAR));
+    let note = |(name, Deformation { strain, rotation }): (&str, Deformation)| {
+        let bound = Deformation::LINEAR;
+        format!(
+            "finite elements: strains of up to {:.0} % and rotations of up to {rotation:.2} rad under {name} are beyond the linear \
+             theory ({:.0} %, {bound} rad); a \"law\" in [material] asks for large deformation",
+            100.0 * strain,
+            100.0 * bound
+        )
+    };
+    beyond.map(note).collect()
+}
+
+/// Of a network whose springs turn beside linear finite elements, what of its error is the fit's.
+pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>) -> Option<String> {
+    let ([mean, max], [own_mean, own_max]) = (model.error()?, model.linear_error?);
+    let rotation = body?.rotation;
+    Some(format!(
+        "{}: its springs turn and the finite elements, which rotate by up to {rotation:.2} rad, are linear: of the %e_rms \
+         {mean:.2} / {max:.2} the fit's is {own_mean:.2} / {own_max:.2}, found with both linear; \"linear = true\" in [motion] \
+         compares so, a \"law\" in [material] compares both at large deformation",
+        model.name
+    ))
+}

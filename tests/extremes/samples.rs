@@ -1,0 +1,277 @@
+//! Small scenes that together have every key with a number.
+
+/// Small deformation: every kind of load, frequencies, moduli, a gauge, measured displacements, several fits.
+pub const LINEAR: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1], origin = [0, 0, 0] }
+scale = 1.0
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000.0
+[[fit]]
+objective = "modal"
+higher = 0.3
+springs = ["edge", "face diagonal", "body diagonal", "bulk"]
+[[fit]]
+objective = "divergence"
+balance = 0.5
+[[fit]]
+objective = "exact"
+energy = "stable-mooney-rivlin"
+share = 0.5
+[[fix]]
+group = "zmin"
+[[load]]
+group = "zmax"
+traction = [0, 0, 1.0]
+[[load]]
+group = "zmax"
+traction = [0, 0, "2.0*x"]
+[[load]]
+group = "zmax"
+force = [0, 0, 1.0]
+[[load]]
+body = [0, 0, 1.0]
+[[load]]
+group = "zmax"
+displacement = ["free", "free", 0.01]
+measured = { file = "measured.csv", scale = 1.0 }
+[output]
+frequencies = 2
+moduli = true
+"#;
+
+/// A plane gauge, and the general solvers of a fit.
+pub const PLANE: &str = r#"
+[mesh]
+box = { element = "quad4", size = [2, 1], cells = [2, 1] }
+[material]
+young = "10 kPa"
+poisson = 0.3
+plane = "stress"
+thickness = 0.1
+[[fit]]
+objective = "frobenius"
+solver = "particle-swarm"
+topology = true
+sparsity = 0.1
+iterations = 20
+[[fix]]
+group = "xmin"
+[[load]]
+group = "xmax"
+traction = [1.0, 0]
+[gauge]
+group = "body"
+axis = "x"
+area = 0.1
+"#;
+
+/// Rods, from a file.
+pub const RODS: &str = r#"
+[mesh]
+file = "rods.msh"
+quality = { least = 1e-4 }
+[material]
+young = 10e3
+poisson = 0.3
+area = 0.01
+[[fit]]
+objective = "frobenius"
+[[fix]]
+where = "x < 0.5"
+[[fix]]
+where = "x > -1"
+axes = ["y", "z"]
+[[load]]
+where = "x > 0.5"
+force = [1.0, 0, 0]
+"#;
+
+/// Large deformation and sampled forces.
+pub const LARGE: &str = r#"
+[mesh]
+box = { element = "tri3", size = [1, 1], cells = [1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+law = "neo-hookean"
+[[fit]]
+objective = "sampled"
+higher = 0.5
+norm = "huber"
+huber = 0.5
+shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = [-0.1, 0.2], perturbation = 0.02, seed = 1 }
+[[fit]]
+name = "law"
+objective = "sampled"
+force = "k*(exp(a*s) - 1)"
+bounds = { a = [0.0, 10.0] }
+starts = 2
+shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = 0.2 }
+[newton]
+steps = 2
+iterations = 8
+tolerance = 1e-8
+[[fix]]
+group = "ymin"
+[[load]]
+group = "ymax"
+traction = [0, 100.0]
+"#;
+
+/// Fits to the whole object.
+pub const WHOLE: &str = r#"
+[mesh]
+box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000
+[[fit]]
+name = "one"
+objective = "whole"
+start = ["modal"]
+higher = 0.3
+loads = ["pull"]
+regularization = 0.01
+iterations = 5
+seed = 3
+frequencies = 1
+[[fit]]
+name = "two"
+objective = "whole"
+start = "divergence"
+balance = 0.5
+loads = ["pull"]
+validate = ["push"]
+range = 10.0
+iterations = 5
+[[fit]]
+name = "three"
+objective = "whole"
+start = "sampled"
+law = "neo-hookean"
+shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = 0.2, perturbation = 0.02, seed = 1 }
+huber = 0.5
+norm = "huber"
+loads = ["pull"]
+regularization = 0.01
+iterations = 3
+[[fix]]
+group = "zmin"
+[[load]]
+name = "pull"
+group = "zmax"
+traction = [0, 0, 1.0]
+[[load]]
+name = "push"
+group = "zmax"
+traction = [1.0, 0, 0]
+"#;
+
+/// A disc in motion: pulled, pushed and damped.
+pub const MOTION: &str = r#"
+[mesh]
+disc = { element = "tri3", radius = 1.0, height = 0.2, rings = 2, points = 16, rim = 9 }
+[material]
+young = 10e3
+poisson = 0.3
+thickness = 0.01
+density = 1000.0
+[[fit]]
+objective = "offdiag"
+nonnegative = true
+[[fix]]
+group = "rim"
+[motion]
+duration = 0.02
+step = 0.01
+iterations = 5
+tolerance = 1e-8
+solver = "conjugate-gradients"
+remainder = 1e-8
+gravity = [0, 0, -9.81]
+damping = { rayleigh = [0.5, 0.002] }
+every = 0.01
+watch = { group = "middle" }
+[[motion.pull]]
+group = "middle"
+displacement = ["0.001*t", "free", 0.0]
+[[motion.force]]
+where = "x > 0 && x^2 + y^2 < 0.5"
+force = ["0.1*t", 0.0, 0.1]
+"#;
+
+/// A cube in linear motion, its springs with dampers of a ratio; and with symplectic steps.
+pub const DAMPED: &str = r#"
+[mesh]
+box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000
+[[fit]]
+objective = "exact"
+nonnegative = true
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.02
+step = 0.01
+linear = true
+integrator = "newmark"
+finite_elements = false
+damping = { ratio = 0.1 }
+every = 0.01
+[[motion.force]]
+group = "zmax"
+force = ["1 - t", 0, 0]
+"#;
+
+/// With finite elements that follow a law in motion, explicitly.
+pub const EXPLICIT: &str = r#"
+[mesh]
+box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000
+law = "neo-hookean"
+[[fit]]
+objective = "exact"
+energy = "neo-hookean"
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.002
+step = 0.0005
+integrator = "symplectic-euler"
+gravity = [-9.81, 0, 0]
+every = 0.001
+[[motion.pull]]
+group = "zmax"
+displacement = ["free", 0, "0.01*t"]
+"#;
+
+pub const ALL: [(&str, &str); 8] = [
+    ("linear", LINEAR),
+    ("plane", PLANE),
+    ("rods", RODS),
+    ("large", LARGE),
+    ("whole", WHOLE),
+    ("motion", MOTION),
+    ("damped", DAMPED),
+    ("explicit", EXPLICIT),
+];
+
+/// Files that the scenes name.
+pub const FILES: [(&str, &str); 2] = [
+    ("measured.csv", "point,ux,uy,uz\n4,0.001,0,0.01\n5,0,0,0.01\n6,0,0.001,0.01\n7,0,0,0.01\n"),
+    (
+        "rods.msh",
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 2 0.5 0.5\n$EndNodes\n$Elements\n2\n\
+         1 1 2 0 1 1 2\n2 1 2 0 1 2 3\n$EndElements\n",
+    ),
+];

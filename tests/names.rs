@@ -1,0 +1,112 @@
+//! Names from outside: what was probably meant by a wrong one, and that none reaches a terminal as a command.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn springfit(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+const SQUARE: &str = "title = \"square\"\n[mesh]\nbox = { element = \"quad4\", size = [1, 1], cells = [2, 2] }\n[material]\n\
+                      young = 1000\npoisson = 0.3\nthickness = 0.01\n[[fit]]\nobjective = \"modal\"\nsprings = [\"edge\", \"bulk\"]\n\
+                      name = \"first\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [1, 0]\n\
+                      [output]\nvtu = true\ncsv = true\n";
+
+/// Every closed list of names suggests the nearest one, and nothing where none is near.
+#[test]
+fn a_wrong_name_is_answered_with_the_nearest() {
+    let folder = TempDir::new().unwrap();
+    for (from, to, line, key, meant) in [
+        ("\"modal\"", "\"model\"", 9, "fit[0].objective", "modal"),
+        ("\"modal\"", "\"van-gelder-simpel\"", 9, "fit[0].objective", "van-gelder-simple"),
+        ("\"modal\"", "\"modal\"\nsolver = \"nelder-maed\"", 10, "fit[0].solver", "nelder-mead"),
+        ("\"modal\"", "\"frobenius\"\nweight = \"moddal\"", 10, "fit[0].weight", "modal"),
+        ("\"quad4\"", "\"qaud4\"", 3, "mesh.box.element", "quad4"),
+        ("\"bulk\"]", "\"bluk\"]", 10, "fit[0].springs", "bulk"),
+        ("poisson", "posson", 6, "material.posson", "poisson"),
+        ("name = \"first\"", "higer = 0.1", 11, "fit[0].higer", "higher"),
+        ("\"xmin\"", "\"xmni\"", 13, "fix[0].group", "xmin"),
+        ("thickness = 0.01", "thickness = 0.01\nlaw = \"neo-hokean\"", 8, "material.law", "neo-hookean"),
+    ] {
+        fs::write(folder.path().join("s.toml"), SQUARE.replace(from, to)).unwrap();
+        let output = springfit(folder.path(), &["run", "s.toml"]);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(text.starts_with(&format!("error: s.toml:{line}: {key}: ")), "{text}");
+        assert!(text.ends_with(&format!("; did you mean \"{meant}\"?\n")), "{text}");
+        assert_eq!(output.status.code(), Some(2));
+    }
+    fs::write(folder.path().join("s.toml"), SQUARE.replace("\"modal\"", "\"xyz\"")).unwrap();
+    let output = springfit(folder.path(), &["run", "s.toml"]);
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("did you mean"));
+}
+
+/// A fault of an option is named by the option as it is typed.
+#[test]
+fn options_are_named_as_they_are_typed() {
+    let folder = TempDir::new().unwrap();
+    let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n\
+                1 2 2 1 1 1 2 3\n$EndElements\n";
+    fs::write(folder.path().join("m.msh"), mesh).unwrap();
+    let common = ["fit", "m.msh", "--young", "1", "--poisson", "0.3", "-o", "k.csv", "--thickness", "1"];
+    for (more, key) in [
+        (&["--objective", "offdiag", "--springs", "edgy"][..], "--springs"),
+        (&["--objective", "ofdiag"], "--objective"),
+        (&["--objective", "sampled", "--law", "neo-hookaen"], "--law"),
+        (&["--objective", "sampled", "--law", "neo-hookean", "--shapes", "0"], "--shapes"),
+        (&["--scale", "5 kPa"], "--scale"),
+        (&["--density", "5 mm"], "--density"),
+    ] {
+        let output = springfit(folder.path(), &[&common[..], more].concat());
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(text.starts_with(&format!("error: {key}: ")), "{more:?}: {text}");
+    }
+    for (arguments, key) in [
+        (&["compare", "tri3", "--shapes", "0"][..], "--shapes"),
+        (&["compare", "tri3", "--iterations", "0"], "--iterations"),
+        (&["compare", "tri3", "--law", "neo-hookaen"], "--law"),
+        (&["compare", "tri3", "--poisson", "2"], "--poisson"),
+    ] {
+        let output = springfit(folder.path(), arguments);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(text.starts_with(&format!("error: {key}: ")), "{arguments:?}: {text}");
+    }
+}
+
+/// Escapes in titles, names, groups and paths are replaced wherever they are printed or written.
+#[test]
+fn no_escape_of_an_input_is_printed_or_written() {
+    let folder = TempDir::new().unwrap();
+    let escape = "\\u001b[31m\\u0007\\u009b";
+    let scene = SQUARE
+        .replace("\"square\"", &format!("\"sq{escape}\""))
+        .replace("\"first\"", &format!("\"fit{escape}\""))
+        .replace("\"pull\"", &format!("\"load{escape}\""));
+    fs::write(folder.path().join("s\u{1b}[31m.toml"), &scene).unwrap();
+    let clean = |what: &str, bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes);
+        let found = text.chars().find(|c| c.is_control() && !matches!(c, '\n' | '\t'));
+        assert!(found.is_none(), "{what} has {found:?}: {}", text.escape_debug());
+    };
+    let run = |arguments: &[&str]| {
+        let output = springfit(folder.path(), arguments);
+        clean("stdout", &output.stdout);
+        clean("stderr", &output.stderr);
+        output.status.code()
+    };
+    assert_eq!(run(&["run", "s\u{1b}[31m.toml", "--out", "o\u{1b}"]), Some(0));
+    assert_eq!(run(&["converge", "s\u{1b}[31m.toml", "--levels", "2", "--out", "c\u{1b}"]), Some(0));
+    for place in ["o\u{1b}", "c\u{1b}"] {
+        for entry in fs::read_dir(folder.path().join(place)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|ending| ending != "json") {
+                clean(&path.display().to_string(), &fs::read(&path).unwrap());
+            }
+        }
+    }
+    fs::write(folder.path().join("g.toml"), SQUARE.replace("\"xmin\"", &format!("\"x{escape}\""))).unwrap();
+    assert_eq!(run(&["run", "g.toml"]), Some(2));
+    assert_eq!(run(&["run", "none\u{1b}[2J.toml"]), Some(2));
+    assert_eq!(run(&["check", "none\u{1b}[2J.toml"]), Some(2));
+}
