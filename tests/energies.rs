@@ -183,7 +183,10 @@ fn wrong_files_are_told() {
         (file("mu*a", "colour = 1"), "…colour: unknown field…"),
     ] {
         let found = Energy::parse(&text, solid(1.0, 0.3)).unwrap_err().to_string();
-        reads(&found, error).unwrap();
+        // Keys that are missing have no line.
+        let found =
+            found.split_once(": ").filter(|(place, _)| place.starts_with("line ")).map_or(&*found, |(_, rest)| rest);
+        reads(found, error).unwrap();
     }
     let unknown = Energy::load("rubber", solid(1.0, 0.3)).unwrap_err().to_string();
     reads(&unknown, "energy: … corotational, fibre, fung, … found \"rubber\"").unwrap();

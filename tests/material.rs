@@ -82,10 +82,8 @@ fn solid(poisson: f64) -> Material {
 
 /// Within a share of 1e-9: constants of some hundred springs are added up and a stiffness of a few hundred equations is solved.
 fn is_material(found: &NetworkMaterial, asked: Material, name: &str) {
-    // No rule integrates the functions of the pentagon exactly: that of its stiffness errs by 1e-8 of the area.
-    let allowed = if name == "pentagon5" { 2e-8 } else { 1e-9 };
-    assert!(found.largest_distance < allowed, "{name}: {found:?}");
-    assert!((found.young.unwrap() / asked.young() - 1.0).abs() < allowed, "{name}: {found:?}");
+    assert!(found.largest_distance < 1e-9, "{name}: {found:?}");
+    assert!((found.young.unwrap() / asked.young() - 1.0).abs() < 1e-9, "{name}: {found:?}");
     match found.poisson {
         Some(poisson) => assert!((poisson - asked.poisson()).abs() < 1e-9, "{name}: {found:?}"),
         None => assert_eq!(asked.state().dimension(), 1, "{name}"),

@@ -202,7 +202,7 @@ fn errors_of_scenes_say_what_was_expected_and_found() {
         ),
         (gauge("axis = \"x\"\narea = 1"), "gauge: … found neither"),
         (gauge("where = \"x > 0\"\naxis = \"r\"\narea = 1"), "gauge.axis: … found \"r\""),
-        (gauge("where = \"x > 0\"\naxis = \"x\"\narea = 0"), "gauge.area: … found 0.0"),
+        (gauge("where = \"x > 0\"\naxis = \"x\"\narea = 0"), "gauge.area: … found 0"),
         (gauge("where = \"x > 0\"\naxis = \"z\"\narea = 1"), "gauge.axis: … found \"z\""),
         (gauge("where = \"x > 0.9\"\naxis = \"x\"\narea = 1"), "gauge.where: … found 4 points …"),
         (gauge("group = \"middle\"\naxis = \"x\"\narea = 1"), "gauge.group: … found \"middle\""),

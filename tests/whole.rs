@@ -558,7 +558,7 @@ fn fits_of_nothing_end() {
     let all =
         text.replace("KEYS", "loads = [\"tension\"]").replace(held, "where = \"x > -1\"\ndisplacement = [1, 0, 0]");
     let error = run(&written(&all).1, &mut |_| {}).unwrap_err().to_string();
-    assert!(error.contains("fit[1].loads: "), "{error}");
+    assert!(error.contains("load[0].displacement[0]: "), "{error}");
     let (_folder, scene) = written(&text.replace("KEYS", "springs = [\"edge\"]"));
     let outcome = run(&scene, &mut |_| {}).unwrap();
     assert!(!outcome.fits[1].kind.whole().unwrap().stands);

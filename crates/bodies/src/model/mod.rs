@@ -34,7 +34,7 @@ pub use pressure::smoothed_pressure;
 pub(crate) use size::ADVICE;
 pub use size::check_body;
 pub use support::{Support, Unheld, unheld_bodies};
-pub use system::finite_elements;
+pub use system::{content, finite_elements};
 pub use tension::RestTension;
 
 use faer::sparse::Triplet;

@@ -20,6 +20,13 @@ pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], 
     }
 }
 
+/// The length, area or volume of the cells by the rules of their stiffness: what energies that these rules integrate are means over.
+pub fn content(mesh: &Mesh) -> f64 {
+    let mut content = 0.0;
+    each_cell(mesh, |_, _, geometry| content += geometry.content());
+    content
+}
+
 /// Entries of the lower triangle of a matrix with so many rows.
 pub(super) fn triangle(rows: usize) -> usize {
     rows * (rows + 1) / 2

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::fit::{CellFits, Fit, fit_cells};
 use crate::material::Material;
 use crate::mesh::{BoxMesh, CellBlock, Mesh, Selection, SideIndex};
-use crate::model::{Entries, Network, Support, finite_elements, masses};
+use crate::model::{Entries, Network, Support, content, finite_elements};
 use crate::solve::System;
 use crate::springs::Springs;
 use crate::study::metrics::SOLVED;
@@ -122,7 +122,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
         };
         entries.iter().map(entry).sum()
     };
-    let volume: f64 = masses(mesh, 1.0, 1.0).iter().sum();
+    let volume = content(mesh);
     let count = strains.len();
     let stiffness = DMatrix::from_fn(count, count, |i, j| energy(&solutions[i], &solutions[j]) / volume);
     Ok(moduli(stiffness, d))

@@ -3,7 +3,7 @@
 use super::isotropic::basis;
 use super::piece::{PatchSpring, Piece};
 use super::sample::Sample;
-use crate::model::{Entries, masses};
+use crate::model::{Entries, content};
 use nalgebra::{DMatrix, DVector};
 
 /// C of a sample, `[strains × strains]`, Pa, from the energies `V/2 ε : C : ε` under `u = ε x` of all points but those inside the
@@ -22,7 +22,7 @@ pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DM
     let basis = basis(d);
     // From one of its own points: bodies far from the origin lose no digits.
     let x = DMatrix::from_fn(space, piece.points.len() / space, |k, p| piece.points[p * space + k] - piece.points[k]);
-    let volume: f64 = masses(&sample.mesh, 1.0, 1.0).iter().sum();
+    let volume = content(&sample.mesh);
     let strained: Vec<DVector<f64>> = basis
         .iter()
         .map(|strain| {
