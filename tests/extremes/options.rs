@@ -167,7 +167,7 @@ fn written(folder: &Path) -> Vec<String> {
         if path.is_dir() {
             texts.extend(written(&path));
         } else if !known {
-            texts.extend(std::fs::read_to_string(&path).ok().filter(|_| !path.extension().is_some_and(|e| e == "svg")));
+            texts.extend(std::fs::read_to_string(&path).ok().filter(|_| path.extension().is_none_or(|e| e != "svg")));
         }
     }
     texts
