@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// What the finite elements are called among the models that move.
 const BODY: &str = "finite elements";
 
-/// That these files can be written into `folder`, which may not be there yet, and that none is one of the inputs.
+/// Checks that these files can be written into `folder`, which need not exist yet, and that no file is also an input.
 ///
 /// # Errors
 /// Names the file or the folder.

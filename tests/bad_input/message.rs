@@ -23,8 +23,8 @@ impl Place {
         place
     }
 
-    /// Whether it is the place that is expected. A value of a TOML file is always named with its line; where none is expected, the line
-    /// has to be one on which the key, or else the table around it, is written.
+    /// Whether this is the expected place. Errors of values in TOML files always have a line. If the expected place has no line, the
+    /// line found must be one that holds the key or the table around it.
     pub fn is<'a>(&self, expected: &Place, text_of: impl Fn(&str) -> Option<&'a [u8]>) -> bool {
         if expected.line.is_some() || expected.key.is_none() || self.line.is_none() {
             let is_file =

@@ -3,12 +3,12 @@
 use crate::error::Error;
 use std::fmt::Display;
 
-/// A name that is none of `names`: `expected …, found "…"`, and the name that was probably meant.
+/// The error for a name that is not in `names`: `expected …, found "…"`, and the name that was probably meant.
 pub fn unknown<'a>(expected: impl Display, names: impl IntoIterator<Item = &'a str>, found: &str) -> Error {
     Error::new(format!("expected {expected}, found \"{found}\"{}", suggestion(names, found)))
 }
 
-/// `; did you mean "…"?` with the one of `names` that is nearest to `found`, or nothing where none is near.
+/// `; did you mean "…"?` with the name in `names` that is nearest to `found`; empty if no name is near.
 ///
 /// The distance is that of Damerau and Levenshtein, the number of letters that are added, left out, changed or swapped; near is
 /// at most a third of the longer name.

@@ -50,7 +50,7 @@ pub fn bounded(key: &str, value: f64, unit: &str) -> Result<f64> {
 }
 
 /// That the components of a vector or the values of a field, in `unit`, are finite, and that they are all zero or the largest is
-/// within the range. Small components beside large ones are none of the input's faults.
+/// within the range. A small component beside a large one is allowed.
 ///
 /// # Errors
 /// A value is not finite or too large, or all are too small.

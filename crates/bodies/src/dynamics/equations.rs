@@ -31,7 +31,7 @@ pub(super) trait Equations: std::fmt::Debug {
     /// Adds this share of the largest entry of the diagonal to all of it.
     fn shift(&mut self, share: f64);
 
-    /// What solutions with this A have in common; false where there is none.
+    /// Works out what all solutions with this A share, such as a factor; false if A has no factor.
     fn prepare(&mut self) -> bool;
 
     /// Whether A is positive definite, where that is proved: `is_prepared` is what [`Equations::prepare`] has said of it. `x`, a force

@@ -162,7 +162,7 @@ impl<const D: usize> Equations for Gradients<D> {
     }
 
     /// Before a direction of negative curvature is met, the residual along it does not become less: so small a residual of a random
-    /// force proves that there is none. Iterations that do not lead there prove nothing.
+    /// force proves that no such direction exists. Iterations that do not reach this residual prove nothing.
     fn is_definite(&mut self, is_prepared: bool, x: &mut [f64]) -> Option<bool> {
         let tolerance = std::mem::replace(&mut self.tolerance, DEFINITE);
         let end = is_prepared.then(|| self.solve(x, None).end);

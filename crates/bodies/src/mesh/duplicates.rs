@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 impl Mesh {
     /// Refuses cells that have the points of an earlier one, in any order, or leaves them out: they would double stiffness and mass.
-    /// Points at one place count as one, `first` names the first of each. The cell that is kept takes over the groups of those that
-    /// are left out.
+    /// Points at the same place count as one point; `first` gives the first point of each place. The cell that is kept joins the groups
+    /// of the cells that are left out.
     ///
     /// # Errors
     /// There are such cells, and they may not be left out.

@@ -5,7 +5,7 @@ use super::mesh::{CellIndex, Mesh, SideIndex};
 use crate::springs::{distance, dot};
 use std::collections::HashMap;
 
-/// A height below this share of the lengths is none.
+/// A height below this share of the lengths counts as zero.
 const FLAT: f64 = 1e-9;
 
 impl Mesh {

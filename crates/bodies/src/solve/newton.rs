@@ -50,7 +50,7 @@ pub struct Equilibrium {
     pub is_rounded: bool,
 }
 
-/// An equilibrium whose forces are rounded by more than this share of those that act is none.
+/// Forces that balance are no proof of an equilibrium if their rounding is more than this share of the applied forces.
 const ROUGHEST: f64 = 1e-4;
 /// A prescribed displacement is reached to this share of the largest.
 const REACHED: f64 = 1e-14;

@@ -16,12 +16,13 @@ use crate::stiffness::Geometry;
 use crate::symbolic::Differentiable;
 
 /// The constants of one element with every operation in numbers of the kind of `any`, `[springs]`, N/m; nodes at `x`,
-/// `[nodes × dimension]`, m. Tabulation and moduli are taken as they are; gradients of springs on functions are known in twice the digits of `f64`. Iterations end where they do in `f64`, and no
-/// bound is kept: for that there is [`bounded_constants`].
+/// `[nodes × dimension]`, m. Tabulation and moduli are taken as they are; gradients of springs on functions are known
+/// in twice the digits of `f64`. Iterations end where they do in `f64`, and bounds are ignored: [`bounded_constants`] keeps them.
 ///
 /// # Errors
 /// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, the
-/// Jacobian is not positive everywhere, the springs are linearly dependent or pull at rest, or the objective needs what is known in `f64` alone.
+/// Jacobian is not positive everywhere, the springs are linearly dependent or pull at rest, or the objective needs what is known in
+/// `f64` alone.
 pub fn constants_of_kind<T: Real>(
     any: &T,
     element: &Element,

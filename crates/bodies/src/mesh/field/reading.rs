@@ -67,7 +67,7 @@ impl Reading<'_> {
     /// `[points · dimension]`, m.
     ///
     /// # Errors
-    /// There is none, or all are too small for their squares.
+    /// No displacement is given, or all are so small that their squares vanish.
     pub fn displacements(self) -> Result<Vec<Option<f64>>> {
         if self.displacements.iter().all(Option::is_none) {
             return Err(Error::new("the file measures no displacement of any point"));

@@ -26,7 +26,7 @@ const ROUNDINGS: f64 = 32.0;
 const PATTERNS: u64 = 4;
 /// How far nodes are moved, of the element's size, from the farthest down while constants change by more than a tenth.
 const MOVES: [f64; 4] = [1.0 / (1u64 << 26) as f64, 1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 42) as f64, 1e-15];
-/// Fits with a bound or one constant per group are tried in one of so many cases: each is as costly as the plain one.
+/// Bounded and tied fits are tried in one case out of this number, because each costs as much as the plain fit.
 const THINNED: usize = 4;
 /// kg/m³.
 const DENSITY: f64 = 1000.0;
