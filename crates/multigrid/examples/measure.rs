@@ -1,7 +1,7 @@
 //! Assembles, sets up and solves jittered bodies: `measure CASE CELLS [key=value …]`, one line of figures.
 //! With `export=FOLDER` the matrix is written for other solvers.
 
-#[path = "../tests/elastic/mod.rs"]
+#[path = "../tests/all/elastic/mod.rs"]
 mod elastic;
 
 use elastic::{Body, Shape};

@@ -22,11 +22,7 @@ pub(crate) fn add_product<const R: usize, const C: usize>(y: &mut [f64; R], a: &
 
 /// `y ← y + aᵀ x`.
 #[inline(always)]
-pub(crate) fn add_transposed_product<const R: usize, const C: usize>(
-    y: &mut [f64; C],
-    a: &Block<R, C>,
-    x: &[f64; R],
-) {
+pub(crate) fn add_transposed_product<const R: usize, const C: usize>(y: &mut [f64; C], a: &Block<R, C>, x: &[f64; R]) {
     for i in 0..R {
         for j in 0..C {
             y[j] += a[i][j] * x[i];

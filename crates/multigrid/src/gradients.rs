@@ -32,13 +32,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     ///
     /// # Errors
     /// A motion of the search has no energy above zero, the residual does not become less, the sizes do not agree, or the watch broke off.
-    pub fn solve(
-        &self,
-        b: &[f64],
-        tolerance: f64,
-        iterations: usize,
-        watch: &mut Watch,
-    ) -> Result<Solution, Fault> {
+    pub fn solve(&self, b: &[f64], tolerance: f64, iterations: usize, watch: &mut Watch) -> Result<Solution, Fault> {
         let rows = self.rows();
         if b.len() != rows * D {
             return Err(Fault::Size { what: "the right hand side", expected: rows * D, found: b.len() });

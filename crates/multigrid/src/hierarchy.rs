@@ -127,7 +127,8 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     }
 
     pub fn workspace(&self) -> Workspace<D, M> {
-        let stage = |rows: usize| Stage { force: vec![[0.0; M]; rows], motion: vec![[0.0; M]; rows], room: Room::new(rows) };
+        let stage =
+            |rows: usize| Stage { force: vec![[0.0; M]; rows], motion: vec![[0.0; M]; rows], room: Room::new(rows) };
         let others = self.levels[1..].iter().map(|level| stage(level.nodes)).collect();
         Workspace { first: Room::new(self.rows()), others }
     }

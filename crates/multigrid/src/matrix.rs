@@ -40,7 +40,8 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
 
     /// Bytes of the matrix.
     pub fn bytes(&self) -> usize {
-        self.values.len() * (size_of::<Block<R, C>>() + size_of::<u32>()) + self.pattern.starts.len() * size_of::<usize>()
+        self.values.len() * (size_of::<Block<R, C>>() + size_of::<u32>())
+            + self.pattern.starts.len() * size_of::<usize>()
     }
 
     /// `Σ_j A_ij x_j`.

@@ -55,7 +55,8 @@ pub(crate) fn tentative<const R: usize, const C: usize>(
 fn orthonormalize<const R: usize, const C: usize>(q: &mut [Block<R, C>]) -> (Block<C, C>, [bool; C]) {
     let mut r = zero::<C, C>();
     let mut held = [false; C];
-    let product = |q: &[Block<R, C>], a: usize, b: usize| -> f64 { q.iter().flatten().map(|row| row[a] * row[b]).sum() };
+    let product =
+        |q: &[Block<R, C>], a: usize, b: usize| -> f64 { q.iter().flatten().map(|row| row[a] * row[b]).sum() };
     for j in 0..C {
         let size = product(q, j, j).sqrt();
         for _ in 0..2 {
