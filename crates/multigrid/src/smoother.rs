@@ -43,11 +43,6 @@ impl<const N: usize> Smoother<N> {
         Smoother { inverse, upper, degree, ratio }
     }
 
-    /// `y ← D⁻¹ x`.
-    pub fn scale(&self, x: &[[f64; N]], y: &mut [[f64; N]]) {
-        scale(&self.inverse, x, y);
-    }
-
     /// The largest size of what the polynomial leaves of an error between zero and `upper`, squared: `max q(λ)²` over the interval that
     /// it damps; below it q rises to 1 at zero.
     pub fn damping(&self) -> f64 {
