@@ -1,4 +1,5 @@
-//! Assembles, sets up and solves jittered bodies: `measure CASE CELLS [key=value …]`, one line of figures.
+//! Assembles, sets up and solves jittered bodies: `measure CASE CELLS [key=value …]`, one line of figures;
+//! times are those of the processor.
 //! With `export=FOLDER` the matrix is written for other solvers.
 
 #[path = "../tests/all/elastic/mod.rs"]
@@ -8,7 +9,16 @@ use elastic::{Body, Shape};
 use springfit_multigrid::{Event, Multigrid, Settings, space_motions};
 use std::fs;
 use std::ops::ControlFlow;
-use std::time::Instant;
+
+/// Seconds of the processor that this process has taken, on all threads.
+fn seconds() -> f64 {
+    let text = fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
+    let own = |path: std::path::PathBuf| fs::read_to_string(path.join("schedstat")).unwrap_or(text.clone());
+    let tasks = fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    let nanoseconds =
+        tasks.map(|task| own(task.path()).split_whitespace().next().unwrap_or("0").parse::<f64>().unwrap_or(0.0));
+    1e-9 * nanoseconds.sum::<f64>()
+}
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -38,9 +48,9 @@ fn main() {
         ratio: number("ratio", defaults.ratio),
         dense: number("dense", defaults.dense as f64) as usize,
     };
-    let start = Instant::now();
+    let start = seconds();
     let matrix = body.matrix();
-    let assembly = start.elapsed().as_secs_f64();
+    let assembly = seconds() - start;
     let mut force = vec![0.0; body.points.len()];
     let far = body.points.iter().step_by(3).copied().fold(0.0, f64::max);
     for (x, f) in body.points.chunks_exact(3).zip(force.chunks_exact_mut(3)) {
@@ -57,11 +67,11 @@ fn main() {
         let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or("0").trim().to_string();
         line.split_whitespace().next().unwrap().parse::<f64>().unwrap() / 1e6
     };
-    let start = Instant::now();
+    let start = seconds();
     let verbose = value("verbose").is_some();
     let mut watch = |event: Event| {
         if verbose {
-            eprintln!("{:.2} s {event:?}", start.elapsed().as_secs_f64());
+            eprintln!("{:.2} s {event:?}", (seconds() - start));
         }
         ControlFlow::Continue(())
     };
@@ -69,13 +79,13 @@ fn main() {
         Ok(levels) => levels,
         Err(fault) => return println!("{case} {n}: {fault}"),
     };
-    let setup = start.elapsed().as_secs_f64();
-    let start = Instant::now();
+    let setup = seconds() - start;
+    let start = seconds();
     let solution = match levels.solve(&force, number("tolerance", 1e-8), 500, &mut watch) {
         Ok(solution) => solution,
         Err(fault) => return println!("{case} {n}: {fault}"),
     };
-    let solve = start.elapsed().as_secs_f64();
+    let solve = seconds() - start;
     let [low, high] = solution.spectrum;
     println!(
         "{case} {n}: {} unknowns, assembly {assembly:.2} s, setup {setup:.2} s, {} iterations {solve:.2} s, residual {:.1e}, spectrum \

@@ -19,11 +19,8 @@ def read(folder):
 
 
 def reduced(folder):
-    """The matrix of the nodes that are not held; held ones are held in all directions."""
-    from scipy.sparse import bsr_matrix
-
+    """The matrix of the nodes that are not held, as block CSR; held ones are held in all directions."""
     starts, columns, values, points, force, held = read(folder)
-    a = bsr_matrix((values, columns, starts))
     free = np.flatnonzero(held.reshape(-1, 3)[:, 0] == 0)
     place = -np.ones(len(points), int)
     place[free] = np.arange(len(free))
@@ -31,8 +28,7 @@ def reduced(folder):
     kept = (place[rows] >= 0) & (place[columns] >= 0)
     counts = np.bincount(place[rows[kept]], minlength=len(free))
     new = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-    blocks = bsr_matrix((values[kept], place[columns[kept]].astype(np.int32), new), shape=(3 * len(free),) * 2)
-    del a
+    blocks = (new, place[columns[kept]].astype(np.int32), values[kept])
     return blocks, points[free], force.reshape(-1, 3)[free].ravel()
 
 
@@ -57,9 +53,10 @@ def petsc(folder):
     petsc4py.init([])
     from petsc4py import PETSc
 
-    a, points, b = reduced(folder)
-    n = a.shape[0]
-    m = PETSc.Mat().createBAIJ((n, n), 3, csr=(a.indptr, a.indices, a.data), comm=PETSc.COMM_SELF)
+    (starts, columns, values), points, b = reduced(folder)
+    n = len(b)
+    m = PETSc.Mat().createBAIJ((n, n), 3, csr=(starts, columns, values.ravel()), comm=PETSc.COMM_SELF)
+    del starts, columns, values
     m.setOption(PETSc.Mat.Option.SPD, True)
     m = m.convert("aij")
     m.setBlockSize(3)
@@ -79,20 +76,21 @@ def petsc(folder):
     start = time.process_time()
     ksp.solve(f, x)
     solve = time.process_time() - start
-    residual = np.linalg.norm(b - a @ x.array) / np.linalg.norm(b)
+    residual = (f - m * x).norm() / f.norm()
     tell("PETSc GAMG", n, setup, ksp.getIterationNumber(), solve, residual)
 
 
 def pyamg(folder):
     import pyamg as amg
+    from scipy.sparse import bsr_matrix
 
-    a, points, b = reduced(folder)
+    (starts, columns, values), points, b = reduced(folder)
+    a = bsr_matrix((values, columns, starts), shape=(len(b), len(b)))
     start = time.process_time()
     ml = amg.smoothed_aggregation_solver(a, B=rigid(points), symmetry="symmetric", strength=("symmetric", {"theta": 0.0}), max_coarse=300)
     setup = time.process_time() - start
     start, count = time.process_time(), []
     m = ml.aspreconditioner(cycle="V")
-    # The criterion of SciPy is the plain residual; what the same norm as above means in it is taken from the run of `measure`.
     from pyamg.krylov import cg
 
     x, _ = cg(a, b, M=m, tol=1e-8, criteria="rMr", maxiter=500, residuals=count)

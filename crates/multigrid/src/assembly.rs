@@ -4,14 +4,15 @@ use crate::matrix::BlockMatrix;
 use crate::parallel::PIECE;
 use crate::pattern::{Groups, Pattern};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Groups whose matrices are in memory at a time.
 const BATCH: usize = 8192;
 
 impl<const D: usize> BlockMatrix<D, D> {
-    /// `Σ_g K_g`: `matrix(group, entries)` fills `entries`, `[nodes · D × nodes · D]`, zero before, with the symmetric matrix of the group,
-    /// or stops all with an error.
+    /// `Σ_g K_g`: `matrix(groups, entries)` fills `entries`, zero before, with the symmetric matrices of some groups, one after the other,
+    /// each `[nodes · D × nodes · D]`, or stops all with an error.
     ///
     /// The matrices of some thousand groups at a time are worked out on all threads; then each thread adds them into rows of its own.
     /// Each block is a sum in the order of the groups, the same on any number of threads.
@@ -21,7 +22,7 @@ impl<const D: usize> BlockMatrix<D, D> {
     pub fn assemble<E: Send>(
         pattern: Arc<Pattern>,
         groups: &Groups,
-        matrix: impl Fn(usize, &mut [f64]) -> Result<(), E> + Sync,
+        matrix: impl Fn(Range<usize>, &mut [f64]) -> Result<(), E> + Sync,
     ) -> Result<BlockMatrix<D, D>, E> {
         let mut sum = BlockMatrix::zero(pattern);
         sum.add(groups, matrix)?;
@@ -35,7 +36,7 @@ impl<const D: usize> BlockMatrix<D, D> {
     pub fn add<E: Send>(
         &mut self,
         groups: &Groups,
-        matrix: impl Fn(usize, &mut [f64]) -> Result<(), E> + Sync,
+        matrix: impl Fn(Range<usize>, &mut [f64]) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let pattern = self.pattern.clone();
         let threads = rayon::current_num_threads();
@@ -46,12 +47,7 @@ impl<const D: usize> BlockMatrix<D, D> {
                 .map(|part| {
                     let sizes = part.iter().map(|&group| (groups.of(group).len() * D).pow(2));
                     let mut entries = vec![0.0; sizes.sum()];
-                    let mut rest = &mut entries[..];
-                    for &group in part {
-                        let (own, others) = rest.split_at_mut((groups.of(group).len() * D).pow(2));
-                        matrix(group, own)?;
-                        rest = others;
-                    }
+                    matrix(part[0]..part[0] + part.len(), &mut entries)?;
                     Ok(entries)
                 })
                 .collect();

@@ -1,6 +1,6 @@
 //! Matrices of dense blocks, stored row by row.
 
-use crate::block::{Block, add_product, zero};
+use crate::block::{Block, zero};
 use crate::parallel::{PIECE, vectorized};
 use crate::pattern::Pattern;
 use rayon::prelude::*;
@@ -48,11 +48,17 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
     #[inline(always)]
     pub(crate) fn row_product(&self, row: usize, x: &[[f64; C]]) -> [f64; R] {
         let range = self.pattern.starts[row]..self.pattern.starts[row + 1];
-        let mut y = [0.0; R];
+        // A sum for each entry of a block: no addition waits for another.
+        let mut sums = zero::<R, C>();
         for (block, &column) in self.values[range.clone()].iter().zip(&self.pattern.columns[range]) {
-            add_product(&mut y, block, &x[column as usize]);
+            let x = &x[column as usize];
+            for i in 0..R {
+                for j in 0..C {
+                    sums[i][j] += block[i][j] * x[j];
+                }
+            }
         }
-        y
+        sums.map(|row| row.iter().sum())
     }
 
     /// `y ← A x`.

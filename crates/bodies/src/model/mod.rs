@@ -1,6 +1,7 @@
 //! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
 
 mod assembly;
+mod blocks;
 mod deformation;
 mod elastic;
 mod fibres;
@@ -20,6 +21,7 @@ mod support;
 mod system;
 mod tension;
 
+pub use blocks::BlockStiffness;
 pub use deformation::Deformation;
 pub use elastic::{Body, Elastic};
 pub use fibres::fibre_springs;

@@ -2,12 +2,16 @@
 
 mod cholesky;
 mod internal;
+mod levels;
 mod linear;
+mod method;
 mod modes;
 mod newton;
 mod stability;
 
+pub use levels::{Levels, Solved, compare_levels};
 pub use linear::{Factor, System};
+pub use method::{LinearMethod, LinearSolver};
 pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};

@@ -7,9 +7,9 @@ use nalgebra::{DMatrix, DVector};
 /// Steps of Lanczos' method; the ends of the spectrum, which are wanted, come first.
 const STEPS: usize = 40;
 /// An energy ratio below this is a zero with rounding: the network does not resist the motion.
-const NOTHING: f64 = 1e-9;
+pub(super) const NOTHING: f64 = 1e-9;
 /// An energy ratio below this marks a mechanism in the making: the network yields a hundred times more than the body.
-const SOFT: f64 = 0.01;
+pub(super) const SOFT: f64 = 0.01;
 
 /// How a network resists the motions that a body resists.
 #[derive(Debug, Clone, PartialEq)]

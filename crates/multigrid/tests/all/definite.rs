@@ -1,7 +1,9 @@
 //! Whether a matrix is positive definite: found, or shown by a motion.
 
 use crate::elastic::{Body, Shape, random};
-use springfit_multigrid::{BlockMatrix, Definiteness, Fault, Motion, Multigrid, Settings, space_motions, unwatched};
+use springfit_multigrid::{
+    BlockMatrix, Definiteness, End, Fault, Motion, Multigrid, Settings, space_motions, unwatched,
+};
 use std::sync::Arc;
 
 /// `xᵀ A x` of a motion, worked out here.
@@ -122,12 +124,12 @@ fn the_softest_motion_has_the_least_quotient() {
     let mut soft = Body::<3>::new([12, 6, 6], [1.0; 3], Shape::Cube, 0.4, 0.3);
     soft.young.iter_mut().for_each(|e| *e = 0.25);
     let (a, b) = (soft.matrix(), body.matrix());
-    let found = soft.multigrid(&Settings::default()).softest(&a, &b, None, 60, &mut unwatched).unwrap();
+    let found = soft.multigrid(&Settings::default()).extreme(End::Least, &a, &b, None, 60, &mut unwatched).unwrap();
     assert!((found.quotient - 0.25).abs() < 1e-12 && found.is_settled);
     // One soft layer: the quotient is between the moduli, at the softer one for a motion of that layer alone.
     soft.young.iter_mut().enumerate().for_each(|(cell, e)| *e = if (6..9).contains(&(cell % 12)) { 0.01 } else { 1.0 });
     let a = soft.matrix();
-    let found = soft.multigrid(&Settings::default()).softest(&a, &b, None, 60, &mut unwatched).unwrap();
+    let found = soft.multigrid(&Settings::default()).extreme(End::Least, &a, &b, None, 60, &mut unwatched).unwrap();
     assert!(found.quotient >= 0.01 - 1e-9 && found.quotient < 0.0105, "{found:?}");
     assert!(found.iterations < 40);
 }

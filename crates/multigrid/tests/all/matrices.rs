@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use springfit_multigrid::{BlockMatrix, Groups, Pattern};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
+use std::ops::Range;
 use std::sync::Arc;
 
 proptest! {
@@ -22,10 +23,14 @@ proptest! {
         }
         let all = Groups { nodes: &nodes, starts: &starts };
         let entry = |group: usize, i: usize, j: usize| ((group as u64 * 31 + (i * j + i + j) as u64 * 7 + seed) % 101) as f64 - 50.0;
-        let fill = |group: usize, entries: &mut [f64]| {
-            let n = 2 * groups[group].len();
-            for i in 0..n {
-                (0..n).for_each(|j| entries[i * n + j] = entry(group, i, j));
+        let fill = |some: Range<usize>, mut entries: &mut [f64]| {
+            for group in some {
+                let n = 2 * groups[group].len();
+                let (own, rest) = entries.split_at_mut(n * n);
+                for i in 0..n {
+                    (0..n).for_each(|j| own[i * n + j] = entry(group, i, j));
+                }
+                entries = rest;
             }
             Ok::<(), Infallible>(())
         };

@@ -3,6 +3,7 @@
 
 use springfit_multigrid::{BlockMatrix, Groups, Multigrid, Pattern, Settings, plane_motions, space_motions, unwatched};
 use std::convert::Infallible;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A box of cells, each with its own modulus.
@@ -102,8 +103,12 @@ impl<const D: usize> Body<D> {
 
     pub fn matrix(&self) -> Arc<BlockMatrix<D, D>> {
         let pattern = Arc::new(Pattern::of_groups(self.points.len() / D, &[self.groups()]));
-        let add = |cell: usize, entries: &mut [f64]| {
-            self.stiffness(cell, entries);
+        let add = |cells: Range<usize>, mut entries: &mut [f64]| {
+            for cell in cells {
+                let (own, rest) = entries.split_at_mut((self.groups().of(cell).len() * D).pow(2));
+                self.stiffness(cell, own);
+                entries = rest;
+            }
             Ok::<(), Infallible>(())
         };
         Arc::new(BlockMatrix::assemble(pattern, &self.groups(), add).unwrap())

@@ -3,6 +3,7 @@
 mod case;
 mod cases;
 mod gauge;
+mod iterated;
 mod large;
 mod linear;
 

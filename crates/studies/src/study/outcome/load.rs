@@ -2,7 +2,7 @@
 
 use super::gauge::{GaugeResult, Reading};
 use crate::model::Deformation;
-use crate::solve::Ending;
+use crate::solve::{Ending, Solved};
 use crate::study::metrics::DisplacementError;
 
 /// A load of a scene and the answer of the finite elements to it.
@@ -44,6 +44,9 @@ pub struct LoadOutcome {
     /// To assemble, factorise and solve, each as if this were the only load.
     pub seconds_fem: f64,
     pub seconds_lem: f64,
+    /// How the equations were solved; at large deformation they are many.
+    pub solved_fem: Option<Solved>,
+    pub solved_lem: Option<Solved>,
     /// At large deformation, how far the network followed the load.
     pub followed: Option<Followed>,
     /// The gauge's reading of the network.

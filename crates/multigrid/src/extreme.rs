@@ -1,4 +1,4 @@
-//! The motion that meets least resistance, measured by another matrix.
+//! The motions that meet least and most resistance, measured by another matrix.
 
 use crate::block::softest;
 use crate::fault::Fault;
@@ -13,9 +13,16 @@ const SETTLED: f64 = 1e-3;
 /// … so many times one after the other.
 const TIMES: usize = 4;
 
+/// Which end of the quotients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    Least,
+    Largest,
+}
+
 /// A motion with the quotient of its energies.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Softest {
+pub struct Extreme {
     /// `xᵀ A x / xᵀ B x`.
     pub quotient: f64,
     /// `xᵀ B x = 1`.
@@ -47,29 +54,34 @@ impl<const D: usize> Direction<D> {
 }
 
 impl<const D: usize, const M: usize> Multigrid<D, M> {
-    /// The least quotient `xᵀ A x / xᵀ B x` over the motions of what is not held, A the matrix that is `measured`, B another, positive one;
+    /// The least or largest quotient `xᵀ A x / xᵀ B x` over the motions of what is not held, A the matrix that is `measured`, B another, positive one;
     /// the levels are those of one that is like A or B. `start` is where to begin, if something is known.
     ///
     /// Knyazev's locally optimal method (SIAM J. Sci. Comput. 23, 2001) with one vector: the best of the motion, its preconditioned
     /// residual, and the last step. Each iteration takes one product with A and B and one V-cycle. Every quotient that it meets is that of a
-    /// motion: the least one is never below the true one.
+    /// motion: it is never beyond the true one.
     ///
     /// # Errors
     /// The sizes do not agree, B is not positive, numbers are not finite, or the watch broke off.
-    pub fn softest(
+    pub fn extreme(
         &self,
+        end: End,
         measured: &BlockMatrix<D, D>,
         by: &BlockMatrix<D, D>,
         start: Option<&[f64]>,
         steps: usize,
         watch: &mut Watch,
-    ) -> Result<Softest, Fault> {
+    ) -> Result<Extreme, Fault> {
         let rows = self.rows();
         for (what, found) in [("the rows", measured.rows()), ("the rows", by.rows())] {
             if found != rows {
                 return Err(Fault::Size { what, expected: rows, found });
             }
         }
+        let sign = match end {
+            End::Least => 1.0,
+            End::Largest => -1.0,
+        };
         let images = |mut x: Vec<[f64; D]>| {
             self.mask(&mut x);
             let (mut ax, mut bx) = (vec![[0.0; D]; rows], vec![[0.0; D]; rows]);
@@ -94,7 +106,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         }
         let mut best = images(smooth);
         if !normalize(&mut best)? {
-            return Ok(Softest { quotient: 1.0, displacement: vec![0.0; rows * D], iterations: 0, is_settled: true });
+            return Ok(Extreme { quotient: 1.0, displacement: vec![0.0; rows * D], iterations: 0, is_settled: true });
         }
         let mut last: Option<Direction<D>> = None;
         let mut quotient = dot(&best.x, &best.ax);
@@ -123,7 +135,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             let mut projected = [[0.0; 3]; 3];
             for i in 0..m {
                 for j in 0..=i {
-                    projected[i][j] = dot(&basis[i].x, &basis[j].ax);
+                    projected[i][j] = sign * dot(&basis[i].x, &basis[j].ax);
                     projected[j][i] = projected[i][j];
                 }
             }
@@ -148,11 +160,11 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             quotient = next;
             if settled == TIMES || m == 1 {
                 let displacement = images(best.x).x.as_flattened().to_vec();
-                return Ok(Softest { quotient, displacement, iterations: k, is_settled: true });
+                return Ok(Extreme { quotient, displacement, iterations: k, is_settled: true });
             }
         }
         let displacement = best.x.as_flattened().to_vec();
-        Ok(Softest { quotient, displacement, iterations: steps, is_settled: false })
+        Ok(Extreme { quotient, displacement, iterations: steps, is_settled: false })
     }
 }
 
