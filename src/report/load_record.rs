@@ -63,10 +63,10 @@ pub struct LoadRecord {
 /// How linear equations were solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolvedRecord {
-    /// `cholesky`, `lu` or `multigrid`.
+    /// `cholesky` or `lu`; `multigrid`, or `minres` with it where a network is not positive definite.
     pub method: String,
     pub unknowns: usize,
-    /// Of conjugate gradients; null with a factor.
+    /// Null with a factor.
     pub iterations: Option<usize>,
     /// `‖f − K u‖/‖f‖`.
     pub residual: Option<f64>,

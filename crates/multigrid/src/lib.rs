@@ -13,6 +13,7 @@ mod gradients;
 mod hierarchy;
 mod level;
 mod matrix;
+mod minres;
 mod parallel;
 mod pattern;
 mod prolongator;

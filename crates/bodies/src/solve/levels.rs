@@ -1,6 +1,7 @@
 //! Linear statics by conjugate gradients with smoothed-aggregation multigrid: for equations too large to be factorised.
 
 use super::method::LinearSolver;
+use super::modes::{Modes, modes_of};
 use super::stability::{NOTHING, SOFT, Stability, Standing};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{BlockStiffness, Support};
@@ -15,6 +16,9 @@ const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
 const LEAST_STEPS: usize = 100;
 const LARGEST_STEPS: usize = 8;
+
+/// Of the solutions in the iteration for modes.
+const MODE_TOLERANCE: f64 = 1e-12;
 
 /// Called with the share of a solution that is done.
 pub type Share<'a> = dyn FnMut(f64) + 'a;
@@ -36,10 +40,10 @@ enum Hierarchy {
 /// How equations were solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
-    /// `cholesky`, `lu` or `multigrid`.
+    /// `cholesky` or `lu`; `multigrid`, or `minres` with the multigrid of the finite elements where a network is not positive definite.
     pub method: &'static str,
     pub unknowns: usize,
-    /// Of conjugate gradients; none with a factor.
+    /// None with a factor.
     pub iterations: Option<usize>,
     /// `‖f − K u‖/‖f‖`.
     pub residual: f64,
@@ -90,12 +94,14 @@ impl Levels {
     /// # Errors
     /// The iterations stall: kind `Limit`. The stiffness is not positive definite: kind `Infeasible`.
     pub fn solve(&self, f: &[f64], solver: &LinearSolver, share: &mut Share) -> Result<(Vec<f64>, Solved)> {
-        let mut displacement: Vec<f64> = self.prescribed.iter().map(|u| u.unwrap_or(0.0)).collect();
-        let mut force = f.to_vec();
-        if displacement.iter().any(|u| *u != 0.0) {
-            let reaction = self.stiffness.apply(&displacement);
-            force.iter_mut().zip(reaction).for_each(|(f, r)| *f -= r);
-        }
+        let (mut displacement, force) = self.loaded(&self.stiffness, f);
+        let found = self.found(&force, solver, share)?;
+        displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
+        Ok((displacement, self.told("multigrid", &found)))
+    }
+
+    /// What is free, with all else zero.
+    fn found(&self, force: &[f64], solver: &LinearSolver, share: &mut Share) -> Result<Solution> {
         let target = solver.tolerance.ln();
         let watch: &mut Watch = &mut |event| {
             if let Event::Iteration { residual, .. } = event {
@@ -104,17 +110,85 @@ impl Levels {
             ControlFlow::Continue(())
         };
         let found = match &self.hierarchy {
-            Hierarchy::Plane(levels) => levels.solve(&force, solver.tolerance, solver.iterations, watch),
-            Hierarchy::Space(levels) => levels.solve(&force, solver.tolerance, solver.iterations, watch),
+            Hierarchy::Plane(levels) => levels.solve(force, solver.tolerance, solver.iterations, watch),
+            Hierarchy::Space(levels) => levels.solve(force, solver.tolerance, solver.iterations, watch),
         };
-        let Solution { displacement: free, iterations, residual, .. } = found.map_err(|fault| limit(&fault))?;
-        displacement.iter_mut().zip(free).for_each(|(u, free)| *u += free);
+        found.map_err(|fault| limit(&fault))
+    }
+
+    /// The displacements of another model with the same supports, whose stiffness is not positive definite, under the nodal forces f, by
+    /// minimal residuals with these levels.
+    ///
+    /// # Errors
+    /// The iterations stall: kind `Limit`.
+    pub fn solve_other(&self, other: &BlockStiffness, f: &[f64], solver: &LinearSolver) -> Result<(Vec<f64>, Solved)> {
+        let (mut displacement, force) = self.loaded(other, f);
+        let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
+        let found = match (&self.hierarchy, other) {
+            (Hierarchy::Plane(levels), BlockStiffness::Plane(other)) => {
+                levels.solve_indefinite(other, &force, solver.tolerance, solver.iterations, watch)
+            }
+            (Hierarchy::Space(levels), BlockStiffness::Space(other)) => {
+                levels.solve_indefinite(other, &force, solver.tolerance, solver.iterations, watch)
+            }
+            _ => return Err(Error::new("expected stiffnesses of one dimension, found two")),
+        };
+        let found = found.map_err(|fault| limit(&fault))?;
+        displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
+        Ok((displacement, self.told("minres", &found)))
+    }
+
+    /// The `count` lowest natural vibrations ([`super::lowest_modes`]), each product with the inverse by iterations; `masses` in kg,
+    /// `[points]`. The stiffness is known to be positive definite.
+    ///
+    /// # Errors
+    /// As there, and the iterations stall: kind `Limit`.
+    pub fn lowest_modes(&self, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+        let free: Vec<usize> = (0..self.prescribed.len()).filter(|dof| self.prescribed[*dof].is_none()).collect();
+        let spread = |x: &[f64]| {
+            let mut all = vec![0.0; self.prescribed.len()];
+            free.iter().zip(x).for_each(|(&dof, x)| all[dof] = *x);
+            all
+        };
+        let gather = |all: &[f64], x: &mut [f64]| free.iter().zip(x).for_each(|(&dof, x)| *x = all[dof]);
+        let apply = |x: &[f64]| {
+            let mut product = x.to_vec();
+            gather(&self.stiffness.apply(&spread(x)), &mut product);
+            product
+        };
+        let solver = LinearSolver { tolerance: MODE_TOLERANCE, ..LinearSolver::default() };
+        let solve = |x: &mut [f64]| {
+            for x in x.chunks_exact_mut(free.len().max(1)) {
+                gather(&self.found(&spread(x), &solver, &mut |_| ())?.displacement, x);
+            }
+            Ok(())
+        };
+        modes_of(&free, apply, solve, masses, dimension, count)
+    }
+
+    /// The given displacements, and the forces without those that these cause.
+    fn loaded(&self, stiffness: &BlockStiffness, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let displacement: Vec<f64> = self.prescribed.iter().map(|u| u.unwrap_or(0.0)).collect();
+        let mut force = f.to_vec();
+        if displacement.iter().any(|u| *u != 0.0) {
+            let reaction = stiffness.apply(&displacement);
+            force.iter_mut().zip(reaction).for_each(|(f, r)| *f -= r);
+        }
+        (displacement, force)
+    }
+
+    fn told(&self, method: &'static str, solution: &Solution) -> Solved {
         let levels = match &self.hierarchy {
             Hierarchy::Plane(levels) => levels.levels(),
             Hierarchy::Space(levels) => levels.levels(),
         };
-        let (method, levels) = ("multigrid", Some(sizes(levels)));
-        Ok((displacement, Solved { method, unknowns: self.size(), iterations: Some(iterations), residual, levels }))
+        Solved {
+            method,
+            unknowns: self.size(),
+            iterations: Some(solution.iterations),
+            residual: solution.residual,
+            levels: Some(sizes(levels)),
+        }
     }
 
     /// That no motion is without energy, but with a chance of 1e-12; the motion if there is one.

@@ -40,10 +40,9 @@ impl Iterated {
         progress: &mut Progress,
     ) -> Result<(Iterated, Vec<BodyAnswer>)> {
         let supports = shared(cases).iter().enumerate().filter(|(i, first)| i == *first).count();
-        // Those of the body, and of a network.
-        BlockStiffness::check_size(mesh, 2, 2 * supports)?;
         let start = Instant::now();
-        let stiffness = BlockStiffness::of_body(mesh, moduli);
+        // Those of the body, and of a network.
+        let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * supports)?;
         let assembly = start.elapsed().as_secs_f64();
         let (mut iterated, mut answers) = (Iterated { systems: Vec::new(), system_of: Vec::new() }, Vec::new());
         let mut setup = Vec::new();
@@ -92,7 +91,7 @@ impl Iterated {
         let shared = self.systems[0].stiffness();
         let stiffness = BlockStiffness::of_network(network, &mesh.points, Some(shared));
         let assembly = start.elapsed().as_secs_f64();
-        let other = (compared != moduli).then(|| BlockStiffness::of_body(mesh, compared));
+        let other = (compared != moduli).then(|| BlockStiffness::of_body(mesh, compared, 1, 1)).transpose()?;
         let (mut answers, mut first) = (Vec::new(), None);
         let mut systems: Vec<(std::result::Result<Levels, Vec<f64>>, Standing, f64)> = Vec::new();
         for (i, case) in cases.iter().enumerate() {
@@ -116,8 +115,18 @@ impl Iterated {
             let (levels, standing, setup) = &systems[index];
             let start = Instant::now();
             let (mut displacement, mut work, mut how) = (None, None, None);
-            if let (Ok(levels), Standing::Stable | Standing::Soft) = (levels, standing) {
-                let (u, solved) = solution(levels, case, solver, ("networks", i, cases.len()), progress)?;
+            let found = match (levels, standing) {
+                (_, Standing::Singular) => None,
+                (Ok(levels), Standing::Stable | Standing::Soft) => {
+                    Some(solution(levels, case, solver, ("networks", i, cases.len()), progress)?)
+                }
+                // An equilibrium that is not stable; where it is not found, there is none to show.
+                (_, Standing::Indefinite | Standing::Stable | Standing::Soft) => {
+                    let found = self.systems[index].solve_other(&stiffness, &case.forces, solver);
+                    found.ok().filter(|(_, solved)| solved.residual <= SOLVED)
+                }
+            };
+            if let Some((u, solved)) = found {
                 work = case.work(&u, || Some(product(&stiffness.apply(&u), &u)));
                 (displacement, how) = (Some(u), Some(solved));
             }
