@@ -17,7 +17,7 @@
 //! If all of this fails, the only network in equilibrium at rest without negative constants is the one whose constants
 //! are all zero.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 mod balance;
 mod contents;

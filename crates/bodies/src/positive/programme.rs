@@ -1,6 +1,6 @@
 //! The quadratic programme of the nearest network, solved by Clarabel's interior-point method.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::contents::Contents;
 use super::edges::Edges;

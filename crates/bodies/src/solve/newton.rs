@@ -1,6 +1,6 @@
 //! Statics at large deformation: Newton's method with load steps and a line search, for finite elements or a network.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::internal::{Form, Internal, Rest, masked};
 use super::linear::System;

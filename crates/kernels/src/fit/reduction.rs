@@ -1,7 +1,7 @@
 //! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, on which R
 //! is regular. They are weighted and scaled to a size of one.
 //!
-//! Theory: page *The barrier* of the book (the reduced space).
+//! Theory: page *The 2-norm* of the book (the reduced space).
 
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;

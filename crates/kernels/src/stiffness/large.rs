@@ -1,6 +1,6 @@
 //! One element at large deformation: energy, nodal forces and tangent of a hyperelastic material.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::Geometry;
 use crate::material::{Energy, State, Tangent};

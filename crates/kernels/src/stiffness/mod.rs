@@ -1,6 +1,6 @@
 //! The stiffness of one element: its geometry at the quadrature points, and `R = ∫ Bᵀ D B dV`.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 mod fault;
 mod large;

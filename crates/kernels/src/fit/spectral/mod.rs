@@ -9,7 +9,7 @@
 //! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair, `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`
 //! and Y correspondingly; [`Spectral::bound`] checks it independently.
 //!
-//! Theory: page *The barrier* of the book.
+//! Theory: page *The 2-norm* of the book.
 
 mod ambiguity;
 mod dual;

@@ -6,7 +6,7 @@
 //! converge quadratically (Overton and Womersley, SIAM J. Matrix Anal. Appl. 16, 697, 1995). The multipliers U and V
 //! are the dual pair `X = Q₊ U Q₊ᵀ`, `Y = Q₋ V Q₋ᵀ` that proves the bound.
 //!
-//! Theory: page *The barrier* of the book.
+//! Theory: page *The 2-norm* of the book.
 
 use super::EXACT;
 use super::problem::{Optimum, Problem, Spectrum};
