@@ -1,10 +1,11 @@
-//! springfit turns a mesh and a material into a mass–spring network that reproduces the response of the finite element model of the
-//! same body, and reports the error and the cost.
+//! springfit turns a mesh and a material into a mass–spring network that reproduces the response of the finite element
+//! model of the same body, and reports the error and the cost.
 //!
-//! For each element the spring constants k minimise a measure of `R − K(k)`. R is the stiffness of the finite element, and
-//! `K(k) = Σ_s k_s g_s g_sᵀ` is that of its springs: each measures one number c of the positions of its nodes, with the gradient
-//! `g = ∇c`. The springs of all cells are added to a network on the points of the mesh. Other fits use the forces at large deformation
-//! or the displacements of the whole body, and exact networks are equal to the finite element at any deformation.
+//! For each element the spring constants k minimise a measure of `R − K(k)`. R is the stiffness of the finite element,
+//! and `K(k) = Σ_s k_s g_s g_sᵀ` is that of its springs: each measures one number c of the positions of its nodes, with
+//! the gradient `g = ∇c`. The springs of all cells are added to a network on the points of the mesh. Other fits use the
+//! forces at large deformation or the displacements of the whole body, and exact networks are equal to the finite
+//! element at any deformation.
 //!
 //! # One element
 //!
@@ -55,27 +56,27 @@
 //! | [`mesh`] | meshes: read from Gmsh and VTK files, generated, refined, checked |
 //! | [`model`] | the finite element model and the network of a mesh; loads, supports, masses |
 //! | [`solve`] | linear and nonlinear statics, natural vibrations, stability of a network |
-//! | [`dynamics`] | motion in time |
 //! | [`positive`] | the nearest network without negative springs to an exact network |
+//! | [`dynamics`] | motion in time |
 //! | [`whole`] | spring constants from the displacements of the whole body |
 //! | [`study`] | scenes, and the studies that are made from them |
 //! | `report` | tables, JSON, CSV, SVG and VTU files of the results (feature `cli`) |
 //! | [`prelude`] | the names that most programs need |
 //!
-//! Lengths are in m, moduli in Pa, forces in N, masses in kg and times in s. Arrays are row by row; their shapes are given in brackets,
-//! as in `[points × dimension]`.
+//! Lengths are in m, moduli in Pa, forces in N, masses in kg and times in s. Arrays are row by row; their shapes are
+//! given in brackets, as in `[points × dimension]`.
 //!
 //! # Features
 //!
-//! - `cli` (default): the program `springfit`, and the module `report`. A library user turns it off with `default-features = false`,
-//!   and saves the dependencies for the command line, tables and pictures.
+//! - `cli` (default): the program `springfit`, and the module `report`. A library user turns it off with
+//!   `default-features = false`, and saves the dependencies for the command line, tables and pictures.
 //!
 //! # Errors
 //!
-//! Functions that depend on input return [`error::Result`]. An [`error::Error`] has a [`kind`](error::Error::kind) for programs, and
-//! prints as one line for people: the file, the line, the key, what was expected and what was found. An optimum that a solver does not
-//! reach, or a network that is not stable, is not an error but part of the result. No input causes a panic; the few functions that
-//! panic for a wrong index or length say so under *Panics*.
+//! Functions that depend on input return [`error::Result`]. An [`error::Error`] has a [`kind`](error::Error::kind) for
+//! programs, and prints as one line for people: the file, the line, the key, what was expected and what was found. An
+//! optimum that a solver does not reach, or a network that is not stable, is not an error but part of the result. No
+//! input causes a panic; the few functions that panic for a wrong index or length say so under *Panics*.
 //!
 //! # Theory
 //!
