@@ -70,8 +70,10 @@ pub struct Quality {
     pub turned: Option<String>,
     /// Points at the place of another; `None` where that was not looked for, or where coordinates are too coarse to tell.
     pub coincident: Option<usize>,
-    /// Points on an edge or a face of a cell that does not have them; `None` as there.
+    /// Points on an edge or a face of a cell that does not have them; `None` as there, and for meshes that are generated or divided.
     pub hanging: Option<usize>,
+    /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.
+    pub pieces: Option<usize>,
 }
 
 /// The cell of least quality.

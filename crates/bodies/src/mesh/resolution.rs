@@ -14,7 +14,8 @@ use std::sync::Arc;
 
 impl Mesh {
     /// Gives each cell of a file its element: one of `own` if it serves the cell type, else a shipped one.
-    /// Coordinates are multiplied by `scale`. Cells of poor quality and points at the place of another are counted.
+    /// Coordinates are multiplied by `scale`. Cells of poor quality, points at the place of another or on a side of a
+    /// cell that does not have them, and pieces that share no node are counted.
     ///
     /// # Errors
     /// No element serves a cell type, or a cell is tangled or flat, repeats another or is folded over its neighbours.
@@ -22,7 +23,7 @@ impl Mesh {
         Mesh::resolve_within(source, own, scale, None)
     }
 
-    /// The same with a gate of one's own for the cells; then points that hang on edges or faces are looked for as well.
+    /// The same with a gate of one's own for the cells.
     ///
     /// # Errors
     /// As there, unless the gate skips such cells; the gate refuses a cell, or none is left.
@@ -87,9 +88,8 @@ impl Mesh {
         let left_out = mesh.quality.skipped + mesh.quality.duplicates + mesh.quality.folded > 0;
         let places = if left_out { Places::of(&mesh) } else { places };
         mesh.quality.coincident = places.as_ref().map(Places::coincident);
-        if gate.is_some() {
-            mesh.quality.hanging = places.map(|places| mesh.hanging(&places));
-        }
+        mesh.quality.hanging = places.map(|places| mesh.hanging(&places));
+        mesh.quality.pieces = Some(mesh.pieces().len());
         Ok(mesh)
     }
 

@@ -76,6 +76,7 @@ impl Mesh {
         }
         // Of the coarse mesh; the cells of the fine one were not asked.
         fine.quality.hanging = None;
+        fine.quality.pieces = self.quality.pieces;
         if self.quality.worst.is_some() {
             fine.pass(Gate { least: self.quality.least, below: Below::Warn })?;
         }
