@@ -82,6 +82,7 @@ impl BoxMesh {
         mesh.groups = self.groups(&mesh);
         mesh.orient(false)?;
         mesh.reversed = 0;
+        mesh.quality.pieces = Some(mesh.pieces().len());
         mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
         Ok(mesh)
     }

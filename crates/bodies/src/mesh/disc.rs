@@ -88,6 +88,7 @@ impl DiscMesh {
         mesh.groups.insert("body".into(), Group { points: (0..total).collect(), cells, ..Group::default() });
         mesh.orient(false)?;
         mesh.reversed = 0;
+        mesh.quality.pieces = Some(mesh.pieces().len());
         mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
         Ok(mesh)
     }

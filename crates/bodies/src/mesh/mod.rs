@@ -6,6 +6,7 @@
 mod affine;
 mod alike;
 mod boxes;
+mod connection;
 mod disc;
 mod duplicates;
 mod field;

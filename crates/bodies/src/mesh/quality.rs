@@ -77,8 +77,11 @@ pub struct Quality {
     /// The number of points at the position of another point; `None` if this was not tested, or if the coordinates are
     /// too coarse.
     pub coincident: Option<usize>,
-    /// The number of points on an edge or a face of a cell that does not have them; `None` as for `coincident`.
+    /// The number of points on an edge or a face of a cell that does not have them; `None` as for `coincident`, and for
+    /// meshes that are generated or divided.
     pub hanging: Option<usize>,
+    /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.
+    pub pieces: Option<usize>,
 }
 
 /// The cell of least quality.

@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 impl Mesh {
     /// Gives each cell of a file its element: one of `own` if it serves the cell type, otherwise a shipped one.
-    /// Coordinates are multiplied by `scale`, in metres per mesh unit. Cells of poor quality and points at the same
-    /// position are counted.
+    /// Coordinates are multiplied by `scale`, in metres per mesh unit. Cells of poor quality, points at the same
+    /// position, points on a side of a cell that does not have them, and pieces that share no node are counted.
     ///
     /// # Errors
     /// No element serves a cell type; or a cell is tangled or flat, repeats another or is folded over its neighbours.
@@ -23,8 +23,7 @@ impl Mesh {
         Mesh::resolve_within(source, own, scale, None)
     }
 
-    /// As [`Mesh::resolve`], with a given gate for the cells; hanging points on edges and faces are then counted as
-    /// well.
+    /// As [`Mesh::resolve`], with a given gate for the cells.
     ///
     /// # Errors
     /// Those of [`Mesh::resolve`], unless the gate skips such cells; or the gate refuses a cell, or no cell is left.
@@ -89,9 +88,8 @@ impl Mesh {
         let left_out = mesh.quality.skipped + mesh.quality.duplicates + mesh.quality.folded > 0;
         let places = if left_out { Places::of(&mesh) } else { places };
         mesh.quality.coincident = places.as_ref().map(Places::coincident);
-        if gate.is_some() {
-            mesh.quality.hanging = places.map(|places| mesh.hanging(&places));
-        }
+        mesh.quality.hanging = places.map(|places| mesh.hanging(&places));
+        mesh.quality.pieces = Some(mesh.pieces().len());
         Ok(mesh)
     }
 

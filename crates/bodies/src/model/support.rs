@@ -47,7 +47,7 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
     let d = mesh.dimension;
     let motions = d * (d + 1) / 2;
     let mut unheld = Vec::new();
-    for body in bodies(mesh) {
+    for body in mesh.pieces() {
         let held: Vec<usize> =
             body.iter().flat_map(|p| p * d..(p + 1) * d).filter(|&dof| support.is_fixed(dof)).collect();
         let centre: Vec<f64> =
@@ -77,33 +77,4 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
         }
     }
     unheld
-}
-
-/// The points of each connected part, ascending.
-fn bodies(mesh: &Mesh) -> Vec<Vec<usize>> {
-    let mut parent: Vec<usize> = (0..mesh.point_count()).collect();
-    fn root(parent: &mut [usize], mut p: usize) -> usize {
-        while parent[p] != p {
-            parent[p] = parent[parent[p]];
-            p = parent[p];
-        }
-        p
-    }
-    for nodes in mesh.blocks.iter().flat_map(|b| b.cells()) {
-        let first = root(&mut parent, nodes[0]);
-        for &node in &nodes[1..] {
-            let other = root(&mut parent, node);
-            parent[other] = first;
-        }
-    }
-    let mut body_of_root = std::collections::BTreeMap::new();
-    let mut bodies: Vec<Vec<usize>> = Vec::new();
-    for p in 0..mesh.point_count() {
-        let index = *body_of_root.entry(root(&mut parent, p)).or_insert_with(|| {
-            bodies.push(Vec::new());
-            bodies.len() - 1
-        });
-        bodies[index].push(p);
-    }
-    bodies
 }

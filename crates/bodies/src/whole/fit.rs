@@ -4,7 +4,7 @@ use super::displacements::{Displacements, Errors};
 use super::object::Object;
 use super::path::{Best, Path, Snapshot, Watch, leave_one_out, mean};
 use super::settings::{Validation, Wanted, WholeSettings};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::Network;
 
 /// The result of a whole-object fit.
@@ -98,7 +98,12 @@ pub fn fit_whole(
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
     problem.forget();
     judge.forget();
-    let after = |problem: &Displacements| problem.errors(&best.theta).map(Option::unwrap_or_default);
+    let after = |problem: &Displacements| {
+        let fell = || {
+            Error::at("network", "the fitted network has become unstable under a load").of_kind(ErrorKind::Infeasible)
+        };
+        problem.errors(&best.theta)?.ok_or_else(fell)
+    };
     found.trained = [trained, after(&problem)?];
     found.validated = [validated, after(&judge)?];
     found.change = object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);

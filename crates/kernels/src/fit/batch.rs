@@ -12,7 +12,7 @@ use super::packing::Packing;
 use super::settings::Fit;
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Packed, PackedWork, widest};
+use crate::scalar::{Packed, PackedWork, distance, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 
@@ -30,6 +30,10 @@ pub struct Batch<'a> {
     pub constants: &'a mut [f64],
 }
 
+/// If two nodes are nearer than this, relative to the cell, the gradients of springs on functions have less than ten
+/// digits in `f64`.
+const NEAR: f64 = 1e-6;
+
 /// What is reported of the cells besides their constants.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tally {
@@ -44,7 +48,7 @@ pub struct Tally {
 impl Tally {
     fn add(&mut self, verdict: Verdict) {
         self.deficient += usize::from(verdict.rank == Rank::Deficient);
-        self.unreached += usize::from(!verdict.reached);
+        self.unreached += usize::from(!verdict.reached || verdict.rank == Rank::Unsolved);
         self.certificates.extend(verdict.certificate);
     }
 }
@@ -125,7 +129,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
             return false;
         }
-        let Some(mut method) = self.method.take() else { return self.fit_closed(constants) };
+        let Some(mut method) = self.method.take() else { return self.fit_closed(constants, tally) };
         let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
             && self.measure(nodes.len() / self.element.nodes());
         if regular {
@@ -134,10 +138,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.packing.lane(lane));
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
-                if verdict.delicate
-                    && let Ok(delicate) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
-                {
-                    verdict = delicate;
+                if verdict.delicate || self.are_near(&self.packing.lane(lane)) {
+                    let nodes = &nodes[lane * n..(lane + 1) * n];
+                    let unreached = Verdict { reached: false, ..verdict };
+                    verdict = self.fit_alone(nodes, constants, true).unwrap_or(unreached);
                 }
                 tally.add(verdict);
             }
@@ -147,7 +151,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
     }
 
     /// [`Workspace::fit`] for objectives with a closed form.
-    fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
+    fn fit_closed(&mut self, constants: &mut [f64], tally: &mut Tally) -> bool {
         let Workspace { element, springs, moduli, fit, .. } = *self;
         let Some(closed) = &mut self.closed else { return false };
         if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, &moduli) {
@@ -172,8 +176,9 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 continue;
             }
             let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
-            let (k, _) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
+            let (k, rank) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
             fit.spread(springs, constants, &k);
+            tally.add(Verdict { certificate: None, rank, reached: true, delicate: false });
         }
         true
     }
@@ -188,9 +193,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !self.springs.function_gradients(&x, &mut measured) {
             return Err(Fault::Unmeasured);
         }
+        let are_near = self.are_near(&x);
         let Workspace { element, springs, moduli, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
-        if is_delicate || quality <= T::delicate() {
+        if is_delicate || quality <= T::delicate() || are_near {
             let delicate = DelicateCells { element, springs, moduli, fit };
             let d = element.dimension();
             let mut given = x.clone();
@@ -216,6 +222,11 @@ impl<'a, T: Packed> Workspace<'a, T> {
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
+    /// Whether springs measure functions of nodes at `x`, `[nodes × dimension]`, two of which nearly coincide.
+    fn are_near(&self, x: &[f64]) -> bool {
+        !self.measured.is_empty() && nearness(x, self.element.dimension()) < NEAR
+    }
+
     /// The gradients of the springs on functions in the first `cells` lanes; the other lanes repeat the first. False if
     /// a gradient is zero or not finite.
     fn measure(&mut self, cells: usize) -> bool {
@@ -236,4 +247,12 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         regular
     }
+}
+
+/// The least distance of two nodes relative to the largest; `x` is `[nodes × dimension]`.
+fn nearness(x: &[f64], dimension: usize) -> f64 {
+    let nodes = || x.chunks_exact(dimension).enumerate();
+    let pairs = nodes().flat_map(|(i, a)| nodes().skip(i + 1).map(move |(_, b)| distance(a, b)));
+    let (least, largest) = pairs.fold((f64::MAX, 0.0f64), |(least, largest), d| (least.min(d), largest.max(d)));
+    least / largest
 }

@@ -11,9 +11,9 @@ use super::rest::Rest;
 use super::settings::Fit;
 use super::solver::Solver;
 use super::tension::fit_tensions;
-use super::visit::{cell_fault, each_cell};
+use super::visit::{cell_fault, cell_name, each_cell};
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
@@ -126,6 +126,8 @@ impl CellFits {
         }
         if fit.rest != Rest::Mesh {
             let found = fit_tensions(element, &self.springs, points, connectivity, moduli, fit, progress)?;
+            check_constants(element, 0, m, &found.constants)?;
+            check_constants(element, 0, m, &found.parameters)?;
             self.force = Force::FreeRest;
             (self.constants, self.parameters) = (found.constants, found.parameters);
             (self.deficient, self.unreached, self.reused) = (found.deficient, found.unreached, found.reused);
@@ -165,28 +167,31 @@ impl CellFits {
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
             if let Solver::General { method, iterations, topology } = fit.solver {
                 let weight = fit.objective.of_motions()?;
-                let mut unmeasured = None;
+                let (mut unmeasured, mut failed) = (None, None);
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
                     if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {
                         unmeasured.get_or_insert(cell);
                         return;
                     }
-                    let found =
-                        descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology));
-                    constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
+                    match descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology)) {
+                        Ok(found) => constants[cell * m..(cell + 1) * m].copy_from_slice(&found),
+                        Err(problem) => _ = failed.get_or_insert((cell, problem)),
+                    }
                 })?;
-                let not_finite = || constants.iter().position(|k| !k.is_finite()).map(|place| place / m);
-                let fault =
-                    unmeasured.or_else(not_finite).map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
-                return fault.map_or(Ok(Tally::default()), Err);
+                if let Some(cell) = unmeasured {
+                    return Err(cell_fault(element, first + cell, Fault::Unmeasured));
+                }
+                if let Some((cell, problem)) = failed {
+                    let problem = format!("the optimiser \"{}\" failed: {problem}", fit.solver.name());
+                    return Err(Error::at(cell_name(element, first + cell), problem).of_kind(ErrorKind::Infeasible));
+                }
+                check_constants(element, first, m, constants)?;
+                return Ok(Tally::default());
             }
             let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
             let tally = batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))?;
-            // The same fault as that of a spring between two nodes at one position.
-            match constants.iter().position(|k| !k.is_finite()) {
-                Some(place) => Err(cell_fault(element, first + place / m, Fault::Unmeasured)),
-                None => Ok(tally),
-            }
+            check_constants(element, first, m, constants)?;
+            Ok(tally)
         };
         let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
         for (round, (nodes, constants)) in rounds.enumerate() {
@@ -215,6 +220,15 @@ impl CellFits {
         }
         (self.deficient, self.unreached) = (fitted.deficient, fitted.unreached);
         self.reused = shapes.len() - fitted.constants.len() / m;
+    }
+}
+
+/// That the `values` of springs, `[cells × springs]`, are numbers; those of a spring between two nodes at one place, or of a cell
+/// beyond the range of numbers, are not. The first cell is number `first` of its block.
+fn check_constants(element: &Element, first: usize, springs: usize, values: &[f64]) -> Result<()> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(place) => Err(cell_fault(element, first + place / springs, Fault::Unmeasured)),
+        None => Ok(()),
     }
 }
 

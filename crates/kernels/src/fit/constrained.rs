@@ -23,8 +23,13 @@ pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
 pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding: f64) -> (Vec<f64>, Rank, f64) {
     let (near, mut free) = (normal.rounded(), normal.clone());
     if !free.solve_to(rounding) {
-        let k = if nonnegative { solve_nonnegative(&near).0 } else { near.least_norm() };
-        return (k, Rank::Deficient, 1.0);
+        if !nonnegative {
+            return (near.least_norm(), Rank::Deficient, 1.0);
+        }
+        return match solve_nonnegative(&near) {
+            (k, Rank::Unsolved) => (k, Rank::Unsolved, 1.0),
+            (k, _) => (k, Rank::Deficient, 1.0),
+        };
     }
     let (k, pivot) = (free.rounded().rhs, free.least_pivot());
     if !nonnegative || k.iter().all(|k| *k >= 0.0) {
@@ -62,7 +67,10 @@ fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
     let (scaled, scale) = normal.scaled();
     let (mut k, rank) = match pivot_to(&scaled, f64::given()) {
         Some(k) => (k, Rank::Full),
-        None => (interior_point(&scaled).unwrap_or_else(|| vec![0.0; normal.size()]), Rank::Deficient),
+        None => match interior_point(&scaled) {
+            Some(k) => (k, Rank::Deficient),
+            None => (vec![0.0; normal.size()], Rank::Unsolved),
+        },
     };
     k.iter_mut().zip(&scale).for_each(|(k, s)| *k *= s);
     (k, rank)

@@ -116,6 +116,9 @@ const AGREED: u64 = 200;
 
 /// The constants of the element with nodes at `x`, `[springs]`, N/m. The objective, with the cost of the springs, is
 /// never larger than at the start.
+///
+/// # Errors
+/// The message of an optimiser that fails.
 pub fn search(
     springs: &Springs,
     x: &[f64],
@@ -124,7 +127,7 @@ pub fn search(
     fit: &Fit,
     weight: MotionWeight,
     (method, iterations, topology): (Search, u64, Option<Topology>),
-) -> Vec<f64> {
+) -> std::result::Result<Vec<f64>, String> {
     let mut reduced = Reduced::like(&0.0, springs, fit.tied);
     let mut measured = vec![0.0; springs.functions.len() * x.len()];
     springs.function_gradients(x, &mut measured);
@@ -137,13 +140,14 @@ pub fn search(
     let mut raw = Raw { reduced: &reduced, objective, nonnegative, price: 0.0, stride, random };
     raw.price = topology.map_or(0.0, |topology| topology.sparsity * raw.value(&start));
     start.extend(topology.iter().flat_map(|_| vec![1.0; count]));
+    let failed = |error: argmin::core::Error| error.to_string();
     let best: Option<Vec<f64>> = match method {
         Search::NelderMead => {
             let mut simplex = vec![start.clone(); start.len() + 1];
             simplex.iter_mut().skip(1).enumerate().for_each(|(i, vertex)| vertex[i] += stride);
             let solver = NelderMead::new(simplex).with_sd_tolerance(1e-12).expect("the tolerance is positive");
             let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
-            run.ok().and_then(|mut run| run.state.take_best_param())
+            run.map_err(failed)?.state.take_best_param()
         }
         Search::ParticleSwarm => {
             // The remaining springs take the load of those that are removed.
@@ -153,16 +157,17 @@ pub fn search(
                 let kappa = start[..count].iter().map(|k| k + reach);
                 kappa.chain(start[count..].iter().map(|_| sign)).collect::<Vec<f64>>()
             };
-            let swarm = |seed: u64, iterations: u64| {
+            let swarm = |seed: u64, iterations: u64| -> std::result::Result<Option<Vec<f64>>, String> {
                 let random = StdRng::seed_from_u64(seed);
                 let solver = ParticleSwarm::new((bound(-1.0), bound(1.0)), 40).with_rng_generator(random);
                 let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
-                run.ok().and_then(|run| run.state.best_individual.map(|particle| particle.position))
+                Ok(run.map_err(failed)?.state.best_individual.map(|particle| particle.position))
             };
             let each = topology.map_or(iterations, |_| iterations.min(AGREED)).max(1);
             let swarms = iterations.div_ceil(each).max(1);
-            let found = (0..swarms).filter_map(|i| swarm(1 + i, each.min(iterations - i * each)));
-            found.min_by(|a, b| raw.cost_of(a).total_cmp(&raw.cost_of(b)))
+            let found = (0..swarms).map(|i| swarm(1 + i, each.min(iterations - i * each)));
+            let found = found.collect::<std::result::Result<Vec<_>, String>>()?;
+            found.into_iter().flatten().min_by(|a, b| raw.cost_of(a).total_cmp(&raw.cost_of(b)))
         }
         Search::SimulatedAnnealing => {
             let rng = StdRng::seed_from_u64(1);
@@ -171,11 +176,11 @@ pub fn search(
                 state.param(start.clone()).max_iters(iterations)
             };
             let run = Executor::new(&raw, solver).configure(configure).run();
-            run.ok().and_then(|mut run| run.state.take_best_param())
+            run.map_err(failed)?.state.take_best_param()
         }
     };
-    // If an optimiser fails, its start is returned.
+    // If an optimiser finds nothing better, its start is returned.
     let best = best.filter(|best| raw.cost_of(best) <= raw.cost_of(&start));
     let kappa = raw.kappa(&best.unwrap_or(start));
-    reduced.unknowns.iter().map(|&unknown| kappa[unknown] * reduced.scales[unknown]).collect()
+    Ok(reduced.unknowns.iter().map(|&unknown| kappa[unknown] * reduced.scales[unknown]).collect())
 }

@@ -54,6 +54,12 @@ impl Certificate {
     pub fn gap(&self) -> f64 {
         (self.value - self.bound) / self.value.max(EXACT * self.size)
     }
+
+    /// Whether the gap is as small as it is asked to be. A bound that is above the value by more than that proves nothing: rounding
+    /// has spoilt one of the two.
+    fn is_closed(&self) -> bool {
+        self.gap().abs() <= GAP
+    }
 }
 
 /// The reduced element and the working memory of the solver.
@@ -217,7 +223,7 @@ impl<T: Real> Method<T> {
             }
             certificate.value *= 2.0;
         }
-        verdict.reached &= certificate.gap() <= GAP;
+        verdict.reached &= certificate.is_closed();
         verdict.certificate = Some(certificate);
         verdict
     }
@@ -285,7 +291,7 @@ impl<T: Real> Method<T> {
                 verdict.delicate |= optimum.value <= EXACT;
                 let Optimum { kappa, value, bound } = optimum;
                 let certificate = Certificate { value: size * value, bound: size * bound, ambiguous, size };
-                verdict.reached = certificate.gap() <= GAP;
+                verdict.reached = certificate.is_closed();
                 verdict.certificate = Some(certificate);
                 kappa
             }

@@ -36,6 +36,8 @@ pub enum Rank {
     /// The springs are linearly dependent under this objective. Of all optima the one of least norm is returned, in the
     /// scaling in which `M` has a unit diagonal.
     Deficient,
+    /// The interior-point method that was to decide did not find an optimum: the constants are zero.
+    Unsolved,
 }
 
 impl<T> Default for Normal<T> {
@@ -192,8 +194,11 @@ impl Normal {
         }
         let mut k = vec![0.0; self.size()];
         if !determined.is_empty() {
-            let (found, _) = solve(&self.restricted(&determined));
+            let (found, rank) = solve(&self.restricted(&determined));
             determined.iter().zip(found).for_each(|(&s, value)| k[s] = value);
+            if rank == Rank::Unsolved {
+                return (k, rank);
+            }
         }
         (k, Rank::Deficient)
     }

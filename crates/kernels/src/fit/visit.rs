@@ -19,5 +19,10 @@ pub fn each_cell(
 
 /// The error for `cell`, which is counted from 0 and named from 1.
 pub fn cell_fault(element: &Element, cell: usize, fault: Fault) -> Error {
-    Error::at(format!("{} cell {}", element.name, cell + 1), fault.to_string())
+    Error::at(cell_name(element, cell), fault.to_string())
+}
+
+/// What errors call a cell; `cell` is counted from 0, and named from 1.
+pub fn cell_name(element: &Element, cell: usize) -> String {
+    format!("{} cell {}", element.name, cell + 1)
 }

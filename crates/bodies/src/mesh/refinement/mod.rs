@@ -77,6 +77,7 @@ impl Mesh {
         }
         // The quality is that of the coarse mesh; the fine cells are not measured.
         fine.quality.hanging = None;
+        fine.quality.pieces = self.quality.pieces;
         if self.quality.worst.is_some() {
             fine.pass(Gate { least: self.quality.least, below: Below::Warn })?;
         }

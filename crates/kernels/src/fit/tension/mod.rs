@@ -15,7 +15,7 @@ mod view;
 
 use super::congruence::Congruence;
 use super::settings::Fit;
-use super::visit::each_cell;
+use super::visit::{cell_name, each_cell};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
@@ -75,8 +75,7 @@ pub fn fit_tensions(
             each_cell(element, points, &connectivity[cell * n..(cell + 1) * n], cell, |_, x, geometry| {
                 outcome = Some(all.fit(x, geometry));
             })?;
-            let place = || format!("{} cell {}", element.name, cell + 1);
-            let placed = |problem: String| Error::at(place(), problem).of_kind(ErrorKind::Infeasible);
+            let placed = |problem: String| Error::at(cell_name(element, cell), problem).of_kind(ErrorKind::Infeasible);
             found.extend(outcome.transpose().map_err(placed)?);
         }
         Ok(found)
