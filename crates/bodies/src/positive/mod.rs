@@ -29,4 +29,4 @@ mod vibrations;
 
 pub use nearest::{PositiveFit, nearest_positive};
 pub use outcome::{PositiveOutcome, Route};
-pub use programme::Watch;
+pub use programme::SearchProgress;

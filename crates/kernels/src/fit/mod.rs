@@ -54,7 +54,7 @@ pub use objective::{Balance, Choices, Objective};
 pub use precision::{bounded_constants, condition, constants_of_kind, distance_from_optimum};
 pub use residual::{ElementErrors, Spread, element_errors};
 pub use rest::Rest;
-pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
+pub use sampled::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 pub use settings::Fit;
 pub use solver::{Search, Solver, Topology};
 pub use weight::{Higher, MotionWeight, Weight};

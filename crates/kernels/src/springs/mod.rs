@@ -13,7 +13,7 @@ mod vector;
 
 pub use content::Content;
 pub use law::{Force, Law, LawRoom};
-pub use measure::{Measure, Response, linear};
+pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
 pub use vector::{distance, dot, norm, unit};
 

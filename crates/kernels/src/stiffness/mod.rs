@@ -7,7 +7,7 @@ mod large;
 mod placement;
 
 pub use fault::Fault;
-pub use large::Response;
+pub use large::ElementResponse;
 pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;
