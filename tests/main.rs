@@ -52,6 +52,7 @@ mod rest;
 mod sampled;
 mod sampling;
 mod searches;
+mod settings;
 mod shapes;
 mod small_loads;
 mod springs;

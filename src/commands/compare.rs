@@ -1,6 +1,6 @@
 //! `springfit compare`.
 
-use super::scene_file::is_scene;
+use super::scene_file::{Settings, is_scene};
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
@@ -9,7 +9,7 @@ use springfit::error::{Error, Result};
 use springfit::fit::Solver;
 use springfit::material::Material;
 use springfit::report::{self, Comparison};
-use springfit::study::{self, Event, Scene};
+use springfit::study::{self, Event};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub struct Compare {
     /// A shipped element's name, an element file, or a scene
     what: String,
+    #[command(flatten)]
+    settings: Settings,
     /// Random shapes of an element
     #[arg(long, default_value_t = 100)]
     shapes: usize,
@@ -56,12 +58,13 @@ impl Compare {
             return Err(Error::at("--law", "belongs to an element; a scene names its law in [material]"));
         }
         let comparison = if is_scene(path) {
-            let scene = Scene::load(path)?;
+            let scene = self.settings.scene(path)?;
             report::check_outputs(&folder, names, &scene.inputs())?;
             let outcome = study::compare_scene(&scene, &mut progress)?;
             outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
             Comparison::of_scene(&outcome)
         } else {
+            self.settings.expect_none()?;
             let element = Element::load(&self.what)?;
             let plane = self.plane.map(Into::into);
             let material =

@@ -1,5 +1,6 @@
 //! `springfit converge`.
 
+use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
@@ -13,6 +14,8 @@ use std::process::ExitCode;
 pub struct Converge {
     /// The scene file
     scene: PathBuf,
+    #[command(flatten)]
+    settings: Settings,
     /// Meshes, from 2 to 8: that of the scene, and others with cells of half the size each [default: 4, or fewer if they would take long]
     #[arg(long, allow_hyphen_values = true)]
     levels: Option<usize>,
@@ -26,10 +29,10 @@ pub struct Converge {
 
 impl Converge {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let scene = Scene::load(&self.scene)?;
+        let scene = self.settings.scene(&self.scene)?;
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
-        let truth = self.truth.as_ref().map(|path| Scene::load(path)).transpose()?;
+        let truth = self.truth.as_ref().map(|path| self.settings.reference(path)).transpose()?;
         let inputs: Vec<PathBuf> =
             [Some(&scene), truth.as_ref()].into_iter().flatten().flat_map(Scene::inputs).collect();
         report::check_outputs(&folder, &report::CONVERGENCE_FILES, &inputs)?;

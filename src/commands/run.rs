@@ -1,10 +1,11 @@
 //! `springfit run`.
 
 use super::interrupt::end_early;
+use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::study::{Controls, Scene, run_with, stages};
+use springfit::study::{Controls, run_with, stages};
 use springfit::{check_apart, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -15,6 +16,8 @@ use std::sync::Arc;
 pub struct Run {
     /// The scene file
     scene: PathBuf,
+    #[command(flatten)]
+    settings: Settings,
     /// Where the report goes [default: out/NAME of the scene]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -28,7 +31,7 @@ pub struct Run {
 
 impl Run {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let scene = Scene::load(&self.scene)?;
+        let scene = self.settings.scene(&self.scene)?;
         if self.explain {
             let lines = stages(&scene).into_iter().map(|(stage, left_out)| match left_out {
                 None => format!("run       {stage}\n"),

@@ -1,12 +1,12 @@
 //! `springfit stability`.
 
-use super::scene_file::is_scene;
+use super::scene_file::{Settings, is_scene};
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
 use springfit::error::Result;
 use springfit::report;
-use springfit::study::{self, Event, Scene};
+use springfit::study::{self, Event};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -15,6 +15,8 @@ use std::process::ExitCode;
 pub struct Stability {
     /// A shipped element's name, an element file, or a scene [default: an element of each kind, bodies and motions]
     what: Option<String>,
+    #[command(flatten)]
+    settings: Settings,
     /// Where the table and the maps go [default: out/stability, or out/stability-NAME]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -34,11 +36,14 @@ impl Stability {
         let mut progress = |event: Event| terminal.show(event);
         let outcome = match what {
             Some(path) if is_scene(Path::new(path)) => {
-                let scene = Scene::load(Path::new(path))?;
+                let scene = self.settings.scene(Path::new(path))?;
                 report::check_outputs(&folder, &report::STABILITY_FILES, &scene.inputs())?;
                 study::sweep_scene(&scene, &mut progress)?
             }
-            _ => study::sweep(what.map(Element::load).transpose()?, &mut progress)?,
+            _ => {
+                self.settings.expect_none()?;
+                study::sweep(what.map(Element::load).transpose()?, &mut progress)?
+            }
         };
         let paths = report::write_stability(&outcome, &folder);
         terminal.print(&report::stability_text(&outcome))?;

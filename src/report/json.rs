@@ -22,6 +22,8 @@ pub struct Report {
     pub version: u32,
     /// The title.
     pub scene: String,
+    /// What was given in place of values of the scene's file, as `KEY=VALUE`.
+    pub settings: Vec<String>,
     /// The size of the box around the body along each axis, m.
     pub extent: Vec<f64>,
     /// What was assumed because no input says it, as a sentence.
@@ -106,6 +108,7 @@ impl Report {
         Report {
             version: VERSION,
             scene: outcome.scene.clone(),
+            settings: outcome.settings.clone(),
             extent: extent(mesh),
             assumed: outcome.assumed.clone(),
             nodes: mesh.point_count(),

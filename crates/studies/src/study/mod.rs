@@ -59,7 +59,7 @@ pub use progress::{Event, Progress};
 pub use run::{run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, MeshInput, MotionRecipe, Output, Part,
-    PrescribedMotion, Scene, load_elements,
+    PrescribedMotion, Scene, Setting, load_elements,
 };
 pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, sweep, sweep_scene};

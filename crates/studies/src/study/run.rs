@@ -116,6 +116,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     }
     let mut outcome = Outcome {
         scene: scene.title().into(),
+        settings: scene.settings().iter().map(|setting| setting.to_string()).collect(),
         assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,

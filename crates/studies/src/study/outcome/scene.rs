@@ -11,6 +11,8 @@ use crate::mesh::Mesh;
 #[derive(Debug)]
 pub struct Outcome {
     pub scene: String,
+    /// What was given in place of values of the scene's file, as `KEY=VALUE`.
+    pub settings: Vec<String>,
     /// What was assumed because no input says it, as a sentence.
     pub assumed: Option<String>,
     pub mesh: Mesh,
@@ -33,10 +35,11 @@ pub struct Outcome {
 impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
-        let (law, loads, motion, frequencies, left_out) = Default::default();
+        let (settings, law, loads, motion, frequencies, left_out) = Default::default();
         let assumed = None;
         Outcome {
             scene: name,
+            settings,
             assumed,
             mesh,
             material,

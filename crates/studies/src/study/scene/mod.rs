@@ -9,6 +9,8 @@ mod load;
 mod motion;
 mod output;
 mod part;
+mod setting;
+mod source;
 mod value;
 
 pub use document::Scene;
@@ -20,3 +22,4 @@ pub use load::{LoadCase, MeasuredEntry};
 pub use motion::{AppliedForce, DampingRecipe, MotionRecipe, PrescribedMotion};
 pub use output::Output;
 pub use part::Part;
+pub use setting::Setting;
