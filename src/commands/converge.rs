@@ -1,5 +1,6 @@
 //! `springfit converge`.
 
+use super::output::OutputOptions;
 use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
@@ -11,6 +12,7 @@ use std::process::ExitCode;
 
 /// Refine the mesh of a scene, and report how finite elements and networks converge
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Converge {
     /// The scene file
     scene: PathBuf,
@@ -22,10 +24,18 @@ pub struct Converge {
     /// A scene of the same body and loads whose finite elements give the truth, such as one of quadratic cells; its fits are not made [default: the scene itself]
     #[arg(long)]
     truth: Option<PathBuf>,
-    /// Where the table and the plot go [default: out/converge-NAME]
-    #[arg(long)]
+    /// Folder of the table and the plot [default: out/converge-NAME]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit converge scene.toml
+  springfit converge scene.toml --levels 3 --set material.poisson=0.45
+  springfit converge linear.toml --truth quadratic.toml  # both have the same body, supports and loads";
 
 impl Converge {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -43,7 +53,10 @@ impl Converge {
         };
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         let paths = report::write_convergence(&convergence, &folder);
-        terminal.print(&report::convergence_text(&convergence))?;
+        match self.output.json {
+            true => terminal.print_json(&convergence)?,
+            false => terminal.print(&report::convergence_text(&convergence))?,
+        }
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

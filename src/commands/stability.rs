@@ -1,5 +1,6 @@
 //! `springfit stability`.
 
+use super::output::OutputOptions;
 use super::scene_file::{Settings, is_scene};
 use crate::terminal::Terminal;
 use clap::Args;
@@ -12,15 +13,24 @@ use std::process::ExitCode;
 
 /// Run the numerical stability sweep against double-double and closed-form references; exit code 1 if an error is too large
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Stability {
     /// A shipped element's name, an element file, or a scene [default: an element of each kind, bodies and motions]
     what: Option<String>,
     #[command(flatten)]
     settings: Settings,
-    /// Where the table and the maps go [default: out/stability, or out/stability-NAME]
-    #[arg(long)]
+    /// Folder of the table and the maps [default: out/stability, or out/stability-NAME]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit stability                     # the whole sweep
+  springfit stability tet4
+  springfit stability scene.toml          # the scene in other units and materials";
 
 impl Stability {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -46,7 +56,10 @@ impl Stability {
             }
         };
         let paths = report::write_stability(&outcome, &folder);
-        terminal.print(&report::stability_text(&outcome))?;
+        match self.output.json {
+            true => terminal.print_json(&outcome)?,
+            false => terminal.print(&report::stability_text(&outcome))?,
+        }
         terminal.written(&paths?)?;
         Ok(if outcome.lost().count() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }

@@ -10,13 +10,14 @@ use super::number::finite;
 use super::table::notes;
 use crate::mesh::Mesh;
 use crate::study::{BodyLoad, GaugeResult, Outcome, extent};
+use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
 /// Of the report's keys; it changes when a key is removed or its meaning changes.
 pub const VERSION: u32 = 2;
 
 /// `report.json`. A value that does not exist or is not finite is null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     /// [`VERSION`].
     pub version: u32,
@@ -64,7 +65,7 @@ pub struct Report {
 }
 
 /// The quality of the mesh.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QualityRecord {
     /// From 0, flat, to 1, right angles.
     pub worst: Option<f64>,
@@ -84,7 +85,7 @@ pub struct QualityRecord {
 }
 
 /// Whether whole-object fits from several starts give the same errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AgreementRecord {
     pub fits: Vec<String>,
     /// The held-out load under which the errors differ most.
@@ -92,6 +93,11 @@ pub struct AgreementRecord {
     /// As a share of the least error.
     pub difference: Option<f64>,
     pub agree: bool,
+}
+
+/// The JSON Schema of reports.
+pub fn schema() -> serde_json::Value {
+    schema_for!(Report).to_value()
 }
 
 /// The report as text.

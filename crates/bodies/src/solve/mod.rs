@@ -1,12 +1,14 @@
 //! Equilibrium and natural vibrations of either model, and how the two compare mode by mode.
 
 mod cholesky;
+mod expectation;
 mod internal;
 mod linear;
 mod modes;
 mod newton;
 mod stability;
 
+pub use expectation::{FactorCost, dense_rate, factor_cost};
 pub use linear::{Factor, System};
 pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};

@@ -1,11 +1,12 @@
 //! Reference cells: the closed list of shapes an element can have.
 
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A reference cell. Intervals, squares and cubes span [-1, 1] in each coordinate; simplices are the corner at the
 /// origin with unit legs. A wedge is the triangle times [-1, 1]; a pyramid stands on the square, its apex at (0, 0, 1); the
 /// corners of the pentagon are rational points of the unit circle, nearly evenly spaced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cell {
     Interval,

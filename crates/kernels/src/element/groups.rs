@@ -13,6 +13,8 @@ use std::collections::{BTreeMap, HashSet};
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpringGroup {
     pub name: String,
+    /// The name in the element file, which the classes of one entry share.
+    pub entry: String,
     pub kind: SpringKind,
     /// The nodes of each spring; empty where the whole cell is measured.
     pub nodes: Vec<Vec<usize>>,
@@ -61,7 +63,15 @@ pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<S
                 return Err(Error::expected(key("group"), "a name used once", format!("\"{name}\" again")));
             }
             let measure = measure.clone();
-            groups.push(SpringGroup { name, kind: entry.kind, nodes, measure, optional: entry.optional });
+            let entry_name = entry.group.clone();
+            groups.push(SpringGroup {
+                name,
+                entry: entry_name,
+                kind: entry.kind,
+                nodes,
+                measure,
+                optional: entry.optional,
+            });
         }
     }
     Ok(groups)

@@ -9,10 +9,11 @@ use crate::material::Moduli;
 use crate::springs::{Force, Measure};
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// Mean and largest over the elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Spread {
     pub mean: f64,
     pub max: f64,

@@ -6,6 +6,7 @@ use crate::file;
 use crate::named::unknown;
 use crate::symbolic::{Expr, Jet, Program, Scope};
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 use springfit_shipped::MATERIALS;
 use std::collections::BTreeMap;
@@ -24,7 +25,7 @@ const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
 /// there, the limit an error of its square.
 const SAME: f64 = 1e-6;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Definition {
     name: String,
@@ -36,8 +37,14 @@ struct Definition {
     #[serde(default)]
     parameters: BTreeMap<String, f64>,
     #[serde(default, rename = "let")]
+    #[schemars(with = "BTreeMap<String, String>")]
     definitions: toml::Table,
     energy: String,
+}
+
+/// The JSON Schema of material files.
+pub fn schema() -> serde_json::Value {
+    schema_for!(Definition).to_value()
 }
 
 /// `W(F)`, J/m³, of one material.
@@ -47,6 +54,8 @@ pub struct Energy {
     pub title: String,
     /// Where it is published.
     pub source: Option<String>,
+    /// The numbers beside the moduli, with their values.
+    pub parameters: BTreeMap<String, f64>,
     fibre: Option<Vector3<f64>>,
     /// Of the invariants, then the moduli, then the parameters.
     expression: Expr,
@@ -87,6 +96,20 @@ impl Energy {
                 Err(unknown(expected, names, name_or_path).at_key("energy"))
             }
         }
+    }
+
+    /// The shipped energies, with moduli of 1 Pa and 0.3.
+    ///
+    /// # Errors
+    /// None for the files that are shipped: all are tested.
+    pub fn shipped() -> Result<Vec<Energy>> {
+        let material = Material::for_body(3, 1.0, 0.3, None, None)?;
+        MATERIALS.iter().map(|(name, _)| Energy::load(name, material)).collect()
+    }
+
+    /// Whether it has a direction of fibres.
+    pub fn has_fibres(&self) -> bool {
+        self.fibre.is_some()
     }
 
     /// Parses the text of a material file and proves that the body at rest is free of stress.
@@ -137,6 +160,7 @@ impl Energy {
             name: definition.name,
             title: definition.title,
             source: definition.source,
+            parameters: definition.parameters,
             fibre: fibre.map(|a| a.normalize()),
             by_stretches: uses(4..7),
             slopes: (0..INVARIANTS.len()).map(|v| Program::of(&expression.derivative(v))).collect(),

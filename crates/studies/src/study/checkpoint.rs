@@ -17,6 +17,8 @@ pub struct Controls {
     pub cancelled: AtomicBool,
     /// Where whole-object fits save their state every few seconds and at their end, and what they go on from if it is there.
     pub checkpoint: Option<PathBuf>,
+    /// Whether work that will take more than ten seconds is announced with an estimate.
+    pub announce: bool,
 }
 
 /// The states of the whole-object fits of a scene.

@@ -11,13 +11,15 @@ use crate::springs::Springs;
 use crate::study::metrics::SOLVED;
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Moduli of a homogenised material, that of the axes if it is not the same in all directions.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectiveModuli {
     /// C, `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane N/m.
+    #[serde(skip)]
     pub stiffness: DMatrix<f64>,
     /// Young's modulus, the mean of the axes.
     pub young: f64,

@@ -13,6 +13,7 @@ use crate::mesh::{BoxMesh, Mesh, Selection};
 use crate::model::{Body, Elastic, Response, Support, displaced};
 use crate::solve::{Ending, Newton};
 use crate::springs::{Law, Springs};
+use serde::Serialize;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -28,7 +29,7 @@ const STEP: f64 = 0.1;
 const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s)^3 - 0.125) + p*(s + 1/2) + q*(s - 1)";
 
 /// One way to find the springs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StretchedFit {
     pub name: String,
     /// Per element, on all threads.
@@ -40,7 +41,7 @@ pub struct StretchedFit {
 }
 
 /// A sampled fit with some number of shapes, of one element on one thread.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SampledRun {
     pub name: String,
     pub shapes: usize,
@@ -51,7 +52,7 @@ pub struct SampledRun {
 }
 
 /// Both studies of one element.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stretches {
     pub element: String,
     pub law: String,

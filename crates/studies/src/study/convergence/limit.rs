@@ -1,12 +1,13 @@
 //! The limit of a sequence of values on meshes whose cells are halved from one to the next.
 
+use serde::Serialize;
 /// Values that differ by less than this share are equal: solutions are not more accurate.
 const EQUAL: f64 = 1e-9;
 /// The slowest order from which a limit is extrapolated. At ½ the extrapolation adds 2.4 times the last difference.
 const SLOWEST: f64 = 0.5;
 
 /// What a sequence tends to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limit {
     pub value: f64,
     /// How far the value may be off: what one level more has changed in it, or else what extrapolation has added to the finest
@@ -16,7 +17,8 @@ pub struct Limit {
 }
 
 /// How a limit was found; if it was not extrapolated, it is the value of the finest level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LimitKind {
     /// From the three finest levels, with this order in the size of the cells.
     Extrapolated(f64),

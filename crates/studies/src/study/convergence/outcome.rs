@@ -1,12 +1,13 @@
 //! The results of a convergence study.
 
 use super::limit::{Limit, limit_of};
+use serde::Serialize;
 
 /// Errors that are this share of the truth or less are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A scene on a sequence of meshes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Convergence {
     pub scene: String,
     /// Of the box around the body, m.
@@ -21,7 +22,7 @@ pub struct Convergence {
 }
 
 /// One mesh of the sequence.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Level {
     /// `h`, m: that of a cell of mean content on the first level, `(V / cells)^(1/d)`, halved from level to level.
     pub size: f64,
@@ -34,7 +35,7 @@ pub struct Level {
 }
 
 /// What the models answer to one load on all levels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoadConvergence {
     pub name: String,
     /// The limit of the finite elements' compliance, J; `None` where they do not reach the load on some level.
@@ -46,7 +47,7 @@ pub struct LoadConvergence {
 }
 
 /// One model under one load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelConvergence {
     pub name: String,
     /// `[levels]`.
@@ -54,7 +55,7 @@ pub struct ModelConvergence {
 }
 
 /// One model under one load on one level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Step {
     /// Work of the load, `f·u`, or `u·r` with the reactions `r` to prescribed displacements, J; `None` where the model has no
     /// answer.

@@ -1,10 +1,11 @@
 //! Means and maxima over elements, as a report has them.
 
 use crate::fit::Spread;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The mean and the largest of a figure; null if there is none.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpreadRecord {
     pub mean: Option<f64>,
     pub max: Option<f64>,

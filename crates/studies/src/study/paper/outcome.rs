@@ -2,6 +2,7 @@
 
 use super::index::{Column, RowEntry};
 use crate::study::outcome::Outcome;
+use serde::Serialize;
 
 /// The tables that were run, and the scenes behind them.
 #[derive(Debug)]
@@ -11,7 +12,7 @@ pub struct Paper {
     pub scenes: Vec<PaperScene>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub struct PaperTable {
     pub name: String,
     pub title: String,
@@ -24,7 +25,7 @@ pub struct PaperTable {
 }
 
 /// A fit of an object.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PaperRow {
     pub object: String,
     /// The stem of the scene's name, where it is from one.
@@ -49,7 +50,7 @@ pub struct PaperScene {
 }
 
 /// The moduli of a network over those that were asked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Surface {
     pub fit: String,
     /// Pa, and Poisson's ratios.

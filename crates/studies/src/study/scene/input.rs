@@ -6,11 +6,12 @@ use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
 use crate::range;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// A file, or what is generated.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshInput {
     /// Relative to the scene.
@@ -20,6 +21,7 @@ pub struct MeshInput {
     pub disc: Option<DiscEntry>,
     /// Mesh units to metres.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
+    #[schemars(schema_with = "value::quantity")]
     pub scale: f64,
     /// Element files to look in before the shipped ones, relative to the scene.
     #[serde(default)]
@@ -31,7 +33,7 @@ pub struct MeshInput {
     pub halvings: u32,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QualityEntry {
     pub least: Option<f64>,
@@ -44,7 +46,7 @@ impl QualityEntry {
     }
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxEntry {
     /// A shipped element's name, or a path relative to the scene that ends in .toml.
@@ -55,7 +57,7 @@ pub struct BoxEntry {
 }
 
 /// A round disc or dome of triangles; lengths in mesh units.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscEntry {
     /// As in a box.

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::{Action, Component};
 use crate::range;
 use crate::symbolic::Scope;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -18,7 +19,7 @@ pub struct LoadCase {
     pub measured: Option<MeasuredEntry>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadEntry {
     pub name: Option<String>,
@@ -34,13 +35,14 @@ pub struct LoadEntry {
 }
 
 /// A file of displacements.
-#[derive(Debug, Clone, Deserialize, PartialEq)]
+#[derive(Debug, Clone, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredEntry {
     /// Relative to the scene.
     pub file: PathBuf,
     /// Metres per unit of the file.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
+    #[schemars(schema_with = "value::quantity")]
     pub scale: f64,
     /// Of several.
     pub array: Option<String>,

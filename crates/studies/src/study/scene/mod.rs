@@ -16,6 +16,7 @@ mod value;
 pub use document::Scene;
 pub(in crate::study) use elements::load_element;
 pub use elements::load_elements;
+pub use entry::scene_schema;
 pub use gauge::Gauge;
 pub use input::{BoxEntry, DiscEntry, MeshInput};
 pub use load::{LoadCase, MeasuredEntry};

@@ -1,8 +1,9 @@
 //! What a scene has written and worked out beside its table.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
-#[derive(Debug, Clone, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// The springs and displacements as VTU files, a motion as a series of them.

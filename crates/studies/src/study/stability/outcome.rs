@@ -1,7 +1,9 @@
 //! What a sweep finds.
 
+use serde::Serialize;
 /// What is varied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Family {
     Poisson,
     Young,
@@ -53,7 +55,8 @@ impl Family {
 }
 
 /// How a case ended.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "verdict", content = "words")]
 pub enum Verdict {
     /// The error is at most what is promised.
     Accurate,
@@ -108,7 +111,7 @@ pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// What came of one case by one method. What a case has not is `None`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityRow {
     /// The element, or what else is tried.
     pub subject: String,
@@ -116,6 +119,7 @@ pub struct StabilityRow {
     pub case: String,
     /// The objective, the solver or the integrator.
     pub method: String,
+    #[serde(flatten)]
     pub verdict: Verdict,
     /// Relative to the largest: of the constants from twice the digits; of spectral fits the proven distance from the optimum; of
     /// bodies and motions from closed forms.
@@ -162,7 +166,7 @@ impl StabilityRow {
 }
 
 /// A whole sweep.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityOutcome {
     /// What was swept.
     pub title: String,

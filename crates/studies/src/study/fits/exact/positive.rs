@@ -1,10 +1,11 @@
 //! A network without negative springs, as a report has it.
 
 use crate::positive::{PositiveOutcome, Route};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How far it is from the exact network. Errors of energies are shares of the exact ones.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PositiveRecord {
     /// What was changed: `unchanged`, `springs`, `across` or `tensions`.
     pub route: String,

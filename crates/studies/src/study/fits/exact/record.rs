@@ -2,10 +2,11 @@
 
 use super::recipe::ExactRecipe;
 use crate::fit::ExactEnergy;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ExactRecord {
     pub objective: String,
     /// Null: that of the material's law, or the stable neo-Hookean one where it has none.

@@ -1,17 +1,18 @@
 //! A published method, as a report has it.
 
 use crate::fit::published::{Method, Unmet};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The method and where it was published.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedRecord {
     pub objective: String,
     pub source: String,
 }
 
 /// The assumptions of the method that are not met.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedOutcomeRecord {
     /// Poisson's ratio of the formula, where that of the material is another.
     pub poisson_assumed: Option<f64>,

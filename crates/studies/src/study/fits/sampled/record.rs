@@ -5,11 +5,12 @@ use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
 use crate::fit::{Family, Norm, Source};
 use crate::study::fits::spread::SpreadRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The settings, with defaults resolved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledRecord {
     pub objective: String,
     /// How much each shape counts: `relative` or `none`.
@@ -33,7 +34,7 @@ pub struct SampledRecord {
 }
 
 /// A law of force for all springs, or one for each group.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ForceRecord {
     All(String),
@@ -41,7 +42,7 @@ pub enum ForceRecord {
 }
 
 /// How well the forces are met, as relative errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledOutcomeRecord {
     pub shapes: usize,
     pub trained: SpreadRecord,

@@ -1,10 +1,11 @@
 //! The settings of a fit to the stiffness at rest, as a report has them.
 
 use crate::fit::{Fit, Objective, Rest, Solver};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults resolved; what the objective does not have is null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StiffnessRecord {
     pub objective: String,
     pub weight: Option<String>,

@@ -8,15 +8,17 @@ use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::{Method, Residual, WholeSettings};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 const SEED: u64 = 2010;
 
 /// The keys. Those of sampled fits are allowed as well if the fit starts from one.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WholeEntry {
     /// An objective, "sampled" or "equal", or a list of them.
+    #[schemars(with = "Option<serde_json::Value>")]
     pub start: Option<toml::Value>,
     /// Of the objective that it starts from, as the two that follow.
     pub weight: Option<String>,
@@ -24,12 +26,15 @@ pub struct WholeEntry {
     pub balance: Option<f64>,
     pub loads: Option<Vec<String>>,
     pub validate: Option<Vec<String>>,
+    #[schemars(extend("enum" = Sharing::NAMES))]
     pub unknowns: Option<String>,
+    #[schemars(extend("enum" = Residual::NAMES))]
     pub residual: Option<String>,
     pub regularization: Option<f64>,
     pub range: Option<f64>,
     pub frequencies: Option<usize>,
     pub seed: Option<u64>,
+    #[schemars(extend("enum" = Method::NAMES))]
     pub solver: Option<String>,
     pub iterations: Option<u64>,
 }

@@ -3,10 +3,11 @@
 use super::outcome::{FittedLoad, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults resolved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WholeRecord {
     pub objective: String,
     pub start: StartRecord,
@@ -22,7 +23,7 @@ pub struct WholeRecord {
 }
 
 /// The start: an objective or "equal", or the settings of a sampled fit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum StartRecord {
     Name(String),
@@ -30,7 +31,7 @@ pub enum StartRecord {
 }
 
 /// What the fit was fitted to, and how it ended.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WholeOutcomeRecord {
     pub loads: Vec<String>,
     pub validated: Vec<String>,
@@ -48,7 +49,7 @@ pub struct WholeOutcomeRecord {
 }
 
 /// The relative error under a load; null where the network does not stand.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FittedLoadRecord {
     pub load: String,
     pub before: Option<f64>,
@@ -56,7 +57,7 @@ pub struct FittedLoadRecord {
 }
 
 /// `ω_i/ω̄_i − 1`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrequencyErrorsRecord {
     pub before: Vec<Option<f64>>,
     pub after: Vec<Option<f64>>,
