@@ -80,8 +80,10 @@ pub struct QualityRecord {
     pub folded_elements: usize,
     /// Null if coordinates are too coarse to tell.
     pub coincident_nodes: Option<usize>,
-    /// On edges and faces that do not have them; null if they were not looked for.
+    /// On edges and faces that do not have them; null if coordinates are too coarse to tell, or if the mesh was generated or divided.
     pub hanging_nodes: Option<usize>,
+    /// Parts that share no node; null if they were not counted.
+    pub pieces: Option<usize>,
 }
 
 /// Whether whole-object fits from several starts give the same errors.
@@ -154,6 +156,7 @@ impl QualityRecord {
             folded_elements: quality.folded,
             coincident_nodes: quality.coincident,
             hanging_nodes: quality.hanging,
+            pieces: quality.pieces,
         }
     }
 }

@@ -99,6 +99,9 @@ fn quality(quality: &Quality) -> Vec<String> {
             "{count} points lie on edges or faces whose cells do not have them as nodes (hanging nodes)"
         ));
     }
+    if let Some(count) = quality.pieces.filter(|count| *count > 1) {
+        lines.push(format!("the mesh has {count} pieces that share no node"));
+    }
     lines
 }
 
