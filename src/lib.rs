@@ -98,6 +98,7 @@ pub use springfit_studies::study;
 #[cfg(feature = "cli")]
 use springfit_foundation::file;
 pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};
+pub use springfit_foundation::named::{suggestion, unknown};
 
 // The examples of the README are compiled and run with those of this page.
 #[cfg(doctest)]
