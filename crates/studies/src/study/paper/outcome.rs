@@ -5,6 +5,7 @@ use crate::study::outcome::Outcome;
 
 /// The tables that were run, and their scenes.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Paper {
     /// The title of the paper.
     pub title: String,
@@ -16,6 +17,7 @@ pub struct Paper {
 
 /// A table or figure of the paper, with the printed and the computed figures.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct PaperTable {
     /// The name by which it is requested.
     pub name: String,
@@ -35,6 +37,7 @@ pub struct PaperTable {
 
 /// The figures of one fit of an object.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PaperRow {
     /// The object.
     pub object: String,
@@ -56,6 +59,7 @@ pub struct PaperRow {
 
 /// A scene with the name of its file.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct PaperScene {
     pub stem: String,
     pub outcome: Outcome,
@@ -63,6 +67,7 @@ pub struct PaperScene {
 
 /// The moduli of a network as functions of those of the material.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Surface {
     /// The name of the fit.
     pub fit: String,
