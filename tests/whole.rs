@@ -253,7 +253,7 @@ fn made_tractions_are_in_balance() {
     }
 }
 
-/// The figures of the README: loads that no fit has seen, the range of the constants, and starts that agree or are said not to.
+/// The figures of docs/src/studies/whole-object.md: loads that no fit has seen, the range of the constants, and starts that agree or are said not to.
 #[test]
 fn held_out_errors_fall() {
     // %e_rms under bending and gravity to the side that a prototype reached, and what is reached with volume springs.
