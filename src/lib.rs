@@ -99,7 +99,10 @@ pub use springfit_studies::study;
 use springfit_foundation::file;
 pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};
 
-// The examples of the README are compiled and run with those of this page.
+// The examples of the README and of the book are compiled and run with those of this page.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+#[cfg(doctest)]
+#[doc = include_str!("../docs/src/reference/library.md")]
+struct LibraryPage;
