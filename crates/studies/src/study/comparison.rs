@@ -32,7 +32,6 @@ const SAMPLED: f64 = 0.35;
 
 /// The result of one method on the random shapes of an element.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct MethodOutcome {
     /// The name of the fit.
     pub name: String,

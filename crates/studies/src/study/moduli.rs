@@ -16,7 +16,6 @@ use std::sync::Arc;
 
 /// The moduli of a homogenised material; if it is anisotropic, means over the axes.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct EffectiveModuli {
     /// The stiffness C in `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane
     /// N/m.

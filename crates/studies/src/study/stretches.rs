@@ -30,7 +30,6 @@ const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s
 
 /// One way to find the springs, and its errors.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct StretchedFit {
     /// The name of the fit.
     pub name: String,
@@ -44,7 +43,6 @@ pub struct StretchedFit {
 
 /// A sampled fit with a number of shapes, of one element on one thread.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct SampledRun {
     /// The name of the fit.
     pub name: String,
@@ -60,7 +58,6 @@ pub struct SampledRun {
 
 /// Both studies of one element.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Stretches {
     /// The name of the element.
     pub element: String,

@@ -8,7 +8,6 @@ const SLOWEST: f64 = 0.5;
 
 /// The limit of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Limit {
     /// The limit.
     pub value: f64,

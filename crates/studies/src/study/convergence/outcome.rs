@@ -7,7 +7,6 @@ const ROUNDING: f64 = 1e-9;
 
 /// A scene on a sequence of meshes.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Convergence {
     /// The title of the scene.
     pub scene: String,
@@ -25,7 +24,6 @@ pub struct Convergence {
 
 /// One mesh of the sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Level {
     /// The cell size `h`, m. On the first level it is that of a cell of mean content, `(V/cells)^(1/d)`; it is halved
     /// from level to level.
@@ -42,7 +40,6 @@ pub struct Level {
 
 /// The results of the models under one load on all levels.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct LoadConvergence {
     /// The name of the load.
     pub name: String,
@@ -56,7 +53,6 @@ pub struct LoadConvergence {
 
 /// One model under one load.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct ModelConvergence {
     /// The name of the fit, or `finite elements`.
     pub name: String,
@@ -66,7 +62,6 @@ pub struct ModelConvergence {
 
 /// One model under one load on one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Step {
     /// The work of the load, `f·u`, or `u·r` with the reactions `r` to prescribed displacements, J; `None` if the model
     /// has no solution.

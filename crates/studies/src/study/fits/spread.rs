@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// The mean and the maximum of a number over the elements; null if there is none.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct SpreadRecord {
     /// The mean.
     pub mean: Option<f64>,

@@ -5,7 +5,6 @@ use crate::study::outcome::Outcome;
 
 /// The tables that were run, and their scenes.
 #[derive(Debug)]
-#[non_exhaustive]
 pub struct Paper {
     /// The title of the paper.
     pub title: String,
@@ -17,7 +16,6 @@ pub struct Paper {
 
 /// A table or figure of the paper, with the printed and the computed figures.
 #[derive(Debug)]
-#[non_exhaustive]
 pub struct PaperTable {
     /// The name by which it is requested.
     pub name: String,
@@ -37,7 +35,6 @@ pub struct PaperTable {
 
 /// The figures of one fit of an object.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct PaperRow {
     /// The object.
     pub object: String,
@@ -59,7 +56,6 @@ pub struct PaperRow {
 
 /// A scene with the name of its file.
 #[derive(Debug)]
-#[non_exhaustive]
 pub struct PaperScene {
     pub stem: String,
     pub outcome: Outcome,
@@ -67,7 +63,6 @@ pub struct PaperScene {
 
 /// The moduli of a network as functions of those of the material.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Surface {
     /// The name of the fit.
     pub fit: String,

@@ -116,7 +116,6 @@ pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
 
 /// The result of one case with one method. A number that the case does not have is `None`.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct StabilityRow {
     /// The element, or another subject.
     pub subject: String,
@@ -176,7 +175,6 @@ impl StabilityRow {
 
 /// The results of a whole sweep.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct StabilityOutcome {
     /// What was swept.
     pub title: String,

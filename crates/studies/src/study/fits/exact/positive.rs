@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// The difference from the exact network. Errors of energies are relative to the exact ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct PositiveRecord {
     /// What was changed: `unchanged`, `springs`, `across` or `tensions`.
     pub route: String,

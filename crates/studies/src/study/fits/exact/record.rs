@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 /// The settings of an exact network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct ExactRecord {
     /// The objective, `exact`.
     pub objective: String,

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// The method, and where it is published.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct PublishedRecord {
     /// The name of the method.
     pub objective: String,
@@ -15,7 +14,6 @@ pub struct PublishedRecord {
 
 /// The assumptions of the method that are not met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct PublishedOutcomeRecord {
     /// The Poisson's ratio of the formula, if that of the material is different.
     pub poisson_assumed: Option<f64>,

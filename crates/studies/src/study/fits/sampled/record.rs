@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 
 /// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct SampledRecord {
     /// The objective, `sampled`.
     pub objective: String,
@@ -54,7 +53,6 @@ pub enum ForceRecord {
 
 /// The relative errors of the forces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct SampledOutcomeRecord {
     /// The number of shapes of the fit.
     pub shapes: usize,

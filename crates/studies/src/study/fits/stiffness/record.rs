@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults filled in. Settings that the objective does not have are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct StiffnessRecord {
     /// The objective.
     pub objective: String,

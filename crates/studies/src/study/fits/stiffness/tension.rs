@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 /// The tension of a network whose springs pull at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
 pub struct TensionOutcome {
     /// The rest lengths, and how well the springs are in equilibrium.
     pub network: RestTension,
@@ -17,7 +16,6 @@ pub struct TensionOutcome {
 
 /// The record of the tension in a report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct TensionRecord {
     /// `|rest length / length in the mesh − 1|` of the springs between two points.
     pub rest_lengths: SpreadRecord,

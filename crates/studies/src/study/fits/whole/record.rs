@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct WholeRecord {
     /// The objective, `whole`.
     pub objective: String,
@@ -39,7 +38,6 @@ pub enum StartRecord {
 
 /// The loads of the fit, and its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct WholeOutcomeRecord {
     /// The names of the loads that were fitted.
     pub loads: Vec<String>,
@@ -69,7 +67,6 @@ pub struct WholeOutcomeRecord {
 
 /// The relative error under a load; null if the network is not stable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct FittedLoadRecord {
     pub load: String,
     pub before: Option<f64>,
@@ -78,7 +75,6 @@ pub struct FittedLoadRecord {
 
 /// The relative errors `ω_i/ω̄_i − 1` of the frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct FrequencyErrorsRecord {
     pub before: Vec<Option<f64>>,
     pub after: Vec<Option<f64>>,
