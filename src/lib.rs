@@ -13,3 +13,12 @@ pub use springfit_studies::study;
 #[cfg(feature = "cli")]
 use springfit_foundation::file;
 pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};
+
+/// The examples of README and of the book, for `cargo test --doc`.
+#[cfg(doctest)]
+mod examples {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/src/reference/library.md")]
+    struct Library;
+}
