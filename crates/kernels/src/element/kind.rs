@@ -1,13 +1,14 @@
 //! The kinds of springs, one row of properties for each.
 //!
-//! Theory: pages *Stiffness* and *Exact networks* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 use super::formula::Formula;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
 /// What a spring measures. Its energy is ½ k (c − c₀)², with c the measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringKind {
     /// The distance of two nodes, in m.

@@ -3,7 +3,7 @@
 //! No element is named in the code. The files of the folder `elements` are embedded in the program; files of users have
 //! the same rights. [`Element::load`] proves the properties that every other module relies on.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 mod cell;
 mod constant;
@@ -20,7 +20,7 @@ mod symmetry;
 mod tabulation;
 
 pub use cell::{Cell, Side};
-pub use definition::{FormatEntry, Formats};
+pub use definition::{FormatEntry, Formats, schema};
 pub use formula::coordinate_names;
 pub(crate) use formula::{Formula, dot};
 pub use groups::SpringGroup;
@@ -245,19 +245,21 @@ impl Element {
         self.functions.values.iter().map(degree).max().unwrap_or(1)
     }
 
-    /// The groups that a fit uses: the named ones, or all that are not optional.
+    /// The groups that a fit uses: the named ones, or all that are not optional. The name of an entry that is divided into classes
+    /// names all of them.
     ///
     /// # Errors
     /// The element has no group of this name.
     pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
         let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
-        if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
+        let is_named = |group: &SpringGroup, name: &String| group.name == *name || group.entry == *name;
+        if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| is_named(g, n))) {
             let known: Vec<_> = self.springs.iter().map(|g| format!("\"{}\"", g.name)).collect();
             let expected = format!("groups of {}: {}", self.name, known.join(", "));
-            let groups = self.springs.iter().map(|g| g.name.as_str());
+            let groups = self.springs.iter().flat_map(|g| [g.name.as_str(), g.entry.as_str()]);
             return Err(unknown(expected, groups, wrong).at_key("springs"));
         }
-        Ok(self.springs.iter().filter(|g| names.contains(&g.name)).collect())
+        Ok(self.springs.iter().filter(|g| names.iter().any(|name| is_named(g, name))).collect())
     }
 }
 

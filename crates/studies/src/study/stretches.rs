@@ -8,12 +8,13 @@ use super::metrics::displacement_error;
 use super::progress::{Event, Progress};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
-use crate::fit::{Balance, Family, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
+use crate::fit::{Balance, DeformationFamily, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
 use crate::material::{Energy, Material};
 use crate::mesh::{BoxMesh, Mesh, Selection};
 use crate::model::{Body, Elastic, Response, Support, displaced};
 use crate::solve::{Ending, Newton};
 use crate::springs::{Law, Springs};
+use serde::Serialize;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -29,7 +30,7 @@ const STEP: f64 = 0.1;
 const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s)^3 - 0.125) + p*(s + 1/2) + q*(s - 1)";
 
 /// One way to find the springs, and its errors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StretchedFit {
     /// The name of the fit.
     pub name: String,
@@ -42,7 +43,7 @@ pub struct StretchedFit {
 }
 
 /// A sampled fit with a number of shapes, of one element on one thread.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SampledRun {
     /// The name of the fit.
     pub name: String,
@@ -57,7 +58,7 @@ pub struct SampledRun {
 }
 
 /// Both studies of one element.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stretches {
     /// The name of the element.
     pub element: String,
@@ -168,7 +169,7 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
     }
     let recipe = |(name, force, nonnegative): (&str, ForceRecipe, bool)| {
         let mut recipe = SampledRecipe { force, ..SampledRecipe::default() };
-        let source = Source::Families(vec![Family::Uniaxial, Family::SimpleShear]);
+        let source = Source::Families(vec![DeformationFamily::Uniaxial, DeformationFamily::SimpleShear]);
         recipe.fit.sampling = Sampling { source, stretch: [-0.1, stretch], ..recipe.fit.sampling };
         recipe.fit.nonnegative = nonnegative;
         if element.has_higher_modes() {

@@ -7,11 +7,12 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
 use crate::solve::Ending;
+use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::metrics::{displacement_error, product, square};
 use crate::study::outcome::Outcome;
 use crate::study::progress::{Event, Progress};
-use crate::study::run::run;
+use crate::study::run::run_with;
 use crate::study::scene::{Output, Scene};
 use std::time::Instant;
 
@@ -58,7 +59,8 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         };
         let in_level = |e: Error| e.followed_by(format!(" ({number})"));
         let refined = scene.clone().halved(level as u32);
-        let outcome = run(&refined, &mut staged).map_err(in_level)?;
+        let controls = Controls { announce: true, ..Controls::default() };
+        let outcome = run_with(&refined, &controls, &mut staged).map_err(in_level)?;
         let steps = steps(&refined, &outcome).map_err(in_level)?;
         for (load, steps) in steps.into_iter().enumerate() {
             if level == 0 {
