@@ -108,7 +108,11 @@ use springfit_foundation::file;
 pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};
 pub use springfit_foundation::named::{suggestion, unknown};
 
-// The examples of the README are compiled and run with those of this page.
+// The examples of README and of the book are compiled and run with those of this page.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod examples {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/src/reference/library.md")]
+    struct Library;
+}
