@@ -5,9 +5,9 @@ use springfit::element::Element;
 use springfit::error::{Error, ErrorKind, Result};
 use springfit::fit::published::{self, Method};
 use springfit::fit::{
-    Balance, CellFits, ClosedForm, Fit, Higher, MotionWeight, Objective, SampledFit, Sampling, Search, Solver, Source,
-    Topology, Weight, condition, constants_in, constants_of_kind, distance_from_optimum, element_errors, fit_cells,
-    fit_element, fit_sampled,
+    Balance, CellFits, ClosedForm, Fit, Higher, MotionWeight, Objective, Rest, SampledFit, Sampling, Search, Solver,
+    Source, Topology, Weight, condition, constants_in, constants_of_kind, distance_from_optimum, element_errors,
+    fit_cells, fit_element, fit_sampled,
 };
 use springfit::material::{Energy, Material, Moduli, State};
 use springfit::springs::{Force, Springs};
@@ -33,13 +33,17 @@ fn case(name: &str) -> Case {
     Case { x: element.positions.clone(), springs, moduli: material.moduli(), element: Arc::new(element) }
 }
 
-/// A fit of each objective, constants alone, tied and bounded, and by a search.
+/// A fit of each objective, constants alone, tied and bounded, and by a search; and those whose springs pull at rest.
 fn fits() -> Vec<Fit> {
     let plain = Objective::all(true).into_iter().map(Fit::new);
     let bounded = Objective::all(true).into_iter().map(|o| Fit { nonnegative: true, tied: true, ..Fit::new(o) });
     let solver = Solver::General { method: Search::NelderMead, iterations: 5, topology: None };
     let searched = Objective::all(true).into_iter().map(|o| Fit { solver, ..Fit::new(o) });
-    plain.chain(bounded).chain(searched).collect()
+    let weights = [Weight::None, Weight::OffDiagonal];
+    let pulling = [Rest::Free, Rest::Zero]
+        .into_iter()
+        .flat_map(|rest| weights.map(|weight| Fit { rest, ..Fit::new(Objective::Frobenius(weight)) }));
+    plain.chain(bounded).chain(searched).chain(pulling).collect()
 }
 
 /// The result of a call that does not panic.
@@ -193,9 +197,13 @@ fn hostile_numbers_do_not_panic() {
                     }
                 }
                 let what = format!("{name} {} at {x:?} with {moduli:?}", fit.objective.title());
+                let fitted = outcome(&what, || cells(&case, &x, &all, moduli, &fit));
+                if let Ok(CellFits { constants, parameters, .. }) = &fitted {
+                    assert_finite(&what, Ok([&constants[..], parameters].concat()));
+                }
                 let one = outcome(&what, || fit_element(element, springs, &x, moduli, &fit));
                 if let Ok(constants) = &one {
-                    let fitted = cells(&case, &x, &all, moduli, &fit).unwrap();
+                    let fitted = fitted.unwrap();
                     let _ = outcome(&what, || element_errors(element, &x, &all, moduli, &fitted));
                     let said = (&constants[..], HOSTILE[random.below(HOSTILE.len())]);
                     let _ = outcome(&what, || distance_from_optimum(element, springs, &x, &moduli, &fit, said));

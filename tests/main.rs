@@ -1,9 +1,11 @@
 //! All tests of the library and of the program, in one binary: each file states truths about one subject.
 
 mod bad_input;
+mod book;
 mod cases;
 mod catalogue;
 mod check;
+mod command_line;
 mod converge;
 mod corpora;
 mod covariance;
@@ -52,7 +54,9 @@ mod report;
 mod rest;
 mod sampled;
 mod sampling;
+mod schema;
 mod searches;
+mod settings;
 mod shapes;
 mod small_loads;
 mod springs;

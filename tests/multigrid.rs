@@ -3,7 +3,7 @@
 use springfit::error::ErrorKind;
 use springfit::mesh::Mesh;
 use springfit::model::{BlockStiffness, Support, finite_elements};
-use springfit::solve::{Levels, LinearMethod, LinearSolver, Standing, System};
+use springfit::solve::{Levels, Standing, StaticMethod, StaticSolver, System};
 use springfit::study::{Outcome, Scene, run};
 use std::fs;
 use std::path::Path;
@@ -186,7 +186,7 @@ fn levels_show_the_motion_that_meets_no_resistance() {
 
 #[test]
 fn the_method_is_chosen_by_size_and_by_the_number_of_loads() {
-    let solver = LinearSolver::default();
+    let solver = StaticSolver::default();
     let scene = |n: usize| {
         let text = BOX.replace("cells = [8, 4, 4]", &format!("cells = [{n}, {n}, {n}]"));
         Scene::parse(&format!("{text}[[fit]]\nobjective = \"modal\"\n"), Path::new("scene.toml"))
@@ -196,8 +196,8 @@ fn the_method_is_chosen_by_size_and_by_the_number_of_loads() {
     };
     let (small, large) = (scene(8), scene(22));
     assert!(!solver.iterates(&small, 1) && solver.iterates(&large, 1) && !solver.iterates(&large, 100));
-    assert!(LinearSolver { method: LinearMethod::Multigrid, ..solver }.iterates(&small, 100));
-    assert!(!LinearSolver { method: LinearMethod::Cholesky, ..solver }.iterates(&large, 1));
+    assert!(StaticSolver { method: StaticMethod::Multigrid, ..solver }.iterates(&small, 100));
+    assert!(!StaticSolver { method: StaticMethod::Cholesky, ..solver }.iterates(&large, 1));
 }
 
 #[test]

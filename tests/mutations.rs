@@ -119,7 +119,8 @@ fn sound_meshes_have_no_fault() {
         let quality = &mesh.quality;
         assert_eq!((quality.coincident, quality.hanging), (Some(0), Some(0)), "{name}");
         assert_eq!((quality.duplicates, quality.folded, &quality.turned), (0, 0, &None), "{name}");
-        assert_eq!(Mesh::resolve(&source, &[], 1.0).unwrap().quality.hanging, None, "{name}");
+        assert_eq!((quality.pieces, flood(&mesh)), (Some(1), 1), "{name}");
+        assert_eq!(Mesh::resolve(&source, &[], 1.0).unwrap().quality, mesh.quality, "{name}");
     }
 }
 
@@ -197,6 +198,7 @@ fn pieces_without_support_are_found() {
         let d = mesh.dimension;
         let mut support = Support::free(&mesh);
         support.fix(&(0..whole.point_count()).collect::<Vec<_>>(), &(0..d).collect::<Vec<_>>(), d);
+        assert_eq!((mesh.quality.pieces, flood(&mesh)), (Some(2), 2), "{name}");
         let unheld = unheld_bodies(&mesh, &support);
         assert_eq!(unheld.len(), 1, "{name}");
         assert_eq!((unheld[0].points, unheld[0].motions), (count, d * (d + 1) / 2), "{name}");
@@ -205,7 +207,8 @@ fn pieces_without_support_are_found() {
 
 /// The cells beyond a plane have nodes of their own, as where two parts were meshed each for itself.
 #[test]
-fn unmerged_nodes_are_counted() {
+fn unmerged_nodes_and_pieces_are_counted() {
+    let mut cut = 0;
     mutations(4, |name, mut source, random| {
         let axis = below(random, 2);
         let all = cells(&source);
@@ -234,8 +237,29 @@ fn unmerged_nodes_are_counted() {
         for gate in [None, Some(Gate::default())] {
             let mesh = Mesh::resolve_within(&source, &[], 1.0, gate).unwrap();
             assert_eq!(mesh.quality.coincident, Some(copies.len()), "{name}");
+            assert_eq!(mesh.quality.pieces, Some(flood(&mesh)), "{name}");
+            cut += usize::from(mesh.quality.pieces > Some(1));
         }
     });
+    assert!(cut > MUTATIONS, "{cut} meshes in pieces");
+}
+
+/// Connected parts by flooding, from cell to cell.
+fn flood(mesh: &Mesh) -> usize {
+    let cells: Vec<&[usize]> = mesh.blocks.iter().flat_map(|block| block.cells()).collect();
+    let mut around = vec![Vec::new(); mesh.point_count()];
+    cells.iter().enumerate().for_each(|(cell, nodes)| nodes.iter().for_each(|&p| around[p].push(cell)));
+    let (mut met, mut count) = (vec![false; cells.len()], 0);
+    for seed in 0..cells.len() {
+        let mut wet = if met[seed] { Vec::new() } else { vec![seed] };
+        count += wet.len();
+        while let Some(cell) = wet.pop() {
+            if !std::mem::replace(&mut met[cell], true) {
+                wet.extend(cells[cell].iter().flat_map(|&p| &around[p]));
+            }
+        }
+    }
+    count
 }
 
 /// One of two cells that share a side is divided by a new point on that side or on an edge of it, at any place, and its neighbours

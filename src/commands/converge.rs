@@ -1,5 +1,7 @@
 //! `springfit converge`.
 
+use super::output::OutputOptions;
+use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
@@ -10,26 +12,37 @@ use std::process::ExitCode;
 
 /// Refine the mesh of a scene, and report how finite elements and networks converge
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Converge {
     /// The scene file
     scene: PathBuf,
+    #[command(flatten)]
+    settings: Settings,
     /// Meshes, from 2 to 8: that of the scene, and others with cells of half the size each [default: 4, or fewer if they would take long]
     #[arg(long, allow_hyphen_values = true)]
     levels: Option<usize>,
     /// A scene of the same body and loads whose finite elements give the truth, such as one of quadratic cells; its fits are not made [default: the scene itself]
     #[arg(long)]
     truth: Option<PathBuf>,
-    /// Where the table and the plot go [default: out/converge-NAME]
-    #[arg(long)]
+    /// Folder of the table and the plot [default: out/converge-NAME]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit converge scene.toml
+  springfit converge scene.toml --levels 3 --set material.poisson=0.45
+  springfit converge linear.toml --truth quadratic.toml  # both have the same body, supports and loads";
 
 impl Converge {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let scene = Scene::load(&self.scene)?;
+        let scene = self.settings.scene(&self.scene)?;
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
-        let truth = self.truth.as_ref().map(|path| Scene::load(path)).transpose()?;
+        let truth = self.truth.as_ref().map(|path| self.settings.reference(path)).transpose()?;
         let inputs: Vec<PathBuf> =
             [Some(&scene), truth.as_ref()].into_iter().flatten().flat_map(Scene::inputs).collect();
         report::check_outputs(&folder, &report::CONVERGENCE_FILES, &inputs)?;
@@ -40,7 +53,10 @@ impl Converge {
         };
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         let paths = report::write_convergence(&convergence, &folder);
-        terminal.print(&report::convergence_text(&convergence))?;
+        match self.output.json {
+            true => terminal.print_json(&convergence)?,
+            false => terminal.print(&report::convergence_text(&convergence))?,
+        }
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

@@ -14,6 +14,7 @@ use std::process::ExitCode;
 
 /// Print the exact closed forms of an element's stiffness and spring constants
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Derive {
     /// A shipped element's name, or an element file
     element: String,
@@ -30,12 +31,18 @@ pub struct Derive {
     #[arg(long)]
     objective: Option<String>,
     /// Print the stiffness matrix as well
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     matrix: bool,
     /// Print LaTeX
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     latex: bool,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit derive quad4
+  springfit derive quad4 --plane strain --sides          # a rectangle with sides a and b
+  springfit derive tri3 --objective frobenius --latex";
 
 impl Derive {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {

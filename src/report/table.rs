@@ -33,7 +33,9 @@ pub(super) fn summary_line(outcome: &Outcome) -> String {
 /// What was modelled, in a line or two.
 pub fn summary(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
-    let mut text = format!("{}\n{}\n", printable(&outcome.scene), summary_line(outcome));
+    let given =
+        if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
+    let mut text = format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
     let turned = "elements had their nodes in inverted order and were reversed";
     match &mesh.quality.turned {
         _ if mesh.reversed == 0 => {}
@@ -96,6 +98,9 @@ fn quality(quality: &Quality) -> Vec<String> {
         lines.push(format!(
             "{count} points lie on edges or faces whose cells do not have them as nodes (hanging nodes)"
         ));
+    }
+    if let Some(count) = quality.pieces.filter(|count| *count > 1) {
+        lines.push(format!("the mesh has {count} pieces that share no node"));
     }
     lines
 }

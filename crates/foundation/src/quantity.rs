@@ -1,29 +1,39 @@
-//! Quantities as texts, with or without a unit.
+//! Physical quantities as texts, with or without a unit: `10kPa`, `2.5 mm`, `1000`.
 
 use crate::error::{Error, Result};
 
 /// What is measured. A number without a unit is in the SI unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
+    /// A length, in m.
     Length,
+    /// An area, in m².
     Area,
+    /// A pressure, a modulus or a stress, in Pa.
     Pressure,
+    /// A mass density, in kg/m³.
     Density,
+    /// A time, in s.
     Time,
-    /// The length of one unit of a mesh. A unit alone stands for one of it: `mm` is 0.001 m.
+    /// The length of one unit of a mesh, in m. A unit alone stands for one of it: `mm` is 0.001 m.
     MeshUnit,
 }
 
-/// A unit as a power of ten of the SI unit, which comes first in each list.
+/// A unit and its power of ten in the SI unit. The SI unit comes first in each list.
 type Unit = (&'static str, i32);
 
+/// Units of length.
 const LENGTHS: [Unit; 8] =
     [("m", 0), ("km", 3), ("dm", -1), ("cm", -2), ("mm", -3), ("um", -6), ("µm", -6), ("nm", -9)];
+/// Units of area.
 const AREAS: [Unit; 8] =
     [("m^2", 0), ("m²", 0), ("cm^2", -4), ("cm²", -4), ("mm^2", -6), ("mm²", -6), ("um^2", -12), ("µm²", -12)];
+/// Units of pressure.
 const PRESSURES: [Unit; 8] =
     [("Pa", 0), ("kPa", 3), ("MPa", 6), ("GPa", 9), ("N/m^2", 0), ("N/m²", 0), ("N/mm^2", 6), ("N/mm²", 6)];
+/// Units of density.
 const DENSITIES: [Unit; 4] = [("kg/m^3", 0), ("kg/m³", 0), ("g/cm^3", 3), ("g/cm³", 3)];
+/// Units of time.
 const TIMES: [Unit; 4] = [("s", 0), ("ms", -3), ("us", -6), ("µs", -6)];
 
 impl Quantity {
@@ -37,7 +47,7 @@ impl Quantity {
         }
     }
 
-    /// What a text of it looks like.
+    /// An example of a valid text, for error messages.
     pub fn expected(self) -> &'static str {
         match self {
             Quantity::Length => "a length such as 0.005, \"5 mm\" or \"0.5cm\"",
@@ -49,7 +59,7 @@ impl Quantity {
         }
     }
 
-    /// The value in the SI unit.
+    /// The value of the text in the SI unit.
     ///
     /// # Errors
     /// The text is not a number followed by nothing or by a unit of this quantity.
@@ -64,7 +74,8 @@ impl Quantity {
                 (Quantity::MeshUnit, "") => 1.0,
                 _ => number.parse().ok()?,
             };
-            // A quotient by a whole power of ten is the double nearest to the decimal, as the same number without a unit is.
+            // Dividing by a whole power of ten gives the double that is nearest to the decimal number, as parsing the
+            // same number without a unit does.
             let factor = 10f64.powi(power.abs());
             Some(if *power < 0 { value / factor } else { value * factor })
         };

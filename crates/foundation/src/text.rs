@@ -1,20 +1,40 @@
-//! Texts from outside, made fit to be printed.
+//! Texts from outside the program, made safe to print.
 
 use std::borrow::Cow;
 
-/// The text on one line, without characters that a terminal acts on: each becomes U+FFFD.
+/// The text on one line, without characters that a terminal interprets: each becomes U+FFFD.
 ///
-/// Every name, title and path that comes from a file goes through here before it is printed or written.
+/// Every name, title and path that comes from a file goes through this function before it is printed or written.
 pub fn printable(text: &str) -> Cow<'_, str> {
     replaced(text, acts_on_terminal)
 }
 
-/// The same of a text that may have line ends.
+/// The text without characters that a terminal interprets; line ends are kept.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     replaced(text, |c| c != '\n' && acts_on_terminal(c))
 }
 
-/// Control characters, and marks that change the direction of writing or end a line.
+/// A time for people: `0.20 s`, `45 s`, `12 min` or `3 h`.
+pub fn time_in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => format!("{:.2} s", s.max(0.01)),
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.0} h", s / 3600.0),
+    }
+}
+
+/// A number of bytes for people: `0.4 MB`, `35 MB` or `1.5 GB`.
+pub fn memory_in_words(bytes: f64) -> String {
+    match bytes / 1e6 {
+        mega if mega < 10.0 => format!("{mega:.1} MB"),
+        mega if mega < 1000.0 => format!("{mega:.0} MB"),
+        mega => format!("{:.1} GB", mega / 1e3),
+    }
+}
+
+/// Control characters, marks that change the direction of writing, and characters that end a line.
 fn acts_on_terminal(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -21,11 +21,28 @@ const LOOK: usize = 4;
 pub enum Definiteness {
     /// No eigenvalue is zero or below it, but with a chance of `doubt`: that of a random vector which is so nearly orthogonal to the motion
     /// of such an eigenvalue that `iterations` steps do not find it.
-    Positive { doubt: f64, iterations: usize },
+    Positive {
+        /// The chance of an eigenvalue at or below zero.
+        doubt: f64,
+        /// The steps of Lanczos' method.
+        iterations: usize,
+    },
     /// A motion without energy above zero, up to rounding.
-    NotPositive { motion: Motion, iterations: usize },
-    /// The steps were too few; the least eigenvalue of `M⁻¹ A` that they met, and the chance that there is one at or below zero.
-    Undecided { least: f64, doubt: f64, iterations: usize },
+    NotPositive {
+        /// What shows it.
+        motion: Motion,
+        /// The steps of Lanczos' method.
+        iterations: usize,
+    },
+    /// The steps were too few.
+    Undecided {
+        /// The least eigenvalue of `M⁻¹ A` that they met.
+        least: f64,
+        /// The chance of one at or below zero.
+        doubt: f64,
+        /// The steps of Lanczos' method.
+        iterations: usize,
+    },
 }
 
 impl<const D: usize, const M: usize> Multigrid<D, M> {

@@ -16,7 +16,9 @@ const TIMES: usize = 4;
 /// Which end of the quotients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
+    /// The least quotient.
     Least,
+    /// The largest quotient.
     Largest,
 }
 
@@ -27,7 +29,9 @@ pub struct Extreme {
     pub quotient: f64,
     /// `xᵀ B x = 1`.
     pub displacement: Vec<f64>,
+    /// Iterations of the method.
     pub iterations: usize,
+    /// Whether the quotient has stopped changing.
     pub is_settled: bool,
 }
 

@@ -13,6 +13,7 @@ pub struct Motion {
     pub energy: f64,
 }
 
+/// Why there is no hierarchy, or no solution.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fault {
     /// Some motion releases energy, or meets no resistance.
@@ -20,16 +21,33 @@ pub enum Fault {
     /// The watch broke off.
     Interrupted,
     /// The last level is too large to be factorised, and its nodes do not group.
-    Stagnant { levels: Vec<LevelSize> },
+    Stagnant {
+        /// The levels so far.
+        levels: Vec<LevelSize>,
+    },
     /// The residual does not become less.
-    Stalled { residual: f64, iterations: usize, levels: Vec<LevelSize> },
+    Stalled {
+        /// `‖b − A x‖/‖b‖`, worked out from the last x.
+        residual: f64,
+        /// Iterations until then.
+        iterations: usize,
+        /// The levels of the preconditioner.
+        levels: Vec<LevelSize>,
+    },
     /// An array has not the size that the matrix asks for.
-    Size { what: &'static str, expected: usize, found: usize },
+    Size {
+        /// The array.
+        what: &'static str,
+        /// Its entries, as the matrix asks for.
+        expected: usize,
+        /// Its entries.
+        found: usize,
+    },
     /// An entry of the matrix or of a vector is not finite.
     NotFinite,
 }
 
-/// `343000 × 3, 14000 × 6, 520 × 6`.
+/// The levels in words: `343000 × 3, 14000 × 6, 520 × 6`.
 pub fn sizes(levels: &[LevelSize]) -> String {
     let each = levels.iter().map(|level| format!("{} × {}", level.nodes, level.width));
     each.collect::<Vec<_>>().join(", ")

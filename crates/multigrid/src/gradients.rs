@@ -18,6 +18,7 @@ const ROUNDINGS: f64 = 4.0;
 pub struct Solution {
     /// On all unknowns, zero in what is held.
     pub displacement: Vec<f64>,
+    /// Iterations of the method.
     pub iterations: usize,
     /// `‖b − A x‖/‖b‖` on the unknowns that are not held, worked out anew from x.
     pub residual: f64,

@@ -105,14 +105,17 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         }
     }
 
+    /// The sizes of all levels, the finest first.
     pub fn levels(&self) -> &[LevelSize] {
         &self.levels
     }
 
+    /// The matrix of the finest level.
     pub fn matrix(&self) -> &Arc<BlockMatrix<D, D>> {
         &self.first.matrix
     }
 
+    /// The number of nodes of the finest level.
     pub fn rows(&self) -> usize {
         self.first.matrix.rows()
     }
@@ -126,6 +129,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         level(&self.first) + self.others.iter().map(|other| level(other) + other.matrix.bytes()).sum::<usize>()
     }
 
+    /// The vectors that [`Multigrid::apply`] needs.
     pub fn workspace(&self) -> Workspace<D, M> {
         let stage =
             |rows: usize| Stage { force: vec![[0.0; M]; rows], motion: vec![[0.0; M]; rows], room: Room::new(rows) };

@@ -20,6 +20,7 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
         BlockMatrix { pattern, values }
     }
 
+    /// Which blocks are stored.
     pub fn pattern(&self) -> &Arc<Pattern> {
         &self.pattern
     }
@@ -29,6 +30,7 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
         &self.values
     }
 
+    /// As [`BlockMatrix::values`], to be changed.
     pub fn values_mut(&mut self) -> &mut [Block<R, C>] {
         &mut self.values
     }

@@ -20,14 +20,17 @@ pub struct Groups<'a> {
 }
 
 impl Groups<'_> {
+    /// The number of groups.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
+    /// The nodes of one group.
     pub fn of(&self, group: usize) -> &[u32] {
         &self.nodes[self.starts[group]..self.starts[group + 1]]
     }
@@ -62,6 +65,7 @@ impl Pattern {
         Pattern { starts, columns, width: count }
     }
 
+    /// The number of rows.
     pub fn rows(&self) -> usize {
         self.starts.len() - 1
     }
@@ -76,10 +80,12 @@ impl Pattern {
         self.columns.len()
     }
 
+    /// Whether no block is stored.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty()
     }
 
+    /// The columns of a row, ascending.
     pub fn row(&self, row: usize) -> &[u32] {
         &self.columns[self.starts[row]..self.starts[row + 1]]
     }

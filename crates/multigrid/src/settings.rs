@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+/// How a hierarchy is built and used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Nodes are strongly coupled above this share, `‖A_ij‖ > threshold √(‖A_ii‖ ‖A_jj‖)`; halved from level to level.
@@ -23,6 +24,7 @@ impl Default for Settings {
 /// The size of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LevelSize {
+    /// Its nodes.
     pub nodes: usize,
     /// Unknowns of each node.
     pub width: usize,
@@ -35,8 +37,13 @@ pub struct LevelSize {
 pub enum Event {
     /// A level of the hierarchy is built.
     Level(LevelSize),
-    /// An iteration is done; the residual as a share of that at the start, in the norm of the inverse preconditioner.
-    Iteration { number: usize, residual: f64 },
+    /// An iteration is done.
+    Iteration {
+        /// Counted from 1.
+        number: usize,
+        /// As a share of that at the start, in the norm of the inverse preconditioner.
+        residual: f64,
+    },
 }
 
 /// Hears of each level and iteration, and ends the work where it breaks.

@@ -1,4 +1,9 @@
-//! Motion of a model whose mass is lumped at its points: `M ẍ + C ẋ + F(x) = f(t)`, some degrees of freedom prescribed.
+//! Motion of a model with masses lumped at its points: `M ẍ + C ẋ + F(x) = f(t)`, with some degrees of freedom
+//! prescribed.
+//!
+//! [`Simulation`] advances a [`Motion`] step by step with an [`Integrator`].
+//!
+//! Theory: page *Dynamics* of the book.
 
 mod blocks;
 mod damping;
@@ -20,9 +25,9 @@ mod solver;
 pub use damping::{Dampers, Damping};
 pub use drive::{Curve, Drive};
 pub use integrator::Integrator;
-pub use ledger::{Account, Balance};
+pub use ledger::{Account, EnergyBalance};
 pub use limit::largest_square;
 pub use motion::{Motion, Options};
-pub use settle::{Outcome, Step};
-pub use simulation::{Simulation, State};
-pub use solver::{LEAST_TOLERANCE, Solver};
+pub use settle::{Step, StepOutcome};
+pub use simulation::{MotionState, Simulation};
+pub use solver::{LEAST_TOLERANCE, LinearSolver};

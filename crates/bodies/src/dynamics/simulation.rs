@@ -1,43 +1,45 @@
-//! A motion step by step.
+//! A motion computed step by step.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use super::equations::Equations;
 use super::integrator::{Integrator, Past};
-use super::ledger::{self, Account, Balance, Forces, Ledger};
+use super::ledger::{self, Account, EnergyBalance, Forces, Ledger};
 use super::limit::longest_step;
 use super::motion::{Motion, Options};
 use super::resistance::Resistance;
-use super::settle::{Outcome, Step, Target, Trial};
-use super::solver::Solver;
+use super::settle::{Step, StepOutcome, Target, Trial};
+use super::solver::LinearSolver;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::displaced;
 use crate::solve::generator;
 
-/// Where a model is and how fast.
+/// Displacements and velocities of a model at one time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct State {
-    /// s.
+pub struct MotionState {
+    /// The time, s.
     pub time: f64,
-    /// From the places at rest, `[points · dimension]`, m.
+    /// The displacements from the positions at rest, `[points · dimension]`, m.
     pub displacement: Vec<f64>,
-    /// `[points · dimension]`, m/s.
+    /// The velocities, `[points · dimension]`, m/s.
     pub velocity: Vec<f64>,
 }
 
-/// The motion of a model from time zero on.
+/// The motion of a model from time zero.
 #[derive(Debug)]
 pub struct Simulation<'a> {
     motion: Motion<'a>,
     options: Options,
     resistance: Resistance<'a>,
-    /// Of implicit methods.
+    /// The equations of implicit methods.
     equations: Option<Box<dyn Equations>>,
-    /// The coefficients of the matrix that the equations of a linear model have.
+    /// The coefficients with which the matrix of a linear model was assembled.
     factored: [f64; 2],
-    state: State,
+    state: MotionState,
     steps: usize,
-    /// m/s², of the free degrees of freedom where the method asks for it.
+    /// The accelerations of the free degrees of freedom, m/s², if the method requires them.
     acceleration: Vec<f64>,
-    /// The last step, m, and the velocity before it, m/s.
+    /// The displacement of the last step, m, and the velocity before it, m/s.
     way: Vec<f64>,
     before: Vec<f64>,
     target: Target,
@@ -49,12 +51,12 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Starts at rest.
+    /// A simulation that starts at rest.
     ///
     /// # Errors
-    /// A number is not what it must be, a point that may move has no mass, the model has no response at rest, the equations do not
-    /// fit into memory, or the step is too long: longer than [`Simulation::longest_step`] with symplectic Euler, or so long that a
-    /// linear model that releases energy has no implicit step.
+    /// A number is out of its range; a point that may move has no mass; the model has no response at rest; the
+    /// equations do not fit into memory; or the step is too long: longer than [`Simulation::longest_step`] with
+    /// symplectic Euler, or so long that a linear model that releases energy has no implicit step.
     pub fn new(motion: Motion<'a>, options: Options) -> Result<Simulation<'a>> {
         options.check()?;
         motion.check()?;
@@ -72,7 +74,7 @@ impl<'a> Simulation<'a> {
             resistance,
             equations,
             factored: [f64::NAN; 2],
-            state: State { time: 0.0, displacement: zero(), velocity: zero() },
+            state: MotionState { time: 0.0, displacement: zero(), velocity: zero() },
             steps: 0,
             acceleration: zero(),
             way: zero(),
@@ -102,11 +104,11 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// Begins again at time zero with these displacements, m, and velocities, m/s, `[points · dimension]`; those of held degrees of
-    /// freedom are as prescribed.
+    /// Starts again at time zero with these displacements, m, and velocities, m/s, `[points · dimension]`; those of
+    /// held degrees of freedom are as prescribed.
     ///
     /// # Errors
-    /// A list has another length, or the model has no response there.
+    /// A list has a wrong length, or the model has no response there.
     pub fn start(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<()> {
         let dofs = self.motion.points.len();
         for (key, list) in [("displacement", displacement), ("velocity", velocity)] {
@@ -116,7 +118,7 @@ impl<'a> Simulation<'a> {
         }
         self.steps = 0;
         self.ledger = None;
-        self.state = State { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
+        self.state = MotionState { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
         for (dof, prescribed) in self.motion.support.prescribed.iter().enumerate() {
             if let Some(u) = prescribed {
                 (self.state.displacement[dof], self.state.velocity[dof]) = (*u, 0.0);
@@ -125,7 +127,7 @@ impl<'a> Simulation<'a> {
         let h = self.options.step;
         for (dof, curve) in &self.motion.drive.displacements {
             self.state.displacement[*dof] = curve.at(0.0);
-            // One-sided: what a curve is before time zero nobody has said.
+            // One-sided difference: a curve need not be defined before time zero.
             self.state.velocity[*dof] = (4.0 * curve.at(h / 2.0) - 3.0 * curve.at(0.0) - curve.at(h)) / h;
         }
         if !self.refresh() {
@@ -147,7 +149,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Loads, elastic and damping forces of the state; false where the model has none.
+    /// Computes loads, elastic and damping forces of the state; false if the model has none.
     fn refresh(&mut self) -> bool {
         self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
         self.resistance.direct(&self.state.displacement, false);
@@ -160,11 +162,11 @@ impl<'a> Simulation<'a> {
         Forces { external: &self.target.external, elastic: &self.trial.force, viscous: &self.viscous }
     }
 
-    /// Whether a linear model has steps. What its solver cannot tell, Cholesky's factor does, so that the answer does not depend on the
-    /// solver.
+    /// Whether a linear model has steps. What its solver cannot determine, a Cholesky factor does, so that the answer
+    /// does not depend on the solver.
     ///
     /// # Errors
-    /// The factor does not fit into memory, or the solver has no equations of a model that has steps.
+    /// The factor does not fit into memory, or the solver cannot solve the equations of a model that has steps.
     fn is_definite(&mut self, coefficients: [f64; 2]) -> Result<bool> {
         let is_prepared = self.factor(coefficients);
         let Some(equations) = &mut self.equations else { return Ok(true) };
@@ -174,7 +176,8 @@ impl<'a> Simulation<'a> {
             return Ok(is_definite);
         }
         let resistance = &self.resistance;
-        let mut proof = Solver::Factor.equations(&resistance.places(), &resistance.held, self.motion.dimension())?;
+        let mut proof =
+            LinearSolver::Factor.equations(&resistance.places(), &resistance.held, self.motion.dimension())?;
         resistance.assemble(coefficients, &resistance.rest.values, proof.as_mut());
         match proof.prepare() {
             true if !is_prepared => {
@@ -185,7 +188,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Prepares the matrix of a linear model, unless that is done.
+    /// Prepares the matrix of a linear model, unless it is prepared already.
     fn factor(&mut self, coefficients: [f64; 2]) -> bool {
         let Some(equations) = self.equations.as_mut().filter(|_| self.factored != coefficients) else { return true };
         self.resistance.assemble(coefficients, &self.resistance.rest.values, equations.as_mut());
@@ -193,23 +196,24 @@ impl<'a> Simulation<'a> {
         equations.prepare()
     }
 
-    /// The longest stable step of symplectic Euler at rest, s: `4/(γ + √(γ² + 4ω²))` with the largest ω² of `M⁻¹K` and γ of `M⁻¹C`,
-    /// bounded from above. A model that stiffens as it moves needs shorter ones.
+    /// The longest stable step of symplectic Euler at rest, s: `4/(γ + √(γ² + 4ω²))`, with upper bounds of the largest
+    /// ω² of `M⁻¹K` and γ of `M⁻¹C`. A model that stiffens as it moves requires shorter steps.
     pub fn longest_step(&self) -> f64 {
         let [square, damping] = self.resistance.largest();
         longest_step(square, damping)
     }
 
-    pub fn state(&self) -> &State {
+    /// The current state.
+    pub fn state(&self) -> &MotionState {
         &self.state
     }
 
-    /// `[points × dimension]`, m.
+    /// The current positions, `[points × dimension]`, m.
     pub fn positions(&self) -> Vec<f64> {
         displaced(self.motion.points, &self.state.displacement)
     }
 
-    /// Goes on by one step.
+    /// Advances by one step.
     pub fn step(&mut self) -> Step {
         let h = self.options.step;
         let time = (self.steps + 1) as f64 * h;
@@ -227,7 +231,7 @@ impl<'a> Simulation<'a> {
             None => self.leap(),
             Some(_) => self.settle(time),
         };
-        if step.outcome == Outcome::NoResponse {
+        if step.outcome == StepOutcome::NoResponse {
             self.refresh();
             return step;
         }
@@ -235,7 +239,7 @@ impl<'a> Simulation<'a> {
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         std::mem::swap(&mut self.way, &mut self.target.delta);
         self.state.velocity.copy_from_slice(&self.target.velocity);
-        // A driven point is where its curve is, to the last bit.
+        // A driven point is on its curve to the last bit.
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u += way);
         for (dof, curve) in &self.motion.drive.displacements {
             self.state.displacement[*dof] = curve.at(time);
@@ -248,7 +252,7 @@ impl<'a> Simulation<'a> {
         step
     }
 
-    /// Symplectic Euler's velocities and way.
+    /// The velocities and displacements of symplectic Euler.
     fn leap(&mut self) -> Step {
         let h = self.options.step;
         let Target { delta, velocity, external, .. } = &mut self.target;
@@ -257,17 +261,17 @@ impl<'a> Simulation<'a> {
             velocity[dof] = self.state.velocity[dof] + h * rest / self.resistance.mass[dof];
             delta[dof] = h * velocity[dof];
         }
-        Step { outcome: Outcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
+        Step { outcome: StepOutcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
     }
 
-    /// Undoes an explicit step.
+    /// Restores the state before an explicit step.
     fn step_back(&mut self, step: Step) -> Step {
         self.steps -= 1;
         self.state.time = self.steps as f64 * self.options.step;
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         self.refresh();
-        Step { outcome: Outcome::NoResponse, ..step }
+        Step { outcome: StepOutcome::NoResponse, ..step }
     }
 
     /// Solves for the end of an implicit step.
@@ -276,7 +280,7 @@ impl<'a> Simulation<'a> {
         let is_first = self.steps == 0;
         self.target.coefficients = integrator.coefficients(h, is_first);
         if linear {
-            // Later steps are stiffer than the first, which `new` has tried.
+            // Later steps are stiffer than the first one, which `new` has tried.
             self.factor(self.target.coefficients);
         }
         for dof in 0..self.state.velocity.len() {
@@ -288,7 +292,8 @@ impl<'a> Simulation<'a> {
         let equations = self.equations.as_mut().expect("only implicit methods settle").as_mut();
         let (start, Target { y, .. }) = (&self.state.displacement, &self.target);
         if self.resistance.has_dampers() && !linear {
-            // Of implicit Euler as they are, which is as exact as it is; of the others as they will be.
+            // For implicit Euler the dampers as they are, which has the accuracy of the method; for the others as they
+            // will be.
             let ahead: Vec<f64> = match integrator {
                 Integrator::ImplicitEuler => start.clone(),
                 _ => start.iter().zip(y).map(|(u, y)| u + y).collect(),
@@ -300,12 +305,12 @@ impl<'a> Simulation<'a> {
             true => trial.solve_linear(resistance, target, start, equations),
             false => trial.settle(resistance, target, start, equations, iterations, tolerance),
         };
-        self.is_current = !linear && step.outcome != Outcome::Linearized;
+        self.is_current = !linear && step.outcome != StepOutcome::Linearized;
         let [c1, c2] = target.coefficients;
         for &dof in equations.order() {
             target.velocity[dof] = c1 * (target.delta[dof] - target.z[dof]);
             self.acceleration[dof] = match step.outcome {
-                Outcome::NoResponse => self.acceleration[dof],
+                StepOutcome::NoResponse => self.acceleration[dof],
                 _ => c2 * (target.delta[dof] - target.y[dof]),
             };
         }
@@ -325,7 +330,7 @@ impl<'a> Simulation<'a> {
         self.ledger = Some(ledger);
     }
 
-    /// Of all degrees of freedom and of the held ones, J.
+    /// The kinetic energy of all degrees of freedom and of the held ones, J.
     fn kinetic(&self) -> (f64, f64) {
         let (mut all, mut held) = (0.0, 0.0);
         for (dof, v) in self.state.velocity.iter().enumerate() {
@@ -336,7 +341,7 @@ impl<'a> Simulation<'a> {
         (all, held)
     }
 
-    /// Energy and momentum now.
+    /// Energy and momentum of the current state.
     pub fn account(&mut self) -> Account {
         let d = self.motion.dimension();
         let (kinetic, _) = self.kinetic();
@@ -349,7 +354,7 @@ impl<'a> Simulation<'a> {
             let gained = energy - start - work + dissipated;
             ledger.largest = ledger.largest.max(energy.abs());
             let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
-            Balance { work, dissipated, drift }
+            EnergyBalance { work, dissipated, drift }
         };
         Account {
             time: self.state.time,

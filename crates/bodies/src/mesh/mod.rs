@@ -1,8 +1,12 @@
 //! Meshes of known elements: points, cells and named groups, in metres.
+//!
+//! [`MeshSource`] is what a file says; [`Mesh::resolve`] gives its cells their elements and checks them. [`BoxMesh`]
+//! and [`DiscMesh`] generate meshes.
 
 mod affine;
 mod alike;
 mod boxes;
+mod connection;
 mod disc;
 mod duplicates;
 mod field;

@@ -1,17 +1,18 @@
-//! The numbers that a file gives its nodes.
+//! The numbers that a mesh file gives its nodes.
 
 use super::source::Format;
 
-/// The numbers that the points of a mesh have in the file that they come from.
+/// The numbers that the points of a mesh have in their file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbering {
+    /// The format of the file.
     pub format: Format,
-    /// `[points]`: tags of a Gmsh file, places from 0 of a VTK file.
+    /// The numbers, `[points]`: tags in a Gmsh file, indices from 0 in a VTK file.
     pub nodes: Vec<u64>,
 }
 
 impl Numbering {
-    /// In words.
+    /// The kind of number, in words.
     pub fn title(&self) -> &'static str {
         match self.format {
             Format::Gmsh => "Gmsh node tags",
@@ -19,7 +20,7 @@ impl Numbering {
         }
     }
 
-    /// Whether the numbers of the points follow one another, as they do where none was left out.
+    /// Whether the numbers are consecutive, as they are if no point was removed.
     pub fn is_contiguous(&self) -> bool {
         self.nodes.windows(2).all(|pair| pair[0].checked_add(1) == Some(pair[1]))
     }

@@ -16,7 +16,9 @@ use std::sync::Arc;
 /// A stiffness, N/m, of d × d blocks, one for each two points that act on each other.
 #[derive(Debug, Clone)]
 pub enum BlockStiffness {
+    /// In the plane.
     Plane(Arc<BlockMatrix<2, 2>>),
+    /// In space.
     Space(Arc<BlockMatrix<3, 3>>),
 }
 
@@ -28,6 +30,11 @@ impl BlockStiffness {
     /// Whether the stiffness of that mesh can be stored so: a mesh of the plane or of space, whose points can be counted in 32 bits.
     pub fn is_of(mesh: &Mesh) -> bool {
         (2..=3).contains(&mesh.dimension) && mesh.point_count() < u32::MAX as usize
+    }
+
+    /// The bytes of so many stiffnesses of models of a mesh, and of so many times what solves with one.
+    pub fn expected_bytes(mesh: &Mesh, models: usize, levels: usize) -> u64 {
+        bytes(&places(mesh).1, mesh.dimension, models, levels)
     }
 
     /// Of the finite elements, once it is known that `models` such matrices and `levels` times what solves with one fit into memory.
@@ -91,15 +98,25 @@ impl Connectivity {
     }
 }
 
-fn body<const D: usize>(mesh: &Mesh, moduli: Moduli, models: usize, levels: usize) -> Result<BlockMatrix<D, D>> {
+/// The cells of each block, and the places of the stiffness of finite elements.
+fn places(mesh: &Mesh) -> (Vec<Connectivity>, Pattern) {
     let cells: Vec<Connectivity> = mesh.blocks.iter().map(|block| Connectivity::of(block.cells())).collect();
     let groups: Vec<Groups> = cells.iter().map(Connectivity::groups).collect();
-    let pattern = Arc::new(Pattern::of_groups(mesh.point_count(), &groups));
-    let blocks = pattern.len() * models + LEVELS * mesh.point_count() * levels;
-    let bytes = (blocks * size_of::<[[f64; D]; D]>()) as u64;
+    let pattern = Pattern::of_groups(mesh.point_count(), &groups);
+    (cells, pattern)
+}
+
+fn bytes(pattern: &Pattern, d: usize, models: usize, levels: usize) -> u64 {
+    let blocks = pattern.len() * models + LEVELS * pattern.rows() * levels;
+    (blocks * d * d * size_of::<f64>()) as u64
+}
+
+fn body<const D: usize>(mesh: &Mesh, moduli: Moduli, models: usize, levels: usize) -> Result<BlockMatrix<D, D>> {
+    let (cells, pattern) = places(mesh);
+    let bytes = bytes(&pattern, D, models, levels);
     memory::require("the stiffness with the levels of its multigrid", bytes, ADVICE).map_err(|e| e.at_key("mesh"))?;
-    let mut matrix = BlockMatrix::zero(pattern);
-    for (block, groups) in mesh.blocks.iter().zip(&groups) {
+    let mut matrix = BlockMatrix::zero(Arc::new(pattern));
+    for (block, groups) in mesh.blocks.iter().zip(cells.iter().map(Connectivity::groups)) {
         let table = &block.element.tabulation;
         let n = table.nodes;
         let fill = |cells: Range<usize>, entries: &mut [f64]| {
@@ -116,7 +133,7 @@ fn body<const D: usize>(mesh: &Mesh, moduli: Moduli, models: usize, levels: usiz
             .expect("a mesh holds only cells with a volume");
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = matrix.add(groups, fill);
+        let Ok(()) = matrix.add(&groups, fill);
     }
     Ok(matrix)
 }

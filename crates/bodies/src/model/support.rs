@@ -1,20 +1,22 @@
-//! Which degrees of freedom are held, and whether that holds every body.
+//! Supports, and whether they hold every body.
 
 use crate::mesh::Mesh;
 use nalgebra::DMatrix;
 
-/// Prescribed displacements, m: `[points · dimension]`, `None` where the point is free.
+/// Prescribed displacements of the points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
+    /// The displacements, `[points · dimension]`, m; `None` for degrees of freedom that are free.
     pub prescribed: Vec<Option<f64>>,
 }
 
 impl Support {
+    /// No supports.
     pub fn free(mesh: &Mesh) -> Support {
         Support { prescribed: vec![None; mesh.points.len()] }
     }
 
-    /// Holds the given directions of the points at rest.
+    /// Holds these directions of the points at rest.
     pub fn fix(&mut self, points: &[usize], directions: &[usize], dimension: usize) {
         for &p in points {
             for &k in directions {
@@ -23,6 +25,7 @@ impl Support {
         }
     }
 
+    /// Whether the degree of freedom is held.
     pub fn is_fixed(&self, dof: usize) -> bool {
         self.prescribed[dof].is_some()
     }
@@ -30,25 +33,28 @@ impl Support {
 
 /// A connected part of the mesh that the support leaves free to move as a rigid body.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Unheld {
+    /// The number of its points.
     pub points: usize,
+    /// Its point with the lowest index.
     pub first_point: usize,
-    /// How many independent rigid motions remain.
+    /// The number of independent rigid motions that remain.
     pub motions: usize,
 }
 
-/// The bodies that can move without deforming: for each, the rank of its rigid motions at the held degrees of freedom.
+/// The bodies that can move without deforming, found by the rank of their rigid motions at the held degrees of freedom.
 pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
     let d = mesh.dimension;
     let motions = d * (d + 1) / 2;
     let mut unheld = Vec::new();
-    for body in bodies(mesh) {
+    for body in mesh.pieces() {
         let held: Vec<usize> =
             body.iter().flat_map(|p| p * d..(p + 1) * d).filter(|&dof| support.is_fixed(dof)).collect();
         let centre: Vec<f64> =
             (0..d).map(|k| body.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / body.len() as f64).collect();
         let extent = body.iter().map(|&p| crate::springs::distance(mesh.point(p), &centre)).fold(0.0, f64::max);
-        // Translations e_k, then rotations in the planes (k, l), in units of the body's size.
+        // Translations e_k, then rotations in the planes (k, l), in units of the size of the body.
         let mut modes = DMatrix::zeros(held.len().max(motions), motions);
         for (row, &dof) in held.iter().enumerate() {
             let r: Vec<f64> = mesh.point(dof / d).iter().zip(&centre).map(|(x, c)| (x - c) / extent).collect();
@@ -65,40 +71,11 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
                 }
             }
         }
-        // Rounding of coordinates far from the origin is what a zero singular value may show.
+        // A zero singular value may be as large as the rounding of coordinates far from the origin.
         let rank = modes.rank(1e-9 * (held.len().max(1) as f64).sqrt());
         if rank < motions {
             unheld.push(Unheld { points: body.len(), first_point: body[0], motions: motions - rank });
         }
     }
     unheld
-}
-
-/// Points of each connected part, ascending.
-fn bodies(mesh: &Mesh) -> Vec<Vec<usize>> {
-    let mut parent: Vec<usize> = (0..mesh.point_count()).collect();
-    fn root(parent: &mut [usize], mut p: usize) -> usize {
-        while parent[p] != p {
-            parent[p] = parent[parent[p]];
-            p = parent[p];
-        }
-        p
-    }
-    for nodes in mesh.blocks.iter().flat_map(|b| b.cells()) {
-        let first = root(&mut parent, nodes[0]);
-        for &node in &nodes[1..] {
-            let other = root(&mut parent, node);
-            parent[other] = first;
-        }
-    }
-    let mut body_of_root = std::collections::BTreeMap::new();
-    let mut bodies: Vec<Vec<usize>> = Vec::new();
-    for p in 0..mesh.point_count() {
-        let index = *body_of_root.entry(root(&mut parent, p)).or_insert_with(|| {
-            bodies.push(Vec::new());
-            bodies.len() - 1
-        });
-        bodies[index].push(p);
-    }
-    bodies
 }

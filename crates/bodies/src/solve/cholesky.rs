@@ -1,4 +1,4 @@
-//! Cholesky's factor of a sparse matrix, in memory that is there.
+//! Cholesky factorisation of a sparse matrix, with checks of the memory that it needs.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory;
@@ -6,16 +6,16 @@ use crate::model::ADVICE;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
 use faer::prelude::MatMut;
-use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
+use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Side, get_global_parallelism};
 use std::sync::Arc;
 
-/// What all factors of matrices of one pattern share.
+/// The analysis that all factors of matrices with one pattern share.
 #[derive(Debug, Clone)]
 pub(super) struct Analysis(Arc<SymbolicCholesky<usize>>);
 
-/// `L`, of `L Lᵀ`.
+/// The factor `L` of `L Lᵀ`.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     analysis: Analysis,
@@ -23,6 +23,8 @@ pub struct Cholesky {
 }
 
 impl Analysis {
+    /// Analyses a pattern.
+    ///
     /// # Errors
     /// It does not fit into memory.
     pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Analysis> {
@@ -31,13 +33,33 @@ impl Analysis {
             .map_err(|cause| out_of_memory("the analysis of the stiffness", cause))
     }
 
-    /// Bytes that a factor takes, those with which it is made among them.
+    /// The bytes of a factor, including those that are needed to compute it.
     pub fn bytes(&self) -> u64 {
         let scratch = self.0.factorize_numeric_llt_scratch::<f64>(get_global_parallelism(), Default::default());
         8 * self.0.len_val() as u64 + scratch.unaligned_bytes_required() as u64
     }
 
-    /// The factor; `None` where the matrix is not positive definite.
+    /// The entries of the factor, and `Σ c²` over its columns with `c` entries.
+    pub fn cost(&self) -> (f64, f64) {
+        let sum = |columns: &mut dyn Iterator<Item = usize>| {
+            columns.fold((0.0, 0.0), |(entries, squares), c| (entries + c as f64, squares + (c as f64).powi(2)))
+        };
+        match self.0.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                sum(&mut factor.col_ptr().windows(2).map(|ends| ends[1] - ends[0]))
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => {
+                let columns = |s: usize| {
+                    let (width, below) =
+                        (factor.supernode_end()[s] - factor.supernode_begin()[s], factor.supernode(s).pattern().len());
+                    (1..=width).map(move |column| column + below)
+                };
+                sum(&mut (0..factor.n_supernodes()).flat_map(columns))
+            }
+        }
+    }
+
+    /// The factor; `None` if the matrix is not positive definite.
     ///
     /// # Errors
     /// It does not fit into memory.
@@ -74,7 +96,7 @@ impl Cholesky {
     }
 }
 
-/// What the estimates before did not see coming.
+/// The error for a failed allocation that the estimates before did not predict.
 pub(super) fn out_of_memory(what: &str, cause: FaerError) -> Error {
     let cause = match cause {
         FaerError::IndexOverflow => "has more entries than can be counted",

@@ -1,6 +1,6 @@
 //! Linear statics by conjugate gradients with smoothed-aggregation multigrid: for equations too large to be factorised.
 
-use super::method::LinearSolver;
+use super::method::StaticSolver;
 use super::modes::{Modes, modes_of};
 use super::stability::{NOTHING, SOFT, Stability, Standing};
 use crate::error::{Error, ErrorKind, Result};
@@ -42,6 +42,7 @@ enum Hierarchy {
 pub struct Solved {
     /// `cholesky` or `lu`; `multigrid`, or `minres` with the multigrid of the finite elements where a network is not positive definite.
     pub method: &'static str,
+    /// Free degrees of freedom.
     pub unknowns: usize,
     /// None with a factor.
     pub iterations: Option<usize>,
@@ -80,6 +81,7 @@ impl Levels {
         }
     }
 
+    /// The stiffness of all degrees of freedom.
     pub fn stiffness(&self) -> &BlockStiffness {
         &self.stiffness
     }
@@ -93,7 +95,7 @@ impl Levels {
     ///
     /// # Errors
     /// The iterations stall: kind `Limit`. The stiffness is not positive definite: kind `Infeasible`.
-    pub fn solve(&self, f: &[f64], solver: &LinearSolver, share: &mut Share) -> Result<(Vec<f64>, Solved)> {
+    pub fn solve(&self, f: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<(Vec<f64>, Solved)> {
         let (mut displacement, force) = self.loaded(&self.stiffness, f);
         let found = self.found(&force, solver, share)?;
         displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
@@ -101,7 +103,7 @@ impl Levels {
     }
 
     /// What is free, with all else zero.
-    fn found(&self, force: &[f64], solver: &LinearSolver, share: &mut Share) -> Result<Solution> {
+    fn found(&self, force: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<Solution> {
         let target = solver.tolerance.ln();
         let watch: &mut Watch = &mut |event| {
             if let Event::Iteration { residual, .. } = event {
@@ -121,7 +123,7 @@ impl Levels {
     ///
     /// # Errors
     /// The iterations stall: kind `Limit`.
-    pub fn solve_other(&self, other: &BlockStiffness, f: &[f64], solver: &LinearSolver) -> Result<(Vec<f64>, Solved)> {
+    pub fn solve_other(&self, other: &BlockStiffness, f: &[f64], solver: &StaticSolver) -> Result<(Vec<f64>, Solved)> {
         let (mut displacement, force) = self.loaded(other, f);
         let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
         let found = match (&self.hierarchy, other) {
@@ -156,7 +158,7 @@ impl Levels {
             gather(&self.stiffness.apply(&spread(x)), &mut product);
             product
         };
-        let solver = LinearSolver { tolerance: MODE_TOLERANCE, ..LinearSolver::default() };
+        let solver = StaticSolver { tolerance: MODE_TOLERANCE, ..StaticSolver::default() };
         let solve = |x: &mut [f64]| {
             for x in x.chunks_exact_mut(free.len().max(1)) {
                 gather(&self.found(&spread(x), &solver, &mut |_| ())?.displacement, x);

@@ -5,7 +5,7 @@ use crate::mesh::Mesh;
 
 /// A way to solve linear equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum LinearMethod {
+pub enum StaticMethod {
     /// One of the two below, by the size of the equations and the number of loads.
     #[default]
     Auto,
@@ -15,21 +15,22 @@ pub enum LinearMethod {
     Multigrid,
 }
 
-crate::named!(LinearMethod { "auto" => Auto, "cholesky" => Cholesky, "multigrid" => Multigrid });
+crate::named!(StaticMethod { "auto" => Auto, "cholesky" => Cholesky, "multigrid" => Multigrid });
 
 /// How linear equations are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinearSolver {
-    pub method: LinearMethod,
+pub struct StaticSolver {
+    /// A factor or iterations.
+    pub method: StaticMethod,
     /// Of the iterations: about the relative error in the norm of the energy.
     pub tolerance: f64,
     /// At most.
     pub iterations: usize,
 }
 
-impl Default for LinearSolver {
-    fn default() -> LinearSolver {
-        LinearSolver { method: LinearMethod::Auto, tolerance: 1e-10, iterations: 1000 }
+impl Default for StaticSolver {
+    fn default() -> StaticSolver {
+        StaticSolver { method: StaticMethod::Auto, tolerance: 1e-10, iterations: 1000 }
     }
 }
 
@@ -38,23 +39,23 @@ const FROM: [usize; 2] = [400_000, 30_000];
 /// A factor of so many unknowns in space is as dear as the iterations of one load more: 24 s and 1.2 s at 1e5.
 const UNKNOWNS_PER_LOAD: usize = 5_000;
 
-impl LinearSolver {
+impl StaticSolver {
     /// Whether equations that iterations could not solve for that reason are factorised instead.
     pub fn gives_way(&self, error: &Error) -> bool {
-        self.method == LinearMethod::Auto && error.kind() == ErrorKind::Limit
+        self.method == StaticMethod::Auto && error.kind() == ErrorKind::Limit
     }
 
     /// Whether the equations of that mesh with so many loads are solved by iterations.
     pub fn iterates(&self, mesh: &Mesh, loads: usize) -> bool {
         let unknowns = mesh.points.len();
         match (self.method, mesh.dimension) {
-            (LinearMethod::Cholesky, _) => false,
-            (LinearMethod::Multigrid, 2 | 3) => true,
+            (StaticMethod::Cholesky, _) => false,
+            (StaticMethod::Multigrid, 2 | 3) => true,
             // A surface or lines in space may have no stiffness across.
-            (LinearMethod::Auto, 2 | 3) if mesh.cell_dimension() == mesh.dimension => {
+            (StaticMethod::Auto, 2 | 3) if mesh.cell_dimension() == mesh.dimension => {
                 unknowns >= FROM[mesh.dimension - 2] && loads <= unknowns / UNKNOWNS_PER_LOAD
             }
-            (LinearMethod::Multigrid | LinearMethod::Auto, _) => false,
+            (StaticMethod::Multigrid | StaticMethod::Auto, _) => false,
         }
     }
 }

@@ -1,6 +1,10 @@
-//! Equilibrium and natural vibrations of either model, and how the two compare mode by mode.
+//! Equilibrium and natural vibrations of either model, and the stability of a network compared with the finite
+//! elements.
+//!
+//! Theory: pages *Stiffness and the reduced space* and *Precision* of the book.
 
 mod cholesky;
+mod expectation;
 mod internal;
 mod levels;
 mod linear;
@@ -9,9 +13,10 @@ mod modes;
 mod newton;
 mod stability;
 
+pub use expectation::{FactorCost, dense_rate, factor_cost};
 pub use levels::{Levels, Solved, compare_levels};
 pub use linear::{Factor, System};
-pub use method::{LinearMethod, LinearSolver};
+pub use method::{StaticMethod, StaticSolver};
 pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};

@@ -1,47 +1,50 @@
-//! Whole-object fits from what is wanted to what was found.
+//! Runs a whole-object fit from its targets to the fitted network.
 
 use super::displacements::{Displacements, Errors};
 use super::object::Object;
-use super::path::{Best, Path, Snapshot, Watch, leave_one_out, mean};
+use super::path::{Best, Path, Snapshot, StepCallback, leave_one_out, mean};
 use super::settings::{Validation, Wanted, WholeSettings};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::Network;
 
-/// What a whole-object fit found.
+/// The result of a whole-object fit.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct WholeFit {
+    /// The fitted network.
     pub network: Network,
-    /// The ρ that was taken; `None` where the start was best.
+    /// The regularization ρ that was chosen; `None` if the start was best.
     pub regularization: Option<f64>,
-    /// Of the loads of the fit and of frequencies, before and after.
+    /// The errors on the loads of the fit and on frequencies, before and after.
     pub trained: [Errors; 2],
-    /// Of the loads of the validation.
+    /// The errors on the loads of the validation, before and after.
     pub validated: [Errors; 2],
-    /// Steps that were made.
+    /// The number of steps that were made.
     pub steps: usize,
     /// The largest factor by which a constant changed.
     pub change: f64,
-    /// The largest constant of a length spring, as a multiple of the least.
+    /// The ratio of the largest to the least constant of the length springs.
     pub range: f64,
-    /// Whether a smaller ρ was left because the range would have been too large.
+    /// Whether a smaller ρ was rejected because this ratio would have been too large.
     pub limited: bool,
-    /// Whether the network stands under every load at the start; else it is left as it is.
+    /// Whether the network is stable under every load at the start; otherwise it is returned unchanged.
     pub stands: bool,
-    /// Whether it was ended before its time.
+    /// Whether the fit was cancelled.
     pub cancelled: bool,
 }
 
-/// Fits the constants of the object. `from` is where an earlier run of the same fit stood. A network that does not stand at the start
-/// is no error.
+/// Fits the constants of the object. `from` is a state of an earlier run of the same fit. A network that is unstable at
+/// the start is not an error.
 ///
 /// # Errors
-/// There is no load or one moves nothing, the snapshot is of another fit, or the equations do not fit into memory.
+/// There is no load, or one moves nothing; the snapshot belongs to another fit; or the equations do not fit into
+/// memory.
 pub fn fit_whole(
     object: &Object,
     wanted: &Wanted,
     settings: &WholeSettings,
     from: Option<Snapshot>,
-    watch: &mut Watch,
+    watch: &mut StepCallback,
 ) -> Result<WholeFit> {
     let (m, stages) = (object.unknowns().count(), settings.regularizations.len());
     if let Some(snapshot) = &from {
@@ -80,7 +83,7 @@ pub fn fit_whole(
     let mut begins = true;
     if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
         snapshot.stages = leave_one_out(object, wanted, settings, &mut count)?;
-        // Ended while it tried what to leave out, it has not begun.
+        // Cancelled during cross-validation, the fit has not begun.
         begins = snapshot.stages.is_some();
     }
     let best = match begins {
@@ -96,7 +99,12 @@ pub fn fit_whole(
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
     problem.forget();
     judge.forget();
-    let after = |problem: &Displacements| problem.errors(&best.theta).map(Option::unwrap_or_default);
+    let after = |problem: &Displacements| {
+        let fell = || {
+            Error::at("network", "the fitted network has become unstable under a load").of_kind(ErrorKind::Infeasible)
+        };
+        problem.errors(&best.theta)?.ok_or_else(fell)
+    };
     found.trained = [trained, after(&problem)?];
     found.validated = [validated, after(&judge)?];
     found.change = object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);

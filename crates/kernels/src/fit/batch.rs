@@ -1,4 +1,6 @@
-//! Fits of many cells, one cell per lane of the machine's registers.
+//! Fits of many cells, one cell per SIMD lane.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::closed::Closed;
 use super::constrained::solve_nonnegative;
@@ -10,39 +12,43 @@ use super::packing::Packing;
 use super::settings::Fit;
 use crate::element::Element;
 use crate::material::Moduli;
-use crate::scalar::{Packed, PackedWork, widest};
+use crate::scalar::{Packed, PackedWork, distance, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 
-/// The cells of one block and where their constants go.
+/// The cells of one block, and the memory for their constants.
 pub struct Batch<'a> {
     pub element: &'a Element,
     pub springs: &'a Springs,
-    /// `[points × dimension]`, m.
+    /// The positions of all points, `[points × dimension]`, m.
     pub points: &'a [f64],
-    /// `[cells × nodes]`.
+    /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
     pub moduli: Moduli,
     pub fit: Fit,
-    /// `[cells × springs]`.
+    /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
 }
 
-/// What is to be said of the cells besides their constants.
+/// If two nodes are nearer than this, relative to the cell, the gradients of springs on functions have less than ten
+/// digits in `f64`.
+const NEAR: f64 = 1e-6;
+
+/// What is reported of the cells besides their constants.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tally {
-    /// Cells whose normal equations were singular.
+    /// The number of cells whose normal equations were singular.
     pub deficient: usize,
-    /// Cells whose iteration did not reach its end.
+    /// The number of cells whose iteration did not converge.
     pub unreached: usize,
-    /// `[cells]` where the objective has certificates, otherwise empty.
+    /// One certificate per cell if the objective has certificates, otherwise empty.
     pub certificates: Vec<Certificate>,
 }
 
 impl Tally {
     fn add(&mut self, verdict: Verdict) {
         self.deficient += usize::from(verdict.rank == Rank::Deficient);
-        self.unreached += usize::from(!verdict.reached);
+        self.unreached += usize::from(!verdict.reached || verdict.rank == Rank::Unsolved);
         self.certificates.extend(verdict.certificate);
     }
 }
@@ -51,7 +57,7 @@ impl Batch<'_> {
     /// Fits every cell.
     ///
     /// # Errors
-    /// The first cell that has no stiffness, from 0.
+    /// A cell has no stiffness. The error gives the first such cell, counted from 0.
     pub fn run(self) -> Result<Tally, (usize, Fault)> {
         widest(self)
     }
@@ -73,7 +79,8 @@ impl PackedWork for Batch<'_> {
             if workspace.fit(nodes, constants, &mut tally) {
                 cell += count;
             } else if count > 1 {
-                // One of them has no regular equations. Each alone in all lanes: its digits do not depend on the others.
+                // One of the cells has no regular equations. Each is solved alone in all lanes, so that its digits do
+                // not depend on the others.
                 alone = cell + count;
             } else {
                 tally.add(workspace.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
@@ -84,15 +91,15 @@ impl PackedWork for Batch<'_> {
     }
 }
 
-/// What the cells of one register's width need.
+/// The working memory for as many cells as there are lanes.
 struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
     moduli: Moduli,
     fit: Fit,
-    /// Of the objectives that have a closed form.
+    /// For objectives with a closed form.
     closed: Option<Closed<T>>,
-    /// Of those that need the reduced element.
+    /// For objectives that need the reduced element.
     method: Option<Method<T>>,
     packing: Packing<'a, T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
@@ -117,12 +124,12 @@ impl<'a, T: Packed> Workspace<'a, T> {
     }
 
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
-    /// Jacobian of one is not safely positive or its equations are not regular.
+    /// Jacobian of a cell is not safely positive or its equations are not regular.
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
         if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
             return false;
         }
-        let Some(mut method) = self.method.take() else { return self.fit_closed(constants) };
+        let Some(mut method) = self.method.take() else { return self.fit_closed(constants, tally) };
         let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
             && self.measure(nodes.len() / self.element.nodes());
         if regular {
@@ -131,10 +138,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.packing.lane(lane));
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
-                if verdict.delicate
-                    && let Ok(delicate) = self.fit_alone(&nodes[lane * n..(lane + 1) * n], constants, true)
-                {
-                    verdict = delicate;
+                if verdict.delicate || self.are_near(&self.packing.lane(lane)) {
+                    let nodes = &nodes[lane * n..(lane + 1) * n];
+                    let unreached = Verdict { reached: false, ..verdict };
+                    verdict = self.fit_alone(nodes, constants, true).unwrap_or(unreached);
                 }
                 tally.add(verdict);
             }
@@ -143,8 +150,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         regular
     }
 
-    /// [`Workspace::fit`] by the closed form.
-    fn fit_closed(&mut self, constants: &mut [f64]) -> bool {
+    /// [`Workspace::fit`] for objectives with a closed form.
+    fn fit_closed(&mut self, constants: &mut [f64], tally: &mut Tally) -> bool {
         let Workspace { element, springs, moduli, fit, .. } = *self;
         let Some(closed) = &mut self.closed else { return false };
         if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, &moduli) {
@@ -169,13 +176,14 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 continue;
             }
             let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
-            let (k, _) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
+            let (k, rank) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
             fit.spread(springs, constants, &k);
+            tally.add(Verdict { certificate: None, rank, reached: true, delicate: false });
         }
         true
     }
 
-    /// A single cell; in twice the digits if it is delicate, or its shape is.
+    /// Fits a single cell; in double-double numbers if its equations or its shape are delicate.
     fn fit_alone(&mut self, nodes: &[usize], constants: &mut [f64], is_delicate: bool) -> Result<Verdict, Fault> {
         let mut x = vec![0.0; self.packing.x.len()];
         self.packing.place(nodes, &mut x)?;
@@ -185,14 +193,15 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !self.springs.function_gradients(&x, &mut measured) {
             return Err(Fault::Unmeasured);
         }
+        let are_near = self.are_near(&x);
         let Workspace { element, springs, moduli, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
-        if is_delicate || quality <= T::delicate() {
+        if is_delicate || quality <= T::delicate() || are_near {
             let delicate = DelicateCells { element, springs, moduli, fit };
             let d = element.dimension();
             let mut given = x.clone();
             if element.space() == d {
-                // As they are, for their differences are exact in more digits.
+                // Absolute positions, because their differences are exact in numbers of more digits.
                 gather(self.packing.points, d, nodes, &mut given);
             }
             if let Some(verdict) = delicate.constants(&given, (&x, &geometry), constants) {
@@ -213,8 +222,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
-    /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first. False if one is zero
-    /// or not finite.
+    /// Whether springs measure functions of nodes at `x`, `[nodes × dimension]`, two of which nearly coincide.
+    fn are_near(&self, x: &[f64]) -> bool {
+        !self.measured.is_empty() && nearness(x, self.element.dimension()) < NEAR
+    }
+
+    /// The gradients of the springs on functions in the first `cells` lanes; the other lanes repeat the first. False if
+    /// a gradient is zero or not finite.
     fn measure(&mut self, cells: usize) -> bool {
         if self.measured.is_empty() {
             return true;
@@ -233,4 +247,12 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         regular
     }
+}
+
+/// The least distance of two nodes relative to the largest; `x` is `[nodes × dimension]`.
+fn nearness(x: &[f64], dimension: usize) -> f64 {
+    let nodes = || x.chunks_exact(dimension).enumerate();
+    let pairs = nodes().flat_map(|(i, a)| nodes().skip(i + 1).map(move |(_, b)| distance(a, b)));
+    let (least, largest) = pairs.fold((f64::MAX, 0.0f64), |(least, largest), d| (least.min(d), largest.max(d)));
+    least / largest
 }

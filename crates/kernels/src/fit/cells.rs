@@ -1,4 +1,6 @@
-//! The fits of all cells of one element.
+//! The fits of all cells of one element type.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::batch::{Batch, Tally};
 use super::congruence::Congruence;
@@ -9,45 +11,48 @@ use super::rest::Rest;
 use super::settings::Fit;
 use super::solver::Solver;
 use super::tension::fit_tensions;
-use super::visit::{cell_fault, each_cell};
+use super::visit::{cell_fault, cell_name, each_cell};
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
 
-/// Cells that one thread fits in one go.
+/// The number of cells that one thread fits at a time: enough that starting the thread costs nothing.
 pub(super) const CHUNK: usize = 512;
-/// Cells between two reports of progress.
+/// The number of cells between two reports of progress.
 pub(super) const ROUND: usize = 64 * CHUNK;
 
 /// The constants of all cells of one element type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellFits {
+    /// The springs of each cell.
     pub springs: Springs,
-    /// `[cells × springs]`, N/m; that of an area or volume spring N/m³ or N/m⁵. The slope of the force at rest.
+    /// The constants, `[cells × springs]`, N/m; of springs on areas N/m³, on volumes N/m⁵. For a force law, its slope
+    /// at rest.
     pub constants: Vec<f64>,
+    /// The force law of the springs.
     pub force: Force,
-    /// Of the springs of each cell one after another, see [`Force::places`].
+    /// The further parameters of the springs, cell by cell and spring by spring, see [`Force::places`].
     pub parameters: Vec<f64>,
-    /// Cells whose normal equations were singular, see [`Rank::Deficient`](super::Rank::Deficient).
+    /// The number of cells whose normal equations were singular, see [`Rank::Deficient`](super::Rank::Deficient).
     pub deficient: usize,
-    /// Cells whose iteration did not reach its end; of cells of one shape only the fitted one counts.
+    /// The number of cells whose iteration did not converge; of congruent cells only the fitted one counts.
     pub unreached: usize,
-    /// Cells that have the shape of another and took its constants over; where the objective has no closed form.
+    /// The number of cells that received the constants of a congruent cell; for objectives without a closed form.
     pub reused: usize,
-    /// `[cells]` for the spectral objective, otherwise empty.
+    /// For the spectral objective one certificate per cell, otherwise empty.
     pub certificates: Vec<Certificate>,
 }
 
-/// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+/// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
-/// `progress` receives the number of finished cells from time to time.
+/// `progress` is called from time to time with the number of finished cells.
 ///
 /// # Errors
-/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, or a
-/// cell is reversed, tangled or flat; the error names it, counted from 1.
+/// An array has a wrong length; a number is not finite or is out of its range; the springs belong to another element;
+/// or a cell is reversed, tangled or flat. The error names the cell, counted from 1.
 pub fn fit_cells(
     element: &Element,
     springs: &Springs,
@@ -76,7 +81,7 @@ impl CellFits {
         }
     }
 
-    /// Those of some of the cells, without what was counted or certified of all.
+    /// The constants of some of the cells, without counts and certificates.
     pub fn of_cells(&self, cells: &[usize]) -> CellFits {
         let m = self.springs.len();
         let p = self.force.places(&self.springs)[m];
@@ -91,7 +96,7 @@ impl CellFits {
         }
     }
 
-    /// [`fit_cells`] into the memory of an earlier fit.
+    /// As [`fit_cells`], with the memory of an earlier fit.
     ///
     /// # Errors
     /// Those of [`fit_cells`].
@@ -121,6 +126,8 @@ impl CellFits {
         }
         if fit.rest != Rest::Mesh {
             let found = fit_tensions(element, &self.springs, points, connectivity, moduli, fit, progress)?;
+            check_constants(element, 0, m, &found.constants)?;
+            check_constants(element, 0, m, &found.parameters)?;
             self.force = Force::FreeRest;
             (self.constants, self.parameters) = (found.constants, found.parameters);
             (self.deficient, self.unreached, self.reused) = (found.deficient, found.unreached, found.reused);
@@ -143,7 +150,7 @@ impl CellFits {
         self.fit_each(element, points, connectivity, moduli, fit, progress)
     }
 
-    /// Fits every cell by itself; the constants have room for them.
+    /// Fits every cell separately; the memory for the constants has been allocated.
     fn fit_each(
         &mut self,
         element: &Element,
@@ -160,28 +167,31 @@ impl CellFits {
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
             if let Solver::General { method, iterations, topology } = fit.solver {
                 let weight = fit.objective.of_motions()?;
-                let mut unmeasured = None;
+                let (mut unmeasured, mut failed) = (None, None);
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
                     if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {
                         unmeasured.get_or_insert(cell);
                         return;
                     }
-                    let found =
-                        descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology));
-                    constants[cell * m..(cell + 1) * m].copy_from_slice(&found);
+                    match descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology)) {
+                        Ok(found) => constants[cell * m..(cell + 1) * m].copy_from_slice(&found),
+                        Err(problem) => _ = failed.get_or_insert((cell, problem)),
+                    }
                 })?;
-                let not_finite = || constants.iter().position(|k| !k.is_finite()).map(|place| place / m);
-                let fault =
-                    unmeasured.or_else(not_finite).map(|cell| cell_fault(element, first + cell, Fault::Unmeasured));
-                return fault.map_or(Ok(Tally::default()), Err);
+                if let Some(cell) = unmeasured {
+                    return Err(cell_fault(element, first + cell, Fault::Unmeasured));
+                }
+                if let Some((cell, problem)) = failed {
+                    let problem = format!("the optimiser \"{}\" failed: {problem}", fit.solver.name());
+                    return Err(Error::at(cell_name(element, first + cell), problem).of_kind(ErrorKind::Infeasible));
+                }
+                check_constants(element, first, m, constants)?;
+                return Ok(Tally::default());
             }
             let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
             let tally = batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))?;
-            // As of a spring between two nodes at one place.
-            match constants.iter().position(|k| !k.is_finite()) {
-                Some(place) => Err(cell_fault(element, first + place / m, Fault::Unmeasured)),
-                None => Ok(tally),
-            }
+            check_constants(element, first, m, constants)?;
+            Ok(tally)
         };
         let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
         for (round, (nodes, constants)) in rounds.enumerate() {
@@ -199,7 +209,7 @@ impl CellFits {
         Ok(())
     }
 
-    /// The constants of one cell of each shape for all cells; `shapes` gives the shape of each.
+    /// Copies the constants of one cell of each shape to all cells; `shapes` gives the shape of each cell.
     fn copy_by_shape(&mut self, fitted: &CellFits, shapes: &[usize]) {
         let m = self.springs.len();
         for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(shapes) {
@@ -213,10 +223,19 @@ impl CellFits {
     }
 }
 
+/// That the `values` of springs, `[cells × springs]`, are numbers; those of a spring between two nodes at one place, or of a cell
+/// beyond the range of numbers, are not. The first cell is number `first` of its block.
+fn check_constants(element: &Element, first: usize, springs: usize, values: &[f64]) -> Result<()> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(place) => Err(cell_fault(element, first + place / springs, Fault::Unmeasured)),
+        None => Ok(()),
+    }
+}
+
 /// The constants of a single element with nodes at `x`, `[nodes × space]`, m; `[springs]`.
 ///
 /// # Errors
-/// Those of [`fit_cells`], and the springs pull at rest: constants alone do not describe them.
+/// Those of [`fit_cells`]; or the springs pull at rest, so that constants alone do not describe them.
 pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
     check_nodes(element, element.space(), x)?;
     fit.check_constants_alone()?;

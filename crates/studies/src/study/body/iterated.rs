@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
-use crate::solve::{Levels, LinearSolver, Solved, Stability, Standing, compare_levels};
+use crate::solve::{Levels, Solved, Stability, Standing, StaticSolver, compare_levels};
 use crate::study::metrics::{SOLVED, product};
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
@@ -36,7 +36,7 @@ impl Iterated {
         mesh: &Mesh,
         moduli: Moduli,
         cases: &[Case],
-        solver: &LinearSolver,
+        solver: &StaticSolver,
         progress: &mut Progress,
     ) -> Result<(Iterated, Vec<BodyAnswer>)> {
         let supports = shared(cases).iter().enumerate().filter(|(i, first)| i == *first).count();
@@ -84,7 +84,7 @@ impl Iterated {
         cases: &[Case],
         network: &Network,
         (moduli, compared): (Moduli, Moduli),
-        solver: &LinearSolver,
+        solver: &StaticSolver,
         progress: &mut Progress,
     ) -> Result<(Vec<NetworkAnswer>, Stability)> {
         let start = Instant::now();
@@ -142,7 +142,7 @@ impl Iterated {
 fn solution(
     levels: &Levels,
     case: &Case,
-    solver: &LinearSolver,
+    solver: &StaticSolver,
     (stage, load, loads): (&str, usize, usize),
     progress: &mut Progress,
 ) -> Result<(Vec<f64>, Solved)> {

@@ -1,4 +1,4 @@
-//! The loads of a scene at small deformation: one linear system for each model and support.
+//! The loads of a scene at small deformation: one linear system per model and support.
 
 use super::case::Case;
 use super::iterated::Iterated;
@@ -7,21 +7,21 @@ use crate::material::Moduli;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Support, check_body, finite_elements};
-use crate::solve::{Factor, LinearMethod, LinearSolver, Solved, Stability, Standing, System, compare_energies};
+use crate::solve::{Factor, Solved, Stability, Standing, StaticMethod, StaticSolver, System, compare_energies};
 use crate::study::metrics::{SOLVED, square};
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
-/// The finite element solutions, and what the comparison with a network reuses.
+/// The finite element solutions, and the parts of them that the comparison with a network reuses.
 pub struct LinearBody {
     pub displacements: Vec<Vec<f64>>,
-    /// J; see [`Case::work`].
+    /// The work of each load, J; see [`Case::work`].
     works: Vec<Option<f64>>,
     solved: Vec<Solved>,
     moduli: Moduli,
     seconds: Vec<f64>,
-    solver: LinearSolver,
+    solver: StaticSolver,
     systems: Systems,
     /// The equations of each load, as an index into these: loads of equal support share them.
     system_of: Vec<usize>,
@@ -33,13 +33,13 @@ enum Systems {
     Iterated(Iterated),
 }
 
-/// The answers of a network to all loads.
+/// The results of a network under all loads.
 #[derive(Default)]
 pub struct NetworkAnswers {
     pub loads: Vec<LoadOutcome>,
-    /// With the support of the first load; `None` without loads.
+    /// The stability with the support of the first load; `None` without loads.
     pub stability: Option<Stability>,
-    /// Points that move in the softest motion, at least half as far as the one that moves most.
+    /// The points whose displacement in the softest motion is at least half of the largest.
     pub loose_points: Vec<usize>,
 }
 
@@ -52,20 +52,22 @@ pub(super) struct NetworkAnswer {
     pub solved: Option<Solved>,
 }
 
-/// Loads with the same support have the same equations: for each load, the first load it agrees with.
+/// For each load the first load with the same support, whose equations it shares.
 pub(super) fn shared(cases: &[Case]) -> Vec<usize> {
     let first = |case: &Case| cases.iter().position(|c| c.support == case.support).unwrap_or(0);
     cases.iter().map(first).collect()
 }
 
 impl LinearBody {
+    /// Solves every load.
+    ///
     /// # Errors
     /// Some motion has no stiffness, the equations do not fit into memory, or iterations that were asked for stall.
     pub fn solve(
         mesh: &Mesh,
         moduli: Moduli,
         cases: &[Case],
-        solver: LinearSolver,
+        solver: StaticSolver,
         progress: &mut Progress,
     ) -> Result<LinearBody> {
         if !cases.is_empty() && solver.iterates(mesh, cases.len()) {
@@ -84,7 +86,7 @@ impl LinearBody {
         mesh: &Mesh,
         moduli: Moduli,
         cases: &[Case],
-        solver: LinearSolver,
+        solver: StaticSolver,
         progress: &mut Progress,
     ) -> Result<LinearBody> {
         let (iterated, answers) = Iterated::solve(mesh, moduli, cases, &solver, progress)?;
@@ -112,7 +114,7 @@ impl LinearBody {
         mesh: &Mesh,
         moduli: Moduli,
         cases: &[Case],
-        solver: LinearSolver,
+        solver: StaticSolver,
         progress: &mut Progress,
     ) -> Result<LinearBody> {
         let mut body = LinearBody {
@@ -167,7 +169,7 @@ impl LinearBody {
         Ok(body)
     }
 
-    /// The equations and factor of the loads with that support, if there are any.
+    /// The equations and factor of the loads with this support, if there are any.
     pub fn held_by(&self, support: &Support, cases: &[Case]) -> Option<&(System, Factor)> {
         let load = cases.iter().position(|case| case.support == *support)?;
         match &self.systems {
@@ -176,7 +178,8 @@ impl LinearBody {
         }
     }
 
-    /// Solves every load with the network, whose energies are compared with those of finite elements of the moduli `compared`.
+    /// Solves every load with the network. Its energies are compared with those of finite elements with the moduli
+    /// `compared`.
     ///
     /// # Errors
     /// The equations do not fit into memory, or iterations that were asked for stall.
@@ -203,7 +206,7 @@ impl LinearBody {
                     }
                     Err(error) if self.solver.gives_way(&error) => {
                         progress(Event::Note(&format!("{}; the equations are factorised instead", error.problem())));
-                        let solver = LinearSolver { method: LinearMethod::Cholesky, ..self.solver };
+                        let solver = StaticSolver { method: StaticMethod::Cholesky, ..self.solver };
                         let body = LinearBody::factorize(mesh, self.moduli, cases, solver, progress)?;
                         body.compare(mesh, cases, network, compared, progress)
                     }
@@ -285,7 +288,7 @@ fn by_factor(factor: &Factor, system: &System, residual: f64) -> Solved {
     Solved { method, unknowns: system.size(), iterations: None, residual, levels: None }
 }
 
-/// Cholesky's factor of the equations of the finite elements.
+/// The Cholesky factor of the equations of the finite elements.
 ///
 /// # Errors
 /// Some motion has no stiffness, or the factor does not fit into memory.

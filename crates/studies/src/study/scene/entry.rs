@@ -1,4 +1,4 @@
-//! The scene file as it is written, key by key, and what each entry must satisfy on its own.
+//! The structure of a scene file, key by key, and the conditions on each entry alone.
 
 use super::gauge::GaugeEntry;
 use super::input::MeshInput;
@@ -11,16 +11,17 @@ use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::range;
-use crate::solve::{LinearMethod, LinearSolver, Newton};
+use crate::solve::{Newton, StaticMethod, StaticSolver};
 use crate::study::choice::choice;
 use crate::study::fits::FitEntry;
+use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 
 /// Errors that iterations may leave: below is rounding, above solves nothing.
 const LEAST_TOLERANCE: f64 = 1e-14;
 const LARGEST_TOLERANCE: f64 = 1e-3;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     pub title: Option<String>,
@@ -40,27 +41,30 @@ pub struct SceneFile {
     pub output: Output,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialEntry {
     pub young: Pressure,
     pub poisson: f64,
     pub plane: Option<Plane>,
-    /// m.
+    /// The thickness, m.
     #[serde(default, deserialize_with = "value::optional_length")]
+    #[schemars(schema_with = "value::quantity")]
     pub thickness: Option<f64>,
     /// The cross-section of rods, m².
     #[serde(default, deserialize_with = "value::optional_area")]
+    #[schemars(schema_with = "value::quantity")]
     pub area: Option<f64>,
-    /// kg/m³.
+    /// The density, kg/m³.
     #[serde(default, deserialize_with = "value::optional_density")]
+    #[schemars(schema_with = "value::quantity")]
     pub density: Option<f64>,
-    /// A shipped energy's name, or a path relative to the scene that ends in .toml. Loads are at large deformation then.
+    /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
     pub law: Option<String>,
 }
 
-/// How large deformations are followed.
-#[derive(Debug, Clone, Copy, Deserialize)]
+/// How loads are applied at large deformation.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewtonEntry {
     pub steps: Option<usize>,
@@ -69,29 +73,35 @@ pub struct NewtonEntry {
 }
 
 /// How linear equations are solved.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolverEntry {
+    #[schemars(extend("enum" = StaticMethod::NAMES))]
     pub method: Option<String>,
     pub tolerance: Option<f64>,
     pub iterations: Option<usize>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FixEntry {
     pub group: Option<String>,
     #[serde(rename = "where")]
     pub condition: Option<String>,
-    /// Directions that are held; all if absent.
+    /// The directions that are held; all if absent.
     pub axes: Option<Vec<String>>,
 }
 
+/// The JSON Schema of scene files.
+pub fn scene_schema() -> serde_json::Value {
+    schema_for!(SceneFile).to_value()
+}
+
 impl MaterialEntry {
-    /// What can be said before the dimension is known.
+    /// The checks that do not depend on the dimension.
     pub fn check(&self) -> Result<()> {
         let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
-        // Plane stress admits more of ν than a solid; a solid is checked again when the mesh is known.
+        // Plane stress admits larger ν than a solid; a solid is checked again when the mesh is known.
         let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
         Material::for_body(2, self.young.0, self.poisson, state, self.thickness).map_err(|e| e.under("material"))?;
         self.density.map_or(Ok(()), |density| range::positive("material.density", density, "kg/m³").map(|_| ()))
@@ -116,11 +126,11 @@ impl NewtonEntry {
 }
 
 impl SolverEntry {
-    pub fn check(self) -> Result<LinearSolver> {
-        let solver = LinearSolver::default();
-        let method = choice("method", self.method.as_deref(), solver.method, LinearMethod::named)?;
+    pub fn check(self) -> Result<StaticSolver> {
+        let solver = StaticSolver::default();
+        let method = choice("method", self.method.as_deref(), solver.method, StaticMethod::named)?;
         let given = [("tolerance", self.tolerance.is_some()), ("iterations", self.iterations.is_some())];
-        if let (LinearMethod::Cholesky, Some((key, _))) = (method, given.iter().find(|(_, given)| *given)) {
+        if let (StaticMethod::Cholesky, Some((key, _))) = (method, given.iter().find(|(_, given)| *given)) {
             return Err(Error::at(*key, "belongs to iterations, found with method = \"cholesky\""));
         }
         let tolerance = self.tolerance.unwrap_or(solver.tolerance);
@@ -130,7 +140,7 @@ impl SolverEntry {
             let expected = format!("a share from {LEAST_TOLERANCE:e} to below {LARGEST_TOLERANCE:e}");
             return Err(Error::expected("tolerance", expected, format!("{tolerance:?}")));
         }
-        Ok(LinearSolver { method, tolerance, iterations })
+        Ok(StaticSolver { method, tolerance, iterations })
     }
 }
 

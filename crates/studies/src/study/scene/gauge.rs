@@ -4,16 +4,19 @@ use super::part::Part;
 use super::value;
 use crate::error::{Error, Result};
 use crate::range;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GaugeEntry {
     pub group: Option<String>,
     #[serde(rename = "where")]
     pub condition: Option<String>,
+    #[schemars(extend("enum" = ["x", "y", "z"]))]
     pub axis: String,
     #[serde(deserialize_with = "value::area")]
+    #[schemars(schema_with = "value::quantity")]
     pub area: f64,
 }
 
@@ -22,13 +25,15 @@ pub struct GaugeEntry {
 pub struct Gauge {
     pub part: Part,
     pub axis: usize,
-    /// m².
+    /// The cross-section, m².
     pub area: f64,
 }
 
 impl GaugeEntry {
+    /// The gauge of these keys.
+    ///
     /// # Errors
-    /// The part is not said or said twice, the axis is none, or the cross-section is not positive.
+    /// The part is missing or given twice, the axis is unknown, or the cross-section is not positive.
     pub fn check(self) -> Result<Gauge> {
         let part = Part::required(self.group, self.condition)?;
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);

@@ -1,30 +1,32 @@
-//! Numbers of a scene that may be written in more than one way.
+//! Values of a scene that can be written in more than one way.
 
 use crate::quantity::Quantity;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 
-/// One direction of a load: a number, or an expression of x, y, z in m.
+/// One direction of a load: a number, or an expression in x, y, z in m.
 #[derive(Debug, Clone)]
 pub enum Varying {
     Number(f64),
     Text(String),
 }
 
-/// One direction of a prescribed displacement: a number of metres, or `"free"`.
+/// One direction of a prescribed displacement: a number in m, or `"free"`.
 #[derive(Debug, Clone, Copy)]
 pub struct PrescribedComponent(pub Option<f64>);
 
-/// A number of Pa, or a text with a unit.
+/// A number in Pa, or a text with a unit.
 #[derive(Debug, Clone, Copy)]
 pub struct Pressure(pub f64);
 
-/// What is written as a number or as a text.
+/// A visitor of values that are numbers or texts.
 struct NumberOrText<T> {
     expected: &'static str,
     number: fn(f64) -> Option<T>,
-    /// The error says what is wrong, where more is known than that it is not what is expected.
+    /// The error contains an explanation, if there is a more specific one than what was expected.
     text: fn(&str) -> Result<T, Option<String>>,
 }
 
@@ -75,6 +77,32 @@ impl<'de> Deserialize<'de> for Pressure {
     }
 }
 
+/// The schema of a quantity.
+pub fn quantity(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": ["number", "string"] })
+}
+
+/// The schemas of values that are written as a number or as a text.
+macro_rules! schemas {
+    ($($type:ident: $description:literal),+ $(,)?) => {$(
+        impl JsonSchema for $type {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!({ "type": ["number", "string"], "description": $description })
+            }
+        }
+    )+};
+}
+
+schemas! {
+    Varying: "A number, or an expression of x, y, z (m) such as \"1e5*x\".",
+    PrescribedComponent: "A number of metres, or \"free\".",
+    Pressure: "A pressure in Pa, or a text with a unit such as \"10 kPa\".",
+}
+
 /// A number in the SI unit, or a text with a unit.
 fn read<'de, D: Deserializer<'de>>(quantity: Quantity, deserializer: D) -> Result<f64, D::Error> {
     deserializer.deserialize_any(QuantityVisitor(quantity))
@@ -102,10 +130,10 @@ impl Visitor<'_> for QuantityVisitor {
     }
 }
 
-/// For `deserialize_with` of keys that hold a quantity, in the SI unit.
+/// Functions for `deserialize_with` of keys that hold a quantity, in the SI unit.
 macro_rules! quantities {
     ($($one:ident, $optional:ident: $quantity:ident),+ $(,)?) => {$(
-        // Not every quantity is both asked for and left out.
+        // Not every quantity is used both as a required and as an optional key.
         #[allow(dead_code)]
         pub fn $one<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
             read(Quantity::$quantity, deserializer)

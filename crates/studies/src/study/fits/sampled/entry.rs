@@ -1,34 +1,40 @@
-//! The keys of a `[[fit]]` whose objective is "sampled".
+//! The keys of a `[[fit]]` with the objective "sampled".
 
 use super::force::ForceRecipe;
 use super::recipe::SampledRecipe;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::fit::{Family, Norm, Source, Weights};
+use crate::fit::{DeformationFamily, Norm, Source, Weights};
 use crate::springs::Law;
 use crate::study::choice::choice;
+use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SampledEntry {
+    #[schemars(extend("enum" = Weights::NAMES))]
     pub weight: Option<String>,
     pub higher: Option<f64>,
     pub tied: bool,
     pub nonnegative: bool,
+    #[schemars(with = "Option<serde_json::Value>")]
     pub force: Option<toml::Value>,
+    #[schemars(extend("enum" = Norm::NAMES))]
     pub norm: Option<String>,
     pub huber: Option<f64>,
+    #[schemars(with = "Option<BTreeMap<String, [f64; 2]>>")]
     pub bounds: Option<toml::Table>,
     pub starts: Option<usize>,
     pub shapes: Option<ShapesEntry>,
     pub law: Option<String>,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapesEntry {
     pub families: Option<Vec<String>>,
@@ -37,6 +43,7 @@ pub struct ShapesEntry {
     pub loads: Option<Vec<String>>,
     pub count: Option<usize>,
     pub held_out: Option<usize>,
+    #[schemars(with = "Option<serde_json::Value>")]
     pub stretch: Option<toml::Value>,
     pub perturbation: Option<f64>,
     pub seed: Option<u64>,
@@ -46,7 +53,7 @@ impl SampledEntry {
     /// The recipe, with the values of [`SampledRecipe::default`] for keys that are not given.
     ///
     /// # Errors
-    /// A key has a wrong value; a file of gradients cannot be read.
+    /// A key has a wrong value, or a file of gradients cannot be read.
     pub fn check(self, folder: &Path) -> Result<SampledRecipe> {
         let law = self.law.map(|law| law_at(&law, folder));
         let mut recipe = SampledRecipe { law, ..SampledRecipe::default() };
@@ -93,7 +100,8 @@ impl ShapesEntry {
         }
         let sampling = &mut recipe.fit.sampling;
         if let Some(names) = &self.families {
-            let families: Result<Vec<Family>> = names.iter().map(|name| Family::named(name)).collect();
+            let families: Result<Vec<DeformationFamily>> =
+                names.iter().map(|name| DeformationFamily::named(name)).collect();
             sampling.source = Source::Families(families.map_err(|e| e.under("families"))?);
         }
         if let Some(path) = &self.gradients {
@@ -123,12 +131,12 @@ impl ShapesEntry {
     }
 }
 
-/// A law's name, or its file's path relative to `folder`.
+/// The name of a law, or the path of its file relative to `folder`.
 pub fn law_at(law: &str, folder: &Path) -> String {
     if law.ends_with(".toml") { folder.join(law).to_string_lossy().into_owned() } else { law.into() }
 }
 
-/// A law for all springs, or a table of laws by group.
+/// One law for all springs, or a table of laws by group.
 fn force_of(value: &toml::Value) -> Result<ForceRecipe> {
     match value {
         toml::Value::String(text) => ForceRecipe::parse(text),
@@ -169,7 +177,7 @@ fn pair(value: &toml::Value) -> Option<[f64; 2]> {
     numbers?.try_into().ok()
 }
 
-/// Numbers between commas, spaces and line ends; `#` begins a comment.
+/// Numbers separated by commas, spaces and line ends; `#` begins a comment.
 fn numbers_of(text: &str) -> Result<Vec<f64>> {
     let mut numbers = Vec::new();
     for (i, line) in text.lines().enumerate() {

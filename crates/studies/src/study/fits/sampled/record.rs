@@ -1,57 +1,74 @@
-//! The settings and errors of a sampled fit, as a report has them.
+//! The settings and errors of a sampled fit in a report.
 
 use super::force::ForceRecipe;
 use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
-use crate::fit::{Family, Norm, Source};
+use crate::fit::{DeformationFamily, Norm, Source};
 use crate::study::fits::spread::SpreadRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The settings, with defaults resolved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The settings, with defaults filled in.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledRecord {
+    /// The objective, `sampled`.
     pub objective: String,
-    /// How much each shape counts: `relative` or `none`.
+    /// The weights of the shapes: `relative` or `none`.
     pub weight: String,
+    /// The scale of the forces that do no work on homogeneous deformations.
     pub higher: f64,
+    /// Whether all springs of a group have the same parameters.
     pub tied: bool,
+    /// Whether no parameter may be negative.
     pub nonnegative: bool,
+    /// The force law.
     pub force: ForceRecord,
+    /// The norm of the residual forces.
     pub norm: String,
-    /// The share of the norm "huber".
+    /// The δ of the norm "huber", as a share.
     pub huber: Option<f64>,
-    /// Of parameters by name.
+    /// The bounds of parameters, by name.
     pub bounds: BTreeMap<String, [f64; 2]>,
+    /// The number of starts of the search.
     pub starts: usize,
-    /// `None` if the shapes are from a file or from loads.
+    /// The families of deformations; `None` if the shapes are from a file or from loads.
     pub families: Option<Vec<String>>,
+    /// The least and the largest amplitude.
     pub stretch: [f64; 2],
+    /// How far nodes are moved in addition, as a share of the size of the cell.
     pub perturbation: f64,
+    /// The seed of the random numbers.
     pub seed: u64,
+    /// The energy, if it is not that of the material.
     pub law: Option<String>,
 }
 
-/// A law of force for all springs, or one for each group.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// One force law for all springs, or one for each group.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ForceRecord {
     All(String),
     Groups(BTreeMap<String, String>),
 }
 
-/// How well the forces are met, as relative errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The relative errors of the forces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledOutcomeRecord {
+    /// The number of shapes of the fit.
     pub shapes: usize,
+    /// The errors on the shapes of the fit.
     pub trained: SpreadRecord,
+    /// The errors on the shapes that were held out.
     pub held_out: Option<SpreadRecord>,
     /// The least share of starts that found the best parameters.
     pub agreeing_starts: Option<f64>,
+    /// The loads of the scene whose shapes were sampled.
     pub loads: Vec<String>,
 }
 
 impl SampledRecord {
+    /// The record of these settings.
     pub fn of(recipe: &SampledRecipe) -> SampledRecord {
         let fit = &recipe.fit;
         SampledRecord {
@@ -74,7 +91,7 @@ impl SampledRecord {
             starts: fit.starts,
             families: match &fit.sampling.source {
                 Source::Families(families) if recipe.loads.is_empty() => {
-                    Some(families.iter().map(Family::name).map(String::from).collect())
+                    Some(families.iter().map(DeformationFamily::name).map(String::from).collect())
                 }
                 Source::Families(_) | Source::Gradients(_) | Source::States(_) => None,
             },
@@ -87,6 +104,7 @@ impl SampledRecord {
 }
 
 impl SampledOutcomeRecord {
+    /// The record of this outcome.
     pub fn of(outcome: &SampledOutcome) -> SampledOutcomeRecord {
         SampledOutcomeRecord {
             shapes: outcome.shapes,

@@ -1,31 +1,36 @@
 //! The keys of a `[[fit]]` to the stiffness at rest.
 
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective, Rest, Solver, Topology};
+use crate::fit::{Choices, Fit, Objective, Rest, Solver, Topology, Weight};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// The keys.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StiffnessEntry {
+    #[schemars(extend("enum" = Weight::NAMES))]
     pub weight: Option<String>,
     pub higher: Option<f64>,
     pub balance: Option<f64>,
     pub tied: bool,
     pub nonnegative: bool,
+    #[schemars(extend("enum" = Solver::NAMES))]
     pub solver: Option<String>,
-    /// Of a general solver, as the two that follow.
+    /// These three belong to the general solvers.
     pub iterations: Option<u64>,
     pub topology: bool,
     pub sparsity: Option<f64>,
+    #[schemars(extend("enum" = Rest::NAMES))]
     pub rest: Option<String>,
 }
 
 impl StiffnessEntry {
-    /// The fit by the objective of this name.
+    /// The fit with the objective of this name.
     ///
     /// # Errors
-    /// The objective, the solver or the rest measure is unknown, a number is out of its range, or choices contradict each other.
+    /// The objective, the solver or the rest measure is unknown; a number is out of its range; or settings contradict
+    /// each other.
     pub fn fit(&self, objective: &str) -> Result<Fit> {
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         let objective = Objective::named(objective, choices)?;

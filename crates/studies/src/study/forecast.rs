@@ -1,0 +1,237 @@
+//! What a scene will take, before it is run: its sizes, and estimates of time and memory.
+
+use super::body::{Case, LargeBody, load_cases};
+use super::fits::{NamedFit, Reference, Task};
+use super::scene::Scene;
+use crate::error::Result;
+use crate::material::{Energy, Material};
+use crate::mesh::{CellBlock, Mesh};
+use crate::model::BlockStiffness;
+use crate::solve::{FactorCost, dense_rate, factor_cost};
+use crate::text::{memory_in_words, time_in_words};
+use serde::Serialize;
+use std::time::Instant;
+
+/// Work that takes longer is announced, s.
+const LONG: f64 = 10.0;
+/// The seconds that one fit is tried for, about, unless it is done in `SHORT` by the trials before.
+const TRIAL: f64 = 0.02;
+const SHORT: f64 = 0.2;
+/// Cells that one thread fits at a time.
+const CHUNK: usize = 512;
+/// Of the rate of a dense factor, the share that sparse ones reach; and the entries of a factor that a solution reads in a second.
+/// Measured on bodies of 10 000 to 100 000 unknowns.
+const SPARSE: f64 = 0.5;
+const SOLUTIONS: f64 = 6e8;
+/// Work that is not measured at this rate takes no time.
+const SLOWEST_RATE: f64 = 1e8;
+/// Solutions while one network is compared with the body: Lanczos' steps.
+const COMPARISONS: f64 = 45.0;
+/// Solutions of one load, with their refinement.
+const REFINEMENTS: f64 = 3.0;
+/// Newton's iterations of a step of the load, as most take.
+const ITERATIONS: f64 = 6.0;
+/// Seconds for each unknown of a body solved by iterations: to assemble a model, build its levels and prove that it is stable, and for
+/// each load. Measured on a million unknowns.
+const COMPARED: f64 = 4e-5;
+const ITERATED: f64 = 6e-6;
+/// Seconds and bytes for each entry of the stiffnesses of all cells, while they are assembled.
+const ASSEMBLY: f64 = 6e-8;
+const BYTES: f64 = 70.0;
+
+/// A stage with what it will take.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExpectedStage {
+    /// The stage, in words.
+    pub name: String,
+    /// s; `None` if it is not known before the work begins.
+    pub seconds: Option<f64>,
+    /// What the stage has in memory at a time; `None` as well.
+    pub bytes: Option<f64>,
+}
+
+/// What a scene will take.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Forecast {
+    /// The number of points of the mesh.
+    pub points: usize,
+    /// Elements, and how many cells each has.
+    pub cells: Vec<(String, usize)>,
+    /// Displacements that are not held under the first load.
+    pub unknowns: usize,
+    /// The stages in the order in which they run.
+    pub stages: Vec<ExpectedStage>,
+}
+
+impl Forecast {
+    /// The stages of a scene. The mesh is read or generated; each fit is tried on a few cells for 20 ms; the factor's size is found
+    /// from the mesh, and the time of a factorisation from that of a small dense one on this machine.
+    ///
+    /// # Errors
+    /// Those of a run before it begins: of the mesh, the material, the supports and the loads.
+    pub fn of(scene: &Scene) -> Result<Forecast> {
+        let worked_out = || {
+            let mesh = scene.build_mesh()?;
+            let material = scene.material_of(&mesh)?;
+            let (_, cases) = load_cases(scene, &mesh, material)?;
+            Forecast::of_body(scene, &mesh, material, &cases, scene.energy(material)?.as_ref())
+        };
+        worked_out().map_err(|e| scene.with_line(e))
+    }
+
+    /// The stages of a scene whose mesh is there.
+    pub(in crate::study) fn of_body(
+        scene: &Scene,
+        mesh: &Mesh,
+        material: Material,
+        cases: &[Case],
+        energy: Option<&Energy>,
+    ) -> Result<Forecast> {
+        let held = cases.first().map_or(0, |case| case.support.prescribed.iter().flatten().count());
+        let mut forecast = Forecast::of_fits(mesh, material, scene.fits(), energy);
+        forecast.unknowns -= held;
+        let later = [
+            (scene.motion().is_some(), "motion"),
+            (scene.output().frequencies > 0, "natural frequencies"),
+            (scene.output().moduli, "moduli of the networks"),
+        ];
+        if cases.is_empty() && !later.iter().any(|(asked, _)| *asked) {
+            return Ok(forecast);
+        }
+        let iterates = energy.is_none() && scene.solver().iterates(mesh, cases.len());
+        let (seconds, bytes) = if iterates {
+            let models = 1.0 + scene.fits().len() as f64;
+            let each = COMPARED + ITERATED * cases.len() as f64;
+            // The body and one network are there at the same time.
+            (models * each * mesh.points.len() as f64, BlockStiffness::expected_bytes(mesh, 2, 2) as f64)
+        } else {
+            let factor = factor_cost(mesh)?;
+            let bytes = BYTES * entries(mesh) + 2.0 * 8.0 * factor.entries;
+            (of_loads(scene, mesh, factor, cases.len()), bytes)
+        };
+        let bytes = Some(bytes);
+        let mut stage = |name: &str, seconds: Option<f64>| {
+            forecast.stages.push(ExpectedStage { name: name.into(), seconds, bytes });
+        };
+        if !cases.is_empty() {
+            let large = if energy.is_some() { " at large deformation" } else { "" };
+            let name = format!("{} loads{large} by finite elements and {} networks", cases.len(), scene.fits().len());
+            stage(&name, Some(seconds));
+        }
+        later.iter().filter(|(asked, _)| *asked).for_each(|(_, name)| stage(name, None));
+        Ok(forecast)
+    }
+
+    /// The fits alone.
+    pub fn of_fits(mesh: &Mesh, material: Material, fits: &[NamedFit], energy: Option<&Energy>) -> Forecast {
+        let large = energy.map(|energy| LargeBody::at_rest(energy.clone(), material.state()));
+        let stage = |fit: &NamedFit| ExpectedStage {
+            name: format!("fit {}", fit.name),
+            seconds: of_fit(mesh, material, large.as_ref(), fit),
+            bytes: Some(BYTES * entries(mesh)),
+        };
+        Forecast {
+            points: mesh.point_count(),
+            cells: mesh.blocks.iter().map(|block| (block.element.name.clone(), block.cells().len())).collect(),
+            unknowns: mesh.points.len(),
+            stages: fits.iter().map(stage).collect(),
+        }
+    }
+
+    /// The time of all stages whose time is known, s.
+    pub fn seconds(&self) -> f64 {
+        self.stages.iter().filter_map(|stage| stage.seconds).sum()
+    }
+
+    /// The largest memory of a stage, bytes.
+    pub fn bytes(&self) -> f64 {
+        self.stages.iter().filter_map(|stage| stage.bytes).fold(0.0, f64::max)
+    }
+
+    /// The stages whose time is not known.
+    pub fn unknown(&self) -> impl Iterator<Item = &str> {
+        self.stages.iter().filter(|stage| stage.seconds.is_none()).map(|stage| stage.name.as_str())
+    }
+
+    /// A sentence for work that is expected to take more than ten seconds.
+    pub fn announcement(&self) -> Option<String> {
+        let seconds = self.seconds();
+        let longest =
+            self.stages.iter().max_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)))?;
+        let unknown: Vec<&str> = self.unknown().collect();
+        let more = if unknown.is_empty() { String::new() } else { format!(", without {}", unknown.join(", ")) };
+        (seconds > LONG).then(|| {
+            let (time, part) = (time_in_words(seconds), time_in_words(longest.seconds.unwrap_or(0.0)));
+            let memory = memory_in_words(self.bytes());
+            format!("about {time} and {memory} are expected{more}, {part} of it for {} (an estimate)", longest.name)
+        })
+    }
+}
+
+/// Entries of the stiffnesses of all cells.
+fn entries(mesh: &Mesh) -> f64 {
+    let of_block =
+        |block: &CellBlock| block.cells().len() as f64 * ((block.element.nodes() * mesh.dimension) as f64).powi(2);
+    mesh.blocks.iter().map(of_block).sum()
+}
+
+/// The seconds of a fit: it is made on more and more cells until that takes `TRIAL`, and all cells have the pace of the last trial.
+/// `None` of fits to the whole object and to states of loads, which are no sum over cells.
+fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<f64> {
+    let kind = fit.recipe.kind();
+    let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
+    if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
+        return None;
+    }
+    let total = mesh.cell_count();
+    let reference = Reference { large, ..Reference::default() };
+    let mut count = 8;
+    loop {
+        let some = first_cells(mesh, count);
+        let task =
+            Task { name: &fit.name, springs: fit.springs.as_deref(), mesh: &some, material, reference: &reference };
+        let start = Instant::now();
+        // What is wrong is reported where the fit is made.
+        kind.fit(&task, &mut |_| {}).ok()?;
+        let seconds = start.elapsed().as_secs_f64();
+        let made = some.cell_count();
+        // A trial of one chunk ran on one thread.
+        let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
+        let expected = seconds * total as f64 / made as f64 / threads as f64;
+        if seconds > TRIAL || made >= total || expected < SHORT {
+            return Some(expected);
+        }
+        count *= 4;
+    }
+}
+
+/// The mesh with the first cells of each block.
+fn first_cells(mesh: &Mesh, count: usize) -> Mesh {
+    let first = |block: &CellBlock| {
+        let kept = count.min(block.cells().len()) * block.element.nodes();
+        CellBlock { element: block.element.clone(), connectivity: block.connectivity[..kept].to_vec() }
+    };
+    Mesh { blocks: mesh.blocks.iter().map(first).collect(), groups: Default::default(), ..mesh.clone() }
+}
+
+/// The seconds of the loads with the finite elements and with each network.
+fn of_loads(scene: &Scene, mesh: &Mesh, factor: FactorCost, loads: usize) -> f64 {
+    let networks = scene.fits().len() as f64;
+    let models = 1.0 + networks;
+    let loads = loads as f64;
+    let assembly = ASSEMBLY * entries(mesh);
+    // A solution reads the factor forward and backward.
+    let solution = 2.0 * factor.entries / SOLUTIONS;
+    let iterations = ITERATIONS * scene.newton().steps as f64 * loads;
+    let factors = if scene.law().is_some() { models * iterations } else { models };
+    let operations = factors * factor.operations;
+    let factorisation = if operations < SLOWEST_RATE { 0.0 } else { operations / (SPARSE * dense_rate()) };
+    match scene.law() {
+        // Loads of one support share a factor; most do.
+        None => {
+            let solutions = networks * COMPARISONS + models * loads * REFINEMENTS;
+            factorisation + models * assembly + solutions * solution
+        }
+        Some(_) => factorisation + models * iterations * 2.0 * (assembly + solution),
+    }
+}
