@@ -6,7 +6,7 @@
 mod elastic;
 
 use elastic::{Body, Shape};
-use springfit_multigrid::{Event, Multigrid, Settings, space_motions};
+use springfit_multigrid::{Definiteness, Event, Multigrid, Settings, space_motions};
 use std::fs;
 use std::ops::ControlFlow;
 
@@ -87,8 +87,16 @@ fn main() {
     };
     let solve = seconds() - start;
     let [low, high] = solution.spectrum;
+    let start = seconds();
+    let (steps, proof) = match levels.definiteness(1e-12, 3000, &mut watch) {
+        Ok(Definiteness::Positive { iterations, .. }) => (iterations, "positive definite"),
+        Ok(Definiteness::NotPositive { iterations, .. }) => (iterations, "not positive definite"),
+        Ok(Definiteness::Undecided { iterations, .. }) => (iterations, "not decided"),
+        Err(fault) => return println!("{case} {n}: {fault}"),
+    };
+    let proved = seconds() - start;
     println!(
-        "{case} {n}: {} unknowns, assembly {assembly:.2} s, setup {setup:.2} s, {} iterations {solve:.2} s, residual {:.1e}, spectrum \
+        "{case} {n}: {} unknowns, assembly {assembly:.2} s, setup {setup:.2} s, {} iterations {solve:.2} s, residual {:.1e}, {proof} in {steps} steps {proved:.2} s, spectrum \
          {low:.3} {high:.3}, levels {}, matrix {:.2} GB, levels {:.2} GB, peak {:.2} GB",
         force.len(),
         solution.iterations,
