@@ -90,6 +90,14 @@ pub mod prelude;
 #[allow(missing_docs)]
 pub mod report;
 
+// The examples of the README and of the book are compiled and run with those of this page.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+#[cfg(doctest)]
+#[doc = include_str!("../docs/src/reference/library.md")]
+struct LibraryPage;
+
 pub use springfit_bodies::{dynamics, mesh, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, range, scalar, symbolic, text};
 pub use springfit_kernels::{element, fit, material, springs, stiffness};

@@ -57,6 +57,7 @@ crate::named!(SpringKind {
 const MOST_NODES: usize = 8;
 
 /// The properties of a kind of springs.
+#[non_exhaustive]
 pub struct Kind {
     /// How many nodes a spring may have.
     pub nodes: RangeInclusive<usize>,

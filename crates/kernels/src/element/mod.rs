@@ -76,6 +76,7 @@ pub struct Element {
 
 /// A side of the element: its nodes, and the shape functions along it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SideTable {
     /// The nodes of the element that are on the side.
     pub nodes: Vec<usize>,
