@@ -1,7 +1,8 @@
 //! What a scene will take, before it is run: its sizes, and estimates of time and memory.
 
 use super::body::{Case, LargeBody, load_cases};
-use super::fits::{NamedFit, Reference, Task};
+use super::fits::{NamedFit, Reference};
+use super::fitting::fit_mesh;
 use super::scene::Scene;
 use crate::error::Result;
 use crate::material::{Energy, Material};
@@ -9,6 +10,7 @@ use crate::mesh::{CellBlock, Mesh};
 use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Work that takes longer is announced, s.
@@ -33,6 +35,8 @@ const ITERATIONS: f64 = 6.0;
 /// Seconds and bytes for each entry of the stiffnesses of all cells, while they are assembled.
 const ASSEMBLY: f64 = 6e-8;
 const BYTES: f64 = 70.0;
+/// Bytes of a spring of a network.
+const SPRING: f64 = 160.0;
 
 /// A stage with what it will take.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -48,8 +52,8 @@ pub struct ExpectedStage {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Forecast {
     pub points: usize,
-    /// Elements, and how many cells each has.
-    pub cells: Vec<(String, usize)>,
+    /// How many cells each element has.
+    pub cells: BTreeMap<String, usize>,
     /// Displacements that are not held under the first load.
     pub unknowns: usize,
     pub stages: Vec<ExpectedStage>,
@@ -98,7 +102,9 @@ impl Forecast {
         };
         if !cases.is_empty() {
             let large = if energy.is_some() { " at large deformation" } else { "" };
-            let name = format!("{} loads{large} by finite elements and {} networks", cases.len(), scene.fits().len());
+            let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+            let (loads, networks) = (counted(cases.len(), "load"), counted(scene.fits().len(), "network"));
+            let name = format!("{loads}{large} by finite elements and {networks}");
             stage(&name, Some(of_loads(scene, mesh, factor, cases.len())));
         }
         later.iter().filter(|(asked, _)| *asked).for_each(|(_, name)| stage(name, None));
@@ -108,10 +114,11 @@ impl Forecast {
     /// The fits alone.
     pub fn of_fits(mesh: &Mesh, material: Material, fits: &[NamedFit], energy: Option<&Energy>) -> Forecast {
         let large = energy.map(|energy| LargeBody::at_rest(energy.clone(), material.state()));
-        let stage = |fit: &NamedFit| ExpectedStage {
-            name: format!("fit {}", fit.name),
-            seconds: of_fit(mesh, material, large.as_ref(), fit),
-            bytes: Some(BYTES * entries(mesh)),
+        // Threads start before the clock does.
+        rayon::broadcast(|_| ());
+        let stage = |fit: &NamedFit| {
+            let (seconds, bytes) = of_fit(mesh, material, large.as_ref(), fit).unzip();
+            ExpectedStage { name: format!("fit {}", fit.name), seconds, bytes }
         };
         Forecast {
             points: mesh.point_count(),
@@ -158,9 +165,9 @@ fn entries(mesh: &Mesh) -> f64 {
     mesh.blocks.iter().map(of_block).sum()
 }
 
-/// The seconds of a fit: it is made on more and more cells until that takes `TRIAL`, and all cells have the pace of the last trial.
-/// `None` of fits to the whole object and to states of loads, which are no sum over cells.
-fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<f64> {
+/// The seconds of a fit and the bytes of its network: it is made on more and more cells until that takes `TRIAL`, and all cells have the
+/// pace of the last trial. `None` of fits to the whole object and to states of loads, which are no sum over cells.
+fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<(f64, f64)> {
     let kind = fit.recipe.kind();
     let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
     if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
@@ -171,18 +178,22 @@ fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &Name
     let mut count = 8;
     loop {
         let some = first_cells(mesh, count);
-        let task =
-            Task { name: &fit.name, springs: fit.springs.as_deref(), mesh: &some, material, reference: &reference };
-        let start = Instant::now();
         // What is wrong is reported where the fit is made.
-        kind.fit(&task, &mut |_| {}).ok()?;
-        let seconds = start.elapsed().as_secs_f64();
+        let trial = || {
+            let start = Instant::now();
+            let springs = fit_mesh(&some, material, &reference, fit, &mut |_| {}).ok()?.network.len();
+            Some((start.elapsed().as_secs_f64(), springs))
+        };
+        // The first trial touches memory for the first time.
+        let ((first, springs), (second, _)) = (trial()?, trial()?);
+        let seconds = first.min(second);
         let made = some.cell_count();
+        let share = total as f64 / made as f64;
         // A trial of one chunk ran on one thread.
         let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
-        let expected = seconds * total as f64 / made as f64 / threads as f64;
+        let expected = seconds * share / threads as f64;
         if seconds > TRIAL || made >= total || expected < SHORT {
-            return Some(expected);
+            return Some((expected, SPRING * springs as f64 * share));
         }
         count *= 4;
     }
