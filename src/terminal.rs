@@ -1,4 +1,4 @@
-//! What the program prints: results on standard output; notes, errors and progress on standard error.
+//! The output of the program: results on standard output; notes, errors and progress on standard error.
 
 use clap::builder::styling::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -37,7 +37,7 @@ pub struct Terminal {
     is_json: bool,
 }
 
-/// The stage that runs, and what was done of it when it began.
+/// The running stage, and how much of it was done when it began.
 struct Stage {
     name: String,
     start: Instant,
@@ -46,8 +46,9 @@ struct Stage {
     is_announced: bool,
 }
 
+/// The time between two lines of progress.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
-/// Before, a stage does not say how long it will take.
+/// A stage states the remaining time after it has run this long.
 const TRIAL: Duration = Duration::from_secs(1);
 /// A stage that will take longer says so.
 const LONG: Duration = Duration::from_secs(10);
@@ -60,7 +61,7 @@ impl Stage {
         Stage { name: name.into(), start: Instant::now(), first: done, is_announced: false }
     }
 
-    /// The time that is left at the pace so far.
+    /// The remaining time at the present pace.
     fn left(&self, done: usize, total: usize) -> Option<Duration> {
         let elapsed = self.start.elapsed();
         let (made, left) = (done.checked_sub(self.first)?, total.saturating_sub(done));
@@ -149,7 +150,7 @@ impl Terminal {
         }
     }
 
-    /// Prints to standard output; a reader who has gone away, as `head` does, ends the program quietly.
+    /// Prints to standard output. If the reader is gone, as with `head`, the program ends without an error.
     ///
     /// # Errors
     /// Standard output cannot be written.
@@ -232,8 +233,8 @@ fn page_width() -> usize {
     given.filter(|columns| *columns > 0).or_else(terminal).unwrap_or(PAGE).max(NARROWEST)
 }
 
-/// A line on standard error; if nobody can read it, nothing is lost. Its first word has a colour on a terminal, unless `NO_COLOR` is
-/// set or `CLICOLOR` is 0.
+/// Prints a line on standard error; if it cannot be written, nothing is lost. Its first word has a colour on a terminal,
+/// unless `NO_COLOR` is set or `CLICOLOR` is 0.
 pub fn tell(line: &str) {
     let bold = |color: AnsiColor| Style::new().bold().fg_color(Some(color.into()));
     let styles =

@@ -17,7 +17,9 @@ const SQUARE: &str = "title = \"square\"\nmesh = { box = { element = \"quad4\", 
 
 fn springfit(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
-    ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"].iter().for_each(|name| drop(command.env_remove(name)));
+    for name in ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
+        command.env_remove(name);
+    }
     command.args(arguments).current_dir(folder).envs(variables.iter().copied()).output().unwrap()
 }
 

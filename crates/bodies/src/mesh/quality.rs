@@ -62,6 +62,7 @@ impl Gate {
 
 /// The quality of the cells of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Quality {
     /// The worst of all cells.
     pub worst: Option<Worst>,
@@ -89,6 +90,7 @@ pub struct Quality {
 
 /// The cell of least quality.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Worst {
     /// Its quality.
     pub quality: f64,

@@ -12,12 +12,13 @@ use faer::sparse::Triplet;
 const TOLERANCE: f64 = 1e-10;
 /// Corrections end when the largest force is below this share.
 const FOUND: f64 = 1e-14;
+/// The largest number of corrections.
 const ROUNDS: usize = 12;
 /// The shift of the diagonal, relative to its mean. The equations are singular, because rigid motions cause no force.
 const RAISED: f64 = 1e-9;
 
 /// The springs whose forces at rest have to be in equilibrium.
-pub(super) struct Balance<'a> {
+pub(super) struct RestForces<'a> {
     mesh: &'a Mesh,
     network: &'a Network,
     edges: &'a Edges,
@@ -26,9 +27,9 @@ pub(super) struct Balance<'a> {
     fixed: Vec<f64>,
 }
 
-impl<'a> Balance<'a> {
+impl<'a> RestForces<'a> {
     /// Of the network's springs on content, those in `contents` may change their tension.
-    pub fn new(mesh: &'a Mesh, network: &'a Network, edges: &'a Edges, contents: &'a Contents) -> Balance<'a> {
+    pub fn new(mesh: &'a Mesh, network: &'a Network, edges: &'a Edges, contents: &'a Contents) -> RestForces<'a> {
         let d = mesh.dimension;
         let mut fixed = vec![0.0; mesh.points.len()];
         let mut free = contents.places.iter().peekable();
@@ -42,7 +43,7 @@ impl<'a> Balance<'a> {
                 add(&mut fixed, &spring.points, &spring.measure.gradient(&x, d), tension);
             }
         }
-        Balance { mesh, network, edges, contents, fixed }
+        RestForces { mesh, network, edges, contents, fixed }
     }
 
     /// The gradient of the energy in the positions at rest, `[points × dimension]`, N, with these constants and these

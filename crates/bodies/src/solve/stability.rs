@@ -1,6 +1,6 @@
 //! Whether a network is stable: its energy in all motions, relative to that of the finite elements.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::linear::{Factor, System};
 use crate::springs::dot;
@@ -16,6 +16,7 @@ const SOFT: f64 = 0.01;
 
 /// How a network resists the motions that a body resists.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stability {
     /// The verdict.
     pub standing: Standing,

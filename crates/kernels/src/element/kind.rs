@@ -1,6 +1,6 @@
 //! The kinds of springs, one row of properties for each.
 //!
-//! Theory: pages *Stiffness* and *Exact networks* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 use super::formula::Formula;
 use schemars::JsonSchema;
@@ -57,6 +57,7 @@ crate::named!(SpringKind {
 const MOST_NODES: usize = 8;
 
 /// The properties of a kind of springs.
+#[non_exhaustive]
 pub struct Kind {
     /// How many nodes a spring may have.
     pub nodes: RangeInclusive<usize>,

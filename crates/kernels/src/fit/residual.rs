@@ -23,6 +23,7 @@ pub struct Spread {
 
 /// The relative error `‖R − K‖/‖R‖` of each element.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ElementErrors {
     /// In the Frobenius norm, `[cells]`.
     pub frobenius: Vec<f64>,

@@ -41,6 +41,7 @@ const SPRING: f64 = 160.0;
 /// A stage with what it will take.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExpectedStage {
+    /// The stage, in words.
     pub name: String,
     /// s; `None` if it is not known before the work begins.
     pub seconds: Option<f64>,
@@ -51,11 +52,13 @@ pub struct ExpectedStage {
 /// What a scene will take.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Forecast {
+    /// The number of points of the mesh.
     pub points: usize,
     /// How many cells each element has.
     pub cells: BTreeMap<String, usize>,
     /// Displacements that are not held under the first load.
     pub unknowns: usize,
+    /// The stages in the order in which they run.
     pub stages: Vec<ExpectedStage>,
 }
 

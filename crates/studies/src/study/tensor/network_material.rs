@@ -29,6 +29,7 @@ const FLAT: f64 = 1e-9;
 /// anisotropy. An affine strain of every point would ignore that neighbours give way to each other; a single tensor of
 /// the whole network would ignore variations in space.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NetworkMaterial {
     /// The mean of the tensors of the samples in Kelvin's notation, `σ = C ε` with the strains xx, yy, (zz,) and √2
     /// times xy, (xz, yz); Pa, in the plane multiplied by the thickness, for a rod by its cross-section. On surfaces
