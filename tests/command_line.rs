@@ -294,6 +294,8 @@ fn an_explanation_does_nothing() {
         assert!(told.contains(words), "{words}: {told}");
     }
     printed(folder.path(), &[], &["compare", "s.toml", "--explain"]);
+    let levels = printed(folder.path(), &[], &["converge", "s.toml", "--levels=3", "--explain"]);
+    assert!(levels.contains("level 3 of 3\n81 points, 64 quad4; 144 unknowns"), "{levels}");
     fs::copy(Path::new(ROOT).join("scenes/meshes/cube_tet.msh"), folder.path().join("m.msh")).unwrap();
     let told =
         printed(folder.path(), &[], &["fit", "m.msh", "--young=1e4", "--poisson=0.3", "--explain", "-o", "k.csv"]);

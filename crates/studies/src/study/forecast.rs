@@ -22,8 +22,8 @@ const SHORT: f64 = 0.2;
 const CHUNK: usize = 512;
 /// Of the rate of a dense factor, the share that sparse ones reach; and the entries of a factor that a solution reads in a second.
 /// Measured on bodies of 10 000 to 100 000 unknowns.
-const SPARSE: f64 = 0.5;
-const SOLUTIONS: f64 = 6e8;
+const SPARSE: f64 = 0.8;
+const SOLUTIONS: f64 = 1e9;
 /// Work that is not measured at this rate takes no time.
 const SLOWEST_RATE: f64 = 1e8;
 /// Solutions while one network is compared with the body: Lanczos' steps.
