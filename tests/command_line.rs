@@ -105,7 +105,7 @@ fn completions_and_manual_pages_name_every_command() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = printed(Path::new(ROOT), &[], &["completions", shell]);
         let missing: Vec<_> = names.iter().filter(|name| !script.contains(name.as_str())).collect();
-        assert!(missing.is_empty() && script.contains("--set"), "{shell}: {missing:?}");
+        assert!(missing.is_empty() && script.contains("checkpoint"), "{shell}: {missing:?}");
     }
     let page = printed(Path::new(ROOT), &[], &["man"]);
     assert!(page.contains(".TH springfit 1") && page.contains("Exit codes"), "{page}");
@@ -303,6 +303,23 @@ fn an_explanation_does_nothing() {
     let mut left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["m.msh", "s.toml"]);
+}
+
+/// Scenes of each kind can be explained: large deformation, motion, membranes, whole objects.
+#[test]
+fn every_shipped_scene_can_be_explained() {
+    let scenes = fs::read_dir(Path::new(ROOT).join("scenes")).unwrap().map(|entry| entry.unwrap().path());
+    let scenes: Vec<PathBuf> = scenes.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    assert!(scenes.len() > 15);
+    for scene in scenes {
+        let told = printed(Path::new(ROOT), &[], &["run", scene.to_str().unwrap(), "--explain", "--json"]);
+        let forecast: Value = serde_json::from_str(&told).unwrap();
+        let stages = forecast["stages"].as_array().unwrap();
+        assert!(
+            !stages.is_empty() && stages.iter().any(|stage| stage["seconds"].as_f64().is_some_and(|s| s > 0.0)),
+            "{told}"
+        );
+    }
 }
 
 /// The name of an entry with `class = "auto"` stands for all its classes.

@@ -4,13 +4,14 @@ use super::body::{Case, LargeBody, load_cases};
 use super::fits::{NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
+use super::tensor::most_samples;
 use crate::error::Result;
 use crate::material::{Energy, Material};
 use crate::mesh::{CellBlock, Mesh};
 use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
 
 /// Work that takes longer is announced, s.
@@ -184,17 +185,18 @@ fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &Name
         // What is wrong is reported where the fit is made.
         let trial = || {
             let start = Instant::now();
-            let springs = fit_mesh(&some, material, &reference, fit, &mut |_| {}).ok()?.network.len();
-            Some((start.elapsed().as_secs_f64(), springs))
+            let fit = fit_mesh(&some, material, &reference, fit, &mut |_| {}).ok()?;
+            let (whole, sampling) = (start.elapsed().as_secs_f64(), fit.as_material.seconds);
+            Some((whole - sampling, sampling / fit.as_material.samples as f64, fit.network.len()))
         };
         // The first trial touches memory for the first time.
-        let ((first, springs), (second, _)) = (trial()?, trial()?);
+        let ((first, ..), (second, sample, springs)) = (trial()?, trial()?);
         let seconds = first.min(second);
         let made = some.cell_count();
         let share = total as f64 / made as f64;
         // A trial of one chunk ran on one thread.
         let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
-        let expected = seconds * share / threads as f64;
+        let expected = seconds * share / threads as f64 + sample * most_samples(mesh) as f64;
         if seconds > TRIAL || made >= total || expected < SHORT {
             return Some((expected, SPRING * springs as f64 * share));
         }
@@ -202,13 +204,32 @@ fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &Name
     }
 }
 
-/// The mesh with the first cells of each block.
+/// The mesh of the first cells of each block, with their points.
 fn first_cells(mesh: &Mesh, count: usize) -> Mesh {
-    let first = |block: &CellBlock| {
-        let kept = count.min(block.cells().len()) * block.element.nodes();
-        CellBlock { element: block.element.clone(), connectivity: block.connectivity[..kept].to_vec() }
+    let mut places = HashMap::new();
+    let mut points = Vec::new();
+    let mut place = |point: usize| {
+        *places.entry(point).or_insert_with(|| {
+            points.extend_from_slice(mesh.point(point));
+            points.len() / mesh.dimension - 1
+        })
     };
-    Mesh { blocks: mesh.blocks.iter().map(first).collect(), groups: Default::default(), ..mesh.clone() }
+    let mut first = |block: &CellBlock| {
+        let kept = count.min(block.cells().len()) * block.element.nodes();
+        let connectivity = block.connectivity[..kept].iter().map(|&point| place(point)).collect();
+        CellBlock { element: block.element.clone(), connectivity }
+    };
+    let blocks = mesh.blocks.iter().map(&mut first).collect();
+    Mesh {
+        dimension: mesh.dimension,
+        points,
+        blocks,
+        groups: BTreeMap::new(),
+        reversed: 0,
+        unused_points: 0,
+        numbering: None,
+        quality: mesh.quality.clone(),
+    }
 }
 
 /// The seconds of the loads with the finite elements and with each network.
