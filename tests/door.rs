@@ -197,9 +197,13 @@ fn hostile_numbers_do_not_panic() {
                     }
                 }
                 let what = format!("{name} {} at {x:?} with {moduli:?}", fit.objective.title());
+                let fitted = outcome(&what, || cells(&case, &x, &all, moduli, &fit));
+                if let Ok(CellFits { constants, parameters, .. }) = &fitted {
+                    assert_finite(&what, Ok([&constants[..], parameters].concat()));
+                }
                 let one = outcome(&what, || fit_element(element, springs, &x, moduli, &fit));
                 if let Ok(constants) = &one {
-                    let fitted = cells(&case, &x, &all, moduli, &fit).unwrap();
+                    let fitted = fitted.unwrap();
                     let _ = outcome(&what, || element_errors(element, &x, &all, moduli, &fitted));
                     let said = (&constants[..], HOSTILE[random.below(HOSTILE.len())]);
                     let _ = outcome(&what, || distance_from_optimum(element, springs, &x, &moduli, &fit, said));
