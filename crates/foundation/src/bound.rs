@@ -1,32 +1,36 @@
-//! How many of a thing an input may ask for. More is a slip of the pen, and would run for days.
+//! Upper bounds of the counts that an input may ask for.
+//!
+//! A larger count is almost certainly a typing error, and the work would take days. Each bound is far above what the
+//! measured uses need.
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Of Newton's method, or of a fit to the whole object.
+/// Iterations of Newton's method, or of a fit to the whole object. A run that needs as many does not converge.
 pub const ITERATIONS: u64 = 100_000;
-/// Of a search by a general optimiser, for each element; a swarm keeps what each has found.
+/// Iterations of a search by a general optimiser, for each element. A population-based search stores one state per
+/// particle, not per iteration, so that time is the only limit.
 pub const SEARCH_ITERATIONS: u64 = 1_000_000_000;
-/// From which a law's parameters are searched, for each element.
+/// Starts from which the parameters of a spring law are searched, for each element.
 pub const STARTS: u64 = 10_000;
-/// Sampled for each element.
+/// Deformed shapes that are sampled for each element. Each is stored during the fit.
 pub const SHAPES: u64 = 10_000_000;
-/// Made of an element to compare fits on.
+/// Random shapes of an element on which fits are compared.
 pub const RANDOM_SHAPES: u64 = 1_000_000;
-/// Steps of a load.
+/// Steps in which a load is applied.
 pub const LOAD_STEPS: u64 = 100_000;
-/// Natural vibrations of a model.
+/// Natural frequencies of a model that are computed.
 pub const MODES: u64 = 1_000;
-/// Steps of a motion.
+/// Time steps of a motion.
 pub const STEPS: u64 = 1_000_000_000;
-/// Rows of a motion's table over time.
+/// Rows of the table of a motion over time. The table is kept in memory.
 pub const STATES: u64 = 1_000_000;
-/// Cells of a mesh that is generated, and its points.
+/// Cells of a generated mesh, and its nodes. A finer mesh has to come from a file.
 pub const CELLS: u64 = 2_000_000;
 
-/// That a count is from `least` to `most`.
+/// Checks that a count is from `least` to `most`.
 ///
 /// # Errors
-/// Names the key; of kind `Limit` where it is too large.
+/// The count is outside these bounds. The error names `key`; its kind is `Limit` if the count is too large.
 pub fn check_count(key: &str, count: u64, least: u64, most: u64) -> Result<()> {
     if (least..=most).contains(&count) {
         return Ok(());

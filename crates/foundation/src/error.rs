@@ -1,4 +1,5 @@
-//! What is wrong with an input: the kind of fault, its place, what was expected there and what was found.
+//! The error type of springfit: what kind of fault an input has, where it is, what was expected there and what was
+//! found.
 
 use crate::text::printable;
 use std::fmt;
@@ -6,6 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// A result whose error is an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// The kind of fault that an [`Error`] reports, for programs that react to it.
@@ -109,12 +111,12 @@ impl Error {
         self
     }
 
-    /// Places a fault that stands in no file yet; one with a file is complete.
+    /// Applies `place` to an error that names no file yet. An error with a file is complete and is returned as it is.
     pub fn placed(self, place: impl FnOnce(Error) -> Error) -> Self {
         if self.file.is_some() { self } else { place(self) }
     }
 
-    /// The same fault of a command-line option, which has no file: `young` is `--young`.
+    /// The same fault as one of a command-line option, which has no file: the key `young` becomes `--young`.
     pub fn of_option(mut self) -> Self {
         if self.file.is_none() {
             self.key = self.key.map(|key| format!("--{key}"));
@@ -122,6 +124,7 @@ impl Error {
         self
     }
 
+    /// The kind of fault.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
@@ -147,7 +150,7 @@ impl Error {
     }
 }
 
-/// Names and texts that are quoted from a file may have line ends in them.
+/// Puts the text on one line: names and texts that are quoted from a file may contain line ends.
 fn line(text: String) -> String {
     printable(&text).into_owned()
 }

@@ -1,4 +1,15 @@
-//! What every layer of springfit needs: errors, files, ranges, kinds of numbers, symbolic expressions.
+//! The base layer of springfit: errors, files, quantities with units, kinds of numbers, and symbolic expressions.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on the modules of it that a program meets.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`error`] | the one error type, with kind, file, line and key |
+//! | [`mod@file`] | reading with named errors, writing a file whole or not at all, TOML |
+//! | [`range`], [`bound`], [`memory`] | the limits of quantities, of counts, and of memory |
+//! | [`quantity`], [`named`], [`text`] | units, closed lists of names, texts made safe to print |
+//! | [`scalar`] | the numbers that kernels compute with: `f64`, SIMD lanes, `f32`, double-double, rationals |
+//! | [`symbolic`] | expressions: parsed, differentiated, evaluated, expanded; exact rational functions |
 
 #![forbid(unsafe_code)]
 

@@ -1,14 +1,16 @@
-//! The memory that work will take, compared with what the system has left.
+//! The memory that a computation needs, compared with what the system has left.
+//!
+//! Without this check the operating system may end the process in the middle of the work.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fs;
 use std::path::Path;
 
-/// That `what` fits into memory, which takes so many bytes; `advice` says what to try where it does not. Where the system does not
-/// say how much memory it has left, everything fits.
+/// Checks that `what`, which needs `bytes` bytes, fits into memory. `advice` is printed if it does not. If the system
+/// does not report its free memory, everything is accepted.
 ///
 /// # Errors
-/// It does not fit; kind `Limit`.
+/// It does not fit; the kind is `Limit`.
 pub fn require(what: &str, bytes: u64, advice: &str) -> Result<()> {
     let Some(left) = available().filter(|left| *left < bytes) else { return Ok(()) };
     let (needed, left) = (gigabytes(bytes), gigabytes(left));
@@ -16,8 +18,8 @@ pub fn require(what: &str, bytes: u64, advice: &str) -> Result<()> {
     Err(Error::new(problem).of_kind(ErrorKind::Limit))
 }
 
-/// The bytes that this process may still ask for: what the machine has left, with its swap space, or what the limits of the
-/// process leave, if that is less. `None` where the system does not say.
+/// The number of bytes that this process may still allocate: the free memory of the machine with its swap space, or the
+/// rest that the limits of the process leave, whichever is less. `None` if the system does not report it.
 pub fn available() -> Option<u64> {
     let read = |name: &str| fs::read_to_string(Path::new("/proc").join(name)).ok();
     let machine =

@@ -1,20 +1,25 @@
-//! Quantities as texts, with or without a unit.
+//! Physical quantities as texts, with or without a unit: `10kPa`, `2.5 mm`, `1000`.
 
 use crate::error::{Error, Result};
 
 /// What is measured. A number without a unit is in the SI unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
+    /// A length, in m.
     Length,
+    /// An area, in m².
     Area,
+    /// A pressure, a modulus or a stress, in Pa.
     Pressure,
+    /// A mass density, in kg/m³.
     Density,
+    /// A time, in s.
     Time,
-    /// The length of one unit of a mesh. A unit alone stands for one of it: `mm` is 0.001 m.
+    /// The length of one unit of a mesh, in m. A unit alone stands for one of it: `mm` is 0.001 m.
     MeshUnit,
 }
 
-/// A unit as a power of ten of the SI unit, which comes first in each list.
+/// A unit and its power of ten in the SI unit. The SI unit comes first in each list.
 type Unit = (&'static str, i32);
 
 const LENGTHS: [Unit; 8] =
@@ -37,7 +42,7 @@ impl Quantity {
         }
     }
 
-    /// What a text of it looks like.
+    /// An example of a valid text, for error messages.
     pub fn expected(self) -> &'static str {
         match self {
             Quantity::Length => "a length such as 0.005, \"5 mm\" or \"0.5cm\"",
@@ -49,7 +54,7 @@ impl Quantity {
         }
     }
 
-    /// The value in the SI unit.
+    /// The value of the text in the SI unit.
     ///
     /// # Errors
     /// The text is not a number followed by nothing or by a unit of this quantity.
@@ -64,7 +69,8 @@ impl Quantity {
                 (Quantity::MeshUnit, "") => 1.0,
                 _ => number.parse().ok()?,
             };
-            // A quotient by a whole power of ten is the double nearest to the decimal, as the same number without a unit is.
+            // Dividing by a whole power of ten gives the double that is nearest to the decimal number, as parsing the
+            // same number without a unit does.
             let factor = 10f64.powi(power.abs());
             Some(if *power < 0 { value / factor } else { value * factor })
         };

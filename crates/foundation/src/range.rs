@@ -1,12 +1,13 @@
-//! The range of the physical quantities that an input may have.
+//! The range of sizes that a physical quantity in an input may have.
 //!
-//! Within it the products and squares that energies and their gradients are made of stay in the range of numbers.
+//! Within this range the products and squares that energies and their gradients consist of neither overflow nor
+//! underflow `f64`.
 
 use crate::error::{Error, Result};
 
-/// The least size of a quantity other than zero, in its SI unit.
+/// The smallest size of a quantity other than zero, in its SI unit. Its tenth power is still a normal `f64`.
 pub const LEAST: f64 = 1e-30;
-/// The largest size of a quantity, in its SI unit.
+/// The largest size of a quantity, in its SI unit. Its tenth power is still below the largest `f64`.
 pub const LARGEST: f64 = 1e30;
 
 /// Whether a positive quantity is within the range.
@@ -14,10 +15,11 @@ pub fn contains(value: f64) -> bool {
     (LEAST..=LARGEST).contains(&value)
 }
 
-/// A quantity above zero, in `unit`, such as `Pa` or `metres per mesh unit`.
+/// Checks that a quantity is above zero and within the range. `unit`, such as `Pa` or `metres per mesh unit`, is for
+/// the message.
 ///
 /// # Errors
-/// It is not above zero, or outside the range.
+/// The value is not above zero, or is outside the range.
 pub fn positive(key: &str, value: f64, unit: &str) -> Result<f64> {
     match value {
         v if contains(v) => Ok(v),
@@ -26,10 +28,10 @@ pub fn positive(key: &str, value: f64, unit: &str) -> Result<f64> {
     }
 }
 
-/// A quantity of zero or more, in `unit`.
+/// Checks that a quantity is zero or above and within the range.
 ///
 /// # Errors
-/// It is below zero, or outside the range.
+/// The value is below zero, or is outside the range.
 pub fn not_negative(key: &str, value: f64, unit: &str) -> Result<f64> {
     if value == 0.0 || contains(value) {
         return Ok(value);
@@ -38,10 +40,10 @@ pub fn not_negative(key: &str, value: f64, unit: &str) -> Result<f64> {
     Err(Error::expected(key, expected, format!("{value:?}")))
 }
 
-/// A quantity of either sign, such as a coordinate, in `unit`.
+/// Checks that a quantity of either sign, such as a coordinate, is finite and not above the range.
 ///
 /// # Errors
-/// It is not finite, or its size is above the range.
+/// The value is not finite, or its size is above the range.
 pub fn bounded(key: &str, value: f64, unit: &str) -> Result<f64> {
     if value.abs() <= LARGEST {
         return Ok(value);
@@ -49,15 +51,15 @@ pub fn bounded(key: &str, value: f64, unit: &str) -> Result<f64> {
     Err(Error::expected(key, format!("a number of at most {LARGEST:e} {unit} in size"), format!("{value:?}")))
 }
 
-/// That the components of a vector or the values of a field, in `unit`, are finite, and that they are all zero or the largest is
-/// within the range. A small component beside a large one is allowed.
+/// Checks the components of a vector or the values of a field together: all must be finite, and either all are zero or
+/// the largest size is within the range. A small component beside a large one is allowed.
 ///
 /// # Errors
-/// A value is not finite or too large, or all are too small.
+/// A value is not finite or is too large, or all are too small.
 pub fn largest(key: &str, values: impl IntoIterator<Item = f64>, unit: &str) -> Result<()> {
     let mut found = 0.0f64;
     for value in values {
-        // Also where it is not a number.
+        // The negated comparison is also true for NaN.
         if !(value.abs() <= found.abs()) {
             found = value;
         }

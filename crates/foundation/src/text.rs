@@ -1,20 +1,20 @@
-//! Texts from outside, made fit to be printed.
+//! Texts from outside the program, made safe to print.
 
 use std::borrow::Cow;
 
-/// The text on one line, without characters that a terminal acts on: each becomes U+FFFD.
+/// The text on one line, without characters that a terminal interprets: each becomes U+FFFD.
 ///
-/// Every name, title and path that comes from a file goes through here before it is printed or written.
+/// Every name, title and path that comes from a file goes through this function before it is printed or written.
 pub fn printable(text: &str) -> Cow<'_, str> {
     replaced(text, acts_on_terminal)
 }
 
-/// The same of a text that may have line ends.
+/// The text without characters that a terminal interprets; line ends are kept.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     replaced(text, |c| c != '\n' && acts_on_terminal(c))
 }
 
-/// Control characters, and marks that change the direction of writing or end a line.
+/// Control characters, marks that change the direction of writing, and characters that end a line.
 fn acts_on_terminal(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -1,4 +1,14 @@
-//! One finite element: its definition as data, its stiffness, and the springs fitted to it.
+//! One finite element: its definition as data, its stiffness, and the springs that are fitted to it.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on its modules.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`element`] | elements read from text: cell, shape functions, quadrature, groups of springs |
+//! | [`material`] | isotropic elastic moduli, and hyperelastic energies |
+//! | [`stiffness`] | the geometry of an element at its quadrature points, `R = ∫ Bᵀ D B dV`, and forces at large deformation |
+//! | [`springs`] | what a spring measures, its force and its tangent |
+//! | [`fit`] | the constants of the springs from the stiffness of each element |
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,6 @@
-//! Scene files, and the studies made from them.
+//! Scene files, and the studies that are made from them.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on its module [`study`].
 
 #![forbid(unsafe_code)]
 

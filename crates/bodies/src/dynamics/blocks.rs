@@ -1,11 +1,11 @@
-//! A symmetric matrix of blocks, one row of them for each point, in an order that keeps neighbours together.
+//! A symmetric matrix of D × D blocks, one row of blocks per point, in an order that keeps neighbours together.
 
 use std::array::from_fn;
 
-/// `[row][column]`.
+/// One block, `[row][column]`.
 pub(super) type Block<const D: usize> = [[f64; D]; D];
 
-/// Which blocks there are: those of the diagonal, and `columns` beyond it of one row after the other.
+/// The pattern of blocks: those of the diagonal, and the `columns` of the other blocks of one row after the other.
 #[derive(Debug)]
 pub(super) struct Pattern {
     /// `[rows + 1]`.
@@ -15,7 +15,7 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// Of the rows `place[i]` of the points i, where that is below `rows`.
+    /// The pattern of the rows `place[i]` of the points i for which this is below `rows`.
     pub fn new(pairs: &[(usize, usize)], place: &[usize], rows: usize) -> Pattern {
         let row = |(i, j): &(usize, usize)| (place[*i].min(place[*j]), place[*i].max(place[*j]));
         let mut blocks: Vec<(usize, usize)> = pairs.iter().map(row).filter(|(a, b)| a < b && *b < rows).collect();
@@ -31,13 +31,13 @@ impl Pattern {
         self.starts.len() - 1
     }
 
-    /// Where the block beyond the diagonal in this row and column is in `columns`.
+    /// The index in `columns` of the off-diagonal block in this row and column.
     pub fn find(&self, row: usize, column: usize) -> Option<usize> {
         let columns = &self.columns[self.starts[row]..self.starts[row + 1]];
         columns.binary_search(&(column as u32)).ok().map(|at| self.starts[row] + at)
     }
 
-    /// `y ← A x`; the blocks are those of the diagonal and then those beyond it.
+    /// `y ← A x`; `blocks` holds those of the diagonal first, then the others.
     pub fn multiply<const D: usize>(&self, blocks: &[Block<D>], x: &[[f64; D]], y: &mut [[f64; D]]) {
         let (diagonal, beyond) = blocks.split_at(self.rows());
         y.iter_mut().zip(diagonal).zip(x).for_each(|((y, block), x)| *y = times(block, x));

@@ -1,17 +1,20 @@
-//! Forces against velocities.
+//! Damping: forces that oppose velocities.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use crate::error::{Error, Result};
 use crate::model::{Network, Support};
 use crate::springs::Measure;
 use crate::stiffness::gather;
 
-/// `C = α M + β K₀ + Σ_s c_s ∇c_s ∇c_sᵀ`, K₀ the tangent at rest.
+/// The damping matrix `C = α M + β K₀ + Σ_s c_s ∇c_s ∇c_sᵀ`, with K₀ the tangent at rest.
 #[derive(Debug, Clone, Default)]
 pub struct Damping {
-    /// Rayleigh's α, 1/s. A mode of circular frequency ω is damped by the ratio `ζ = (α/ω + β ω)/2`.
+    /// Rayleigh's α, in 1/s. A mode of circular frequency ω is damped by the ratio `ζ = (α/ω + β ω)/2`.
     pub mass: f64,
-    /// Rayleigh's β, s.
+    /// Rayleigh's β, in s.
     pub stiffness: f64,
+    /// Dampers parallel to the springs, if there are any.
     pub dampers: Option<Dampers>,
 }
 
@@ -30,28 +33,30 @@ impl Damping {
     }
 }
 
-/// A damper beside each spring: it pulls with `c_s ċ` along the gradient of what the spring measures.
+/// A damper parallel to each spring: it pulls with `c_s ċ` along the gradient of what the spring measures.
 #[derive(Debug, Clone)]
 pub struct Dampers {
     dimension: usize,
-    /// Of the model.
+    /// The number of points of the model.
     points: usize,
-    /// `[dampers]`; lengths first.
+    /// What each damper measures, `[dampers]`; lengths first.
     measures: Vec<Measure>,
-    /// In kg/s where the spring measures a length.
+    /// The coefficients c_s, in kg/s if the spring measures a length.
     pub coefficients: Vec<f64>,
-    /// Where each damper's degrees of freedom begin in `dofs`, `[dampers + 1]`.
+    /// The index in `dofs` at which the degrees of freedom of each damper begin, `[dampers + 1]`.
     starts: Vec<usize>,
     dofs: Vec<usize>,
 }
 
 impl Dampers {
-    /// `c_s = 2 ζ √(k_s m_s)`, `1/m_s = Σ_i |∂c/∂x_i|²/m_i` over the points that may move: with it a single spring between two
-    /// free masses is damped by the ratio ζ, 1 being critical. `k_s` is the slope of the spring's force at `points`,
-    /// `[points × dimension]`, m, where it is at rest; springs that do not resist there have no damper. `masses` in kg, `[points]`.
+    /// Dampers with `c_s = 2 ζ √(k_s m_s)`, `1/m_s = Σ_i |∂c/∂x_i|²/m_i` over the points that may move.
+    ///
+    /// With this coefficient a single spring between two free masses has the damping ratio ζ; 1 is critical damping.
+    /// `k_s` is the slope of the force of the spring at rest, with its points at `points`, `[points × dimension]`, m;
+    /// springs without resistance at rest have no damper. `masses` are in kg, `[points]`.
     ///
     /// # Errors
-    /// The ratio is negative, or a spring's point that may move has no mass.
+    /// The ratio is negative, or a point of a spring that may move has no mass.
     pub fn of_ratio(
         network: &Network,
         points: &[f64],
@@ -99,7 +104,7 @@ impl Dampers {
         Ok(dampers)
     }
 
-    /// Places of the entries of `Σ c_s ∇c_s ∇c_sᵀ` in its lower triangle.
+    /// The positions of the entries of `Σ c_s ∇c_s ∇c_sᵀ` in its lower triangle.
     pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> {
         let own = |at: &[usize]| &self.dofs[at[0]..at[1]];
         self.starts.windows(2).map(own).flat_map(|dofs| {
@@ -109,7 +114,7 @@ impl Dampers {
         })
     }
 
-    /// `∇c_s` at the positions x, one damper after the other; zero where a damper has no direction.
+    /// `∇c_s` at the positions x, one damper after the other; zero if a damper has no direction.
     pub(super) fn gradients(&self, x: &[f64], gradients: &mut Vec<f64>) {
         let d = self.dimension;
         gradients.clear();
@@ -138,7 +143,7 @@ impl Dampers {
         }
     }
 
-    /// The entries at [`Dampers::places`].
+    /// The values of the entries at [`Dampers::places`].
     pub(super) fn entries(&self, gradients: &[f64], entries: &mut Vec<f64>) {
         entries.clear();
         for (coefficient, at) in self.coefficients.iter().zip(self.starts.windows(2)) {

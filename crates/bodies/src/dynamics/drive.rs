@@ -1,35 +1,37 @@
-//! What acts on a model in the course of time.
+//! Forces, prescribed displacements and gravity as functions of time.
 
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Program, Scope};
 use std::fmt;
 use std::sync::Arc;
 
-/// A number as a function of time, s: a load curve.
+/// A number as a function of time in s: a load curve.
 #[derive(Clone)]
 pub struct Curve(Arc<dyn Fn(f64) -> f64 + Send + Sync>);
 
 impl Curve {
+    /// The curve of a function of time.
     pub fn new(function: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Curve {
         Curve(Arc::new(function))
     }
 
+    /// The curve with the same value at all times.
     pub fn constant(value: f64) -> Curve {
         Curve::new(move |_| value)
     }
 
-    /// An expression of t, such as `0.01*sin(2*t)`.
+    /// The curve of an expression in t, such as `0.01*sin(2*t)`.
     ///
     /// # Errors
-    /// The text is no expression of t.
+    /// The text is not an expression in t.
     pub fn parse(text: &str) -> Result<Curve> {
         Curve::of(&Scope::new(&["t"]).expression(text)?)
     }
 
-    /// An expression whose one variable is t.
+    /// The curve of an expression whose only variable is t.
     ///
     /// # Errors
-    /// It has other variables.
+    /// The expression has other variables.
     pub fn of(expression: &Expr) -> Result<Curve> {
         if uses_others(expression) {
             return Err(Error::expected("curve", "an expression of t alone", "one of more variables"));
@@ -38,6 +40,7 @@ impl Curve {
         Ok(Curve::new(move |t| program.evaluate(&[t])))
     }
 
+    /// The value at time t.
     pub fn at(&self, t: f64) -> f64 {
         (self.0)(t)
     }
@@ -58,44 +61,47 @@ fn uses_others(expression: &Expr) -> bool {
     }
 }
 
-/// Forces and prescribed displacements over time; degree of freedom `point · dimension + direction`.
+/// Forces and prescribed displacements over time. A degree of freedom has the number `point · dimension + direction`.
 #[derive(Debug, Clone, Default)]
 pub struct Drive {
-    /// Nodal forces, N per unit of the curve, and their curve.
+    /// Nodal forces, in N per unit of the curve, with their curve.
     pub(super) forces: Vec<(Vec<(usize, f64)>, Curve)>,
     pub(super) displacements: Vec<(usize, Curve)>,
-    /// m/s², `[dimension]`; empty for none.
+    /// The acceleration of gravity, m/s², `[dimension]`; empty if there is none.
     pub(super) gravity: Vec<f64>,
 }
 
 impl Drive {
-    /// Adds a force on one degree of freedom, N.
+    /// Adds a force on one degree of freedom, in N.
     pub fn force(mut self, dof: usize, curve: Curve) -> Drive {
         self.forces.push((vec![(dof, 1.0)], curve));
         self
     }
 
-    /// Adds nodal forces, `[points · dimension]`, N, times a curve.
+    /// Adds nodal forces, `[points · dimension]`, N, multiplied by a curve.
     pub fn forces(mut self, forces: &[f64], curve: Curve) -> Drive {
         let acting = forces.iter().copied().enumerate().filter(|(_, f)| *f != 0.0);
         self.forces.push((acting.collect(), curve));
         self
     }
 
-    /// Moves one degree of freedom, m from its place at rest. It is held there, whether the support holds it or not.
+    /// Prescribes the displacement of one degree of freedom from its position at rest, in m, whether the support holds
+    /// it or not.
     pub fn displacement(mut self, dof: usize, curve: Curve) -> Drive {
         self.displacements.push((dof, curve));
         self
     }
 
-    /// An acceleration that acts on every mass, m/s², `[dimension]`.
+    /// Sets an acceleration that acts on every mass, m/s², `[dimension]`.
     pub fn gravity(mut self, acceleration: &[f64]) -> Drive {
         self.gravity = acceleration.to_vec();
         self
     }
 
+    /// Checks the drive.
+    ///
     /// # Errors
-    /// A degree of freedom is none of `dofs`, or gravity has not one entry per direction.
+    /// A degree of freedom is not below `dofs`, or gravity does not have one entry per direction.
     pub(super) fn check(&self, dofs: usize, dimension: usize) -> Result<()> {
         let forces = self.forces.iter().flat_map(|(places, _)| places.iter().map(|(dof, _)| *dof));
         let mut named = forces.chain(self.displacements.iter().map(|(dof, _)| *dof));
@@ -110,7 +116,7 @@ impl Drive {
         Ok(())
     }
 
-    /// `f(t)`, N; `masses` of the degrees of freedom, kg.
+    /// The forces `f(t)`, in N; `masses` are those of the degrees of freedom, in kg.
     pub(super) fn forces_at(&self, t: f64, masses: &[f64], forces: &mut [f64]) {
         match self.gravity.len() {
             0 => forces.fill(0.0),

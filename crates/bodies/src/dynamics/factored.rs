@@ -1,4 +1,4 @@
-//! The equations of an implicit step with Cholesky's factor.
+//! The equations of an implicit step, solved by a Cholesky factorisation.
 
 use super::equations::{End, Equations, Solved};
 use crate::error::{Error, ErrorKind, Result};
@@ -12,25 +12,25 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{Pair, SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, Par, Side};
 
-/// Columns are eliminated in dense groups from this share on of the work per entry where faer would begin: with three coordinates a
-/// point that is twice as fast on membranes of a thousand triangles.
+/// The work per entry, as a share of faer's default, from which columns are eliminated in dense groups. With three
+/// coordinates per point this is twice as fast on membranes of a thousand triangles.
 const SUPERNODAL: f64 = 0.2;
 const FACTOR: &str = "the factor of an implicit step";
 const ADVICE: &str = "take solver = \"conjugate-gradients\", which needs none, or a mesh with fewer points";
 
-/// The matrix, in the order of elimination, and its Cholesky factor. Entries go straight to their places: a step sorts nothing and
-/// asks for no memory.
+/// The matrix, in the order of elimination, and its Cholesky factor. Entries are written directly to their positions: a
+/// step sorts nothing and allocates no memory.
 #[derive(Debug)]
 pub(super) struct Factored {
     /// The degree of freedom of each row.
     order: Vec<usize>,
     /// The lower triangle.
     pattern: SymbolicSparseColMat<usize>,
-    /// Of the pattern, and one more for entries of held degrees of freedom.
+    /// The values of the pattern, and one more for the entries of held degrees of freedom.
     values: Vec<f64>,
-    /// Where the diagonal of each row is.
+    /// The index of the diagonal entry of each row.
     diagonal: Vec<usize>,
-    /// Where each entry goes.
+    /// The index to which each entry is added.
     slots: Vec<u32>,
     symbolic: SymbolicCholesky<usize>,
     factor: Vec<f64>,
@@ -47,7 +47,7 @@ impl std::fmt::Debug for Room {
 }
 
 impl Factored {
-    /// For entries at these places of the lower triangle; the diagonal is in it anyway.
+    /// For entries at these positions of the lower triangle; the diagonal is always included.
     ///
     /// # Errors
     /// The factor does not fit into memory.
@@ -65,7 +65,7 @@ impl Factored {
             let diagonal = (0..n).map(|i| Pair::new(i, i));
             let pairs: Vec<Pair<usize, usize>> = places.iter().filter_map(lower).chain(diagonal).collect();
             let (pattern, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &pairs).map_err(|_| large())?;
-            // The analysis without a permutation reads the upper triangle, whichever side it is told.
+            // The analysis without a permutation reads the upper triangle, whichever triangle it is told to read.
             let turned: Vec<Pair<usize, usize>> = pairs.iter().map(|pair| Pair::new(pair.col, pair.row)).collect();
             let (upper, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &turned).map_err(|_| large())?;
             let supernodal_flop_ratio_threshold = SupernodalThreshold(SUPERNODAL);
@@ -74,7 +74,8 @@ impl Factored {
                 factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|_| large())?;
             Ok((place, pattern, symbolic))
         };
-        // Once for the order that keeps the factor sparse, once with the rows in that order: then no step permutes.
+        // Once for the order that keeps the factor sparse, and once with the rows in this order, so that no step
+        // permutes.
         let (_, _, first) = analyse(&free, SymmetricOrdering::Amd)?;
         let order: Vec<usize> = match first.perm() {
             Some(perm) => perm.arrays().0.iter().map(|&i| free[i]).collect(),
@@ -133,7 +134,7 @@ impl Equations for Factored {
             .is_ok()
     }
 
-    /// Cholesky's factor is the proof.
+    /// The Cholesky factor is the proof.
     fn is_definite(&mut self, is_prepared: bool, _: &mut [f64]) -> Option<bool> {
         Some(is_prepared)
     }

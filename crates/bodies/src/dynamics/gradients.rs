@@ -1,4 +1,4 @@
-//! The equations of an implicit step by conjugate gradients (Hestenes and Stiefel 1952).
+//! The equations of an implicit step, solved by conjugate gradients (Hestenes and Stiefel 1952).
 
 use super::blocks::{Block, Pattern};
 use super::equations::{End, Equations, Solved};
@@ -6,23 +6,23 @@ use super::incomplete::Incomplete;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::places;
 
-/// How far definiteness is followed, whatever is asked of solutions.
+/// The relative residual to which definiteness is tested, whatever the tolerance of solutions is.
 const DEFINITE: f64 = 1e-10;
-/// A solution has no more iterations.
+/// The largest number of iterations of a solution.
 const ITERATIONS: usize = 5000;
 
-/// The matrix in blocks of one point of D coordinates, and its incomplete factor. In points of which some coordinates are held those
-/// have an equation `x = 0` of their own.
+/// The matrix in blocks of one point with D coordinates, and its incomplete factor. Held coordinates of a point that is
+/// partly free have an equation `x = 0` of their own.
 #[derive(Debug)]
 pub(super) struct Gradients<const D: usize> {
     /// The degree of freedom of each row.
     order: Vec<usize>,
-    /// Where it is in vectors of all coordinates.
+    /// The index of each row in vectors of all coordinates.
     coordinates: Vec<u32>,
     pattern: Pattern,
-    /// Of the diagonal, beyond it, and one for entries of held degrees of freedom.
+    /// The blocks of the diagonal, the other blocks, and one for the entries of held degrees of freedom.
     blocks: Vec<Block<D>>,
-    /// Where each entry goes.
+    /// The index to which each entry is added.
     slots: Vec<u32>,
     incomplete: Incomplete<D>,
     tolerance: f64,
@@ -34,7 +34,7 @@ pub(super) struct Gradients<const D: usize> {
 }
 
 impl<const D: usize> Gradients<D> {
-    /// For entries at these places of the lower triangle; the diagonal is in it anyway.
+    /// For entries at these positions of the lower triangle; the diagonal is always included.
     ///
     /// # Errors
     /// There are more than 2³² entries.
@@ -88,7 +88,7 @@ impl<const D: usize> Gradients<D> {
         })
     }
 
-    /// Iterations from x on until the residual is no more than `size`.
+    /// Iterates from x until the residual is at most `size`.
     fn iterate(&mut self, size: f64) -> Solved {
         let matrix = &self.blocks[..self.blocks.len() - 1];
         let (mut last, mut iterations) = (0.0, 0);
@@ -161,8 +161,9 @@ impl<const D: usize> Equations for Gradients<D> {
         self.incomplete.refill(&self.pattern, &self.blocks[..count])
     }
 
-    /// Before a direction of negative curvature is met, the residual along it does not become less: so small a residual of a random
-    /// force proves that no such direction exists. Iterations that do not reach this residual prove nothing.
+    /// Before a direction of negative curvature is found, the residual along it does not decrease: so small a residual
+    /// of a random force proves that there is no such direction. Iterations that do not reach this residual prove
+    /// nothing.
     fn is_definite(&mut self, is_prepared: bool, x: &mut [f64]) -> Option<bool> {
         let tolerance = std::mem::replace(&mut self.tolerance, DEFINITE);
         let end = is_prepared.then(|| self.solve(x, None).end);
@@ -202,7 +203,7 @@ impl<const D: usize> Equations for Gradients<D> {
 }
 
 fn dot<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
-    // Four sums at a time: one after the other they would wait for each other.
+    // Four sums at a time, because the terms of one sum wait for each other.
     let ((a, b), (a_rest, b_rest)) = {
         let ((a, a_rest), (b, b_rest)) = (a.as_flattened().as_chunks::<4>(), b.as_flattened().as_chunks::<4>());
         ((a, b), (a_rest, b_rest))

@@ -1,20 +1,20 @@
-//! An incomplete Cholesky factor of blocks.
+//! An incomplete Cholesky factorisation in blocks, the preconditioner of conjugate gradients.
 
 use super::blocks::{Block, Pattern, times, turned_times};
 use std::array::from_fn;
 
-/// Shares of the diagonal that are added to it until no pivot is lost (Manteuffel 1980).
+/// Shares of the diagonal that are added to it, in order, until no pivot is lost (Manteuffel 1980).
 const SHIFTS: [f64; 8] = [0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0];
 
-/// `A ≈ (I + U)ᵀ E (I + U)`, U with the pattern of A beyond the diagonal (Meijerink and van der Vorst 1977). With the pivots E by
-/// themselves a row waits for one product with the row before it, not for two.
+/// `A ≈ (I + U)ᵀ E (I + U)`, with U of the off-diagonal pattern of A (Meijerink and van der Vorst 1977). With separate
+/// pivots E a row waits for one product with the row before it, not for two.
 #[derive(Debug)]
 pub(super) struct Incomplete<const D: usize> {
-    /// Of E, and then its inverse.
+    /// The pivots E, and then their inverses.
     pivots: Vec<Block<D>>,
-    /// `E (I + U)` beyond the diagonal, and then U.
+    /// `E (I + U)` off the diagonal, and then U.
     beyond: Vec<Block<D>>,
-    /// `[p, q, t]`: block t loses `U_pᵀ E U_q`, of one row after the other.
+    /// Triples `[p, q, t]`: block t loses `U_pᵀ E U_q`; of one row after the other.
     updates: Vec<[u32; 3]>,
     /// `[rows + 1]`.
     starts: Vec<usize>,
@@ -39,7 +39,8 @@ impl<const D: usize> Incomplete<D> {
         Incomplete { pivots: zeros(rows), beyond: zeros(pattern.columns.len()), updates, starts }
     }
 
-    /// Of A, blocks of the diagonal first; false where it has none even with a hundred times its diagonal.
+    /// Factorises A, given by its diagonal blocks first; false if it has no factor even with a hundred times its
+    /// diagonal.
     pub fn refill(&mut self, pattern: &Pattern, blocks: &[Block<D>]) -> bool {
         SHIFTS.iter().any(|shift| self.factorize(pattern, blocks, 1.0 + shift))
     }
@@ -53,7 +54,7 @@ impl<const D: usize> Incomplete<D> {
         for i in 0..pattern.rows() {
             let Some(inverse) = inverse(&self.pivots[i]) else { return false };
             self.pivots[i] = inverse;
-            // Of the updates of a row those with p come before those with the next: their U_p is there.
+            // Of the updates of a row those with p come before those with the next one: their U_p is complete.
             let mut updates = self.updates[self.starts[i]..self.starts[i + 1]].iter().peekable();
             for p in pattern.starts[i]..pattern.starts[i + 1] {
                 let whole = self.beyond[p];
@@ -83,7 +84,7 @@ impl<const D: usize> Incomplete<D> {
         for i in (0..pattern.rows()).rev() {
             let mut y = z[i];
             let at = pattern.starts[i]..pattern.starts[i + 1];
-            // The nearest row last: it has only just been found.
+            // The nearest row last: it has just been computed.
             for (block, &j) in self.beyond[at.clone()].iter().zip(&pattern.columns[at]).rev() {
                 let part = times(block, &z[j as usize]);
                 (0..D).for_each(|k| y[k] -= part[k]);
@@ -93,13 +94,13 @@ impl<const D: usize> Incomplete<D> {
     }
 }
 
-/// By Cholesky's factor; `None` where the block is not positive definite.
+/// The inverse by a Cholesky factor; `None` if the block is not positive definite.
 #[inline(always)]
 fn inverse<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
     let (mut l, mut inverse) = ([[0.0; D]; D], [[0.0; D]; D]);
     for j in 0..D {
         let pivot = a[j][j] - (0..j).map(|k| l[j][k] * l[j][k]).sum::<f64>();
-        // What is left of it is rounding.
+        // What remains of it is a rounding error.
         if !(pivot > 1e-14 * a[j][j] && pivot.is_finite()) {
             return None;
         }

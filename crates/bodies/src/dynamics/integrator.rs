@@ -1,22 +1,31 @@
-//! Methods that take a motion from one time to the next.
+//! Time integration methods.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use crate::error::{Error, Result};
 
-/// How a step is made. The implicit ones solve `M a + C v + F(x) = f` at its end, with v and a that are linear in the way made:
-/// `v = c₁ (Δ − ẑ)`, `a = c₂ (Δ − ŷ)`.
+/// How a step is made. With Δ = x − x_n the displacement of the step and h its length, the implicit methods solve
+/// `M a + C v + F(x) = f` at its end, with v and a linear in Δ: `v = c₁ (Δ − ẑ)`, `a = c₂ (Δ − ŷ)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Integrator {
-    /// `v = Δ/h`, `a = (v − v_n)/h`. First order; stable with any step, and damps what the step is too long for: without forces
-    /// energy never grows. With one iteration the linearised form of Baraff and Witkin (SIGGRAPH 1998).
+    /// `v = Δ/h`, `a = (v − v_n)/h`. First order. Stable with any step; it damps motions that the step does not
+    /// resolve, and without forces the energy never grows. With one iteration it is the linearised form of Baraff and
+    /// Witkin (SIGGRAPH 1998).
     #[default]
     ImplicitEuler,
-    /// `v = (3x − 4x_n + x_{n−1})/2h`, `a = (3v − 4v_n + v_{n−1})/2h`, the first step by implicit Euler. Second order; damps fast
-    /// vibrations.
+    /// `v = (3x − 4x_n + x_{n−1})/2h`, `a = (3v − 4v_n + v_{n−1})/2h`, with a first step by implicit Euler. Second
+    /// order; damps fast vibrations.
     Bdf2,
-    /// `Δ = h v_n + h² ((½ − β) a_n + β a)`, `v = v_n + h ((1 − γ) a_n + γ a)` (Newmark 1959). With γ = ½ of second order and without
-    /// damping of its own; on linear models stable with any step if `2β ≥ γ ≥ ½`.
-    Newmark { beta: f64, gamma: f64 },
-    /// `v = v_n + h M⁻¹ (f − C v_n − F(x_n))`, `x = x_n + h v`. First order, explicit, no drift of the energy; the step has a limit.
+    /// `Δ = h v_n + h² ((½ − β) a_n + β a)`, `v = v_n + h ((1 − γ) a_n + γ a)` (Newmark 1959). With γ = ½ it has second
+    /// order and no numerical damping. On linear models it is stable with any step if `2β ≥ γ ≥ ½`.
+    Newmark {
+        /// β, above 0.
+        beta: f64,
+        /// γ, at least ½.
+        gamma: f64,
+    },
+    /// `v = v_n + h M⁻¹ (f − C v_n − F(x_n))`, `x = x_n + h v`. First order, explicit, without drift of the energy; the
+    /// step is limited.
     SymplecticEuler,
 }
 
@@ -28,7 +37,7 @@ crate::named!(Integrator {
 });
 
 impl Integrator {
-    /// The average acceleration, β = 1/4 and γ = 1/2: of a linear model it keeps the energy.
+    /// The average acceleration method, β = 1/4 and γ = 1/2, which conserves the energy of a linear model.
     pub fn newmark() -> Integrator {
         Integrator::Newmark { beta: 0.25, gamma: 0.5 }
     }
@@ -42,7 +51,7 @@ impl Integrator {
         }
     }
 
-    /// `[c₁, c₂]` with the step h, s; `first` for a step without one before it.
+    /// `[c₁, c₂]` for the step h in s; `first` for a step without a previous one.
     pub(super) fn coefficients(self, h: f64, first: bool) -> [f64; 2] {
         match self {
             Integrator::Bdf2 if !first => [1.5 / h, 2.25 / (h * h)],
@@ -51,7 +60,7 @@ impl Integrator {
         }
     }
 
-    /// ẑ and ŷ of one degree of freedom.
+    /// The ẑ and ŷ of one degree of freedom.
     pub(super) fn predict(self, h: f64, first: bool, past: Past) -> [f64; 2] {
         let Past { v, a, way, before } = past;
         match self {
@@ -67,13 +76,13 @@ impl Integrator {
         }
     }
 
-    /// Whether a step asks for the acceleration before it.
+    /// Whether a step requires the acceleration before it.
     pub(super) fn needs_acceleration(self) -> bool {
         matches!(self, Integrator::Newmark { .. })
     }
 }
 
-/// What a method knows of one degree of freedom.
+/// The history of one degree of freedom that a method uses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Past {
     pub v: f64,

@@ -1,60 +1,64 @@
-//! Energy and momentum of a motion, and where they came from.
+//! Energy and momentum of a motion, and the balance of energy.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use crate::scalar::Sum;
 
-/// What is conserved, or is not, at one time.
+/// Energy and momentum at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Account {
-    /// s.
+    /// The time, s.
     pub time: f64,
-    /// `½ vᵀ M v`, J.
+    /// The kinetic energy `½ vᵀ M v`, J.
     pub kinetic: f64,
-    /// U(x), J; NaN where the model has none.
+    /// The elastic energy U(x), J; NaN if the model has none.
     pub elastic: f64,
-    /// `Σ m v`, kg m/s.
+    /// The momentum `Σ m v`, `[dimension]`, kg m/s.
     pub momentum: Vec<f64>,
-    /// `Σ m (x × v)` about the origin, kg m²/s: about z in the plane, about x, y, z in space.
+    /// The angular momentum `Σ m (x × v)` about the origin, kg m²/s: about z in the plane, about x, y, z in space.
     pub angular_momentum: Vec<f64>,
-    /// Where `Options::account` asks for it.
+    /// The balance of energy, if [`Options::account`](super::Options::account) is set.
     pub balance: Option<Balance>,
 }
 
 impl Account {
-    /// Kinetic and elastic energy, J.
+    /// The sum of kinetic and elastic energy, J.
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic
     }
 }
 
-/// Sums over the steps so far, by the trapezoidal rule.
+/// The balance of energy over the steps so far, by the trapezoidal rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Of loads, gravity and moved supports, J.
+    /// The work of loads, gravity and moved supports, J.
     pub work: f64,
-    /// By damping forces, J.
+    /// The energy that damping forces have dissipated, J.
     pub dissipated: f64,
-    /// Energy that the method has gained or lost, `E − E(0) − work + dissipated`, by the largest of these so far.
+    /// The energy that the method has gained or lost, `E − E(0) − work + dissipated`, relative to the largest of these
+    /// energies so far.
     pub drift: f64,
 }
 
-/// The sums as they grow, over all steps and degrees of freedom.
+/// The running sums, over all steps and degrees of freedom.
 #[derive(Debug)]
 pub(super) struct Ledger {
     pub work: Sum,
     pub dissipated: Sum,
-    /// Total energy at the start, J.
+    /// The total energy at the start, J.
     pub start: f64,
-    /// Largest energy met, J.
+    /// The largest energy so far, J.
     pub largest: f64,
-    /// Forces whose work counts, at the last time: loads on free degrees of freedom; on held ones what moves the model there.
+    /// The forces whose work counts, at the last time: loads on free degrees of freedom, and the forces that move held
+    /// ones.
     acting: Vec<f64>,
     /// `C v` at the last time.
     viscous: Vec<f64>,
-    /// Of the held degrees of freedom at the last time.
+    /// The kinetic energy of the held degrees of freedom at the last time.
     kinetic: f64,
 }
 
-/// A state's forces, `[points · dimension]`, N.
+/// The forces of a state, `[points · dimension]`, N.
 pub(super) struct Forces<'a> {
     pub external: &'a [f64],
     pub elastic: &'a [f64],
@@ -75,7 +79,8 @@ impl Ledger {
         }
     }
 
-    /// Adds a step `way`, at whose end the forces are these and the held degrees of freedom have this kinetic energy.
+    /// Adds a step with the displacement `way`, at whose end the forces are these and the held degrees of freedom have
+    /// this kinetic energy.
     pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64) {
         self.work.add(kinetic - self.kinetic);
         self.kinetic = kinetic;
@@ -93,12 +98,12 @@ fn acting(forces: &Forces, held: &[bool], dof: usize) -> f64 {
     if held[dof] { forces.elastic[dof] + forces.viscous[dof] } else { forces.external[dof] }
 }
 
-/// `Σ m v` of points of `d` coordinates; `mass` of the degrees of freedom.
+/// `Σ m v` of points with `d` coordinates; `mass` is given by degree of freedom.
 pub(super) fn momentum(mass: &[f64], v: &[f64], d: usize) -> Vec<f64> {
     (0..d).map(|k| mass.chunks_exact(d).zip(v.chunks_exact(d)).map(|(m, v)| m[k] * v[k]).sum()).collect()
 }
 
-/// `Σ m (x × v)`.
+/// `Σ m (x × v)` of points with `d` coordinates.
 pub(super) fn angular_momentum(mass: &[f64], x: &[f64], v: &[f64], d: usize) -> Vec<f64> {
     let planes: &[[usize; 2]] = match d {
         1 => &[],

@@ -1,19 +1,22 @@
-//! How fast a model can vibrate, and how long an explicit step may be.
+//! The highest frequency of a model, and the longest step of an explicit method.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use crate::solve::generator;
 use crate::springs::{dot, norm};
 use nalgebra::DMatrix;
 
-/// Steps of Lanczos' method.
+/// The number of steps of the Lanczos method.
 const STEPS: usize = 120;
-/// The largest eigenvalue is found once its residual is below this share of it.
+/// The largest eigenvalue is accepted if its residual is below this share of it.
 const FOUND: f64 = 1e-3;
 
-/// An upper bound of the largest ω² of `K φ = ω² M φ` on the free degrees of freedom, rad²/s²; zero where nothing resists.
+/// An upper bound of the largest ω² of `K φ = ω² M φ` on the free degrees of freedom, rad²/s²; zero if nothing resists.
 ///
-/// `entries` are those of the lower triangle of K, `masses` and `held` of all degrees of freedom. Lanczos' method on
-/// `M^(−½) K M^(−½)` gives θ and a residual r of which an eigenvalue is no further than r; `θ + r` is the bound once r ≤ θ/1000, but
-/// never more than that of Gershgorin, `max_i Σ_j |K_ij|/√(m_i m_j)`, which holds always. The same input gives the same bits.
+/// `entries` are those of the lower triangle of K; `masses` and `held` are given for all degrees of freedom. The
+/// Lanczos method on `M^(−½) K M^(−½)` gives θ and a residual r; an eigenvalue is within r of θ. The bound is `θ + r`
+/// once r ≤ θ/1000, but never more than Gershgorin's bound `max_i Σ_j |K_ij|/√(m_i m_j)`, which always holds. The
+/// result is reproducible to the last bit.
 pub fn largest_square(
     entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
     masses: &[f64],
@@ -25,7 +28,7 @@ pub fn largest_square(
     let scaled = entries
         .filter(|(row, column, _)| !held[*row] && !held[*column])
         .map(|(row, column, value)| (place[row], place[column], value / (masses[row] * masses[column]).sqrt()));
-    // Entries of one place add up before their size is taken.
+    // Entries at one position are added before their absolute value is used.
     let mut sums: Vec<(usize, usize, f64)> = scaled.collect();
     sums.sort_unstable_by_key(|(row, column, _)| (*row, *column));
     sums.dedup_by(|next, kept| {
@@ -53,7 +56,7 @@ pub fn largest_square(
     lanczos(n, apply).map_or(gershgorin, |bound| bound.min(gershgorin))
 }
 
-/// `θ + r`, or `None` where r stays large.
+/// `θ + r`, or `None` if r stays large.
 fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
     let mut random = generator();
     let mut next: Vec<f64> = (0..n).map(|_| random()).collect();
@@ -95,10 +98,11 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
     None
 }
 
-/// The longest step of symplectic Euler, s: `4/(γ + √(γ² + 4ω²))`, `ω²` the largest eigenvalue of `M⁻¹K` and γ of `M⁻¹C`, 1/s.
+/// The longest step of symplectic Euler, s: `4/(γ + √(γ² + 4ω²))`, with `ω²` the largest eigenvalue of `M⁻¹K` and γ
+/// that of `M⁻¹C`, 1/s.
 ///
-/// Where `4M − 2hC − h²K` is positive definite every root of `M(z − 1)² + hC(z − 1) + h²K z` is inside the unit circle (Jury). Without
-/// damping it is `2/ω`, with a damping ratio of all modes `2(√(1 + ζ²) − ζ)/ω`.
+/// If `4M − 2hC − h²K` is positive definite, every root of `M(z − 1)² + hC(z − 1) + h²K z` is inside the unit circle
+/// (Jury). Without damping the limit is `2/ω`, with a damping ratio ζ of all modes `2(√(1 + ζ²) − ζ)/ω`.
 pub(super) fn longest_step(square: f64, damping: f64) -> f64 {
     4.0 / (damping + (damping * damping + 4.0 * square).sqrt())
 }

@@ -1,4 +1,9 @@
-//! Motion of a model whose mass is lumped at its points: `M ẍ + C ẋ + F(x) = f(t)`, some degrees of freedom prescribed.
+//! Motion of a model with masses lumped at its points: `M ẍ + C ẋ + F(x) = f(t)`, with some degrees of freedom
+//! prescribed.
+//!
+//! [`Simulation`] advances a [`Motion`] step by step with an [`Integrator`].
+//!
+//! Theory: page *Dynamics* of the book.
 
 mod blocks;
 mod damping;

@@ -1,4 +1,4 @@
-//! What moves, and how it is followed.
+//! The definition of a motion, and the options by which it is computed.
 
 use super::damping::Damping;
 use super::drive::Drive;
@@ -8,22 +8,25 @@ use crate::error::{Error, Result};
 use crate::model::{Elastic, Support};
 use std::fmt;
 
-/// A model with masses, supports and what drives it.
+/// A model with masses, supports, damping and loads.
 #[derive(Clone)]
 pub struct Motion<'a> {
+    /// The model: finite elements or a network.
     pub model: &'a dyn Elastic,
-    /// At rest, `[points × dimension]`, m.
+    /// The positions at rest, `[points × dimension]`, m.
     pub points: &'a [f64],
-    /// `[points]`, kg.
+    /// The masses, `[points]`, kg.
     pub masses: &'a [f64],
-    /// Its displacements hold at all times, but for those that are driven.
+    /// The support. Its displacements hold at all times, except those of degrees of freedom that `drive` prescribes.
     pub support: Support,
+    /// The damping.
     pub damping: Damping,
+    /// Forces and prescribed displacements over time.
     pub drive: Drive,
 }
 
 impl<'a> Motion<'a> {
-    /// A free model without damping that nothing drives.
+    /// A free model without damping, loads or supports.
     pub fn free(model: &'a dyn Elastic, points: &'a [f64], masses: &'a [f64]) -> Motion<'a> {
         let support = Support { prescribed: vec![None; points.len()] };
         Motion { model, points, masses, support, damping: Damping::default(), drive: Drive::default() }
@@ -33,7 +36,7 @@ impl<'a> Motion<'a> {
         self.points.len() / self.masses.len().max(1)
     }
 
-    /// The degrees of freedom whose motion is prescribed.
+    /// For each degree of freedom whether its motion is prescribed.
     pub(super) fn held(&self) -> Vec<bool> {
         let mut held: Vec<bool> = self.support.prescribed.iter().map(Option::is_some).collect();
         self.drive.displacements.iter().for_each(|(dof, _)| held[*dof] = true);
@@ -77,21 +80,25 @@ impl fmt::Debug for Motion<'_> {
     }
 }
 
-/// How a motion is followed.
+/// How a motion is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// s.
+    /// The time step, s.
     pub step: f64,
+    /// The integration method.
     pub integrator: Integrator,
-    /// Newton iterations in an implicit step at most; 1 is the linearised method, whose residual nobody looks at.
+    /// The largest number of Newton iterations in an implicit step. With 1 the step is linearised, and its residual is
+    /// not computed.
     pub iterations: usize,
-    /// Largest residual of an implicit step, relative to the forces that act.
+    /// The largest residual of an implicit step, relative to the forces that act.
     pub tolerance: f64,
-    /// `F(x) ≈ F₀ + K₀ u`, springs and dampers as they stand at rest: the same matrix at all steps.
+    /// Whether the model is linear, `F(x) ≈ F₀ + K₀ u`, with springs and dampers as they are at rest. Then all steps
+    /// have the same matrix.
     pub linear: bool,
-    /// Of implicit steps.
+    /// The solver of the linear equations of implicit steps.
     pub solver: Solver,
-    /// Whether work and dissipation are added up; costs the forces at the end of a step where they are not known anyway.
+    /// Whether work and dissipation are summed; this costs the forces at the end of a step if they are not computed
+    /// anyway.
     pub account: bool,
 }
 

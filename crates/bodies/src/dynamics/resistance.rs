@@ -1,4 +1,4 @@
-//! What a model in motion meets: elastic forces, damping and inertia.
+//! The elastic forces, damping and inertia of a model in motion.
 
 use super::damping::Damping;
 use super::equations::Equations;
@@ -12,16 +12,16 @@ pub(super) struct Resistance<'a> {
     model: &'a dyn Elastic,
     points: &'a [f64],
     pub rest: Rest,
-    /// Whether `F₀ + K₀ u` stands for the model.
+    /// Whether the model is replaced by `F₀ + K₀ u`.
     linear: bool,
     damping: Damping,
-    /// Of the dampers, where they were last directed.
+    /// The gradients of the dampers, where they were last computed.
     gradients: Vec<f64>,
     damper_entries: Vec<f64>,
-    /// Of each degree of freedom, kg.
+    /// The mass of each degree of freedom, kg.
     pub mass: Vec<f64>,
     pub held: Vec<bool>,
-    /// Largest coordinate, m.
+    /// The largest coordinate, m.
     pub extent: f64,
     x: Vec<f64>,
 }
@@ -46,7 +46,8 @@ impl<'a> Resistance<'a> {
         Ok(resistance)
     }
 
-    /// Turns the dampers along the gradients at the displacements u. In a linear model they stay as at rest, unless `anyway`.
+    /// Turns the dampers along the gradients at the displacements u. In a linear model they stay as at rest, unless
+    /// `anyway` is set.
     pub fn direct(&mut self, u: &[f64], anyway: bool) {
         self.place(u);
         if let Some(dampers) = self.damping.dampers.as_ref().filter(|_| anyway || !self.linear) {
@@ -63,7 +64,7 @@ impl<'a> Resistance<'a> {
         self.x.iter_mut().zip(self.points).zip(u).for_each(|((x, p), u)| *x = p + u);
     }
 
-    /// The derivative of the energy at the displacements u, N; false where there is none.
+    /// The gradient of the energy at the displacements u, N; false if there is none.
     pub fn forces(&mut self, u: &[f64], force: &mut [f64]) -> bool {
         if self.linear {
             return self.rest.refill(u, force).is_finite();
@@ -72,7 +73,8 @@ impl<'a> Resistance<'a> {
         self.model.forces(&self.x, force) && force.iter().sum::<f64>().is_finite()
     }
 
-    /// The same with the energy, J, and the values of the tangent's entries, or of one that is positive semidefinite.
+    /// The same with the energy, J, and the values of the entries of the tangent, or of a nearby positive semidefinite
+    /// one if `definite`.
     pub fn refill(&mut self, u: &[f64], force: &mut [f64], tangent: &mut [f64], definite: bool) -> Option<f64> {
         self.place(u);
         let energy = match definite {
@@ -103,7 +105,7 @@ impl<'a> Resistance<'a> {
         }
     }
 
-    /// Where the entries of K and then those of the dampers stand.
+    /// The positions of the entries of K and then of those of the dampers.
     pub fn places(&self) -> Vec<(usize, usize)> {
         let dampers = self.damping.dampers.iter().flat_map(|dampers| dampers.places());
         self.rest.entries.iter().map(|e| (e.row.max(e.col), e.row.min(e.col))).chain(dampers).collect()

@@ -1,4 +1,4 @@
-//! A model linearised where it rests.
+//! A model linearised at rest.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Elastic, Entries};
@@ -7,18 +7,20 @@ use faer::sparse::{SparseColMat, Triplet};
 /// `F ≈ F₀ + K₀ u`.
 #[derive(Debug)]
 pub(super) struct Rest {
-    /// J.
+    /// The energy at rest, J.
     pub energy: f64,
-    /// F₀, N: of springs that pull at rest.
+    /// F₀, N: the forces of springs that pull at rest.
     pub force: Vec<f64>,
     pub entries: Entries,
-    /// Of the entries.
+    /// The values of the entries.
     pub values: Vec<f64>,
     /// K₀ on all degrees of freedom, both triangles.
     matrix: SparseColMat<usize, f64>,
 }
 
 impl Rest {
+    /// Linearises the model at `points`.
+    ///
     /// # Errors
     /// The model has no response at rest, or K₀ does not fit into memory.
     pub fn new(model: &dyn Elastic, points: &[f64]) -> Result<Rest> {
@@ -47,7 +49,7 @@ impl Rest {
         }
     }
 
-    /// `F₀ + K₀ u` into `force`; the energy `U₀ + F₀·u + ½ uᵀ K₀ u`.
+    /// Writes `F₀ + K₀ u` into `force` and returns the energy `U₀ + F₀·u + ½ uᵀ K₀ u`.
     pub fn refill(&self, u: &[f64], force: &mut [f64]) -> f64 {
         force.copy_from_slice(&self.force);
         self.add_product(1.0, u, force);

@@ -1,67 +1,74 @@
 //! The end of an implicit step: Newton's method on `M a + C v + F(x) = f`.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use super::equations::{End, Equations};
 use super::resistance::Resistance;
 
-/// A Newton step is not halved more often.
+/// The largest number of halvings of a Newton step.
 const HALVINGS: usize = 20;
-/// Share of the slope by which the potential must fall along a Newton step (Armijo 1966).
+/// The share of the slope by which the potential must decrease along a Newton step (Armijo 1966).
 const DESCENT: f64 = 1e-4;
-/// A Newton step below this share of the model's coordinates is their rounding: nothing is left to be found.
+/// A Newton step below this share of the model's coordinates is within their rounding: no better solution exists.
 const ROUNDING: f64 = 1e-14;
 
 /// How a step ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// The equations hold to the tolerance; a step of an explicit method or a linear model always ends so.
+    /// The equations hold to the tolerance. Steps of explicit methods always end so, and so do those of linear models.
     Converged,
-    /// One iteration was allowed and made.
+    /// One iteration was allowed, and made.
     Linearized,
-    /// No more iterations, of Newton's method or of conjugate gradients where one solution is all, or no Newton step helped. The motion goes on from the best that was found.
+    /// The iterations (of Newton's method, or of conjugate gradients if the step is a single solution) did not suffice,
+    /// or no Newton step decreased the potential. The motion continues from the best state that was found.
     Stalled,
-    /// The model has no response where the step leads, as with a cell turned inside out. The state, the time among it, is as before.
+    /// The model has no response at the end of the step, for example because a cell is inverted. The state and its time
+    /// are unchanged.
     NoResponse,
 }
 
-/// What is to be said of one step.
+/// The outcome of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
+    /// How the step ended.
     pub outcome: Outcome,
+    /// The number of Newton iterations.
     pub iterations: usize,
-    /// What is left of the equations, relative to the forces that act; `None` where nobody looked: of linearised steps and linear
-    /// models.
+    /// The residual of the equations, relative to the forces that act; `None` if it was not computed: for linearised
+    /// steps and linear models.
     pub residual: Option<f64>,
-    /// Iterations whose matrix was not positive definite and had to be modified; a linearised step is made with a definite one at once.
+    /// The number of iterations whose matrix was not positive definite and was modified. A linearised step uses a
+    /// definite matrix from the start.
     pub modified: usize,
-    /// Of conjugate gradients, in all.
+    /// The total number of iterations of conjugate gradients.
     pub solver_iterations: usize,
 }
 
-/// The unknown of a step, Δ = x − x_n, and what is known at its end. All `[points · dimension]`.
+/// The unknown of a step, Δ = x − x_n, and the data at its end; all `[points · dimension]`.
 #[derive(Debug)]
 pub(super) struct Target {
     /// `v = c₁ (Δ − ẑ)`, `a = c₂ (Δ − ŷ)` of the free degrees of freedom.
     pub coefficients: [f64; 2],
     pub z: Vec<f64>,
     pub y: Vec<f64>,
-    /// m; that of the held degrees of freedom is known.
+    /// Δ, m; for held degrees of freedom it is known.
     pub delta: Vec<f64>,
-    /// m/s; the same.
+    /// The velocity, m/s; for held degrees of freedom it is known.
     pub velocity: Vec<f64>,
-    /// f at the end, N.
+    /// f at the end of the step, N.
     pub external: Vec<f64>,
 }
 
-/// What is asked for beside the forces.
+/// What is computed besides the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Tangent {
     None,
     Exact,
-    /// Positive semidefinite, if the model has it.
+    /// Positive semidefinite, if the model provides it.
     Definite,
 }
 
-/// What stands in the equations at one Δ.
+/// The terms of the equations at one Δ.
 #[derive(Debug)]
 pub(super) struct Trial {
     /// ∂U/∂x, N.
@@ -69,11 +76,11 @@ pub(super) struct Trial {
     pub tangent: Vec<f64>,
     /// `C v`, N.
     viscous: Vec<f64>,
-    /// `f − F − C v − M a` on the free degrees of freedom, in the equations' order.
+    /// `f − F − C v − M a` on the free degrees of freedom, in the order of the equations.
     residual: Vec<f64>,
-    /// `U − f·Δ + c₂/2 (Δ − ŷ)ᵀM(Δ − ŷ) + vᵀCv/2c₁`, of which the residual is the descent; J.
+    /// `U − f·Δ + c₂/2 (Δ − ŷ)ᵀM(Δ − ŷ) + vᵀCv/2c₁`, J; the residual is its negative gradient.
     potential: f64,
-    /// ‖residual‖ by the forces that act.
+    /// The norm of the residual, relative to the forces that act.
     size: f64,
     u: Vec<f64>,
     step: Vec<f64>,
@@ -87,7 +94,7 @@ impl Trial {
         Trial { force, tangent: vec![0.0; entries], viscous, residual, potential: 0.0, size: 0.0, u, step, tried }
     }
 
-    /// The equations at the Δ of `target`, from displacements `start`; false where the model has no response.
+    /// Evaluates the equations at the Δ of `target`, from displacements `start`; false if the model has no response.
     fn evaluate(
         &mut self,
         resistance: &mut Resistance,
@@ -122,8 +129,9 @@ impl Trial {
         self.potential.is_finite() && self.size.is_finite()
     }
 
-    /// The Newton step into `step`, with a definite tangent where the exact one makes the matrix indefinite, and with as little as is
-    /// needed added to the diagonal where that is not known. `None` where ten times its size is not enough.
+    /// Computes the Newton step, with a definite tangent if the exact one makes the matrix indefinite, or with the
+    /// smallest sufficient addition to the diagonal if that is not available. `None` if ten times the diagonal is not
+    /// enough.
     fn direction(
         &mut self,
         resistance: &mut Resistance,
@@ -133,7 +141,7 @@ impl Trial {
         is_only: bool,
     ) -> Option<End> {
         resistance.assemble(target.coefficients, &self.tangent, equations);
-        // Where nothing comes after it a solution may begin anywhere; the iterates from zero on all descend.
+        // If no line search follows, a solution may start anywhere; the iterates from zero are all descent directions.
         let guess = is_only.then_some(&target.y[..]);
         let mut end = self.solve(equations, guess, made);
         if end == End::Indefinite {
@@ -162,7 +170,7 @@ impl Trial {
         solved.end
     }
 
-    /// A linear model: one solution with the matrix that is there.
+    /// A linear model: one solution with the prepared matrix.
     pub fn solve_linear(
         &mut self,
         resistance: &mut Resistance,
@@ -184,8 +192,8 @@ impl Trial {
         step
     }
 
-    /// Newton's method with a line search on the potential, from what Δ is: it falls with every iteration, so that implicit Euler
-    /// loses energy even where the iterations do not suffice.
+    /// Newton's method with a line search on the potential, starting at Δ. The potential decreases with every
+    /// iteration, so that implicit Euler loses energy even if the iterations do not suffice.
     pub fn settle(
         &mut self,
         resistance: &mut Resistance,
@@ -197,7 +205,7 @@ impl Trial {
     ) -> Step {
         let mut made =
             Step { outcome: Outcome::Stalled, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
-        // A single step has no second chance: it is as exact to the first order with either tangent.
+        // A single step cannot be corrected: either tangent is accurate to first order.
         let tangent = if iterations == 1 { Tangent::Definite } else { Tangent::Exact };
         if !self.evaluate(resistance, target, start, equations.order(), tangent) {
             return Step { outcome: Outcome::NoResponse, ..made };
@@ -229,7 +237,7 @@ impl Trial {
                 let is_known = self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
                 let falls = self.potential <= potential - DESCENT * length * slope;
                 length /= 2.0;
-                // Next to the end the rounding of the potential hides its fall.
+                // Near the solution the rounding of the potential hides its decrease.
                 is_known && (falls || is_rounding || self.size < 0.5 * size)
             });
             if !accepted {

@@ -1,4 +1,6 @@
-//! A motion step by step.
+//! A motion computed step by step.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use super::equations::Equations;
 use super::integrator::{Integrator, Past};
@@ -12,32 +14,32 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::model::displaced;
 use crate::solve::generator;
 
-/// Where a model is and how fast.
+/// Displacements and velocities of a model at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// s.
+    /// The time, s.
     pub time: f64,
-    /// From the places at rest, `[points · dimension]`, m.
+    /// The displacements from the positions at rest, `[points · dimension]`, m.
     pub displacement: Vec<f64>,
-    /// `[points · dimension]`, m/s.
+    /// The velocities, `[points · dimension]`, m/s.
     pub velocity: Vec<f64>,
 }
 
-/// The motion of a model from time zero on.
+/// The motion of a model from time zero.
 #[derive(Debug)]
 pub struct Simulation<'a> {
     motion: Motion<'a>,
     options: Options,
     resistance: Resistance<'a>,
-    /// Of implicit methods.
+    /// The equations of implicit methods.
     equations: Option<Box<dyn Equations>>,
-    /// The coefficients of the matrix that the equations of a linear model have.
+    /// The coefficients with which the matrix of a linear model was assembled.
     factored: [f64; 2],
     state: State,
     steps: usize,
-    /// m/s², of the free degrees of freedom where the method asks for it.
+    /// The accelerations of the free degrees of freedom, m/s², if the method requires them.
     acceleration: Vec<f64>,
-    /// The last step, m, and the velocity before it, m/s.
+    /// The displacement of the last step, m, and the velocity before it, m/s.
     way: Vec<f64>,
     before: Vec<f64>,
     target: Target,
@@ -49,12 +51,12 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Starts at rest.
+    /// A simulation that starts at rest.
     ///
     /// # Errors
-    /// A number is not what it must be, a point that may move has no mass, the model has no response at rest, the equations do not
-    /// fit into memory, or the step is too long: longer than [`Simulation::longest_step`] with symplectic Euler, or so long that a
-    /// linear model that releases energy has no implicit step.
+    /// A number is out of its range; a point that may move has no mass; the model has no response at rest; the
+    /// equations do not fit into memory; or the step is too long: longer than [`Simulation::longest_step`] with
+    /// symplectic Euler, or so long that a linear model that releases energy has no implicit step.
     pub fn new(motion: Motion<'a>, options: Options) -> Result<Simulation<'a>> {
         options.check()?;
         motion.check()?;
@@ -102,11 +104,11 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// Begins again at time zero with these displacements, m, and velocities, m/s, `[points · dimension]`; those of held degrees of
-    /// freedom are as prescribed.
+    /// Starts again at time zero with these displacements, m, and velocities, m/s, `[points · dimension]`; those of
+    /// held degrees of freedom are as prescribed.
     ///
     /// # Errors
-    /// A list has another length, or the model has no response there.
+    /// A list has a wrong length, or the model has no response there.
     pub fn start(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<()> {
         let dofs = self.motion.points.len();
         for (key, list) in [("displacement", displacement), ("velocity", velocity)] {
@@ -125,7 +127,7 @@ impl<'a> Simulation<'a> {
         let h = self.options.step;
         for (dof, curve) in &self.motion.drive.displacements {
             self.state.displacement[*dof] = curve.at(0.0);
-            // One-sided: what a curve is before time zero nobody has said.
+            // One-sided difference: a curve need not be defined before time zero.
             self.state.velocity[*dof] = (4.0 * curve.at(h / 2.0) - 3.0 * curve.at(0.0) - curve.at(h)) / h;
         }
         if !self.refresh() {
@@ -147,7 +149,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Loads, elastic and damping forces of the state; false where the model has none.
+    /// Computes loads, elastic and damping forces of the state; false if the model has none.
     fn refresh(&mut self) -> bool {
         self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
         self.resistance.direct(&self.state.displacement, false);
@@ -160,11 +162,11 @@ impl<'a> Simulation<'a> {
         Forces { external: &self.target.external, elastic: &self.trial.force, viscous: &self.viscous }
     }
 
-    /// Whether a linear model has steps. What its solver cannot tell, Cholesky's factor does, so that the answer does not depend on the
-    /// solver.
+    /// Whether a linear model has steps. What its solver cannot determine, a Cholesky factor does, so that the answer
+    /// does not depend on the solver.
     ///
     /// # Errors
-    /// The factor does not fit into memory, or the solver has no equations of a model that has steps.
+    /// The factor does not fit into memory, or the solver cannot solve the equations of a model that has steps.
     fn is_definite(&mut self, coefficients: [f64; 2]) -> Result<bool> {
         let is_prepared = self.factor(coefficients);
         let Some(equations) = &mut self.equations else { return Ok(true) };
@@ -185,7 +187,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Prepares the matrix of a linear model, unless that is done.
+    /// Prepares the matrix of a linear model, unless it is prepared already.
     fn factor(&mut self, coefficients: [f64; 2]) -> bool {
         let Some(equations) = self.equations.as_mut().filter(|_| self.factored != coefficients) else { return true };
         self.resistance.assemble(coefficients, &self.resistance.rest.values, equations.as_mut());
@@ -193,23 +195,24 @@ impl<'a> Simulation<'a> {
         equations.prepare()
     }
 
-    /// The longest stable step of symplectic Euler at rest, s: `4/(γ + √(γ² + 4ω²))` with the largest ω² of `M⁻¹K` and γ of `M⁻¹C`,
-    /// bounded from above. A model that stiffens as it moves needs shorter ones.
+    /// The longest stable step of symplectic Euler at rest, s: `4/(γ + √(γ² + 4ω²))`, with upper bounds of the largest
+    /// ω² of `M⁻¹K` and γ of `M⁻¹C`. A model that stiffens as it moves requires shorter steps.
     pub fn longest_step(&self) -> f64 {
         let [square, damping] = self.resistance.largest();
         longest_step(square, damping)
     }
 
+    /// The current state.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// `[points × dimension]`, m.
+    /// The current positions, `[points × dimension]`, m.
     pub fn positions(&self) -> Vec<f64> {
         displaced(self.motion.points, &self.state.displacement)
     }
 
-    /// Goes on by one step.
+    /// Advances by one step.
     pub fn step(&mut self) -> Step {
         let h = self.options.step;
         let time = (self.steps + 1) as f64 * h;
@@ -235,7 +238,7 @@ impl<'a> Simulation<'a> {
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         std::mem::swap(&mut self.way, &mut self.target.delta);
         self.state.velocity.copy_from_slice(&self.target.velocity);
-        // A driven point is where its curve is, to the last bit.
+        // A driven point is on its curve to the last bit.
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u += way);
         for (dof, curve) in &self.motion.drive.displacements {
             self.state.displacement[*dof] = curve.at(time);
@@ -248,7 +251,7 @@ impl<'a> Simulation<'a> {
         step
     }
 
-    /// Symplectic Euler's velocities and way.
+    /// The velocities and displacements of symplectic Euler.
     fn leap(&mut self) -> Step {
         let h = self.options.step;
         let Target { delta, velocity, external, .. } = &mut self.target;
@@ -260,7 +263,7 @@ impl<'a> Simulation<'a> {
         Step { outcome: Outcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
     }
 
-    /// Undoes an explicit step.
+    /// Restores the state before an explicit step.
     fn step_back(&mut self, step: Step) -> Step {
         self.steps -= 1;
         self.state.time = self.steps as f64 * self.options.step;
@@ -276,7 +279,7 @@ impl<'a> Simulation<'a> {
         let is_first = self.steps == 0;
         self.target.coefficients = integrator.coefficients(h, is_first);
         if linear {
-            // Later steps are stiffer than the first, which `new` has tried.
+            // Later steps are stiffer than the first one, which `new` has tried.
             self.factor(self.target.coefficients);
         }
         for dof in 0..self.state.velocity.len() {
@@ -288,7 +291,8 @@ impl<'a> Simulation<'a> {
         let equations = self.equations.as_mut().expect("only implicit methods settle").as_mut();
         let (start, Target { y, .. }) = (&self.state.displacement, &self.target);
         if self.resistance.has_dampers() && !linear {
-            // Of implicit Euler as they are, which is as exact as it is; of the others as they will be.
+            // For implicit Euler the dampers as they are, which has the accuracy of the method; for the others as they
+            // will be.
             let ahead: Vec<f64> = match integrator {
                 Integrator::ImplicitEuler => start.clone(),
                 _ => start.iter().zip(y).map(|(u, y)| u + y).collect(),
@@ -325,7 +329,7 @@ impl<'a> Simulation<'a> {
         self.ledger = Some(ledger);
     }
 
-    /// Of all degrees of freedom and of the held ones, J.
+    /// The kinetic energy of all degrees of freedom and of the held ones, J.
     fn kinetic(&self) -> (f64, f64) {
         let (mut all, mut held) = (0.0, 0.0);
         for (dof, v) in self.state.velocity.iter().enumerate() {
@@ -336,7 +340,7 @@ impl<'a> Simulation<'a> {
         (all, held)
     }
 
-    /// Energy and momentum now.
+    /// Energy and momentum of the current state.
     pub fn account(&mut self) -> Account {
         let d = self.motion.dimension();
         let (kinetic, _) = self.kinetic();

@@ -1,25 +1,30 @@
-//! The choice between the solvers of an implicit step's equations.
+//! The solvers of the linear equations of an implicit step.
 
 use super::equations::Equations;
 use super::factored::Factored;
 use super::gradients::Gradients;
 use crate::error::{Error, Result};
 
-/// How the linear equations of an implicit step are solved.
+/// The solver of the linear equations of an implicit step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Solver {
-    /// Cholesky's factor, to rounding. Its size and the time of a solution grow faster than the model, those of the factorisation
-    /// faster still, as `n log n` and `n^(3/2)` on membranes; a linear model is factored once.
+    /// A Cholesky factorisation, accurate to rounding. On membranes its size and the time of a solution grow as
+    /// `n log n`, and the time of the factorisation as `n^(3/2)`. A linear model is factorised once.
     #[default]
     Factor,
-    /// Conjugate gradients with an incomplete factor of blocks of one point, without fill, as far as
-    /// `‖b − A x‖ ≤ tolerance ‖b‖`. An iteration costs the same per spring in models of any size. How many there are depends on
-    /// `h² k/m`, whose square root is how many springs far a step reaches, or on the size of the model in springs if that is less.
-    /// A linear or linearised step starts from the way without acceleration.
-    ConjugateGradients { tolerance: f64 },
+    /// Conjugate gradients, preconditioned by an incomplete factor of blocks of one point without fill, until
+    /// `‖b − A x‖ ≤ tolerance ‖b‖`.
+    ///
+    /// The cost of an iteration per spring does not depend on the size of the model. The number of iterations grows
+    /// with the square root of `h² k/m`, which is the number of springs that a wave crosses in one step; the size of
+    /// the model, in springs, bounds it. A linear or linearised step starts from the displacement without acceleration.
+    ConjugateGradients {
+        /// The largest residual, relative to the right-hand side.
+        tolerance: f64,
+    },
 }
 
-/// The share of the right-hand side that conjugate gradients leave, unless another is given.
+/// The default tolerance of conjugate gradients.
 const TOLERANCE: f64 = 1e-8;
 
 crate::named!(Solver {
@@ -27,7 +32,7 @@ crate::named!(Solver {
     "conjugate-gradients" => ConjugateGradients { tolerance: TOLERANCE },
 });
 
-/// Conjugate gradients go on until so much of the right-hand side is left; below is rounding.
+/// The smallest tolerance of conjugate gradients; smaller residuals are rounding errors.
 pub const LEAST_TOLERANCE: f64 = 1e-15;
 
 impl Solver {
@@ -40,7 +45,8 @@ impl Solver {
         }
     }
 
-    /// For entries at these places of the lower triangle, of points with `dimension` coordinates; the diagonal is in it anyway.
+    /// The equations for entries at these positions of the lower triangle, of points with `dimension` coordinates; the
+    /// diagonal is always included.
     pub(super) fn equations(
         self,
         places: &[(usize, usize)],

@@ -1,6 +1,6 @@
 //! Affine maps of a reference cell.
 
-/// `ξ ↦ origin + Σ_k ξ_k edges_k`: where a reference cell stands in another or in the unit cube.
+/// The map `ξ ↦ origin + Σ_k ξ_k edges_k` of a reference cell into another one or into the unit cube.
 #[derive(Debug, Clone)]
 pub(super) struct Affine {
     pub origin: Vec<f64>,
@@ -16,7 +16,7 @@ impl Affine {
         x
     }
 
-    /// The map of a reference simplex to the simplex with these corners.
+    /// The map of a reference simplex onto the simplex with these corners.
     pub fn onto_simplex(corners: &[Vec<f64>]) -> Affine {
         let from_first = |corner: &Vec<f64>| corner.iter().zip(&corners[0]).map(|(x, o)| x - o).collect();
         Affine { origin: corners[0].clone(), edges: corners[1..].iter().map(from_first).collect() }

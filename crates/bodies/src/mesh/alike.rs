@@ -1,10 +1,10 @@
-//! Cells and sides that have the same points.
+//! Finds cells and sides that have the same points.
 
-/// Gathers items by the set of their points: those of one set come one after the other in the order of the items.
+/// Groups items by the set of their points; the items of a set keep their order.
 ///
 /// `points(item)` writes the points of an item in any order.
 pub(super) struct Alike<T> {
-    /// A mark of the set, the same for each order of its points.
+    /// A hash of the set, which does not depend on the order of its points, with the item.
     items: Vec<(u64, T)>,
 }
 
@@ -17,7 +17,7 @@ impl<T: Copy> Alike<T> {
             (set.iter().fold(0u64, |sum, &p| sum.wrapping_add(scattered(p as u64))), item)
         };
         let mut items: Vec<(u64, T)> = items.map(mark).collect();
-        // The order among items of one mark is kept.
+        // A stable sort keeps the order of items with the same hash.
         items.sort_by_key(|(mark, _)| *mark);
         Alike { items }
     }
@@ -30,7 +30,7 @@ impl<T: Copy> Alike<T> {
                 visit(&[*item]);
                 continue;
             }
-            // Different sets may have the same mark.
+            // Different sets may have the same hash.
             sets.clear();
             for (_, item) in run {
                 let mut own = Vec::new();
@@ -46,7 +46,7 @@ impl<T: Copy> Alike<T> {
     }
 }
 
-/// A number that shares no pattern with its neighbours' (Steele, Lea and Flood 2014, the finalizer of SplitMix64).
+/// A hash without patterns among neighbouring numbers (the finalizer of SplitMix64; Steele, Lea and Flood 2014).
 fn scattered(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -17,15 +17,15 @@ pub struct MeshArrays {
     pub dimension: usize,
     /// `[points × dimension]`, m.
     pub points: Vec<f64>,
-    /// Elements of one dimension, each with the nodes of its cells: `[cells × nodes]`, places in `points` from 0, in the order of the
+    /// Elements of one dimension, each with the nodes of its cells: `[cells × nodes]`, indices into `points` from 0, in the order of the
     /// element's nodes.
     pub blocks: Vec<(Arc<Element>, Vec<usize>)>,
-    /// Places in `points`. A group has the sides on the boundary and the cells all of whose nodes it has.
+    /// Indices into `points`. A group has the sides on the boundary and the cells all of whose nodes it has.
     pub groups: BTreeMap<String, Vec<usize>>,
 }
 
 impl MeshArrays {
-    /// The mesh, whose cells are proved as those of a file are. Its numbering has the places of its points in the arrays.
+    /// The mesh, whose cells are proved as those of a file are. Its numbering has the indices of its points in the arrays.
     ///
     /// # Errors
     /// A length, a place or a coordinate is wrong, the elements do not go together; a cell is tangled or flat, repeats another or is
@@ -63,7 +63,7 @@ impl MeshArrays {
         check_size(self.points.iter().copied())?;
         let count = self.points.len() / d;
         let outside = |list: &[usize]| list.iter().copied().find(|&p| p >= count);
-        let expected = || format!("places of the {count} points, from 0");
+        let expected = || format!("indices of the {count} points, from 0");
         let cells = self.blocks.first().map(|(element, _)| element.dimension());
         let cells = cells.ok_or_else(|| Error::expected("cells", "cells of an element", "none"))?;
         for (element, connectivity) in &self.blocks {

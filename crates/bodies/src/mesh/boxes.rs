@@ -1,4 +1,4 @@
-//! Rectangles and bricks filled with one element.
+//! Generates rectangles and bricks that are filled with one element.
 
 use super::affine::Affine;
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
@@ -10,31 +10,38 @@ use crate::range;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+/// The largest number of cells, see [`bound::CELLS`].
 const MOST_CELLS: usize = bound::CELLS as usize;
 
-/// A box of `cells` equal cells per direction, `size` m long, with its least corner at `origin` m.
+/// A box of `cells` equal cells per direction.
 ///
-/// A simplex divides each square or cube into d! simplices along its main diagonal (Kuhn 1960), a wedge into two, a
-/// pyramid into six around the centre. The groups are
-/// `xmin`, `xmax`, `ymin`, … for the faces and `body` for the cells.
+/// A simplex divides each square or cube into d! simplices along its main diagonal (Kuhn 1960), a wedge into two
+/// wedges, a pyramid into six pyramids around the centre. The groups of the mesh are `xmin`, `xmax`, `ymin`, … for the
+/// faces and `body` for the cells.
 #[derive(Debug, Clone)]
 pub struct BoxMesh {
+    /// The element of all cells.
     pub element: Arc<Element>,
+    /// The lengths of the sides, `[dimension]`, m.
     pub size: Vec<f64>,
+    /// The number of cells in each direction, `[dimension]`.
     pub cells: Vec<usize>,
+    /// The corner with the least coordinates, `[dimension]`, m.
     pub origin: Vec<f64>,
 }
 
 impl BoxMesh {
+    /// Generates the mesh.
+    ///
     /// # Errors
-    /// A list has not one entry per dimension, or a size or a number of cells is not positive.
+    /// A list does not have one entry per dimension, or a size or a number of cells is not positive or is too large.
     pub fn build(&self) -> Result<Mesh> {
         let d = self.element.dimension();
         self.check(d)?;
         let parts = parts(self.element.cell);
         let mut mesh = Mesh::of_points(d, Vec::new());
         let mut connectivity = Vec::new();
-        // Points of neighbouring cells meet; their place is told in 2⁻²⁰ of a cell.
+        // Points of neighbouring cells coincide; their positions are compared in units of 2⁻²⁰ of a cell.
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for cube in 0..self.cells.iter().product() {
             let mut rest = cube;
@@ -116,11 +123,11 @@ impl BoxMesh {
     }
 }
 
-/// Maps of reference cells that fill the unit cube; none for a cell that fills no box.
+/// The maps of reference cells that fill the unit cube; none for a cell that does not fill a box.
 fn parts(cell: Cell) -> Vec<Affine> {
     let d = cell.dimension();
     let unit = |k: usize, length: f64| (0..d).map(|i| if i == k { length } else { 0.0 }).collect::<Vec<_>>();
-    // The simplex 0, e_p, e_p + e_q, … for an order p, q, … of the directions.
+    // The simplices 0, e_p, e_p + e_q, … for each order p, q, … of the directions.
     let walk = |order: &&[usize]| {
         let mut corner = vec![0.0; d];
         let step = |&k: &usize| {
@@ -145,7 +152,7 @@ fn parts(cell: Cell) -> Vec<Affine> {
             };
             plane.iter().map(walk).map(raise).collect()
         }
-        // Each stands on a face, its apex in the centre.
+        // The base of each is a face of the cube, and its apex is the centre.
         Cell::Pyramid => {
             let stand = |k: usize, at: f64| {
                 let origin: Vec<f64> = (0..3).map(|i| if i == k { at } else { 0.5 }).collect();

@@ -1,4 +1,4 @@
-//! Round discs and domes of triangles.
+//! Generates round discs and domes of triangles.
 
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::places::Places;
@@ -9,41 +9,47 @@ use crate::range;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// The largest number of points, see [`bound::CELLS`].
 const MOST_POINTS: usize = bound::CELLS as usize;
 
-/// A disc of `radius` m about the origin, of linear triangles: a point in the middle and concentric rings of points around it,
-/// at equal distances, the last being the rim. With rings of `n_1 … n_R` points it has `N = 1 + Σ n_r` points,
-/// `T = 2 Σ n_r − n_R` triangles and `E = N + T − 1` edges (Euler), whatever the numbers.
+/// A disc about the origin, of linear triangles: a central point and concentric rings of points at equal distances, the
+/// last of which is the rim.
 ///
-/// With a `height` other than zero it is a dome in space, `z = height (1 − r²/radius²)`. The groups are `rim`, `middle` and
-/// `body`.
+/// With rings of `n_1 … n_R` points it has `N = 1 + Σ n_r` points, `T = 2 Σ n_r − n_R` triangles and `E = N + T − 1`
+/// edges (Euler), whatever the numbers are. With a `height` other than zero it is a dome in space,
+/// `z = height (1 − r²/radius²)`. The groups are `rim`, `middle` and `body`.
 #[derive(Debug, Clone)]
 pub struct DiscMesh {
+    /// The element of all cells, a linear triangle.
     pub element: Arc<Element>,
+    /// The radius, m.
     pub radius: f64,
+    /// The height of the dome, m; 0 for a plane disc.
     pub height: f64,
-    /// Points of each ring, from the innermost.
+    /// The number of points of each ring, from the innermost.
     pub rings: Vec<usize>,
 }
 
 impl DiscMesh {
-    /// Six points more in each ring than in the last: nearly equilateral triangles.
+    /// Rings that each have six points more than the previous one, which gives nearly equilateral triangles.
     pub fn even(rings: usize) -> Vec<usize> {
         (1..=rings).map(|r| 6 * r).collect()
     }
 
-    /// Rings of `points` points in all, the middle among them, and `rim` on the last: between them they grow as evenly as whole
-    /// numbers can, `n_r ≈ c r`. Then there are `2 points − 2 − rim` triangles.
+    /// Rings with `points` points in all, including the central one, and `rim` points on the last ring; the others grow
+    /// as evenly as whole numbers allow, `n_r ≈ c r`. The mesh has `2 points − 2 − rim` triangles.
     pub fn rings_of(points: usize, rings: usize, rim: usize) -> Vec<usize> {
         let inner = points.saturating_sub(1 + rim);
         let last = rings.saturating_sub(1);
-        // The points up to ring r.
+        // The number of points up to ring r.
         let up_to = |r: usize| (inner * r * (r + 1) + last * (last + 1) / 2) / (last * (last + 1)).max(1);
         (1..=last).map(|r| up_to(r) - up_to(r - 1)).chain([rim]).collect()
     }
 
+    /// Generates the mesh.
+    ///
     /// # Errors
-    /// The element is no linear triangle, a length is not positive or a ring has fewer than three points.
+    /// The element is not a linear triangle, a length is not positive, or a ring has fewer than three points.
     pub fn build(&self) -> Result<Mesh> {
         if self.element.cell != Cell::Triangle || self.element.nodes() != 3 {
             return Err(Error::expected("element", "a triangle of three nodes", &self.element.name));
@@ -90,7 +96,8 @@ impl DiscMesh {
         points
     }
 
-    /// A fan around the middle, then strips between neighbouring rings, in which the ring that is behind goes on.
+    /// A fan around the centre, then strips between neighbouring rings; in a strip the ring that is behind in angle
+    /// advances.
     fn triangles(&self) -> Vec<usize> {
         let first = self.rings[0];
         let mut triangles: Vec<usize> = (0..first).flat_map(|i| [0, 1 + i, 1 + (i + 1) % first]).collect();

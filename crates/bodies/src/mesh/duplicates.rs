@@ -1,4 +1,4 @@
-//! Cells that repeat another.
+//! Cells that repeat another cell.
 
 use super::alike::Alike;
 use super::mesh::{CellIndex, Mesh};
@@ -6,12 +6,14 @@ use crate::error::{Error, Result};
 use std::collections::HashMap;
 
 impl Mesh {
-    /// Refuses cells that have the points of an earlier one, in any order, or leaves them out: they would double stiffness and mass.
-    /// Points at the same place count as one point; `first` gives the first point of each place. The cell that is kept joins the groups
-    /// of the cells that are left out.
+    /// Refuses or removes cells that have the same points as an earlier cell, in any order: they would double stiffness
+    /// and mass.
+    ///
+    /// Points at the same position count as one point; `first` gives the first point at each position. The cell that is
+    /// kept joins the groups of the removed cells.
     ///
     /// # Errors
-    /// There are such cells, and they may not be left out.
+    /// There are such cells, and `skip` is not set.
     pub(super) fn settle_duplicates(&mut self, first: Option<&[usize]>, skip: bool) -> Result<()> {
         let points = |at: CellIndex, set: &mut Vec<usize>| {
             set.extend(self.cell_nodes(at).iter().map(|&p| first.map_or(p, |first| first[p])));

@@ -5,17 +5,17 @@ use super::mesh::{CellIndex, Mesh, SideIndex};
 use crate::springs::{distance, dot};
 use std::collections::HashMap;
 
-/// A height below this share of the lengths counts as zero.
+/// Heights below this share of the lengths count as zero.
 const FLAT: f64 = 1e-9;
 
 impl Mesh {
-    /// The cells that lie on the same side of what they share with a neighbour: the lesser part of each connected body where all
-    /// cells that share a side lie on both sides of it.
+    /// The cells that lie on the same side of a shared side as their neighbour. In each connected body these are the
+    /// smaller of the two sets within which all neighbours lie on opposite sides of what they share.
     ///
-    /// A cell may be numbered the other way round and lie where it should; then it is not among them.
+    /// A cell may be numbered in the opposite order and lie correctly; then it is not among them.
     pub(super) fn folded(&self) -> Vec<CellIndex> {
         let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
-        // Neighbours of each cell, and whether the two overlap.
+        // The neighbours of each cell, and whether the two overlap.
         let mut beside: HashMap<CellIndex, Vec<(CellIndex, bool)>> = HashMap::new();
         let mut any = false;
         Alike::of(self.side_indices(), points).each(points, |sides| {
@@ -35,7 +35,8 @@ impl Mesh {
             if part.contains_key(&start) {
                 continue;
             }
-            // Through sides with the cells on both sides of them one stays in a part; through the others one comes into the other part.
+            // A side with cells on both sides of it connects cells of the same set, any other side cells of different
+            // sets.
             let mut parts: [Vec<CellIndex>; 2] = Default::default();
             part.insert(start, false);
             let mut next = vec![start];

@@ -1,4 +1,4 @@
-//! Cells gathered by what they share, in the order in which each kind first occurs.
+//! Cells grouped by a key, in the order in which each key first occurs.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -7,7 +7,7 @@ use std::hash::Hash;
 pub(super) struct Gather<K> {
     lists: Vec<(K, Vec<usize>)>,
     places: HashMap<K, usize>,
-    /// Neighbours in a file mostly share the key.
+    /// The list used last: neighbours in a file usually have the same key.
     last: usize,
 }
 
@@ -16,7 +16,7 @@ impl<K: Clone + Eq + Hash> Gather<K> {
         Gather { lists: Vec::new(), places: HashMap::new(), last: 0 }
     }
 
-    /// The connectivity of `key`, to append to.
+    /// The connectivity of the cells with `key`, to which nodes can be appended.
     pub fn list(&mut self, key: &K) -> &mut Vec<usize> {
         if self.lists.get(self.last).is_none_or(|(last, _)| last != key) {
             self.last = self.places.get(key).copied().unwrap_or(self.lists.len());
@@ -28,7 +28,7 @@ impl<K: Clone + Eq + Hash> Gather<K> {
         &mut self.lists[self.last].1
     }
 
-    /// Appends a whole list, without a copy when it is the first of its key.
+    /// Appends a whole list, without a copy if it is the first of its key.
     pub fn append(&mut self, key: &K, mut nodes: Vec<usize>) {
         let list = self.list(key);
         if list.is_empty() {
@@ -38,7 +38,7 @@ impl<K: Clone + Eq + Hash> Gather<K> {
         }
     }
 
-    /// The keys that have cells.
+    /// The keys that have cells, with their connectivity.
     pub fn into_lists(self) -> impl Iterator<Item = (K, Vec<usize>)> {
         self.lists.into_iter().filter(|(_, nodes)| !nodes.is_empty())
     }

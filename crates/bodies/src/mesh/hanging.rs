@@ -1,4 +1,4 @@
-//! Points on sides of cells that do not have them.
+//! Hanging points: points on sides of cells to which they do not belong.
 
 use super::alike::Alike;
 use super::mesh::{CellIndex, Mesh, SideIndex};
@@ -7,26 +7,27 @@ use crate::element::{Cell, Element};
 use crate::springs::{distance, dot};
 use std::collections::{HashMap, HashSet};
 
-/// How far from a side a point may be that hangs on it, in parts of the side's extent.
+/// The largest distance of a hanging point from a side, relative to the extent of the side.
 const TOLERANCE: f64 = 1e-6;
-/// Of Newton's method for the nearest place of a curved side.
+/// Newton iterations for the nearest position of a curved side.
 const ITERATIONS: usize = 20;
 
-/// A side on the boundary, or a cell of a curve, which nothing should lie on but its own points.
+/// A side on the boundary, or a cell of a curve, on which only its own points should lie.
 struct Host<'a> {
     element: &'a Element,
     /// The shape of the side, and the map from its own coordinates to those of the cell.
     cell: Cell,
     origin: Vec<f64>,
     tangents: Vec<Vec<f64>>,
-    /// Nodes of the element, and the points that they are.
+    /// The nodes of the element, and their points.
     nodes: Vec<usize>,
     points: Vec<usize>,
 }
 
 impl Mesh {
-    /// Points on an edge or a face of a cell that does not have them, at any place of it; points at the place of one of its own do
-    /// not count. Only sides on the boundary are asked: no point lies on a side that two cells share, unless a cell is folded.
+    /// The number of points on an edge or a face of a cell that does not have them, anywhere on it. Points at the
+    /// position of one of its own do not count. Only sides on the boundary are tested: no point lies on a side that two
+    /// cells share, unless a cell is folded.
     pub(super) fn hanging(&self, places: &Places) -> usize {
         let hosts = self.hosts();
         let mut candidates: Vec<usize> = hosts.iter().flat_map(|host| host.points.iter().copied()).collect();
@@ -52,7 +53,7 @@ impl Mesh {
                 }
             };
             let count = (0..3).map(|k| (to[k] - from[k]) as f64 + 1.0).product::<f64>();
-            // A side much larger than most would pass more bins than there are points.
+            // A side much larger than most would cover more bins than there are points.
             if count > candidates.len() as f64 {
                 candidates.iter().for_each(|&p| test(p));
                 continue;
@@ -94,7 +95,7 @@ impl Mesh {
         hosts
     }
 
-    /// A box around a side. A curved one bulges beyond its nodes.
+    /// A box around a side; a curved side extends beyond its nodes.
     fn surroundings(&self, host: &Host) -> [[f64; 3]; 2] {
         let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
             host.points.iter().map(|&p| spatial(self.point(p))[k]).fold(start, pick)
@@ -105,7 +106,8 @@ impl Mesh {
         [low.map(|x| x - bulge), high.map(|x| x + bulge)]
     }
 
-    /// Whether the nearest place `x(s) = Σ_a N_a(s) x_a` of a side is within `reach` of the point and between the side's ends.
+    /// Whether the nearest position `x(s) = Σ_a N_a(s) x_a` of a side is within `reach` of the point and between the
+    /// ends of the side.
     fn lies_on(&self, point: usize, host: &Host, reach: f64) -> bool {
         let (d, goal) = (self.dimension, self.point(point));
         let mut s = host.cell.centre();
@@ -140,7 +142,7 @@ impl Mesh {
                 return false;
             }
             if step.iter().all(|step| step.abs() < 1e-10) {
-                // The ends belong to the side, to the tolerance.
+                // The ends belong to the side, within the tolerance.
                 let centre = host.cell.centre();
                 let inner: Vec<f64> =
                     s.iter().zip(&centre).map(|(s, c)| c + (s - c) * (1.0 - 4.0 * TOLERANCE)).collect();

@@ -1,18 +1,18 @@
-//! Whether the cells of a mesh are good enough.
+//! Checks of the quality of the cells of a mesh.
 
 use super::mesh::{CellIndex, Mesh};
 use super::quality::{Below, Gate, Worst};
 use crate::error::{Error, Result};
 use crate::stiffness::{Geometry, Placement};
 
-/// Of many cells so many are named.
+/// The largest number of cells that a message names.
 const NAMED: usize = 6;
 
 impl Mesh {
-    /// Measures every cell and does with the poor ones what the gate says.
+    /// Measures every cell and treats the poor ones as the gate says.
     ///
     /// # Errors
-    /// The gate refuses cells that are below its least quality, or no cell is left.
+    /// The gate refuses cells below its least quality, or no cell is left.
     pub(super) fn pass(&mut self, gate: Gate) -> Result<()> {
         let mut poor: Vec<CellIndex> = Vec::new();
         let mut worst: Option<(f64, CellIndex)> = None;
@@ -65,7 +65,7 @@ impl Mesh {
         names.join(", ") + &rest
     }
 
-    /// Takes cells out, and the points that only they have. The new numbers of the cells of each block are returned.
+    /// Removes cells, and the points that only they have. Returns the new indices of the cells of each block.
     ///
     /// # Errors
     /// No cell is left.
@@ -91,7 +91,7 @@ impl Mesh {
         }
         let unused = self.unused_points;
         self.drop_unused_points();
-        // Those of the cells that are gone are not told again.
+        // Removed cells are not reported again.
         self.unused_points = unused;
         Ok(new)
     }

@@ -1,4 +1,4 @@
-//! Points, cells and groups of a mesh.
+//! The points, cells and groups of a mesh.
 
 use super::numbering::Numbering;
 use super::quality::Quality;
@@ -6,60 +6,69 @@ use crate::element::Element;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Cells of proved elements. Every point belongs to a cell, and every cell has a positive volume.
+/// Points, cells of known elements, and groups. Every point belongs to a cell, and every cell has a positive volume.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// Of the space: 2 or 3. The cells of a surface or curve have fewer.
+    /// The dimension of the space, 2 or 3. The cells of a surface or curve have fewer.
     pub dimension: usize,
-    /// `[points × dimension]`, m.
+    /// The positions at rest, `[points × dimension]`, m.
     pub points: Vec<f64>,
-    /// One block per element type.
+    /// The cells, one block per element type.
     pub blocks: Vec<CellBlock>,
+    /// The groups by name.
     pub groups: BTreeMap<String, Group>,
-    /// Cells that were numbered the other way round and have been turned.
+    /// The number of cells that were numbered in the opposite order and have been reversed.
     pub reversed: usize,
-    /// Points of the file that belong to no cell and were left out.
+    /// The number of points of the file that belong to no cell and were removed.
     pub unused_points: usize,
-    /// Of the points in the file; `None` of a mesh that is generated or refined.
+    /// The numbers of the points in the file; `None` for a mesh that is generated or refined.
     pub numbering: Option<Numbering>,
+    /// The quality of the cells.
     pub quality: Quality,
 }
 
-/// Cells of one element type.
+/// The cells of one element type.
 #[derive(Debug, Clone)]
 pub struct CellBlock {
+    /// The element of the cells.
     pub element: Arc<Element>,
-    /// `[cells × nodes]`.
+    /// The points of the cells in the node order of the element, `[cells × nodes]`.
     pub connectivity: Vec<usize>,
 }
 
-/// Points, sides, edges and cells that carry one name.
+/// Points, sides, edges and cells with one name.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Group {
-    /// Sorted.
+    /// The points, ascending.
     pub points: Vec<usize>,
-    /// Each side by its points, sorted.
+    /// The sides, each by its points in ascending order.
     pub sides: Vec<Vec<usize>>,
-    /// Each edge of a curve in a solid by its points, sorted.
+    /// The edges of curves in a solid, each by its points in ascending order.
     pub edges: Vec<Vec<usize>>,
+    /// The cells.
     pub cells: Vec<CellIndex>,
 }
 
-/// A cell of a mesh, by its block and its number in it.
+/// A cell of a mesh, by its block and its index in the block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct CellIndex {
+    /// The index of the block.
     pub block: usize,
+    /// The index of the cell in its block.
     pub cell: usize,
 }
 
-/// A side of a cell, by its number in the element.
+/// A side of a cell, by its index in the element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SideIndex {
+    /// The cell.
     pub cell: CellIndex,
+    /// The index of the side, in the order of [`Element::sides`].
     pub side: usize,
 }
 
 impl CellBlock {
+    /// The points of each cell, `[nodes]`.
     pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
         self.connectivity.chunks_exact(self.element.nodes())
     }
@@ -72,30 +81,32 @@ impl Mesh {
         Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, numbering: None, quality }
     }
 
+    /// The number of points.
     pub fn point_count(&self) -> usize {
         self.points.len() / self.dimension
     }
 
+    /// The number of cells.
     pub fn cell_count(&self) -> usize {
         self.blocks.iter().map(|b| b.cells().len()).sum()
     }
 
-    /// Of the cells: 3 for solids, 2 for surfaces, 1 for curves.
+    /// The dimension of the cells: 3 for solids, 2 for surfaces, 1 for curves.
     pub fn cell_dimension(&self) -> usize {
         self.blocks.first().map_or(self.dimension, |b| b.element.dimension())
     }
 
-    /// The coordinates of one point, m.
+    /// The coordinates of one point, `[dimension]`, m.
     pub fn point(&self, index: usize) -> &[f64] {
         &self.points[index * self.dimension..(index + 1) * self.dimension]
     }
 
-    /// The number of a point in its file; without one, from 1.
+    /// The number of a point in its file; in a mesh without a file, its index plus 1.
     pub fn point_number(&self, index: usize) -> u64 {
         self.numbering.as_ref().map_or(index as u64 + 1, |numbering| numbering.nodes[index])
     }
 
-    /// The points of one cell, in the order of its element's nodes.
+    /// The points of one cell, in the node order of its element.
     pub(super) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
         let n = self.blocks[block].element.nodes();
         &self.blocks[block].connectivity[cell * n..(cell + 1) * n]
@@ -117,7 +128,7 @@ impl Mesh {
         self.cell_indices().flat_map(move |cell| sides(cell).map(move |side| SideIndex { cell, side }))
     }
 
-    /// Leaves out the points that belong to no cell.
+    /// Removes the points that belong to no cell.
     pub(super) fn drop_unused_points(&mut self) {
         let total = self.points.len() / self.dimension;
         let mut new = vec![usize::MAX; total];
@@ -152,7 +163,7 @@ impl Mesh {
     }
 }
 
-/// The points of a side, ascending.
+/// The points of a side in ascending order.
 pub(super) fn sorted(points: &[usize]) -> Vec<usize> {
     let mut points = points.to_vec();
     points.sort_unstable();

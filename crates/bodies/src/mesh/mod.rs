@@ -1,4 +1,7 @@
 //! Meshes of known elements: points, cells and named groups, in metres.
+//!
+//! [`MeshSource`] is what a file says; [`Mesh::resolve`] gives its cells their elements and checks them. [`BoxMesh`]
+//! and [`DiscMesh`] generate meshes.
 
 mod affine;
 mod alike;

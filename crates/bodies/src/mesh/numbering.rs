@@ -1,30 +1,30 @@
-//! The numbers that nodes have where a mesh comes from.
+//! The numbers that the nodes of a mesh have in its source.
 
 use super::source::Format;
 
-/// The numbers that the points of a mesh have in the file or the arrays that they come from.
+/// The numbers that the points of a mesh have in the file or in the arrays that they come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbering {
-    /// What the numbers are.
+    /// What the numbers mean.
     pub origin: NumberOrigin,
-    /// `[points]`.
+    /// The numbers, `[points]`.
     pub nodes: Vec<u64>,
 }
 
-/// What the number of a node is.
+/// The meaning of a node's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NumberOrigin {
     /// The tag of a node in a Gmsh file.
     GmshTag,
-    /// The place of a point in a VTK file, from 0.
+    /// The index of a point in a VTK file, from 0.
     VtkPlace,
-    /// The place of a point in the caller's array, from 0.
+    /// The index of a point in the caller's array, from 0.
     ArrayPlace,
 }
 
 impl NumberOrigin {
-    /// That of the nodes of a file.
+    /// The meaning of the numbers in a file of this format.
     pub(super) fn of(format: Format) -> NumberOrigin {
         match format {
             Format::Gmsh => NumberOrigin::GmshTag,
@@ -34,7 +34,7 @@ impl NumberOrigin {
 }
 
 impl Numbering {
-    /// In words.
+    /// The kind of number, in words.
     pub fn title(&self) -> &'static str {
         match self.origin {
             NumberOrigin::GmshTag => "Gmsh node tags",
@@ -43,7 +43,7 @@ impl Numbering {
         }
     }
 
-    /// Whether the numbers of the points follow one another, as they do where none was left out.
+    /// Whether the numbers are consecutive, as they are if no point was removed.
     pub fn is_contiguous(&self) -> bool {
         self.nodes.windows(2).all(|pair| pair[0].checked_add(1) == Some(pair[1]))
     }

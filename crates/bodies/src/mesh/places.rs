@@ -1,22 +1,22 @@
-//! Points at the same place.
+//! Points at the same position.
 
 use super::mesh::Mesh;
 use crate::springs::distance;
 use std::collections::HashMap;
 
-/// What the coordinates of a mesh can tell apart.
+/// Positions of a mesh that its coordinates can distinguish.
 pub(super) struct Places {
-    /// For each point the first one at its place, `[points]`.
+    /// For each point the first one at its position, `[points]`.
     pub first: Vec<usize>,
-    /// Of the edges that have a length, m.
+    /// The length of the shortest edge with a positive length, m.
     pub shortest_edge: f64,
-    /// The rounding of the coordinates, m.
+    /// The rounding error of the coordinates, m.
     pub rounding: f64,
 }
 
 impl Places {
-    /// Places count as one within 1e-9 of the body and a tenth of the shortest edge. `None` where the coordinates are too coarse to
-    /// tell points apart.
+    /// Positions are equal within 1e-9 of the size of the body and a tenth of the shortest edge. `None` if the
+    /// coordinates are too coarse to distinguish points.
     pub fn of(mesh: &Mesh) -> Option<Places> {
         let place = |p: usize| spatial(mesh.point(p));
         let points: Vec<[f64; 3]> = (0..mesh.point_count()).map(place).collect();
@@ -25,15 +25,15 @@ impl Places {
         let rounding = 16.0 * f64::EPSILON * mesh.points.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         let shortest_edge = shortest_edge(mesh);
         let unit = (1e-9 * extent).min(0.1 * shortest_edge).max(rounding);
-        // Also refuses what is no number.
+        // Also refuses NaN.
         if !(unit > 0.0 && unit <= 0.1 * shortest_edge) {
             return None;
         }
-        // Bins are so wide that few points are near the border of theirs, and so narrow that few share one.
+        // The bins are so wide that few points are near the border of theirs, and so narrow that few points share one.
         let width = (1000.0 * unit).min(0.5 * shortest_edge);
         let bin = |x: &[f64; 3], k: usize, shift: f64| ((x[k] - least[k] + shift) / width).floor() as i64;
         let mut bins: HashMap<[i64; 3], usize> = HashMap::with_capacity(points.len());
-        // The point before in the same bin.
+        // The previous point in the same bin.
         let mut before = vec![usize::MAX; points.len()];
         let mut first: Vec<usize> = (0..points.len()).collect();
         for (p, x) in points.iter().enumerate() {
@@ -61,13 +61,13 @@ impl Places {
         Some(Places { first, shortest_edge, rounding })
     }
 
-    /// How many points are at the place of another.
+    /// The number of points at the position of another point.
     pub fn coincident(&self) -> usize {
         self.first.iter().enumerate().filter(|(p, first)| p != *first).count()
     }
 }
 
-/// m; infinite where no edge has a length.
+/// The length of the shortest edge, m; infinite if no edge has a length.
 fn shortest_edge(mesh: &Mesh) -> f64 {
     let mut shortest = f64::INFINITY;
     for block in &mesh.blocks {

@@ -1,36 +1,41 @@
-//! The quality of the cells of a mesh.
+//! The quality of the cells of a mesh, and what happens to poor cells.
 
 use crate::error::{Error, Result};
 
-/// What becomes of cells whose quality is below the least.
+/// What happens to cells below the least quality.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Below {
     /// They are reported.
     #[default]
     Warn,
-    /// The mesh is not taken.
+    /// The mesh is refused.
     Refuse,
-    /// They are left out, as are cells that are flat or tangled, repeat another or are folded over their neighbours.
+    /// They are removed, as are cells that are flat or tangled, repeat another cell or are folded over their
+    /// neighbours.
     Skip,
 }
 
-/// The quality that is asked of cells: the least `det J / Π ‖J_l‖` over the quadrature points, J_l the columns of the Jacobian; 1
-/// where the reference directions stay at right angles, 0 where the cell is flat. The determinant loses `−log₁₀` of it in digits,
-/// and the constants with it.
+/// The required quality of cells. The quality is the least `det J/Π ‖J_l‖` over the quadrature points, with J_l the
+/// columns of the Jacobian: 1 if the reference directions stay at right angles, 0 if the cell is flat. The determinant,
+/// and with it the constants, lose `−log₁₀` of the quality in digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gate {
+    /// The least quality, from 0 to 1.
     pub least: f64,
+    /// What happens to cells below it.
     pub below: Below,
 }
 
 impl Default for Gate {
-    /// A loss of four digits leaves twelve; cells of lower quality are reported.
+    /// A least quality of 1e-4: a loss of four digits leaves twelve. Cells of lower quality are reported.
     fn default() -> Gate {
         Gate { least: 1e-4, below: Below::Warn }
     }
 }
 
 impl Gate {
+    /// A gate from the values of a file or of options.
+    ///
     /// # Errors
     /// The word is unknown, or the least quality is not between 0 and 1.
     pub fn named(below: Option<&str>, least: Option<f64>) -> Result<Gate> {
@@ -52,25 +57,28 @@ impl Gate {
     }
 }
 
-/// What was found.
+/// The quality of the cells of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Quality {
-    /// Of all cells.
+    /// The worst of all cells.
     pub worst: Option<Worst>,
-    /// Cells below the least quality that were kept, and what that was.
+    /// The number of cells below the least quality that were kept.
     pub poor: usize,
+    /// The least quality that was required.
     pub least: f64,
-    /// Cells left out: of poor quality, flat or tangled.
+    /// The number of cells removed for poor quality, or because they are flat or tangled.
     pub skipped: usize,
-    /// Cells left out because they have the nodes of another.
+    /// The number of cells removed because they have the nodes of another cell.
     pub duplicates: usize,
-    /// Cells left out because they are folded over their neighbours.
+    /// The number of cells removed because they are folded over their neighbours.
     pub folded: usize,
-    /// The cells that were turned, in words, where they are not all.
+    /// The cells that were reversed, in words, if they are not all.
     pub turned: Option<String>,
-    /// Points at the place of another; `None` where that was not looked for, or where coordinates are too coarse to tell.
+    /// The number of points at the position of another point; `None` if this was not tested, or if the coordinates are
+    /// too coarse.
     pub coincident: Option<usize>,
-    /// Points on an edge or a face of a cell that does not have them; `None` as there, and for meshes that are generated or divided.
+    /// The number of points on an edge or a face of a cell that does not have them; `None` as for `coincident`, and for
+    /// meshes that are generated or divided.
     pub hanging: Option<usize>,
     /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.
     pub pieces: Option<usize>,
@@ -79,7 +87,8 @@ pub struct Quality {
 /// The cell of least quality.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Worst {
+    /// Its quality.
     pub quality: f64,
-    /// The element, the number of the cell from 1, and its first point, m.
+    /// The element, the number of the cell from 1, and its first point in m, in words.
     pub cell: String,
 }

@@ -1,4 +1,4 @@
-//! Words, lines and numbers one after the other from the bytes of a mesh file, in text or in binary.
+//! Reads words, lines and numbers from the bytes of a mesh file, in text or in binary.
 
 use crate::error::{Error, ErrorKind, Result};
 
@@ -37,14 +37,14 @@ macro_rules! number {
 number!("a whole number": i8, i16, i32, i64, u8, u16, u32, u64);
 number!("a number": f32, f64);
 
-/// How far a counted list has been read.
+/// How much of a counted list has been read.
 struct Progress {
     what: &'static str,
     expected: u64,
     found: u64,
 }
 
-/// The place reached in a file.
+/// A position in a file.
 pub(super) struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -58,18 +58,18 @@ impl<'a> Reader<'a> {
         Reader::starting_at(bytes, 0)
     }
 
-    /// Reads text from the byte `at` on; errors have the line in all of `bytes`.
+    /// Reads text from the byte `at`; errors give the line in all of `bytes`.
     pub fn starting_at(bytes: &'a [u8], at: usize) -> Self {
         Reader { bytes, at, encoding: Encoding::Text, section: String::new(), progress: None }
     }
 
-    /// Names the section that the next errors are about.
+    /// Names the section for later errors.
     pub fn enter(&mut self, section: impl Into<String>) {
         self.section = section.into();
         self.progress = None;
     }
 
-    /// Says how many items the section announces; `count_one` counts them.
+    /// Sets the number of items that the section announces; `count_one` counts them.
     pub fn announce(&mut self, what: &'static str, expected: u64) {
         self.progress = Some(Progress { what, expected, found: 0 });
     }
@@ -84,7 +84,7 @@ impl<'a> Reader<'a> {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
-    /// The next word, which stays the next; empty at the end of the file.
+    /// The next word, without consuming it; empty at the end of the file.
     pub fn peek(&mut self) -> &'a [u8] {
         let rest = self.rest();
         let blank = rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(rest.len());
@@ -99,20 +99,20 @@ impl<'a> Reader<'a> {
         word
     }
 
-    /// Whether the next word is this keyword, in capitals or not. Moves nowhere, as binary data may be next.
+    /// Whether the next word is this keyword, in upper or lower case. Consumes nothing, because binary data may follow.
     pub fn next_is(&self, keyword: &str) -> bool {
         let rest = self.rest().trim_ascii_start();
         let Some(word) = rest.get(..keyword.len()) else { return false };
         word.eq_ignore_ascii_case(keyword.as_bytes()) && rest.get(keyword.len()).is_none_or(u8::is_ascii_whitespace)
     }
 
-    /// What is left of this line, which stays the next to read.
+    /// The rest of this line, without consuming it.
     pub fn rest_of_line(&self) -> &'a [u8] {
         let rest = self.rest();
         &rest[..rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len())]
     }
 
-    /// What is left of this line.
+    /// The rest of this line.
     pub fn line(&mut self) -> &'a [u8] {
         let line = self.rest_of_line();
         self.at = (self.at + line.len() + 1).min(self.bytes.len());
@@ -164,14 +164,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// How many items of `numbers` numbers of type `T` the rest of the file has room for, and no more than `count`.
+    /// How many items of `numbers` numbers of type `T` the rest of the file can hold, but at most `count`.
     pub fn capacity<T: Number>(&self, count: u64, numbers: usize) -> usize {
         let bytes = if self.encoding == Encoding::Text { 2 } else { T::BYTES };
         let room = self.rest().len() / bytes / numbers.max(1) + 1;
         usize::try_from(count).map_or(room, |count| count.min(room))
     }
 
-    /// The next word is not what was expected.
+    /// The error for a next word that was not expected.
     pub fn unexpected(&mut self, expected: &str) -> Error {
         let word = self.peek();
         if word.len() == self.rest().len() {
@@ -186,12 +186,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What stood before this place is not what was expected.
+    /// The error for something before this position that was not expected.
     pub fn expected(&self, expected: &str, found: &str) -> Error {
         self.fault(format!("expected {expected}, found {found}"))
     }
 
-    /// A fault before this place.
+    /// The error for a fault before this position.
     pub fn fault(&self, problem: String) -> Error {
         let error = if self.section.is_empty() { Error::new(problem) } else { Error::at(&self.section, problem) };
         let error = error.of_kind(ErrorKind::Syntax);
@@ -201,7 +201,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The file is cut short.
+    /// The error for a file that is cut short.
     pub fn ends(&self) -> Error {
         let section = if self.section.is_empty() { "its header" } else { &self.section };
         let problem = match &self.progress {

@@ -1,4 +1,4 @@
-//! The formats of mesh files, told apart by the ending of the file.
+//! The formats of mesh files, chosen by the extension of the file.
 
 use super::source::MeshSource;
 use super::{gmsh, vtk};
@@ -7,11 +7,11 @@ use std::path::Path;
 
 type Parse = fn(&[u8]) -> Result<MeshSource>;
 
-/// Each ending, in small letters, and the reader of such files.
+/// Each extension, in lower case, and the reader of such files.
 const FORMATS: [(&str, Parse); 3] = [("msh", gmsh::parse), ("vtu", vtk::parse_xml), ("vtk", vtk::parse_legacy)];
 
 impl MeshSource {
-    /// Reads a mesh file of the format that belongs to its ending: `.msh`, `.vtu` or `.vtk`.
+    /// Reads a mesh file in the format of its extension: `.msh`, `.vtu` or `.vtk`.
     ///
     /// # Errors
     /// The file is missing, of another kind, damaged or cut short, or has a coordinate that is not finite.
@@ -20,7 +20,7 @@ impl MeshSource {
         MeshSource::parse(&bytes, &crate::file::ending(path)).map_err(|e| e.in_file(path))
     }
 
-    /// Reads the content of a file with this ending, without its dot.
+    /// Reads the content of a file with this extension, given without its dot.
     ///
     /// # Errors
     /// Those of [`MeshSource::read`].

@@ -1,4 +1,4 @@
-//! The elements of the cells of a file.
+//! Gives the cells of a file their elements.
 
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
 use super::numbering::{NumberOrigin, Numbering};
@@ -13,20 +13,20 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 impl Mesh {
-    /// Gives each cell of a file its element: one of `own` if it serves the cell type, else a shipped one.
-    /// Coordinates are multiplied by `scale`. Cells of poor quality, points at the place of another or on a side of a
-    /// cell that does not have them, and pieces that share no node are counted.
+    /// Gives each cell of a file its element: one of `own` if it serves the cell type, otherwise a shipped one.
+    /// Coordinates are multiplied by `scale`, in metres per mesh unit. Cells of poor quality, points at the same
+    /// position, points on a side of a cell that does not have them, and pieces that share no node are counted.
     ///
     /// # Errors
-    /// No element serves a cell type, or a cell is tangled or flat, repeats another or is folded over its neighbours.
+    /// No element serves a cell type; or a cell is tangled or flat, repeats another or is folded over its neighbours.
     pub fn resolve(source: &MeshSource, own: &[Arc<Element>], scale: f64) -> Result<Mesh> {
         Mesh::resolve_within(source, own, scale, None)
     }
 
-    /// The same with a gate of one's own for the cells.
+    /// As [`Mesh::resolve`], with a given gate for the cells.
     ///
     /// # Errors
-    /// As there, unless the gate skips such cells; the gate refuses a cell, or none is left.
+    /// Those of [`Mesh::resolve`], unless the gate skips such cells; or the gate refuses a cell, or no cell is left.
     pub fn resolve_within(source: &MeshSource, own: &[Arc<Element>], scale: f64, gate: Option<Gate>) -> Result<Mesh> {
         let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
         if dimension == 0 {
@@ -80,7 +80,7 @@ impl Mesh {
         self.settle_duplicates(places.as_ref().map(|places| &places.first[..]), skip)?;
         self.settle_orientation(skip)?;
         self.pass(gate)?;
-        // Cells that were left out have taken points with them.
+        // Removed cells have taken points with them.
         let left_out = self.quality.skipped + self.quality.duplicates + self.quality.folded > 0;
         let places = if left_out { Places::of(self) } else { places };
         self.quality.coincident = places.as_ref().map(Places::coincident);
@@ -107,8 +107,8 @@ impl Mesh {
         }
     }
 
-    /// Turns reversed cells. Where some are reversed and others are not, those that are folded over their neighbours are refused or
-    /// left out.
+    /// Reverses reversed cells. If only some cells are reversed, those that are folded over their neighbours are
+    /// refused or removed.
     fn settle_orientation(&mut self, skip: bool) -> Result<()> {
         let turned = self.orient(skip)?;
         if turned.is_empty() || turned.len() == self.cell_count() {
@@ -134,11 +134,11 @@ impl Mesh {
         self.remove(&folded).map(drop)
     }
 
-    /// Turns reversed cells and makes sure that every cell has a volume; those that have none may be left out. The cells that were
-    /// turned are returned.
+    /// Reverses reversed cells and checks that every cell has a volume; with `skip`, cells without a volume are
+    /// removed. Returns the reversed cells.
     ///
     /// # Errors
-    /// A cell has no volume and may not be left out, or no other cell is left.
+    /// A cell has no volume and `skip` is not set, or no other cell is left.
     pub(super) fn orient(&mut self, skip: bool) -> Result<Vec<CellIndex>> {
         let mut turned = Vec::new();
         let mut faulty: Vec<(CellIndex, Fault)> = Vec::new();
@@ -238,7 +238,7 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
     Ok(element)
 }
 
-/// Whether all points that are used have the same z.
+/// Whether all used points have the same z.
 fn in_one_plane(source: &MeshSource) -> bool {
     let used = || source.blocks.iter().flat_map(|b| &b.connectivity).map(|&p| source.points[p]);
     let range = |k: usize| used().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));

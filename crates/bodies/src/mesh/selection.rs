@@ -1,4 +1,4 @@
-//! Parts of a mesh, by group name or by a condition on the coordinates.
+//! Parts of a mesh, selected by group name or by a condition on the coordinates.
 
 use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
 use crate::error::Result;
@@ -6,11 +6,15 @@ use crate::named::unknown;
 use crate::symbolic::Predicate;
 use std::collections::HashMap;
 
+/// A part of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Selection {
+    /// The points, sides and cells of the group with this name.
     Group(String),
-    /// Points whose coordinates x, y (, z) in m satisfy the condition; sides on the boundary and cells of such points.
+    /// The points whose coordinates x, y (, z) in m satisfy the condition, and the boundary sides and the cells with
+    /// all points selected.
     Where(Predicate),
+    /// All points, boundary sides and cells.
     Everything,
 }
 
@@ -29,13 +33,13 @@ impl Selection {
         })
     }
 
-    /// The selected sides: those the mesh lists in the group, or those on the boundary with all points selected.
+    /// The selected sides: those that the mesh lists in the group, or those on the boundary with all points selected.
     ///
     /// # Errors
     /// There is no such group.
     pub fn sides(&self, mesh: &Mesh) -> Result<Vec<SideIndex>> {
         let points = self.points(mesh)?;
-        // How often a side was met, and where first: a side met once is on the boundary.
+        // How often each side occurs, and where first: a side that occurs once is on the boundary.
         let mut met: HashMap<Vec<usize>, (usize, SideIndex)> = HashMap::new();
         let mut order = Vec::new();
         for (block, cells) in mesh.blocks.iter().enumerate() {

@@ -1,33 +1,39 @@
-//! What a mesh file says, before any element definition has been asked.
+//! The content of a mesh file, before its cells have elements.
 
-/// The numbering of cell types a file uses.
+/// The numbering of cell types that a file uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
+    /// That of Gmsh.
     Gmsh,
+    /// That of VTK.
     Vtk,
 }
 
-/// Points and typed cells as they stand in a file.
+/// Points and typed cells as they are in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSource {
+    /// The numbering of the cell types.
     pub format: Format,
-    /// Coordinates in mesh units; always three.
+    /// The coordinates in mesh units, always three.
     pub points: Vec<[f64; 3]>,
-    /// Of the points in the file, `[points]`: tags in Gmsh's formats, places from 0 in VTK's. Empty where there is no file.
+    /// The numbers of the points in the file, `[points]`: tags in Gmsh's formats, indices from 0 in VTK's. Empty if
+    /// there is no file.
     pub numbers: Vec<u64>,
+    /// The cells.
     pub blocks: Vec<SourceBlock>,
 }
 
 /// Cells of one type that belong to the same groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SourceBlock {
-    /// 0 for points, 1 for curves, 2 for surfaces, 3 for solids.
+    /// The dimension: 0 for points, 1 for curves, 2 for surfaces, 3 for solids.
     pub dimension: usize,
-    /// The number of the cell type in the file's `format`.
+    /// The number of the cell type in the numbering of the source.
     pub cell_type: u32,
+    /// The number of nodes of each cell.
     pub nodes_per_cell: usize,
-    /// Indices into `points`, cell after cell, in the file's node order.
+    /// Indices into `points`, cell after cell, in the node order of the file.
     pub connectivity: Vec<usize>,
-    /// Names of the groups that hold all cells of this block.
+    /// The names of the groups to which all cells of this block belong.
     pub groups: Vec<String>,
 }

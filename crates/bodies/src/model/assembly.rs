@@ -1,4 +1,4 @@
-//! The network of a mesh from the springs of its cells: those between the same two points added up.
+//! Assembles the network of a mesh from the springs of its cells; springs between the same two points are added.
 
 use super::network::{LengthSpring, MeasureSpring, Network};
 use super::steady::{is_steady, rest_length};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 impl Network {
-    /// Adds up the springs of all cells; `fits` has one entry per block of the mesh.
+    /// Assembles the springs of all cells; `fits` has one entry per block of the mesh.
     pub fn assemble(mesh: &Mesh, fits: &[CellFits]) -> Network {
         let mut network = Network { dimension: mesh.dimension, ..Network::default() };
         let (lengths, steady) = merge(mesh, fits);
@@ -24,7 +24,7 @@ impl Network {
     }
 }
 
-/// The springs of one block that measure more than a length, each cell's for itself.
+/// The springs of one block that are not on lengths; each belongs to one cell.
 fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> {
     let (d, springs) = (mesh.dimension, &fit.springs);
     let (m, first) = (springs.len(), springs.pairs().len());
@@ -87,8 +87,8 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
     all
 }
 
-/// The length springs of the blocks whose force is a law, those between the same two points added up where the law is linear in
-/// its parameters.
+/// The length springs of the blocks with a force law. Springs between the same two points are added if the law is
+/// linear in its parameters.
 fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
     let mut all: Vec<MeasureSpring> = Vec::new();
     let mut known: HashMap<([usize; 2], &str), usize> = HashMap::new();
@@ -127,17 +127,17 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
     all
 }
 
-/// Whether a law never pulls with these parameters.
+/// Whether a law has no force with these parameters.
 fn is_idle(law: &Law, parameters: &[f64]) -> bool {
     law.is_linear() && parameters.iter().all(|p| *p == 0.0)
 }
 
-/// Points whose springs one thread merges in one go.
+/// The number of points whose springs one thread merges at a time.
 const CHUNK: usize = 2048;
 
-/// Adds up the length springs between the same two points. Each point goes through the cells around it and gathers the
-/// springs to its higher neighbours in a list of its own, which is short: nothing is sorted or hashed as a whole. Those whose sum
-/// has no rest length come apart from the others.
+/// Adds the length springs between the same two points. For each point the cells around it are visited, and the springs
+/// to its higher neighbours are gathered in a short list, so that nothing is sorted or hashed as a whole. Sums without
+/// a rest length are returned separately.
 fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<MeasureSpring>) {
     let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
     let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
@@ -175,16 +175,17 @@ fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<MeasureSprin
     (springs.concat(), others.concat())
 }
 
-/// The constants of an exact network that cancel to this share of their sizes are rounding: no spring is left.
+/// A constant of an exact network whose terms cancel to this share of their sizes is a rounding error: there is no
+/// spring.
 const ROUNDING: f64 = 1e-13;
 
-/// The springs from a point to another so far.
+/// A spring from one point to another, as the sum so far.
 struct Neighbour {
     point: usize,
     constant: f64,
     /// `Σ |k|`.
     size: f64,
-    /// `Σ k (L₀ − ℓ)`, ℓ the distance: zero of springs at their rest length.
+    /// `Σ k (L₀ − ℓ)`, with ℓ the distance: zero for springs at their rest length.
     slack: f64,
 }
 
@@ -192,11 +193,11 @@ struct Neighbour {
 struct Star<'a> {
     block: &'a CellBlock,
     fit: &'a CellFits,
-    /// Where the places of each point begin, `[points + 1]`.
+    /// The index in `places` at which those of each point begin, `[points + 1]`.
     starts: Vec<usize>,
-    /// Indices into the connectivity, grouped by the point that each of them holds.
+    /// Indices into the connectivity, grouped by their point.
     places: Vec<usize>,
-    /// For each node of the cell its length springs: spring and node at the other end.
+    /// For each node of the cell its length springs: the spring, and the node at the other end.
     springs: Vec<Vec<(usize, usize)>>,
 }
 

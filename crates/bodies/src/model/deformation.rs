@@ -1,28 +1,30 @@
-//! How far displacements are from those of the linear theory.
+//! Whether displacements are small enough for the linear theory.
 
 use super::system::{dofs, each_cell};
 use crate::mesh::Mesh;
 use crate::stiffness::Placement;
 use nalgebra::DMatrix;
 
-/// The largest strain and rotation at the quadrature points of a body's cells, from the gradient of the displacements alone:
-/// `H = ∂u/∂X`, strain `½ (H + Hᵀ)`, rotation `½ (H − Hᵀ)`. Of a surface or curve H is along its tangents; what its normal turns counts
-/// as rotation.
+/// The largest strain and rotation at the quadrature points of the cells of a body. They follow from the gradient of
+/// the displacements `H = ∂u/∂X`: strain `½ (H + Hᵀ)`, rotation `½ (H − Hᵀ)`. On a surface or curve H is taken along
+/// the tangents; the change of the normal counts as rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Deformation {
-    /// The largest principal strain by size.
+    /// The largest absolute value of a principal strain.
     pub strain: f64,
     /// The length of the rotation vector, rad.
     pub rotation: f64,
 }
 
 impl Deformation {
-    /// The linear theory drops `½ Hᵀ H` of the strain `½ (H + Hᵀ + Hᵀ H)`. Beyond this strain ε that is more than a twentieth of ε, and
-    /// beyond this rotation θ, in rad, a bent or turned part seems stretched by more than `θ²/2`, half a percent, and moves by more than
-    /// `θ/2`, a twentieth, of its way in a direction that it does not go.
+    /// The bound of strains and rotations, 0.1, up to which the linear theory is taken as valid.
+    ///
+    /// The linear theory omits `½ Hᵀ H` in the strain `½ (H + Hᵀ + Hᵀ H)`. At this strain ε the omitted term is a
+    /// twentieth of ε. At this rotation θ, in rad, a rotated part is stretched by `θ²/2`, half a percent, and its
+    /// displacement has an error of `θ/2`, a twentieth.
     pub const LINEAR: f64 = 0.1;
 
-    /// Of the displacements u, `[points · dimension]`, m.
+    /// The deformation under the displacements u, `[points · dimension]`, m.
     pub fn largest(mesh: &Mesh, u: &[f64]) -> Deformation {
         let space = mesh.dimension;
         let mut largest = Deformation::default();
@@ -54,7 +56,7 @@ impl Deformation {
         largest
     }
 
-    /// The larger of both strains and rotations; one that is no number counts as infinite.
+    /// The larger of both strains and of both rotations; NaN counts as infinite.
     pub fn max(self, other: Deformation) -> Deformation {
         let larger = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) };
         Deformation { strain: larger(self.strain, other.strain), rotation: larger(self.rotation, other.rotation) }

@@ -8,24 +8,24 @@ use crate::mesh::Mesh;
 use crate::stiffness::{Geometry, gather};
 use faer::sparse::Triplet;
 
-/// What resists deformation.
+/// A model that resists deformation.
 pub trait Elastic {
-    /// The response with the points at `x`, `[points × dimension]`, m; `None` where there is none, as in a cell turned
-    /// inside out.
+    /// Energy, forces and tangent with the points at `x`, `[points × dimension]`, m; `None` if the model has none, for
+    /// example in an inverted cell.
     fn respond(&self, x: &[f64]) -> Option<Response>;
 
-    /// The energy of [`Elastic::respond`] alone, J.
+    /// The energy alone, as in [`Elastic::respond`], J.
     fn energy(&self, x: &[f64]) -> Option<f64> {
         self.respond(x).map(|response| response.energy)
     }
 
-    /// The force of [`Elastic::respond`] alone, `[points × dimension]`, N, into `force`; false where there is none.
+    /// Writes the forces alone, `[points × dimension]`, N, into `force`; false if there are none.
     fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
         self.respond(x).map(|response| force.copy_from_slice(&response.force)).is_some()
     }
 
-    /// [`Elastic::respond`] into memory that is there: the force, the values of the tangent's entries, whose places and order
-    /// are those at rest, and the energy.
+    /// As [`Elastic::respond`], into existing memory: the forces, the values of the entries of the tangent, with the
+    /// positions and order that they have at rest, and the energy.
     fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
         let response = self.respond(x)?;
         force.copy_from_slice(&response.force);
@@ -33,22 +33,26 @@ pub trait Elastic {
         Some(response.energy)
     }
 
-    /// The same with a tangent near the right one that is positive semidefinite, where the model knows such; else the right one.
+    /// As [`Elastic::refill`], with a positive semidefinite approximation of the tangent if the model has one,
+    /// otherwise with the tangent.
     fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
         self.refill(x, force, tangent)
     }
 }
 
-/// Hyperelastic finite elements.
+/// The finite element model of a hyperelastic body.
 #[derive(Debug)]
 pub struct Body<'a> {
+    /// The mesh.
     pub mesh: &'a Mesh,
+    /// The energy per volume.
     pub energy: &'a Energy,
+    /// The state of a plane or rod.
     pub state: State,
 }
 
 impl Body<'_> {
-    /// How many cells have a quadrature point where `det F ≤ 0`.
+    /// The number of cells with a quadrature point at which `det F ≤ 0`.
     pub fn inverted(&self, x: &[f64]) -> usize {
         let mut inverted = 0;
         self.each_cell(|nodes, geometry| {
@@ -61,7 +65,7 @@ impl Body<'_> {
         inverted
     }
 
-    /// Stops at the first cell without an answer.
+    /// Visits the cells until one has no answer.
     fn each_cell(&self, mut visit: impl FnMut(&[usize], &Geometry) -> Option<()>) -> Option<()> {
         let mut all = Some(());
         system::each_cell(self.mesh, |_, nodes, geometry| {

@@ -1,4 +1,7 @@
-//! Springs on the stretch of fibres: `I4 = |F a|²` is a quadratic form of the nodes, so that a law of fibres is one of springs.
+//! Springs on the stretch of fibres: `I4 = |F a|²` is a quadratic form of the nodes, so that a law of fibres is a law
+//! of springs.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use super::network::MeasureSpring;
 use super::system::each_cell;
@@ -9,11 +12,11 @@ use crate::mesh::Mesh;
 use crate::springs::{Law, Measure};
 use std::sync::Arc;
 
-/// A spring at each quadrature point that measures `c = |Σ_a x_a (∇N_a·a)|`, with the force `v ∂W/∂c` of the law's fibres of
-/// direction a; none where the law has no fibres.
+/// A spring at each quadrature point that measures `c = |Σ_a x_a (∇N_a·a)|`, with a the direction of the fibres, and
+/// has the force `v ∂W/∂c` of the law, with v the volume of the point. None if the law has no fibres.
 ///
 /// # Errors
-/// The fibres depend on more than their stretch, or point out of a plane (kind `Unsupported`).
+/// The stress of the fibres depends on more than their stretch, or they point out of a plane (kind `Unsupported`).
 pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Vec<MeasureSpring>> {
     let Some((direction, text)) = law.fibre_law()? else { return Ok(Vec::new()) };
     let d = mesh.dimension;

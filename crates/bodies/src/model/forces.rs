@@ -1,4 +1,4 @@
-//! Forces and tangent of a network into memory that is there: what a simulation asks for at every step.
+//! Forces and tangent of a network, written into existing memory, as a simulation requires them at every step.
 
 use super::network::{LengthSpring, MeasureSpring, Network};
 use super::system::dofs;
@@ -7,8 +7,8 @@ use crate::symbolic::Jet;
 use std::array::from_fn;
 
 impl Network {
-    /// Rows and columns of the tangent's entries, in the lower triangle: of each spring, lengths first, its own lower triangle
-    /// row by row.
+    /// Rows and columns of the entries of the tangent, in the lower triangle: for each spring, length springs first,
+    /// its own lower triangle row by row.
     pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> {
         let d = self.dimension;
         let lengths = self.lengths.iter().flat_map(move |spring| {
@@ -24,7 +24,7 @@ impl Network {
         lengths.chain(others)
     }
 
-    /// The energy, J; `None` where it is not finite or a spring has no direction.
+    /// The energy, J; `None` if it is not finite or a spring has no direction.
     pub(super) fn stored(&self, x: &[f64]) -> Option<f64> {
         let lengths = match self.dimension {
             1 => stored::<1>(&self.lengths, x),
@@ -41,7 +41,7 @@ impl Network {
         total.is_finite().then_some(total)
     }
 
-    /// The energy's derivative, `[points × dimension]`, N; false where it has none.
+    /// The gradient of the energy, `[points × dimension]`, N; false if there is none.
     pub(super) fn pull(&self, x: &[f64], force: &mut [f64]) -> bool {
         force.fill(0.0);
         let d = self.dimension;
@@ -53,7 +53,7 @@ impl Network {
         self.add_others(&self.others, x, force) & sound
     }
 
-    /// Adds what these of the others pull; false where one has no force.
+    /// Adds the forces of some of the other springs; false if one has no force.
     pub(super) fn add_others<'a>(
         &self,
         springs: impl IntoIterator<Item = &'a MeasureSpring>,
@@ -73,8 +73,9 @@ impl Network {
         sound
     }
 
-    /// Force, the values of the tangent at [`Network::places`], and the energy. Where the tangent is to be `definite` no spring's own
-    /// is indefinite: of a length spring the nearest that is not, of others without the term of their second derivatives.
+    /// Forces, the values of the tangent at [`Network::places`], and the energy. If the tangent is to be `definite`,
+    /// the tangent of each spring is made positive semidefinite: that of a length spring by dropping negative factors,
+    /// that of others by omitting the term with second derivatives.
     pub(super) fn pull_and_stiffen(
         &self,
         x: &[f64],
@@ -121,7 +122,7 @@ fn between<const D: usize>(x: &[[f64; D]], [i, j]: [usize; 2]) -> ([f64; D], f64
     (r, r.iter().map(|r| r * r).sum::<f64>().sqrt())
 }
 
-/// `Σ ½ k (ℓ − L₀)²`.
+/// The energy `Σ ½ k (ℓ − L₀)²`.
 fn stored<const D: usize>(springs: &[LengthSpring], x: &[f64]) -> Option<f64> {
     let (x, _) = x.as_chunks::<D>();
     let mut sound = true;
@@ -134,7 +135,7 @@ fn stored<const D: usize>(springs: &[LengthSpring], x: &[f64]) -> Option<f64> {
     sound.then_some(total)
 }
 
-/// `T n` at j and `−T n` at i, `T = k (ℓ − L₀)`, `n = r/ℓ`.
+/// Adds `T n` at j and `−T n` at i, with `T = k (ℓ − L₀)` and `n = r/ℓ`.
 fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) -> bool {
     let ((x, _), (force, _)) = (x.as_chunks::<D>(), force.as_chunks_mut::<D>());
     let mut sound = true;
@@ -151,7 +152,8 @@ fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) 
     sound
 }
 
-/// The same with the energy and the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`; no factor below zero where it is to be definite.
+/// The same with the energy and the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`; negative factors are dropped if it is
+/// to be definite.
 fn pull_and_stiffen<const D: usize>(
     springs: &[LengthSpring],
     x: &[f64],

@@ -1,17 +1,17 @@
-//! Integrals over the cells of a mesh, by rules of their own degree.
+//! Integrals over the cells of a mesh, by rules of a degree that fits the integrand.
 
 use crate::element::{Element, Integrand};
 use crate::mesh::{CellIndex, Mesh};
 use crate::springs::Content;
 use crate::stiffness::gather;
 
-/// The points of the rule in one cell.
+/// The quadrature points in one cell.
 pub(super) struct CellPoints<'a> {
-    /// `[nodes]`, among the mesh's points.
+    /// The nodes of the cell, `[nodes]`, as points of the mesh.
     pub nodes: &'a [usize],
-    /// `N_a(ξ_q)`, `[points × nodes]`.
+    /// The values `N_a(ξ_q)`, `[points × nodes]`.
     values: &'a [f64],
-    /// `w_q |J_q|`, `[points]`, m³ (m² of a surface, m of a curve).
+    /// The contents `w_q |J_q|`, `[points]`, m³ (m² on a surface, m on a curve).
     contents: &'a [f64],
 }
 
@@ -22,9 +22,10 @@ impl CellPoints<'_> {
     }
 }
 
-/// Calls `visit` for every cell of the mesh that `chosen` names, with a rule for the integrand.
+/// Calls `visit` for every cell of the mesh that `chosen` selects, with a rule for the integrand.
 ///
-/// Cells whose Jacobian is positive at the points of the stiffness alone count with what is negative elsewhere.
+/// A cell whose Jacobian is positive at the points of its stiffness may have a negative one elsewhere; such points
+/// count as negative.
 pub(super) fn each_cell_points(
     mesh: &Mesh,
     integrand: Integrand,
@@ -41,7 +42,7 @@ pub(super) fn each_cell_points(
                 continue;
             }
             gather(&mesh.points, d, nodes, &mut x);
-            // Differences keep the digits of a cell far from the origin.
+            // Differences keep the digits of a cell that is far from the origin.
             let first = x[..d].to_vec();
             x.chunks_exact_mut(d).for_each(|x| x.iter_mut().zip(&first).for_each(|(x, o)| *x -= o));
             let contents: Vec<f64> = (0..table.points()).map(|q| Content::of_point(&table, q, &x).value()).collect();

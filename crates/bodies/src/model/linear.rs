@@ -1,13 +1,13 @@
-//! A model that answers in proportion to its displacements.
+//! A linear elastic model.
 
 use super::{Elastic, Entries, Response};
 
-/// `U = ½ uᵀ K u` with `u = x − X`: finite elements at small deformation, as something that moves.
+/// The model `U = ½ uᵀ K u` with `u = x − X`: finite elements at small deformation, for simulations.
 #[derive(Debug, Clone)]
 pub struct LinearElastic<'a> {
-    /// At rest, `[points × dimension]`, m.
+    /// The positions at rest, `[points × dimension]`, m.
     pub points: &'a [f64],
-    /// Of K, N/m.
+    /// The entries of K, N/m.
     pub stiffness: Entries,
 }
 

@@ -1,4 +1,6 @@
-//! Loads as nodal forces, consistent with the shape functions; the same for both models.
+//! Loads as nodal forces that are consistent with the shape functions; they are the same for both models.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use super::integration::each_cell_points;
 use crate::element::{Integrand, SideTable, Tabulation};
@@ -10,23 +12,25 @@ use crate::stiffness::gather;
 use crate::symbolic::{Expr, Polynomial};
 use std::cell::RefCell;
 
-/// What acts on the selected part of the mesh; one entry per direction.
+/// What acts on a selected part of the mesh, with one entry per direction.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// Force per area on sides, Pa.
+    /// A force per area on sides, Pa.
     Traction(Vec<Component>),
-    /// Force in all, N: spread evenly over the sides, or over the points where the part has no sides.
+    /// A total force, N: spread evenly over the sides, or over the points if the part has no sides.
     Force(Vec<f64>),
-    /// Force per volume on cells, N/m³.
+    /// A force per volume on cells, N/m³.
     Body(Vec<Component>),
-    /// Given displacement of points, m; `None` leaves a direction free.
+    /// A prescribed displacement of points, m; `None` leaves a direction free.
     Displacement(Vec<Option<f64>>),
 }
 
-/// One direction of a load, the same everywhere or a function of the place x, y (, z) in m.
+/// One direction of a load: constant, or a function of the position.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Component {
+    /// The same value everywhere.
     Constant(f64),
+    /// A function of the coordinates x, y (, z) in m.
     Varying(Expr),
 }
 
@@ -38,7 +42,7 @@ impl Component {
         }
     }
 
-    /// The degree of the polynomial that it is, or that stands in for it.
+    /// The degree of the polynomial, or the degree by which another function is integrated.
     fn degree(&self) -> usize {
         match self {
             Component::Constant(_) => 0,
@@ -49,15 +53,15 @@ impl Component {
     }
 }
 
-/// The degree up to which a load that is no polynomial is integrated exactly.
+/// The polynomial degree with which a load that is not a polynomial is integrated.
 const SMOOTH: usize = 8;
 
-/// The largest degree of the components.
+/// The load integrand of the largest degree of the components.
 fn load_of(components: &[Component]) -> Integrand {
     Integrand::Load(components.iter().map(Component::degree).max().unwrap_or(0))
 }
 
-/// The components of a load, and the values that they have had.
+/// The components of a load, and the values that they had.
 struct Values<'a> {
     components: &'a [Component],
     met: RefCell<Vec<f64>>,
@@ -74,8 +78,10 @@ impl Values<'_> {
         values
     }
 
+    /// Checks the values that the load had.
+    ///
     /// # Errors
-    /// Values are not finite or outside the range of quantities.
+    /// A value is not finite or is outside the range of quantities.
     fn check(self, unit: &str) -> Result<()> {
         range::largest("load", self.met.into_inner(), unit)
     }
@@ -93,15 +99,17 @@ impl Action {
     }
 }
 
-/// `f_a = ∫ N_a t dA` and `f_a = ∫ N_a b dV`, `[points · dimension]`, N. A displacement gives none.
+/// The nodal forces `f_a = ∫ N_a t dA` and `f_a = ∫ N_a b dV`, `[points · dimension]`, N. A prescribed displacement has
+/// none.
 ///
-/// The rules are chosen by the degree of the load as a polynomial of the place, whatever the rule of the stiffness:
-/// [`crate::element::Element::integration_table`]. What is no polynomial is integrated as one of degree 8.
+/// The quadrature rules are chosen by the degree of the load as a polynomial of the position, whatever the rule of the
+/// stiffness is: [`crate::element::Element::integration_table`]. A load that is not a polynomial is integrated as one
+/// of degree 8.
 ///
-/// `thickness` in m, 1 for a solid.
+/// `thickness` is in m; it is 1 for a solid.
 ///
 /// # Errors
-/// The part has no sides, points or cells to act on, or the load is not finite somewhere.
+/// The part has no sides, points or cells on which the load can act, or the load is not finite somewhere.
 pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f64) -> Result<Vec<f64>> {
     let nothing = |what: &str| Err(Error::at("load", format!("acts on nothing: the selected part has no {what}")));
     let forces = match action {
@@ -156,7 +164,7 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
     }
 }
 
-/// That a load is finite at the nodes of what it acts on, which no quadrature point may reach.
+/// Checks that a load is finite at the nodes on which it acts; a quadrature point may miss a singularity there.
 fn finite_at(mesh: &Mesh, components: &[Component], mut points: impl Iterator<Item = usize>) -> Result<()> {
     let varies = |component: &Component| matches!(component, Component::Varying(_));
     if !components.iter().any(varies) {
@@ -216,11 +224,12 @@ fn side_weights(mesh: &Mesh, sides: &[SideIndex]) -> Vec<(usize, f64)> {
     weights
 }
 
-/// Force per area, Pa, as a function of the place and of the normal, which points outwards and, on a surface in space, along it.
+/// A force per area, Pa, as a function of the position and of the normal, which points outwards and, on a surface in
+/// space, lies in it.
 pub type Traction<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
 
-/// `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N; on flat sides exact for tractions of degree 2 in
-/// the place.
+/// The nodal forces `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N; on flat sides
+/// exact for tractions of degree 2 in the position.
 pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: f64) -> Vec<f64> {
     let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
     side_forces(mesh, &sides, Integrand::Load(2), traction, thickness)
@@ -250,7 +259,7 @@ fn side_forces(
                 let along = |k: usize| (0..count).map(|a| x[a * d + k] * gradients[a * tangents + l]).sum();
                 basis.push(unit(&across((0..d).map(along).collect(), &basis)));
             }
-            // What of the way from the middle of the cell is across all tangents.
+            // The component, orthogonal to all tangents, of the vector from the middle of the cell.
             let way: Vec<f64> = at.iter().zip(&centre).map(|(x, c)| x - c).collect();
             let t = traction(&at, &unit(&across(way, &basis)));
             for (&node, n) in nodes.iter().zip(values) {
@@ -261,7 +270,7 @@ fn side_forces(
     forces
 }
 
-/// Nodes of a side and where they are, and the middle of its cell.
+/// The nodes of a side and their positions, and the middle of its cell.
 fn side_points(mesh: &Mesh, index: &SideIndex) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
     let d = mesh.dimension;
     let block = &mesh.blocks[index.cell.block];
@@ -278,7 +287,7 @@ fn side_of<'a>(mesh: &'a Mesh, index: &SideIndex) -> &'a SideTable {
     &mesh.blocks[index.cell.block].element.sides()[index.side]
 }
 
-/// What of a vector is orthogonal to unit vectors.
+/// The component of a vector that is orthogonal to unit vectors.
 fn across(mut v: Vec<f64>, basis: &[Vec<f64>]) -> Vec<f64> {
     for e in basis {
         let along = dot(&v, e);
@@ -287,7 +296,7 @@ fn across(mut v: Vec<f64>, basis: &[Vec<f64>]) -> Vec<f64> {
     v
 }
 
-/// `w_q ‖∂x/∂s₁ × ∂x/∂s₂‖` (`w_q ‖∂x/∂s‖` of a curve) at each quadrature point of a side.
+/// `w_q ‖∂x/∂s₁ × ∂x/∂s₂‖` (`w_q ‖∂x/∂s‖` on a curve) at each quadrature point of a side.
 fn areas(table: &Tabulation, x: &[f64], d: usize) -> Vec<f64> {
     let tangents = table.dimension;
     let at_point = |(gradients, w): (&[f64], &f64)| {

@@ -1,25 +1,29 @@
 //! Masses at the points instead of a mass matrix.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use super::integration::each_cell_points;
 use crate::element::Integrand;
 use crate::mesh::Mesh;
 
-/// How the mass of a cell is shared among its nodes.
+/// How the mass of a cell is distributed among its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Lumping {
-    /// `m_a = ∫ ρ N_a dV`, the row sums of the consistent mass matrix. They balance the weight of the body exactly; of quadratic
-    /// cells those of the corners are zero or negative.
+    /// `m_a = ∫ ρ N_a dV`, the row sums of the consistent mass matrix. They represent the weight of the body exactly,
+    /// but those of the corners of quadratic cells are zero or negative.
     #[default]
     RowSum,
-    /// `m_a = m ∫ N_a² dV / Σ_b ∫ N_b² dV`, the diagonal of the consistent mass matrix scaled to the mass m of the cell: above
-    /// zero for every element (Hinton, Rock, Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976). Of linear simplices the same.
+    /// `m_a = m ∫ N_a² dV/Σ_b ∫ N_b² dV`, the diagonal of the consistent mass matrix scaled to the mass m of the cell:
+    /// positive for every element (Hinton, Rock, Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976). On linear
+    /// simplices it is equal to `RowSum`.
     Hrz,
 }
 
 crate::named!(Lumping { "row-sum" => RowSum, "hrz" => Hrz });
 
-/// Nodal masses, `[points]`, kg. `thickness` in m, 1 for a solid; `density` in kg/m³. The integrals have rules of their own, exact for
-/// the shape functions whatever the rule of the stiffness: [`crate::element::Element::integration_table`].
+/// The nodal masses, `[points]`, kg. `thickness` is in m, 1 for a solid; `density` is in kg/m³. The quadrature rules
+/// are exact for the shape functions, whatever the rule of the stiffness is:
+/// [`crate::element::Element::integration_table`].
 pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping) -> Vec<f64> {
     let mut masses = vec![0.0; mesh.point_count()];
     match lumping {
@@ -51,8 +55,8 @@ pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping
     masses
 }
 
-/// Nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix, which for a
-/// tetrahedron are a quarter of its mass. `thickness` in m, 1 for a solid; `density` in kg/m³.
+/// The nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix. Each node of a
+/// linear tetrahedron gets a quarter of its mass. `thickness` is in m, 1 for a solid; `density` is in kg/m³.
 pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
     lumped_masses(mesh, density, thickness, Lumping::RowSum)
 }

@@ -1,4 +1,10 @@
-//! The two models of one mesh, both as a sparse stiffness on the same degrees of freedom: finite elements, and springs.
+//! The two models of one mesh, finite elements and springs, both with a sparse stiffness on the same degrees of
+//! freedom.
+//!
+//! Supports, loads and masses are common to both, so that they can be compared. The degree of freedom of a point in a
+//! direction has the number `point · dimension + direction`.
+//!
+//! Theory: pages *Stiffness* and *Exact networks* of the book.
 
 mod assembly;
 mod deformation;
@@ -39,21 +45,21 @@ pub use tension::RestTension;
 
 use faer::sparse::Triplet;
 
-/// Entries of the lower triangle of a symmetric matrix; those of the same place add up.
+/// Entries of the lower triangle of a symmetric matrix; entries at the same position are added.
 pub type Entries = Vec<Triplet<usize, usize, f64>>;
 
-/// `x = X + u`, `[points · dimension]`, m.
+/// The positions `x = X + u`, `[points · dimension]`, m.
 pub fn displaced(points: &[f64], u: &[f64]) -> Vec<f64> {
     points.iter().zip(u).map(|(x, u)| x + u).collect()
 }
 
-/// What a model does with its points at given positions.
+/// Energy, forces and tangent of a model at given positions.
 #[derive(Debug, Clone)]
 pub struct Response {
-    /// J.
+    /// The energy, J.
     pub energy: f64,
-    /// The energy's derivative in the positions, `[points · dimension]`, N.
+    /// The gradient of the energy in the positions, `[points · dimension]`, N.
     pub force: Vec<f64>,
-    /// Its second derivative, N/m.
+    /// The second derivative of the energy, N/m.
     pub tangent: Entries,
 }

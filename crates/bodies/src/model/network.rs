@@ -9,55 +9,59 @@ use crate::stiffness::gather;
 use faer::sparse::Triplet;
 use std::sync::Arc;
 
-/// A spring between two points.
+/// A linear spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LengthSpring {
-    /// The lower index first.
+    /// Its points, the lower index first.
     pub points: [usize; 2],
-    /// N/m.
+    /// The spring constant, N/m.
     pub constant: f64,
-    /// Length at rest, m.
+    /// The rest length, m.
     pub rest: f64,
 }
 
 impl LengthSpring {
-    /// Energy, force and its slope at a length.
+    /// Energy (J), force (N) and its slope (N/m) at a length in m.
     pub fn pull(&self, length: f64) -> [f64; 3] {
         linear(self.constant, length - self.rest)
     }
 
-    /// The force over the length, which is the constant where the rest length is zero, N/m.
+    /// The force divided by the length, N/m. It is the constant if the rest length is zero.
     #[inline(always)]
     pub(super) fn stress(&self, length: f64) -> f64 {
         if self.rest == 0.0 { self.constant } else { self.constant * (length - self.rest) / length }
     }
 
-    /// Whether the force has a direction, as it has at any length where the rest length is zero.
+    /// Whether the force has a direction at this length. With a rest length of zero it always has.
     #[inline(always)]
     pub(super) fn has_direction(&self, length: f64) -> bool {
         length > 0.0 || self.rest == 0.0
     }
 }
 
-/// A spring that measures something else of a few points, an angle, an area, a volume, a coupling, a user's measure, or one with
-/// a law of its own.
+/// A spring with another measure of some points (an angle, an area, a volume, a coupling, a user's expression) or with
+/// a force law.
 #[derive(Debug, Clone)]
 pub struct MeasureSpring {
+    /// The kind of spring.
     pub kind: SpringKind,
+    /// Its points, in the order of the measure.
     pub points: Vec<usize>,
-    /// In J per square of the measure's unit: of an area N/m³, of a volume N/m⁵, of an angle N·m.
+    /// The spring constant, in J divided by the square of the measure's unit: N/m³ for an area, N/m⁵ for a volume, N·m
+    /// for an angle.
     pub constant: f64,
-    /// The measure at rest, m², m³, rad, …
+    /// The measure at rest, in m, m², m³ or rad.
     pub rest: f64,
+    /// What it measures.
     pub measure: Measure,
-    /// Where the force is not `constant · (c − rest)`; the constant is its slope at rest then.
+    /// The force law, unless the force is `constant · (c − rest)`. With a law the constant is its slope at rest.
     pub law: Option<Arc<Law>>,
-    /// Of the law.
+    /// The parameters of the law.
     pub parameters: Vec<f64>,
 }
 
 impl MeasureSpring {
-    /// One that measures c at rest, with the slope k and the force T there, for which [`is_steady`] holds.
+    /// A spring that measures c at rest, with the slope k and the force T there, for which [`is_steady`] holds.
     pub(super) fn steady(
         kind: SpringKind,
         points: Vec<usize>,
@@ -69,7 +73,7 @@ impl MeasureSpring {
         MeasureSpring { kind, points, constant: k, rest: c, measure, law, parameters }
     }
 
-    /// Energy, force and its slope where the measure is c.
+    /// Energy, force and its slope if the measure is c.
     pub fn pull(&self, c: f64) -> [f64; 3] {
         match &self.law {
             None => linear(self.constant, c - self.rest),
@@ -90,18 +94,19 @@ impl MeasureSpring {
     }
 }
 
-/// Springs on the points of a mesh. Springs whose constant is zero are not in it.
+/// Springs on the points of a mesh. Springs with a constant of zero are left out.
 #[derive(Debug, Clone, Default)]
 pub struct Network {
+    /// The number of coordinates of a point.
     pub dimension: usize,
-    /// Sorted by their points.
+    /// The linear springs between two points, sorted by their points.
     pub lengths: Vec<LengthSpring>,
-    /// Cell after cell.
+    /// All other springs, cell after cell.
     pub others: Vec<MeasureSpring>,
 }
 
 impl Network {
-    /// The tangent stiffness at rest, `Σ_s k_s g_s g_sᵀ`, N/m; `points` as in the mesh, `[points × dimension]`.
+    /// The tangent stiffness at rest, `Σ_s k_s g_s g_sᵀ`, N/m, with the points of the mesh, `[points × dimension]`, m.
     pub fn stiffness(&self, points: &[f64]) -> Entries {
         let d = self.dimension;
         let mut entries = Entries::with_capacity(self.entries());
@@ -110,7 +115,8 @@ impl Network {
             let (xi, xj) = (&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d]);
             let length = distance(xi, xj);
             let n: Vec<f64> = xi.iter().zip(xj).map(|(a, b)| (b - a) / length).collect();
-            // (1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ: n nᵀ of springs that do not pull at rest, I of those without a rest length.
+            // (1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ: it is n nᵀ for springs that do not pull at rest, and I for springs of rest
+            // length zero.
             let along = if spring.rest == 0.0 { 0.0 } else { spring.rest / length };
             for k in 0..d {
                 for l in 0..d {
@@ -141,8 +147,8 @@ impl Network {
         entries
     }
 
-    /// The network whose springs pull `factors` times as hard, `[springs]`, lengths first. Of a law the parameters that the force
-    /// is proportional to are scaled.
+    /// The network whose springs pull `factors` times as hard, `[springs]`, length springs first. For a law the
+    /// parameters to which the force is proportional are scaled.
     pub fn scaled(&self, factors: &[f64]) -> Network {
         let mut network = self.clone();
         let (lengths, others) = factors.split_at(network.lengths.len());
@@ -155,26 +161,28 @@ impl Network {
         network
     }
 
+    /// The number of springs.
     pub fn len(&self) -> usize {
         self.lengths.len() + self.others.len()
     }
 
+    /// Whether there are no springs.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The largest constant of a length spring, as a multiple of the least.
+    /// The ratio of the largest to the least constant of the length springs.
     pub fn range(&self) -> f64 {
         let constants = || self.lengths.iter().map(|s| s.constant);
         constants().fold(0.0, f64::max) / constants().fold(f64::INFINITY, f64::min)
     }
 
-    /// How many constants are below zero.
+    /// The number of negative constants.
     pub fn negative(&self) -> usize {
         self.negative_springs().count()
     }
 
-    /// The `count` springs that push hardest where they should pull: their points and constants, the least first.
+    /// The `count` springs with the most negative constants: their points and constants, the least first.
     pub fn most_negative(&self, count: usize) -> Vec<(&[usize], f64)> {
         let mut springs: Vec<(&[usize], f64)> = self.negative_springs().collect();
         springs.sort_by(|a, b| a.1.total_cmp(&b.1));

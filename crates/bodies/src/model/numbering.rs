@@ -1,7 +1,8 @@
 //! An order of points in which neighbours are near each other.
 
-/// The rows of the points that `is_row`, others far beyond: from the outside in, neighbours next to each other (Cuthill and McKee
-/// 1969, reversed). Incomplete factors are better in it than in one of little fill, and the cache holds what is near.
+/// The row of each point that `is_row`; other points get rows far beyond. The order is that of Cuthill and McKee
+/// (1969), reversed: incomplete factors are more accurate in it than in an order of little fill, and neighbours share
+/// cache lines.
 pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
     let n = is_row.len();
     let mut beside = vec![Vec::new(); n];
@@ -14,7 +15,7 @@ pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
         beside.dedup();
     }
     let mut is_met = vec![false; n];
-    // From one point on to all that hang together with it.
+    // From one point to all points of its connected part.
     let visit = |first: usize, is_met: &mut [bool]| {
         let mut order = vec![first];
         is_met[first] = true;
@@ -31,7 +32,7 @@ pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
     for point in 0..n {
         if is_row[point] && !is_met[point] {
             let all = visit(point, &mut is_met);
-            // The last that was met lies at an end.
+            // The point that is reached last is at an end of the part.
             all.iter().for_each(|i| is_met[*i] = false);
             order.extend(visit(all[all.len() - 1], &mut is_met));
         }

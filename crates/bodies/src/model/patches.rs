@@ -1,7 +1,10 @@
-//! Springs on the content of patches of cells, which carry λ near the incompressible where single cells would lock.
+//! Springs on the content of patches of cells. They carry λ for nearly incompressible materials, where single cells
+//! would lock.
 //!
-//! Each cell is shared among its points that are not held: patches of held points lock as cells do. A cell all of whose points
-//! are held is a patch of its own.
+//! Each cell is shared among its points that are not held, because patches of held points lock as cells do. A cell
+//! whose points are all held is a patch of its own.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use super::network::MeasureSpring;
 use crate::element::SpringKind;
@@ -13,15 +16,15 @@ use crate::springs::{Law, Measure, Patch};
 use crate::stiffness::gather;
 use std::sync::Arc;
 
-/// `T = λ ln J/(J V₀/b)`, of the energy `λ/2 ln² J`.
+/// `T = λ ln J/(J V₀/b)`, from the energy `λ/2 ln² J`.
 const NEO_HOOKEAN: &str = "b*ln(c/c0)*c0/c";
 
-/// The energy `V_n λ/2 (J_n − 1)²`, or that of the fit, of the patch of every point, `J_n = Σ_c s_c V_c/Σ_c s_c V_c0`; `held`
-/// says of each point whether it is, or is empty.
+/// One spring per patch with the energy `V_n λ/2 (J_n − 1)²`, or that of the fit, `J_n = Σ_c s_c V_c/Σ_c s_c V_c0`,
+/// with s_c the share of cell c. `held` says of each point whether it is held, or is empty.
 ///
 /// # Errors
-/// The mesh has cells of several kinds or other cells than triangles of three and tetrahedra of four nodes in their own space, or
-/// the material is one in which no cell locks at large deformation (kind `Unsupported`).
+/// The mesh has cells of several kinds, or cells other than triangles of three and tetrahedra of four nodes in a space
+/// of their own dimension; or the material is one in which no cell locks at large deformation (kind `Unsupported`).
 pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bool]) -> Result<Vec<MeasureSpring>> {
     let expected =
         "\"points\" or \"cells\": patches are for meshes of linear triangles or linear tetrahedra in their own space";

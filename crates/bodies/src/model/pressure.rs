@@ -1,4 +1,6 @@
 //! The pressure in a network with volume springs on patches.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use super::network::{MeasureSpring, Network};
 use crate::material::{Material, State};
@@ -7,11 +9,12 @@ use crate::springs::{Content, Measure, Patch};
 use crate::stiffness::gather;
 use std::collections::BTreeMap;
 
-/// The mean pressure `−(σ₁ + σ₂ + σ₃)/3` under the displacements u, `[points]`, Pa; `None` of networks without patches.
+/// The mean pressure `−(σ₁ + σ₂ + σ₃)/3` under the displacements u, `[points]`, Pa; `None` for networks without
+/// patches.
 ///
-/// That of the patches alternates from point to point: displacements and pressures of this pair are not stable in the sense of
-/// Babuška and Brezzi. It is averaged twice from points to cells and from cells to their points, which takes the alternating part
-/// away. With `linear`, changes of volume are those of the linear theory.
+/// The pressure of the patches oscillates from point to point, because this pair of displacements and pressures is not
+/// inf-sup stable (Babuška and Brezzi). It is averaged twice from points to cells and back, which removes the
+/// oscillation. With `linear`, changes of volume are those of the linear theory.
 pub fn smoothed_pressure(
     mesh: &Mesh,
     network: &Network,
@@ -37,7 +40,7 @@ pub fn smoothed_pressure(
     Some(of_points(mesh, cells.iter().map(|(nodes, [content, _])| (&nodes[..], *content, mean(nodes)))))
 }
 
-/// The mean over the cells around each point, by their contents; cells have nodes, content and value.
+/// The mean over the cells around each point, weighted by their contents; each cell has nodes, content and value.
 fn of_points<'a>(mesh: &Mesh, cells: impl Iterator<Item = (&'a [usize], f64, f64)>) -> Vec<f64> {
     let (mut sums, mut weights) = (vec![0.0; mesh.point_count()], vec![0.0; mesh.point_count()]);
     for (nodes, content, value) in cells {
@@ -49,7 +52,7 @@ fn of_points<'a>(mesh: &Mesh, cells: impl Iterator<Item = (&'a [usize], f64, f64
     sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect()
 }
 
-/// K in `p = −K (J − 1)`, J the change of volume, or of the area in a plane.
+/// K in `p = −K (J − 1)`, with J the ratio of the volume, or of the area in a plane, to that at rest.
 fn bulk_modulus(material: Material) -> f64 {
     let t = material.thickness();
     let moduli = material.moduli();

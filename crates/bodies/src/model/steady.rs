@@ -1,28 +1,30 @@
-//! Springs that pull at rest and have no rest measure, or none that could be written: their force is constant, or nearly.
+//! Springs that pull at rest and have no rest measure, or none that can be stored: their force is constant, or nearly
+//! constant.
 
 use crate::springs::Law;
 use std::sync::{Arc, LazyLock};
 
-/// A rest measure beyond this multiple of the present measure is not stored: the energy from there would be so large that rounding
-/// hides its changes.
+/// The largest multiple of the present measure that is stored as a rest measure. From a larger one the energy would be
+/// so large that rounding hides its changes.
 const FARTHEST: f64 = 1e10;
 
 /// A rest length below this share of the length is zero.
 const NO_LENGTH: f64 = 1e-12;
 
-/// Whether a spring with the force `pull` at rest, where it measures c, has no rest measure `c − T/k`.
+/// Whether a spring with the force `pull` at rest, where it measures c, has no rest measure `c − T/k` that can be
+/// stored.
 pub fn is_steady(constant: f64, pull: f64, c: f64) -> bool {
     pull != 0.0 && pull.abs() > FARTHEST * (constant * c).abs()
 }
 
-/// The law of such springs, with the parameters T, the force at rest, and k: its energy is counted from the mesh.
+/// The law of such springs, with the parameters T, the force at rest, and k. Its energy is zero at rest.
 pub fn steady_law() -> Arc<Law> {
     static LAW: LazyLock<Arc<Law>> =
         LazyLock::new(|| Arc::new(Law::parse("T + k*(c - c0)").expect("it is a law with parameters")));
     LAW.clone()
 }
 
-/// `ℓ + x`, and zero where that is rounding.
+/// `ℓ + x`, or zero if the sum is only a rounding error.
 pub fn rest_length(length: f64, x: f64) -> f64 {
     let rest = length + x;
     if rest.abs() > NO_LENGTH * length { rest } else { 0.0 }

@@ -1,20 +1,22 @@
-//! Which degrees of freedom are held, and whether that holds every body.
+//! Supports, and whether they hold every body.
 
 use crate::mesh::Mesh;
 use nalgebra::DMatrix;
 
-/// Prescribed displacements, m: `[points · dimension]`, `None` where the point is free.
+/// Prescribed displacements of the points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
+    /// The displacements, `[points · dimension]`, m; `None` for degrees of freedom that are free.
     pub prescribed: Vec<Option<f64>>,
 }
 
 impl Support {
+    /// No supports.
     pub fn free(mesh: &Mesh) -> Support {
         Support { prescribed: vec![None; mesh.points.len()] }
     }
 
-    /// Holds the given directions of the points at rest.
+    /// Holds these directions of the points at rest.
     pub fn fix(&mut self, points: &[usize], directions: &[usize], dimension: usize) {
         for &p in points {
             for &k in directions {
@@ -23,6 +25,7 @@ impl Support {
         }
     }
 
+    /// Whether the degree of freedom is held.
     pub fn is_fixed(&self, dof: usize) -> bool {
         self.prescribed[dof].is_some()
     }
@@ -31,13 +34,15 @@ impl Support {
 /// A connected part of the mesh that the support leaves free to move as a rigid body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unheld {
+    /// The number of its points.
     pub points: usize,
+    /// Its point with the lowest index.
     pub first_point: usize,
-    /// How many independent rigid motions remain.
+    /// The number of independent rigid motions that remain.
     pub motions: usize,
 }
 
-/// The bodies that can move without deforming: for each, the rank of its rigid motions at the held degrees of freedom.
+/// The bodies that can move without deforming, found by the rank of their rigid motions at the held degrees of freedom.
 pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
     let d = mesh.dimension;
     let motions = d * (d + 1) / 2;
@@ -48,7 +53,7 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
         let centre: Vec<f64> =
             (0..d).map(|k| body.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / body.len() as f64).collect();
         let extent = body.iter().map(|&p| crate::springs::distance(mesh.point(p), &centre)).fold(0.0, f64::max);
-        // Translations e_k, then rotations in the planes (k, l), in units of the body's size.
+        // Translations e_k, then rotations in the planes (k, l), in units of the size of the body.
         let mut modes = DMatrix::zeros(held.len().max(motions), motions);
         for (row, &dof) in held.iter().enumerate() {
             let r: Vec<f64> = mesh.point(dof / d).iter().zip(&centre).map(|(x, c)| (x - c) / extent).collect();
@@ -65,7 +70,7 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
                 }
             }
         }
-        // Rounding of coordinates far from the origin is what a zero singular value may show.
+        // A zero singular value may be as large as the rounding of coordinates far from the origin.
         let rank = modes.rank(1e-9 * (held.len().max(1) as f64).sqrt());
         if rank < motions {
             unheld.push(Unheld { points: body.len(), first_point: body[0], motions: motions - rank });

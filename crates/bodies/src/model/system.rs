@@ -1,4 +1,6 @@
-//! The finite element model.
+//! The assembled finite element model.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use super::Entries;
 use crate::element::Tabulation;
@@ -20,25 +22,26 @@ pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], 
     }
 }
 
-/// The length, area or volume of the cells by the rules of their stiffness: what energies that these rules integrate are means over.
+/// The length, area or volume of all cells, by the quadrature rules of their stiffness, over which averages of energies
+/// are taken.
 pub fn content(mesh: &Mesh) -> f64 {
     let mut content = 0.0;
     each_cell(mesh, |_, _, geometry| content += geometry.content());
     content
 }
 
-/// Entries of the lower triangle of a matrix with so many rows.
+/// The number of entries in the lower triangle of a matrix with so many rows.
 pub(super) fn triangle(rows: usize) -> usize {
     rows * (rows + 1) / 2
 }
 
-/// The number of [`finite_elements`]' entries.
+/// The number of entries of [`finite_elements`].
 pub(super) fn body_entries(mesh: &Mesh) -> usize {
     let block = |block: &CellBlock| block.cells().len() * triangle(block.element.nodes() * mesh.dimension);
     mesh.blocks.iter().map(block).sum()
 }
 
-/// The assembled stiffness of the mesh, N/m; degree of freedom `point · dimension + direction`.
+/// The assembled stiffness of the mesh, N/m. A degree of freedom has the number `point · dimension + direction`.
 pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
     let d = mesh.dimension;
     let mut entries = Entries::with_capacity(body_entries(mesh));
@@ -59,7 +62,7 @@ pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
     entries
 }
 
-/// `Q R Qᵀ` of a cell of a surface or curve: Q takes the displacements in its own plane or line into space.
+/// `Q R Qᵀ` of a cell of a surface or curve; Q maps the displacements in its own plane or line into space.
 fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &DMatrix<f64>) -> DMatrix<f64> {
     let (n, d, space) = (table.nodes, table.dimension, table.space);
     let mut placement = Placement::new(table);

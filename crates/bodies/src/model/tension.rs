@@ -1,4 +1,4 @@
-//! How the springs of a network pull at rest.
+//! The tension of the springs of a network at rest.
 
 use super::elastic::Elastic;
 use super::network::Network;
@@ -6,21 +6,23 @@ use crate::fit::Spread;
 use crate::springs::{distance, norm};
 use crate::stiffness::gather;
 
-/// The rest lengths of a network's springs beside their lengths in the mesh, and how well the springs balance there.
+/// How far the rest lengths of a network differ from the lengths in the mesh, and how well the springs are in
+/// equilibrium there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RestTension {
     /// `|L₀/ℓ − 1|` of the springs between two points.
     pub rest_lengths: Spread,
-    /// Springs between two points with `L₀ < 0`.
+    /// The number of springs between two points with `L₀ < 0`.
     pub negative: usize,
-    /// Springs that pull alike at every measure, to rounding, and so have no rest measure.
+    /// The number of springs whose force is constant up to rounding, so that they have no rest measure.
     pub steady: usize,
-    /// The largest force on a point over the largest of a spring on one of its points; 0 where none pulls.
+    /// The largest resultant force on a point, relative to the largest force of a spring on one of its points; 0 if no
+    /// spring pulls.
     pub unbalanced: f64,
 }
 
 impl RestTension {
-    /// Of a network with its points at `points`, `[points × dimension]`, m.
+    /// The tension of a network with its points at `points`, `[points × dimension]`, m.
     pub fn of(network: &Network, points: &[f64]) -> RestTension {
         let d = network.dimension;
         let at = |point: usize| &points[point * d..(point + 1) * d];

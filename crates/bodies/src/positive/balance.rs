@@ -1,4 +1,4 @@
-//! The forces on the points at rest, and the least correction that takes them away.
+//! The forces on the points at rest, and the least correction that removes them.
 
 use super::contents::Contents;
 use super::edges::Edges;
@@ -8,26 +8,26 @@ use crate::model::{Entries, Network, Support};
 use crate::solve::System;
 use faer::sparse::Triplet;
 
-/// The largest force on a point at rest that is let pass, as a share of the largest force of a spring.
+/// The largest force on a point at rest that is accepted, relative to the largest force of a spring.
 const TOLERANCE: f64 = 1e-10;
-/// Corrections end below this share.
+/// Corrections end when the largest force is below this share.
 const FOUND: f64 = 1e-14;
 const ROUNDS: usize = 12;
-/// Of the mean of the diagonal: rigid motions meet no force, so the equations are singular.
+/// The shift of the diagonal, relative to its mean. The equations are singular, because rigid motions cause no force.
 const RAISED: f64 = 1e-9;
 
-/// The springs whose forces at rest are to add up to zero.
+/// The springs whose forces at rest have to be in equilibrium.
 pub(super) struct Balance<'a> {
     mesh: &'a Mesh,
     network: &'a Network,
     edges: &'a Edges,
     contents: &'a Contents,
-    /// Forces of the springs that stay, `[points × dimension]`, N.
+    /// The forces of the springs that do not change, `[points × dimension]`, N.
     fixed: Vec<f64>,
 }
 
 impl<'a> Balance<'a> {
-    /// Of the network's springs on content those in `contents` may change their tension.
+    /// Of the network's springs on content, those in `contents` may change their tension.
     pub fn new(mesh: &'a Mesh, network: &'a Network, edges: &'a Edges, contents: &'a Contents) -> Balance<'a> {
         let d = mesh.dimension;
         let mut fixed = vec![0.0; mesh.points.len()];
@@ -45,8 +45,8 @@ impl<'a> Balance<'a> {
         Balance { mesh, network, edges, contents, fixed }
     }
 
-    /// The energy's derivative in the positions at rest, `[points × dimension]`, N, with these constants and these tensions of
-    /// the springs on content.
+    /// The gradient of the energy in the positions at rest, `[points × dimension]`, N, with these constants and these
+    /// tensions of the springs on content.
     fn forces(&self, constants: &[f64], tensions: &[f64]) -> Vec<f64> {
         let mut forces = self.fixed.clone();
         let d = self.mesh.dimension;
@@ -63,17 +63,17 @@ impl<'a> Balance<'a> {
         forces
     }
 
-    /// The largest force on a point in one direction, as a share of the largest force of a spring.
+    /// The largest force on a point in one direction, relative to the largest force of a spring.
     fn share(&self, forces: &[f64], constants: &[f64]) -> f64 {
         let largest = constants.iter().zip(&self.edges.lengths).map(|(k, l)| k.abs() * l).fold(0.0, f64::max);
         forces.iter().fold(0.0f64, |a, f| a.max(f.abs())) / largest
     }
 
-    /// Changes constants that are above zero, and tensions, by shares of them so that their squares add up to least and no point
-    /// feels a force at rest. Returns the force that is left, as a share of the largest of a spring.
+    /// Changes positive constants, and tensions, by relative amounts with the least sum of squares such that no point
+    /// feels a force at rest. Returns the remaining force, relative to the largest force of a spring.
     ///
     /// # Errors
-    /// A constant falls below zero, or a force is left.
+    /// A constant becomes negative, or a force remains.
     pub fn correct(&self, constants: &mut [f64], tensions: &mut [f64]) -> Result<f64> {
         let d = self.mesh.dimension;
         let mut forces = self.forces(constants, tensions);
@@ -121,7 +121,7 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// `Σ_e w_e r_e r_eᵀ + Σ_c w_c g_c g_cᵀ`, raised a little.
+    /// `Σ_e w_e r_e r_eᵀ + Σ_c w_c g_c g_cᵀ`, with a small shift of the diagonal.
     fn normal(&self, squares: &[f64], tension_squares: &[f64]) -> Entries {
         let (d, n) = (self.mesh.dimension, self.mesh.points.len());
         let mut entries = Entries::new();

@@ -6,23 +6,25 @@ use crate::model::{MeasureSpring, Network};
 use crate::springs::Measure;
 use crate::stiffness::gather;
 
-/// Of a law, how far its force at rest may be from minus its first parameter, as a share of it.
+/// The largest relative difference between the force of a law at rest and minus its first parameter.
 const ROUNDING: f64 = 1e-12;
 
-/// The springs that push at rest.
+/// The springs on content, which push at rest.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Contents {
-    /// Their places in the network.
+    /// Their indices in the network.
     pub places: Vec<usize>,
-    /// What they measure at rest.
+    /// Their measures at rest.
     pub rests: Vec<f64>,
     /// Their gradients at rest, `[points × dimension]` each.
     pub gradients: Vec<Vec<f64>>,
 }
 
 impl Contents {
+    /// The springs on content of the network.
+    ///
     /// # Errors
-    /// A spring has a law that no exact energy has; kind `Unsupported`.
+    /// A spring has a law that belongs to no exact energy; the kind is `Unsupported`.
     pub fn new(mesh: &Mesh, network: &Network) -> Result<Contents> {
         let mut contents = Contents::default();
         for (place, spring) in network.others.iter().enumerate() {
@@ -52,7 +54,8 @@ impl Contents {
         Ok(contents)
     }
 
-    /// What a unit of tension more does to twice the energy of small displacements u, while λ stays: `uᵀ H u − (g·u)²/c`.
+    /// The change of twice the energy of small displacements u per unit of additional tension, with λ unchanged:
+    /// `uᵀ H u − (g·u)²/c`.
     pub fn energies(&self, mesh: &Mesh, network: &Network, u: &[f64]) -> Vec<f64> {
         let energy = |(place, rest): (&usize, &f64)| {
             let spring = &network.others[*place];
@@ -68,13 +71,14 @@ impl Contents {
     }
 }
 
-/// The spring with so much more tension at rest, where it measures c, and the same λ; `None` if its stiffness is not above zero.
+/// The spring with `more` additional tension at rest, where it measures c, and the same λ; `None` if its stiffness is
+/// not positive.
 pub(super) fn tightened(spring: &MeasureSpring, c: f64, more: f64) -> Option<MeasureSpring> {
     let mut spring = spring.clone();
     let tension = spring.tension(c) + more;
     match &spring.law {
         None => {
-            // T = −μ V/c and the constant (μ + λ) V/c², V the content: λ stays.
+            // T = −μ V/c, and the constant is (μ + λ) V/c², with V the content: λ is unchanged.
             spring.constant -= more / c;
             spring.rest = c - tension / spring.constant;
         }
@@ -86,7 +90,7 @@ pub(super) fn tightened(spring: &MeasureSpring, c: f64, more: f64) -> Option<Mea
     (spring.constant > 0.0 && spring.constant.is_finite()).then_some(spring)
 }
 
-/// Of the spring's points, `[points × dimension]`.
+/// The positions of the points of the spring, `[points × dimension]`.
 pub(super) fn positions(mesh: &Mesh, spring: &MeasureSpring) -> Vec<f64> {
     let mut x = vec![0.0; spring.points.len() * mesh.dimension];
     gather(&mesh.points, mesh.dimension, &spring.points, &mut x);

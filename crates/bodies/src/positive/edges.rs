@@ -6,30 +6,31 @@ use crate::model::LengthSpring;
 use crate::springs::distance;
 use crate::stiffness::each_cell;
 
-/// Of the volume of two cells, what counts for a spring across their common side: such a spring should be a last resort.
+/// The share of the volume of two cells that counts for a spring across their common side. It is small, so that such
+/// springs are a last resort.
 const ACROSS: f64 = 1.0 / 24.0;
 
-/// Pairs of points, sorted, each with what a programme needs of it.
+/// Pairs of points, sorted, each with the data that the programme requires.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Edges {
     pub pairs: Vec<[usize; 2]>,
-    /// Constants of the exact network, N/m.
+    /// The constants of the exact network, N/m.
     pub constants: Vec<f64>,
-    /// At rest, m.
+    /// The lengths at rest, m.
     pub lengths: Vec<f64>,
-    /// Share of the content of the cells around, mᵈ.
+    /// The share of the contents of the cells around the edge, mᵈ.
     pub volumes: Vec<f64>,
     /// Whether the pair belongs to no cell.
     pub across: Vec<bool>,
 }
 
 impl Edges {
-    /// All pairs of points of one cell, with the constants of `springs`, which are sorted by their points; and with `is_across` the
-    /// pairs of points opposite a common side of two simplices.
+    /// All pairs of points of one cell, with the constants of `springs`, which must be sorted by their points; with
+    /// `is_across` also the pairs of points opposite a common side of two simplices.
     ///
     /// # Errors
-    /// Points coincide, or a spring joins others or is out of order; or the cells are no simplices of corners in their own space,
-    /// and springs across their sides are asked for (kind `Unsupported`).
+    /// Points coincide; a spring joins other points or is out of order; or springs across sides are requested and the
+    /// cells are not linear simplices in a space of their own dimension (kind `Unsupported`).
     pub fn new(mesh: &Mesh, springs: &[LengthSpring], is_across: bool) -> Result<Edges> {
         let mut shares: Vec<([usize; 2], bool, f64)> = Vec::new();
         let mut sides: Vec<(Vec<usize>, usize, f64)> = Vec::new();

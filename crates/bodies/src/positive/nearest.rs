@@ -10,17 +10,17 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::model::{Entries, LengthSpring, Network};
 
-/// Constants below this share of what is typical of their edge are zero.
+/// Constants below this share of the typical constant of their edge are zero.
 const ZERO: f64 = 1e-6;
-/// Negative ones above this share are rounding.
+/// Negative constants above minus this share are rounding errors.
 const ROUNDING: f64 = 1e-12;
 
 /// How the nearest network is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PositiveFit {
-    /// Whether springs across the sides of simplices may be added where the others do not suffice.
+    /// Whether springs across the sides of simplices may be added if the others do not suffice.
     pub across: bool,
-    /// How many of the lowest modes should keep their energies.
+    /// The number of lowest modes whose energies should be kept.
     pub modes: usize,
 }
 
@@ -30,12 +30,13 @@ impl Default for PositiveFit {
     }
 }
 
-/// The network without negative springs that is nearest to the exact `network` of the mesh; that itself where it has none. `watch` is
-/// told how far the search has come.
+/// The network without negative springs that is nearest to the exact `network` of the mesh; the network itself if it
+/// has none. `watch` is called with the progress of the search.
 ///
 /// # Errors
-/// The network is not one of springs of rest length zero, or springs on content have constants below zero (kind `Unsupported`);
-/// no network but that without springs is at rest, the nearest one is not stable, or the solver fails (kind `Infeasible`).
+/// The network has springs with a rest length, or springs on content with negative constants (kind `Unsupported`); only
+/// the network without springs is in equilibrium at rest, the nearest network is not stable, or the solver fails (kind
+/// `Infeasible`).
 pub fn nearest_positive(
     mesh: &Mesh,
     network: &Network,
@@ -49,7 +50,7 @@ pub fn nearest_positive(
         return Ok((network.clone(), outcome));
     }
     let plain = Edges::new(mesh, &network.lengths, false)?;
-    // Of an exact network Σ k ℓ² is d μ V.
+    // In an exact network Σ k ℓ² is d μ V.
     let squares = || network.lengths.iter().map(|s| s.constant * length(mesh, s).powi(2));
     let modulus = squares().sum::<f64>() / (mesh.dimension as f64 * plain.volumes.iter().sum::<f64>());
     if !(modulus > 0.0 && modulus.is_finite()) {
@@ -95,11 +96,11 @@ pub fn nearest_positive(
     Err(Error::at("nonnegative", problem).of_kind(ErrorKind::Infeasible))
 }
 
-/// What all searches share.
+/// The data that all searches share.
 struct Search<'a> {
     mesh: &'a Mesh,
     network: &'a Network,
-    /// A typical one, Pa.
+    /// A typical modulus, Pa.
     modulus: f64,
     /// The stiffness of the exact network.
     exact: &'a Entries,
@@ -111,7 +112,7 @@ impl Search<'_> {
         Programme { mesh, network, edges, contents, modulus, modes }
     }
 
-    /// `None` where there is no network without negative springs.
+    /// `None` if there is no network without negative springs.
     fn changes(
         &self,
         edges: &Edges,
@@ -129,7 +130,7 @@ impl Search<'_> {
         self.programme(edges, contents, vibrations.shapes.iter().map(mode).collect()).solve(watch)
     }
 
-    /// The network of these changes, balanced and measured.
+    /// The network with these changes, corrected to equilibrium, and its errors.
     fn finish(
         &self,
         edges: &Edges,
@@ -173,6 +174,8 @@ impl Search<'_> {
         Ok(nearest)
     }
 
+    /// The network with these constants and additional tensions.
+    ///
     /// # Errors
     /// A spring on content loses its stiffness.
     fn network(&self, edges: &Edges, constants: &[f64], contents: &Contents, more: &[f64]) -> Result<Network> {
@@ -190,7 +193,7 @@ impl Search<'_> {
     }
 }
 
-/// That the network is one of springs of rest length zero on the points of the mesh.
+/// Checks that the network has springs of rest length zero on the points of the mesh.
 fn check(mesh: &Mesh, network: &Network) -> Result<()> {
     if network.dimension != mesh.dimension {
         return Err(Error::expected("network", format!("{} dimensions", mesh.dimension), network.dimension));
@@ -223,7 +226,7 @@ fn twice_energy(stiffness: &Entries, u: &[f64]) -> f64 {
     stiffness.iter().map(|e| both(e.row, e.col) * e.val * u[e.row] * u[e.col]).sum()
 }
 
-/// The displacements of homogeneous strain, `[fields][points × dimension]`.
+/// The displacements of homogeneous strains, `[fields][points × dimension]`.
 fn affine(mesh: &Mesh) -> Vec<Vec<f64>> {
     let d = mesh.dimension;
     let field = |i: usize, j: usize| {

@@ -1,6 +1,6 @@
-//! How far a network without negative springs is from the exact one.
+//! The difference between a network without negative springs and the exact network.
 
-/// What was changed to have no negative springs.
+/// What was changed to remove negative springs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Route {
     /// Nothing: there are none.
@@ -8,7 +8,7 @@ pub enum Route {
     Unchanged,
     /// The constants of the springs between points of one cell.
     Springs,
-    /// These, with springs across the sides of the cells.
+    /// These constants, and springs across the sides of the cells.
     Across,
     /// The constants, and the tensions of the springs on content.
     Tensions,
@@ -21,26 +21,27 @@ crate::named!(Route {
     "tensions" => Tensions,
 });
 
-/// How far the network is from the exact one. Errors of energies are shares of the exact ones.
+/// The difference between the network and the exact one. Errors of energies are relative to the exact ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PositiveOutcome {
+    /// What was changed.
     pub route: Route,
-    /// Springs of the exact network whose constant is below zero.
+    /// The number of springs of the exact network with a negative constant.
     pub negative: usize,
-    /// Springs of the exact network that are no more.
+    /// The number of springs of the exact network that were removed.
     pub dropped: usize,
-    /// Springs across the sides of cells.
+    /// The number of springs across the sides of cells.
     pub across: usize,
-    /// The least and the largest tension of a spring on content, as a multiple of the mean.
+    /// The least and the largest tension of a spring on content, relative to the mean.
     pub tensions: [f64; 2],
     /// The largest error of the energy of an affine displacement.
     pub affine: f64,
-    /// How many of the lowest modes of the exact network, free of supports, were to keep their energies.
+    /// The number of lowest modes of the exact network, without supports, whose energies were to be kept.
     pub modes: usize,
     /// The least and the largest error of their energies.
     pub mode_errors: [f64; 2],
-    /// The largest force on a point at rest, as a share of the largest force of a spring.
+    /// The largest force on a point at rest, relative to the largest force of a spring.
     pub rest_force: f64,
-    /// Of the solver.
+    /// The iterations of the solver.
     pub iterations: u32,
 }

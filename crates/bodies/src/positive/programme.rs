@@ -1,4 +1,6 @@
 //! The quadratic programme of the nearest network, solved by Clarabel's interior-point method.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use super::contents::Contents;
 use super::edges::Edges;
@@ -12,31 +14,32 @@ use clarabel::solver::{
 };
 use std::sync::mpsc;
 
-/// Of the square of a mode's relative error of energy against the squares of relative changes: a change of every constant by a
-/// tenth costs as much as an error of 0.1 %.
+/// The weight of the squared relative error of a mode's energy against squared relative changes of constants: a change
+/// of every constant by a tenth costs as much as an energy error of 0.1 %.
 const MODES: f64 = 1e4;
-/// Of the squares of relative changes of tensions against those of constants. Each change of a tension costs a force inside the
-/// body under homogeneous strain.
+/// The weight of squared relative changes of tensions against those of constants. Each change of a tension causes a
+/// force inside the body under homogeneous strain.
 const TENSIONS: f64 = 100.0;
 
-/// Bytes for 10 000 unknowns, measured on bricks of 8³ and 14³ hexahedra; they grow as the factors of solids do, with the power 4/3.
+/// The bytes for 10 000 unknowns, measured on bricks of 8³ and 14³ hexahedra. They grow with the power 4/3, as the
+/// factors of solids do.
 const MEMORY: f64 = 1.7e8;
-/// Powers of ten from one to the residual at which Clarabel ends.
+/// The powers of ten between one and the residual at which Clarabel ends.
 const NEAR: usize = 8;
 
-/// Called with how far a search has come, of how much.
+/// A callback `(done, total)` for the progress of a search.
 pub type Watch<'a> = dyn FnMut(usize, usize) + 'a;
 
-/// What may change and what should stay.
+/// What may change, and what should be kept.
 pub(super) struct Programme<'a> {
     pub mesh: &'a Mesh,
     pub network: &'a Network,
     pub edges: &'a Edges,
-    /// The springs on content whose tension may change; none where all stay.
+    /// The springs on content whose tension may change; none if all are fixed.
     pub contents: &'a Contents,
     /// A typical modulus of the network, Pa.
     pub modulus: f64,
-    /// For each mode the change of its energy with each constant and then each tension, as a share of it.
+    /// For each mode the relative change of its energy per change of each constant and then of each tension.
     pub modes: Vec<Vec<f64>>,
 }
 
@@ -48,7 +51,7 @@ pub(super) struct Changes {
     pub iterations: u32,
 }
 
-/// Entries of a sparse matrix.
+/// The entries of a sparse matrix.
 #[derive(Default)]
 struct Sparse {
     rows: Vec<usize>,
@@ -69,24 +72,24 @@ impl Sparse {
 }
 
 impl Programme<'_> {
-    /// A constant that is typical of an edge, N/m: `m V_e/ℓ²`.
+    /// A typical constant of an edge, `m V_e/ℓ²`, N/m.
     pub fn scale(&self, edge: usize) -> f64 {
         let Edges { lengths, volumes, .. } = self.edges;
         self.modulus * volumes[edge] / (lengths[edge] * lengths[edge])
     }
 
-    /// With `z_e = δk_e/(m V_e/ℓ_e²)` and `z_c = δT_c/m`,
+    /// Solves, with `z_e = δk_e/(m V_e/ℓ_e²)` and `z_c = δT_c/m`,
     ///
     /// ```text
     /// min Σ_e (V_e/V) (h²/ℓ_e²) z_e² + w_T Σ_c (c/V) z_c² + w_M Σ_m (δE_m/E_m)²
     /// Σ_e δk_e (X_j − X_i) + Σ_c δT_c ∇c = 0 at each point,   Σ_c c δT_c = 0,   k_e + δk_e ≥ 0
     /// ```
     ///
-    /// The mean of the tensions, which is the shear modulus, stays; without that all springs at zero would be a solution.
-    /// `None` where there is no solution.
+    /// The mean of the tensions, which is the shear modulus, is kept; otherwise a network with all springs zero would
+    /// be a solution. `None` if there is no solution.
     ///
     /// # Errors
-    /// The solver stops without a solution and without a proof that no solution exists.
+    /// The solver stops without a solution and without a proof that there is none.
     pub fn solve(&self, watch: &mut Watch) -> Result<Option<Changes>> {
         let (mesh, edges, contents) = (self.mesh, self.edges, self.contents);
         let (d, dofs) = (mesh.dimension, mesh.points.len());
@@ -94,7 +97,7 @@ impl Programme<'_> {
         let scales: Vec<f64> = (0..count).map(|edge| self.scale(edge)).collect();
         let volume: f64 = edges.volumes.iter().sum();
         let square = edges.lengths.iter().map(|l| l * l).sum::<f64>() / count as f64;
-        // About one in all: with larger ones the proof that there is no solution is not found.
+        // The weights sum to about one: with larger ones the proof that there is no solution is not found.
         let share = |e: usize| edges.volumes[e] / volume * square / (edges.lengths[e] * edges.lengths[e]);
         let mut weights: Vec<f64> = (0..count).map(share).collect();
         let content: f64 = contents.rests.iter().sum();
@@ -151,14 +154,14 @@ impl Programme<'_> {
         let solve = move || {
             let mut solver = DefaultSolver::new(&quadratic, &linear, &matrix, &bounds, &cones, settings)?;
             solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
-                // Nobody listens once the search is over.
+                // The receiver may be gone once the search is over.
                 let _ = sender.send(nearness(info));
                 false
             });
             solver.solve();
             Ok(solver.solution)
         };
-        // Clarabel keeps what it reports to, so it works in a thread of its own, which ends the messages with itself.
+        // Clarabel keeps its callback, so that it runs in a thread of its own, whose end closes the channel.
         let solution = std::thread::scope(|scope| {
             let solver = scope.spawn(solve);
             let mut nearest = 0;
@@ -182,7 +185,7 @@ impl Programme<'_> {
     }
 }
 
-/// How many of the [`NEAR`] powers of ten the largest residual has come down.
+/// How many of the [`NEAR`] powers of ten the largest residual has decreased.
 fn nearness(info: &DefaultInfo<f64>) -> usize {
     let residual = info.gap_rel.max(info.res_primal).max(info.res_dual);
     if residual > 0.0 { (-residual.log10()).clamp(0.0, NEAR as f64) as usize } else { 0 }

@@ -6,26 +6,27 @@ use crate::model::{Entries, Lumping, Support, lumped_masses, unheld_bodies};
 use crate::solve::{System, lowest_modes};
 use faer::sparse::Triplet;
 
-/// Bodies apart from each other have rigid motions of their own; of more than this the modes are not worth their time.
+/// The largest number of separate bodies. Each has rigid motions of its own, and with more of them the modes take too
+/// long.
 const BODIES: usize = 20;
 /// An ω² below this share of the shift is a rigid motion, or that of a hinge.
 const RIGID: f64 = 1e-7;
-/// A network is not stable if it has an ω² below zero by this share of the body's least one.
+/// A network is unstable if it has a negative ω² of this share of the least ω² of the body.
 const UNSTABLE: f64 = 1e-4;
 
 /// The lowest vibrations of a free body with unit density.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Vibrations {
-    /// Displacements, `[points × dimension]`.
+    /// The displacements of each mode, `[points × dimension]`.
     pub shapes: Vec<Vec<f64>>,
-    /// The least ω² that is no rigid motion.
+    /// The least ω² of a motion that is not rigid.
     least: Option<f64>,
     masses: Vec<f64>,
 }
 
 impl Vibrations {
-    /// The `count` lowest of a body with this stiffness; `modulus` is a typical one, Pa. A surface or curve in space has none, as
-    /// its membrane meets no resistance across.
+    /// The `count` lowest modes of a body with this stiffness; `modulus` is a typical one, Pa. A surface or curve in
+    /// space has none, because a membrane has no resistance across itself.
     ///
     /// # Errors
     /// The equations do not fit into memory, or the modes are not found.
@@ -53,7 +54,7 @@ impl Vibrations {
         Ok(Vibrations { shapes, least, masses })
     }
 
-    /// Whether a network with this stiffness, free of supports, has no motion that releases energy.
+    /// Whether a network with this stiffness and without supports has no motion that releases energy.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -72,7 +73,7 @@ fn raised(stiffness: &Entries, masses: &[f64], dimension: usize, shift: f64) -> 
     entries
 }
 
-/// The largest side of the box around the mesh, m.
+/// The longest side of the box around the mesh, m.
 fn extent(mesh: &Mesh) -> f64 {
     let d = mesh.dimension;
     let side = |k: usize| {

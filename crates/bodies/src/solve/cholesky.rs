@@ -1,4 +1,4 @@
-//! Cholesky's factor of a sparse matrix, in memory that is there.
+//! Cholesky factorisation of a sparse matrix, with checks of the memory that it needs.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory;
@@ -11,11 +11,11 @@ use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Side, get_global_parallelism};
 use std::sync::Arc;
 
-/// What all factors of matrices of one pattern share.
+/// The analysis that all factors of matrices with one pattern share.
 #[derive(Debug, Clone)]
 pub(super) struct Analysis(Arc<SymbolicCholesky<usize>>);
 
-/// `L`, of `L Lᵀ`.
+/// The factor `L` of `L Lᵀ`.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     analysis: Analysis,
@@ -23,6 +23,8 @@ pub struct Cholesky {
 }
 
 impl Analysis {
+    /// Analyses a pattern.
+    ///
     /// # Errors
     /// It does not fit into memory.
     pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Analysis> {
@@ -31,13 +33,13 @@ impl Analysis {
             .map_err(|cause| out_of_memory("the analysis of the stiffness", cause))
     }
 
-    /// Bytes that a factor takes, those with which it is made among them.
+    /// The bytes of a factor, including those that are needed to compute it.
     pub fn bytes(&self) -> u64 {
         let scratch = self.0.factorize_numeric_llt_scratch::<f64>(get_global_parallelism(), Default::default());
         8 * self.0.len_val() as u64 + scratch.unaligned_bytes_required() as u64
     }
 
-    /// The factor; `None` where the matrix is not positive definite.
+    /// The factor; `None` if the matrix is not positive definite.
     ///
     /// # Errors
     /// It does not fit into memory.
@@ -74,7 +76,7 @@ impl Cholesky {
     }
 }
 
-/// What the estimates before did not see coming.
+/// The error for a failed allocation that the estimates before did not predict.
 pub(super) fn out_of_memory(what: &str, cause: FaerError) -> Error {
     let cause = match cause {
         FaerError::IndexOverflow => "has more entries than can be counted",

@@ -1,51 +1,55 @@
-//! The internal forces of a model at given displacements, and how far they are rounded.
+//! The internal forces of a model at given displacements, and their rounding errors.
+//!
+//! Theory: page *Digits* of the book.
 
 use crate::element::Quadrature;
 use crate::model::{Elastic, Entries, Response, Support, displaced};
 use crate::springs::norm;
 
-/// Roundings of a force: the positions are rounded once, the sums over the nodes and points of a cell a few times, and plane stress finds
-/// its thickness to 45 ε.
+/// The number of roundings of a force: positions are rounded once, sums over the nodes and points of a cell a few
+/// times, and plane stress finds its thickness to 45 ε.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
-/// A change of the tangent, as a share of it, up to which the integral is exact to rounding: its error is the sixth power of that by 10⁶.
+/// The relative change of the tangent up to which the integral is exact to rounding: its error is 10⁻⁶ of the sixth
+/// power of this change.
 const NEAR: f64 = 0.05;
-/// Points of the integral along the displacements: its error is of their sixth power.
+/// The points of the integral along the displacements, whose error is of sixth order.
 const POINTS: usize = 3;
 
 /// A model at displacements u.
 #[derive(Debug, Clone)]
 pub(super) struct Internal {
     pub response: Response,
-    /// `[points · dimension]`, N.
+    /// The internal forces, `[points · dimension]`, N.
     pub force: Vec<f64>,
-    /// A bound of the rounding of `force` on the free degrees of freedom, in the Euclidean norm, N.
+    /// A bound of the rounding error of `force` on the free degrees of freedom, in the Euclidean norm, N.
     pub rounding: f64,
 }
 
-/// How the forces are worked out.
+/// How the forces are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
-    /// From the positions, as the model gives them. The displacements lose their digits in `x = X + u`: the rounding is that of the
-    /// forces that the cells would have if x were stretched from nothing, `64 ε Σ_e Σ_j |T^e_ij| |x_j|` at degree of freedom i, T^e the
-    /// tangents of cells and springs before they are added up. Relative to a load p on a material of modulus E it is about `ε E/p`.
+    /// From the positions, as the model gives them. The displacements lose digits in `x = X + u`. The rounding error is
+    /// that of the forces that the cells would have if x were a stretch from nothing: `64 ε Σ_e Σ_j |T^e_ij| |x_j|` at
+    /// degree of freedom i, with T^e the tangents of cells and springs before they are added. Relative to a load p on a
+    /// material of modulus E it is about `ε E/p`.
     Position,
-    /// From the displacements: `g(X + u) = g(X) + ∫₀¹ T(X + s u) u ds`, by Gauss and Legendre's rule of three points. The rounding is
-    /// `64 ε Σ_e Σ_j |T^e_ij| |u_j|`, some ε of the forces themselves however small they are. Where the tangent changes by more than a
-    /// twentieth in any row, displacements are too large for the rule, and the form above is taken. Forces at rest that are not above
-    /// their rounding are none.
+    /// From the displacements: `g(X + u) = g(X) + ∫₀¹ T(X + s u) u ds`, by the Gauss–Legendre rule of three points. The
+    /// rounding error is `64 ε Σ_e Σ_j |T^e_ij| |u_j|`, some ε of the forces themselves, however small they are. If the
+    /// tangent changes by more than a twentieth in any row, the displacements are too large for the rule, and the form
+    /// above is used. Forces at rest that do not exceed their rounding error count as zero.
     Displacement,
 }
 
 /// A model at rest.
 pub(super) struct Rest<'a> {
     pub model: &'a dyn Elastic,
-    /// `[points × dimension]`, m.
+    /// The positions at rest, `[points × dimension]`, m.
     pub points: &'a [f64],
     pub support: &'a Support,
 }
 
 impl Rest<'_> {
-    /// The model at displacements u; `None` where it has no response.
+    /// The model at displacements u; `None` if it has no response there.
     pub fn at(&self, u: &[f64], form: Form) -> Option<Internal> {
         let x = displaced(self.points, u);
         let response = self.model.respond(&x)?;
@@ -60,7 +64,8 @@ impl Rest<'_> {
         }
     }
 
-    /// The forces of [`Form::Displacement`] and their rounding; `None` where the tangent there is another than at rest.
+    /// The forces of [`Form::Displacement`] and their rounding error; `None` if the tangent differs too much from that
+    /// at rest.
     fn secant(&self, u: &[f64], there: &Entries) -> Option<(Vec<f64>, f64)> {
         let rest = self.model.respond(self.points)?;
         if !is_near(&rest.tangent, there, u.len()) {
@@ -90,7 +95,7 @@ impl Rest<'_> {
     }
 }
 
-/// The entries of the free degrees of freedom, zero elsewhere.
+/// The entries of the free degrees of freedom; the others are set to zero.
 pub(super) fn masked(v: &[f64], support: &Support) -> Vec<f64> {
     v.iter().enumerate().map(|(i, v)| if support.is_fixed(i) { 0.0 } else { *v }).collect()
 }
@@ -118,7 +123,7 @@ fn each_product(tangent: &Entries, u: &[f64], mut visit: impl FnMut(usize, f64))
     }
 }
 
-/// Whether the change of two tangents with the same places is small in every row.
+/// Whether two tangents with the same pattern differ little in every row.
 fn is_near(rest: &Entries, there: &Entries, rows: usize) -> bool {
     let (mut sizes, mut changes) = (vec![0.0; rows], vec![0.0; rows]);
     for (rest, there) in rest.iter().zip(there) {

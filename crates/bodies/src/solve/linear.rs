@@ -1,4 +1,6 @@
-//! Linear statics: `K u = f` with some displacements prescribed.
+//! Linear statics: `K u = f` with prescribed displacements.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::cholesky::{Analysis, Cholesky, out_of_memory};
 use crate::error::{Error, Result};
@@ -14,35 +16,35 @@ use faer::sparse::{CreationError, FaerError, Pair, SparseColMat, SymbolicSparseC
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
-/// A solution is refined so often at most: twice, unless the factor knows only a few digits of K.
+/// The largest number of refinements of a solution. Two are enough unless the factor has only a few digits of K.
 const REFINEMENTS: usize = 60;
-/// Corrections that fall more slowly lead nowhere.
+/// The refinement ends if a correction is not below this share of the previous one.
 const SLOWEST: f64 = 0.5;
 
 /// The equations of the free degrees of freedom.
 #[derive(Debug, Clone)]
 pub struct System {
-    /// `[free × free]`, both triangles.
+    /// The matrix, `[free × free]`, both triangles.
     matrix: SparseColMat<usize, f64>,
-    /// What rounding takes from each of its sums.
+    /// The rounding error of each of its sums, which is added to it when residuals are computed.
     lost: Vec<f64>,
-    /// Forces of the prescribed displacements on the free degrees of freedom: `K_fp u_p`, `[free]`.
+    /// The forces of the prescribed displacements on the free degrees of freedom, `K_fp u_p`, `[free]`.
     reaction: Vec<DoubleDouble>,
     prescribed: Vec<Option<f64>>,
     pattern: Arc<Pattern>,
 }
 
-/// What systems whose entries stand in the same places share.
+/// What systems with entries at the same positions share.
 #[derive(Debug)]
 struct Pattern {
     /// The free degrees of freedom.
     free: Vec<usize>,
-    /// The row of each degree of freedom, `usize::MAX` where it is held.
+    /// The row of each degree of freedom; `usize::MAX` if it is held.
     place: Vec<usize>,
     symbolic: SymbolicSparseColMat<usize>,
-    /// Where each entry goes in the matrix.
+    /// The index in the matrix to which each entry is added.
     slots: Vec<usize>,
-    /// Analysed when first needed.
+    /// The analysis, made when it is first needed.
     cholesky: OnceLock<Result<Analysis>>,
 }
 
@@ -51,11 +53,13 @@ struct Pattern {
 pub enum Factor {
     /// `L Lᵀ`: the matrix is positive definite.
     Cholesky(Cholesky),
-    /// `L U` with pivoting: it is not.
+    /// `L U` with pivoting: the matrix is not positive definite.
     General(Box<Lu<usize, f64>>),
 }
 
 impl System {
+    /// The equations of the free degrees of freedom.
+    ///
     /// # Errors
     /// The matrix does not fit into memory.
     pub fn new(entries: &Entries, support: &Support) -> Result<System> {
@@ -82,8 +86,8 @@ impl System {
         Ok(System::of(Arc::new(Pattern { free, place, symbolic, slots, cholesky }), entries, support))
     }
 
-    /// The equations with other values at the same places in the same order, and other prescribed displacements of the same
-    /// degrees of freedom: what depends on the places alone is not worked out again.
+    /// The equations with other values at the same positions in the same order, and other prescribed displacements of
+    /// the same degrees of freedom. The analysis of the pattern is reused.
     ///
     /// # Errors
     /// The matrix does not fit into memory.
@@ -122,7 +126,7 @@ impl System {
         &self.pattern.free
     }
 
-    /// Cholesky's factor, or the pivoted one where the matrix is not positive definite; `None` where it is singular.
+    /// The Cholesky factor, or the pivoted LU factor if the matrix is not positive definite; `None` if it is singular.
     ///
     /// # Errors
     /// The factor does not fit into memory.
@@ -140,7 +144,7 @@ impl System {
         }
     }
 
-    /// Cholesky's factor; `None` where the matrix is not positive definite.
+    /// The Cholesky factor; `None` if the matrix is not positive definite.
     ///
     /// # Errors
     /// The factor does not fit into memory.
@@ -165,11 +169,12 @@ impl System {
         y
     }
 
-    /// The displacements of all degrees of freedom under the nodal forces `f`, `[points · dimension]`, refined in twice the digits of
-    /// `f64` (Demmel et al., ACM Trans. Math. Softw. 32, 2006), and what is left: the relative residual `‖f − K u‖/‖f‖`, or the last
-    /// relative correction where that is larger and corrections do not become less.
+    /// The displacements of all degrees of freedom under the nodal forces `f`, `[points · dimension]`, N, refined with
+    /// residuals in double-double numbers (Demmel et al., ACM Trans. Math. Softw. 32, 2006). Also the relative residual
+    /// `‖f − K u‖/‖f‖`, or the last relative correction if it is larger and the corrections have stopped decreasing.
     ///
-    /// K is the sum of the entries, without the rounding of their sums: soft parts beside stiff ones keep their digits.
+    /// K is the exact sum of its entries, without the rounding of the sums, so that soft parts beside stiff ones keep
+    /// their digits.
     pub fn solve(&self, factor: &Factor, f: &[f64]) -> (Vec<f64>, f64) {
         let exact = |(&dof, reaction): (&usize, &DoubleDouble)| DoubleDouble::from(f[dof]) - reaction;
         let rhs: Vec<DoubleDouble> = self.free().iter().zip(&self.reaction).map(exact).collect();
@@ -181,7 +186,7 @@ impl System {
             let mut correction = residual.clone();
             factor.solve(&mut correction);
             let change = norm(&correction);
-            // Corrections that do not become less say that the factor knows too little of K.
+            // Corrections that do not decrease show that the factor is too inaccurate.
             if !(change < SLOWEST * last) {
                 break;
             }
@@ -197,20 +202,20 @@ impl System {
         }
         let mut all: Vec<f64> = self.prescribed.iter().map(|p| p.unwrap_or(0.0)).collect();
         self.free().iter().zip(&u).for_each(|(&dof, u)| all[dof] = u.hi);
-        // What is not a number solves nothing.
+        // NaN is no solution.
         let is_finite = size.is_finite() && all.iter().all(|u| u.is_finite());
         let left = if size == 0.0 { 0.0 } else { (norm(&residual) / size).max(unsettled) };
         (all, if is_finite { left } else { f64::INFINITY })
     }
 
-    /// The displacements under each of some nodal forces, without refinement.
+    /// The displacements under each of several nodal forces, without refinement.
     pub fn solve_all(&self, factor: &Factor, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let held: Vec<f64> = self.prescribed.iter().map(|p| p.unwrap_or(0.0)).collect();
         let reaction: Vec<f64> = self.reaction.iter().map(|force| force.hi).collect();
         self.columns(factor, forces, &reaction, &held)
     }
 
-    /// How the displacements change when the nodal forces change so.
+    /// The changes of the displacements for changes of the nodal forces.
     pub fn respond_all(&self, factor: &Factor, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         self.columns(factor, forces, &vec![0.0; self.size()], &vec![0.0; self.prescribed.len()])
     }
@@ -232,7 +237,7 @@ impl System {
         forces.par_chunks(part).flat_map_iter(solve).collect()
     }
 
-    /// `f − K u` in twice the digits.
+    /// `f − K u` in double-double numbers.
     fn residual(&self, rhs: &[DoubleDouble], u: &[DoubleDouble]) -> Vec<f64> {
         let mut rest = rhs.to_vec();
         let (starts, rows) = (self.pattern.symbolic.col_ptr(), self.pattern.symbolic.row_idx());
@@ -252,13 +257,13 @@ impl System {
     }
 }
 
-/// The matrix does not fit into memory.
+/// The error for a matrix that does not fit into memory.
 fn too_large(cause: FaerError) -> Error {
     out_of_memory("the stiffness", cause)
 }
 
 impl Factor {
-    /// `x ← K⁻¹ x` on the free degrees of freedom, of as many vectors as stand in x one after the other.
+    /// `x ← K⁻¹ x` on the free degrees of freedom, for all vectors that are stored in x one after the other.
     pub fn solve(&self, x: &mut [f64]) {
         let rows = match self {
             Factor::Cholesky(cholesky) => cholesky.rows(),
@@ -272,6 +277,7 @@ impl Factor {
         }
     }
 
+    /// Whether the matrix is positive definite.
     pub fn is_positive_definite(&self) -> bool {
         matches!(self, Factor::Cholesky(_))
     }

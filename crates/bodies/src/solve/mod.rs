@@ -1,4 +1,7 @@
-//! Equilibrium and natural vibrations of either model, and how the two compare mode by mode.
+//! Equilibrium and natural vibrations of either model, and the stability of a network compared with the finite
+//! elements.
+//!
+//! Theory: pages *Stiffness* and *Digits* of the book.
 
 mod cholesky;
 mod internal;

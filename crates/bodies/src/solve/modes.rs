@@ -1,21 +1,25 @@
-//! Natural vibrations of a model whose mass is lumped at its points.
+//! Natural vibrations of a model with masses lumped at its points.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use super::linear::{Factor, System};
 use crate::error::{Error, ErrorKind, Result};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Vectors iterated beyond those wanted: the last wanted one converges by its distance to the first left out.
+/// The number of vectors beyond those that are wanted. The last wanted one converges with the ratio of its eigenvalue
+/// to that of the first vector that is left out.
 const SPARE: usize = 4;
-/// Blocks in the basis before it is condensed to its best two.
+/// The number of blocks in the basis before it is condensed to its best two.
 const BLOCKS: usize = 6;
+/// The largest number of blocks that are computed.
 const ROUNDS: usize = 60;
-/// An eigenpair is found once `‖A y − θ y‖` is below this share of θ …
+/// An eigenpair is accepted if `‖A y − θ y‖` is below this share of θ,
 const FOUND: f64 = 1e-11;
-/// … or below this share of the largest θ, where rounding begins.
+/// or below this share of the largest θ, which is the level of rounding.
 const ROUNDING: f64 = 1e-14;
-/// Largest relative error of ω² that is let pass. Of slender bodies rounding alone makes 1e-8, the condition of K
-/// times that of a double.
+/// The largest relative error of ω² that is accepted. On slender bodies rounding alone causes 1e-8, the condition
+/// number of K times that of a double.
 const TOLERANCE: f64 = 1e-6;
 
 /// The lowest natural vibrations `u(t) = φ cos ωt` of a model: `K φ = ω² M φ` on the free degrees of freedom.
@@ -23,28 +27,28 @@ const TOLERANCE: f64 = 1e-6;
 pub struct Modes {
     /// `ω²`, rad²/s², ascending, `[modes]`.
     pub squares: Vec<f64>,
-    /// One per mode, on all degrees of freedom `[points · dimension]`, zero where they are held; `φᵀ M φ = 1`,
-    /// kg^(−1/2).
+    /// The shapes φ, one per mode, on all degrees of freedom `[points · dimension]`, zero where they are held;
+    /// `φᵀ M φ = 1`, kg^(−1/2).
     pub shapes: Vec<Vec<f64>>,
 }
 
 impl Modes {
-    /// `ω / 2π`, Hz, `[modes]`.
+    /// The frequencies `ω/2π`, Hz, `[modes]`.
     pub fn frequencies(&self) -> Vec<f64> {
         self.squares.iter().map(|square| square.sqrt() / TAU).collect()
     }
 }
 
-/// The `count` lowest modes of `system`, whose matrix K is `factor`'s; `masses` in kg, `[points]`. The same input gives
-/// the same bits.
+/// The `count` lowest modes of `system`, whose matrix K has the factor `factor`; `masses` in kg, `[points]`. The result
+/// is reproducible to the last bit.
 ///
-/// They are the largest eigenvalues `θ = 1/ω²` of `A = M^½ K⁻¹ M^½`, with `φ = M^(−½) y`. Each mode is checked with K
-/// itself: `√(rᵀ K⁻¹ r / φᵀ K φ)` of its residual `r = K φ − ω² M φ` bounds the relative distance of ω² to an
-/// eigenvalue (Weinstein's bound in the norm of the energy; the plain norm of r shows the rounding of stiff motions).
+/// They are the largest eigenvalues `θ = 1/ω²` of `A = M^½ K⁻¹ M^½`, with `φ = M^(−½) y`. Each mode is verified with K:
+/// `√(rᵀ K⁻¹ r/φᵀ K φ)` of its residual `r = K φ − ω² M φ` bounds the relative distance of ω² from an eigenvalue
+/// (Weinstein's bound in the energy norm; the Euclidean norm of r is dominated by the rounding of stiff motions).
 ///
 /// # Errors
-/// K is not positive definite, there are fewer free degrees of freedom than modes asked for, a point that may move has
-/// no mass, or a mode's ω² stays uncertain by more than 1e-6.
+/// K is not positive definite; there are fewer free degrees of freedom than modes; a point that may move has no mass;
+/// or the uncertainty of an ω² exceeds 1e-6.
 pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
     if !factor.is_positive_definite() {
         let error = Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance");
@@ -87,12 +91,13 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
     Ok(modes)
 }
 
-/// The `count` largest eigenvalues of a symmetric, positive definite operator on vectors of n entries, descending, with
-/// their unit vectors. `apply` replaces each column by its image.
+/// The `count` largest eigenvalues of a symmetric positive definite operator on vectors of n entries, in descending
+/// order, with unit eigenvectors. `apply` replaces each column by its image.
 ///
-/// Block Krylov iteration with Rayleigh's and Ritz' projection; the residuals of the leading pairs extend the basis, and
-/// restarts keep their vectors (Wu, Simon, SIAM J. Matrix Anal. Appl. 22, 2000). The first block is wider than `count`, so
-/// every copy of a repeated eigenvalue is in it. A single vector would hold one copy and meet the others by rounding.
+/// The method is block Krylov iteration with Rayleigh–Ritz projection. The residuals of the leading pairs extend the
+/// basis, and restarts keep their vectors (Wu, Simon, SIAM J. Matrix Anal. Appl. 22, 2000). The first block is wider
+/// than `count`, so that it contains every copy of a repeated eigenvalue; a single vector would contain one copy and
+/// find the others only by rounding.
 ///
 /// # Errors
 /// The operator gives numbers that are not finite.
@@ -152,7 +157,7 @@ fn largest_eigenpairs(n: usize, count: usize, apply: impl Fn(&mut DMatrix<f64>))
     }
 }
 
-/// `[matrix columns]`.
+/// The columns of both matrices, `[matrix columns]`.
 fn beside(matrix: DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
     let m = matrix.ncols();
     let mut matrix = matrix.resize_horizontally(m + columns.ncols(), 0.0);
@@ -160,7 +165,8 @@ fn beside(matrix: DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
     matrix
 }
 
-/// Unit vectors that span what the columns of `block` add to the orthonormal `basis`: Gram's and Schmidt's, twice.
+/// Unit vectors that span what the columns of `block` add to the orthonormal `basis`: the Gram–Schmidt method, applied
+/// twice.
 fn orthonormal(basis: &DMatrix<f64>, mut block: DMatrix<f64>) -> DMatrix<f64> {
     for _ in 0..2 {
         let sizes: Vec<f64> = block.column_iter().map(|column| column.norm()).collect();
@@ -169,7 +175,7 @@ fn orthonormal(basis: &DMatrix<f64>, mut block: DMatrix<f64>) -> DMatrix<f64> {
         for (column, size) in block.column_iter().zip(&sizes) {
             let mut column = column.into_owned();
             added.iter().for_each(|q| column.axpy(-q.dot(&column), q, 1.0));
-            // What is left of a dependent vector is rounding.
+            // What remains of a dependent vector is a rounding error.
             if column.norm() > 1e-8 * size {
                 column.normalize_mut();
                 added.push(column);

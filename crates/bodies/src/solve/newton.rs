@@ -1,4 +1,6 @@
-//! Statics at large deformation: Newton's method with load steps and a line search, on the finite elements or on a network.
+//! Statics at large deformation: Newton's method with load steps and a line search, for finite elements or a network.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::internal::{Form, Internal, Rest, masked};
 use super::linear::System;
@@ -7,14 +9,15 @@ use crate::model::{Elastic, Entries, Support};
 use crate::springs::{dot, norm};
 use faer::sparse::Triplet;
 
-/// How the load is followed.
+/// How a load is applied.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Newton {
-    /// Steps in which the load is applied at first; one that fails is halved.
+    /// The number of load steps at the start; a step that fails is halved.
     pub steps: usize,
-    /// Iterations in one step.
+    /// The largest number of iterations in one step.
     pub iterations: usize,
-    /// Largest residual, relative to the forces that act. Where their rounding is more, that counts, up to 1e-4.
+    /// The largest residual, relative to the forces that act. If their rounding error is larger, it is used instead, up
+    /// to 1e-4.
     pub tolerance: f64,
 }
 
@@ -24,46 +27,49 @@ impl Default for Newton {
     }
 }
 
-/// How far a solution came.
+/// How a solution ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
+    /// The whole load is in equilibrium.
     Converged,
-    /// No shorter step of the load came to an equilibrium either.
+    /// A load step failed even after it was halved as often as allowed.
     Stalled,
 }
 
-/// An equilibrium, or the last one found.
+/// An equilibrium, or the last one that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
+    /// Whether the whole load was reached.
     pub ending: Ending,
-    /// `[points · dimension]`, m.
+    /// The displacements, `[points · dimension]`, m.
     pub displacement: Vec<f64>,
-    /// The displacements at the loads on the way, the last one being `displacement` if any load was reached.
+    /// The displacements at the loads on the way. The last one is `displacement`, if any load was reached.
     pub path: Vec<Vec<f64>>,
-    /// The share of the load that it carries, 1 if converged.
+    /// The share of the load that is applied, 1 if converged.
     pub load: f64,
-    /// Residuals of the iterations of each step, relative to the forces that act.
+    /// The residuals of the iterations of each step, relative to the forces that act.
     pub residuals: Vec<Vec<f64>>,
-    /// Iterations whose tangent was not positive definite and had to be shifted.
+    /// The number of iterations whose tangent was not positive definite and was shifted.
     pub shifted: usize,
-    /// Whether the forces balance to their rounding only, which is more than the tolerance.
+    /// Whether the equilibrium is accurate only to the rounding of the forces, which exceeds the tolerance.
     pub is_rounded: bool,
 }
 
-/// Forces that balance are no proof of an equilibrium if their rounding is more than this share of the applied forces.
+/// The largest rounding error of the forces, relative to the applied forces, at which a balance of forces counts as an
+/// equilibrium.
 const ROUGHEST: f64 = 1e-4;
-/// A prescribed displacement is reached to this share of the largest.
+/// The relative accuracy to which prescribed displacements are reached.
 const REACHED: f64 = 1e-14;
-/// A step of the load is not halved more often.
+/// The largest number of halvings of a load step.
 const HALVINGS: u32 = 8;
-/// Nor is a Newton step.
+/// The largest number of halvings of a Newton step.
 const SHORTER: usize = 30;
-/// Share of the slope by which the energy must fall along a step (Armijo 1966).
+/// The share of the slope by which the energy must decrease along a step (Armijo 1966).
 const DESCENT: f64 = 1e-4;
 
 impl Newton {
-    /// Follows the load from rest at `points`, `[points × dimension]`: `forces`, N, and the displacements that `support`
-    /// prescribes grow together.
+    /// Applies the load from rest at `points`, `[points × dimension]`: `forces`, N, and the displacements that
+    /// `support` prescribes grow together.
     ///
     /// # Errors
     /// The tangent does not fit into memory.
@@ -106,7 +112,7 @@ impl Newton {
         Ok(found)
     }
 
-    /// The equilibrium under the whole load next to the displacements `guess`; `None` where none is found from there.
+    /// The equilibrium under the whole load near the displacements `guess`; `None` if none is found from there.
     ///
     /// # Errors
     /// The tangent does not fit into memory.
@@ -125,26 +131,26 @@ impl Newton {
     }
 }
 
-/// Whether the forces balance.
+/// Whether the forces are in equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Balance {
     /// To the tolerance.
     Exact,
-    /// To their rounding.
+    /// To their rounding error.
     Rounded,
     None,
 }
 
-/// A model that is held and loaded.
+/// A model with supports and loads.
 struct Statics<'a> {
     newton: Newton,
     rest: Rest<'a>,
-    /// The internal forces at rest, N: what the springs of a network hold against each other is no load.
+    /// The internal forces at rest, N: springs that pull against each other are not a load.
     tension: Vec<f64>,
     forces: &'a [f64],
-    /// The equations of the last tangent: all have the same pattern.
+    /// The equations of the last tangent; all tangents have the same pattern.
     known: Option<System>,
-    /// Iterations whose tangent had to be shifted.
+    /// The number of iterations whose tangent was shifted.
     shifted: usize,
 }
 
@@ -157,15 +163,15 @@ impl<'a> Statics<'a> {
         Statics { newton, rest, tension, forces, known: None, shifted: 0 }
     }
 
-    /// Newton's method at one load; the residuals, and whether the forces balance. Where the rounding of the forces hides what is left of
-    /// them, they are worked out from the displacements.
+    /// Newton's method at one load; returns the residuals, and whether the forces are in equilibrium. If the rounding
+    /// of the forces hides the residual, they are computed from the displacements.
     fn settle(&mut self, load: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, Balance)> {
         let Statics { newton, rest: model, tension, forces, known, shifted } = self;
         let support = model.support;
         let (mut history, mut form) = (Vec::new(), Form::Position);
         let Some(mut now) = model.at(u, form) else { return Ok((history, Balance::None)) };
         for _ in 0..newton.iterations {
-            // What is still to be moved of the prescribed displacements.
+            // The remaining part of the prescribed displacements.
             let moves: Vec<Option<f64>> =
                 support.prescribed.iter().zip(&*u).map(|(p, u)| p.map(|p| load * p - u)).collect();
             let held = support.prescribed.iter().zip(&*u).filter_map(|(p, u)| p.map(|p| (load * p).abs().max(u.abs())));
@@ -197,17 +203,17 @@ impl<'a> Statics<'a> {
                 return Ok((history, rounded));
             };
             *shifted += usize::from(shift);
-            // Of the energy less the work of the load; while supports move it says nothing.
+            // The energy minus the work of the load; it has no meaning while supports move.
             let potential = |r: &Internal, u: &[f64]| r.response.energy - load * dot(forces, u);
             let (before, slope) = (potential(&now, u), -dot(&masked(&rest, support), &step));
             let mut length = 1.0;
-            // What the rounding hides only a whole step can better.
+            // If rounding hides the energy, only the full step can improve the result.
             let accepted = (0..if hidden { 1 } else { SHORTER }).find_map(|_| {
                 let tried: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + length * s).collect();
                 let internal = model.at(&tried, form);
                 let good = internal.as_ref().is_some_and(|r| {
                     let falls = !hidden && potential(r, &tried) <= before + DESCENT * length * slope;
-                    // Next to the end the energy's rounding hides its fall.
+                    // Near the solution the rounding of the energy hides its decrease.
                     !moved || falls || model.free(&left(&r.force)) < 0.5 * size
                 });
                 length /= 2.0;
@@ -215,7 +221,7 @@ impl<'a> Statics<'a> {
             });
             (*u, now) = match accepted {
                 Some(better) => better,
-                // The rounding of a model may be above its bound.
+                // The rounding error of a model may exceed its bound.
                 None if form == Form::Position => {
                     form = Form::Displacement;
                     let Some(finer) = model.at(u, form) else { return Ok((history, rounded)) };
@@ -228,7 +234,8 @@ impl<'a> Statics<'a> {
     }
 }
 
-/// The Newton step, with the tangent shifted until it is positive definite; `None` if that takes more than its own size.
+/// The Newton step, with the tangent shifted until it is positive definite; `None` if the shift would exceed the
+/// tangent.
 fn direction(
     tangent: &Entries,
     moves: Vec<Option<f64>>,

@@ -1,42 +1,48 @@
-//! Whether a network stands: its stiffness mode by mode, measured by that of the finite elements.
+//! Whether a network is stable: its energy in all motions, relative to that of the finite elements.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::linear::{Factor, System};
 use crate::springs::dot;
 use nalgebra::{DMatrix, DVector};
 
-/// Steps of Lanczos' method; the ends of the spectrum, which are wanted, come first.
+/// The number of steps of the Lanczos method. The ends of the spectrum, which are needed, converge first.
 const STEPS: usize = 40;
-/// An energy ratio below this is a zero with rounding: the network does not resist the motion.
+/// An energy ratio below this is zero up to rounding: the network does not resist the motion.
 const NOTHING: f64 = 1e-9;
-/// An energy ratio below this marks a mechanism in the making: the network yields a hundred times more than the body.
+/// An energy ratio below this indicates that the network is close to a mechanism: it is a hundred times softer than the
+/// body.
 const SOFT: f64 = 0.01;
 
 /// How a network resists the motions that a body resists.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stability {
+    /// The verdict.
     pub standing: Standing,
-    /// Least and largest ratio `uᵀ K u / uᵀ R u` found, of the network's energy to that of the finite elements.
+    /// The least and the largest ratio `uᵀ K u/uᵀ R u` that was found, of the energy of the network to that of the
+    /// finite elements.
     pub energy_ratio: [f64; 2],
-    /// The motion of the least ratio, on the free degrees of freedom.
+    /// The motion with the least ratio, on the free degrees of freedom.
     pub softest: Vec<f64>,
 }
 
+/// Whether the stiffness of a network is positive definite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
-    /// Positive definite, and no motion much softer than in the body.
+    /// Positive definite, and no motion is much softer than in the body.
     Stable,
-    /// Positive definite, but some motion meets less than a hundredth of the body's resistance.
+    /// Positive definite, but some motion has less than a hundredth of the body's resistance.
     Soft,
-    /// Some motion releases energy: without its supports' help the network runs away.
+    /// Indefinite: some motion releases energy, so that the network is unstable.
     Indefinite,
-    /// Some motion meets no resistance: a mechanism.
+    /// Singular: some motion meets no resistance; the network is a mechanism.
     Singular,
 }
 
 /// The extreme ratios of the energies of `network` and `body`, both with the same support.
 ///
-/// A factor of the network iterates the pencil as `K⁻¹R`, which finds the ratios next to zero, of either sign, to full
-/// precision; without one `R⁻¹K` finds the least. Where everything is held the ratios are 1.
+/// With a factor of the network the Lanczos method is applied to `K⁻¹R`, which finds the ratios next to zero, of either
+/// sign, accurately. Without a factor `R⁻¹K` finds the least ratio. If everything is held the ratios are 1.
 pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System, body_factor: &Factor) -> Stability {
     let positive = factor.is_some_and(Factor::is_positive_definite);
     let spectrum = match factor {
@@ -52,11 +58,12 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
         }),
     };
     let (ratios, softest) = match (factor, spectrum) {
-        // Everything is held: no motion tells the two apart.
+        // Everything is held: no motion distinguishes the two models.
         _ if body.size() == 0 => ([1.0; 2], Vec::new()),
         (_, None) => ([0.0; 2], vec![0.0; body.size()]),
         (Some(_), Some([low, high])) if positive => ([1.0 / high.value, 1.0 / low.value], high.vector),
-        // One end of K⁻¹R is the negative ratio nearest to zero, the other the positive one.
+        // One end of the spectrum of K⁻¹R is the negative ratio nearest to zero, the other one the positive ratio
+        // nearest to zero.
         (Some(_), Some([low, high])) if low.value < 0.0 => ([1.0 / low.value, 1.0 / high.value], low.vector),
         (Some(_), Some([low, high])) => ([1.0 / high.value, 1.0 / low.value], high.vector),
         (None, Some([low, high])) => ([low.value, high.value], low.vector),
@@ -70,18 +77,18 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
     Stability { standing, energy_ratio: ratios, softest }
 }
 
-/// An approximate eigenvalue and its vector on the free degrees of freedom.
+/// An approximate eigenvalue, and its vector on the free degrees of freedom.
 struct Ritz {
     value: f64,
     vector: Vec<f64>,
 }
 
 /// The lower and upper end of the spectrum of an operator that is symmetric in the inner product `xᵀ R y` of `body`.
-/// `operator` is handed `v` and `R v`. `None` where no step could be made.
+/// `operator` receives `v` and `R v`. `None` if no step could be made.
 fn lanczos(body: &System, operator: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Option<[Ritz; 2]> {
     let n = body.size();
     let steps = STEPS.min(n);
-    // Any start that no symmetry of the body makes orthogonal to a mode will do; this one repeats on every machine.
+    // The start must not be orthogonal to a mode by a symmetry of the body; this one is the same on every machine.
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut random = || {
         seed ^= seed << 13;

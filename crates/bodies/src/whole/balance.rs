@@ -1,4 +1,4 @@
-//! Forces that are out of balance at the displacements that are wanted.
+//! The residual forces at the target displacements.
 
 use super::displacements::Displacements;
 use super::gradients::SpringGradients;
@@ -10,14 +10,14 @@ use crate::model::{Entries, displaced};
 use crate::solve::System;
 use std::sync::Arc;
 
-/// `r_l = √w_l R⁻¹ (f_l − F(ū_l; θ))/‖ū_l‖`, R the stiffness of the finite elements at rest: linear in the constants, so that the
-/// sum of squares without regularization has one minimum only.
+/// The residuals `r_l = √w_l R⁻¹ (f_l − F(ū_l; θ))/‖ū_l‖`, with R the stiffness of the finite elements at rest. They
+/// are linear in the constants, so that the sum of squares without regularization has only one minimum.
 #[derive(Debug)]
 pub struct Balance<'a> {
     object: &'a Object<'a>,
     scales: Vec<Vec<f64>>,
     targets: Vec<&'a Target>,
-    /// With the pulls of the springs at the displacements that are wanted.
+    /// The tangents, with the forces of the springs at the target displacements.
     tangents: Vec<Tangent>,
 }
 
@@ -25,7 +25,7 @@ impl<'a> Balance<'a> {
     /// `body` is the stiffness of the finite elements.
     ///
     /// # Errors
-    /// It is not positive definite, a load moves nothing, or a displacement is not known of every point.
+    /// It is not positive definite, a load moves nothing, or a displacement is not known at every point.
     pub fn new(object: &'a Object<'a>, targets: Vec<&'a Target>, body: &Entries) -> Result<Balance<'a>> {
         let displacements = Displacements::new(object, targets, None)?;
         let Displacements { targets, scales, groups, .. } = displacements;

@@ -7,7 +7,7 @@ use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use std::cell::RefCell;
 
-/// The objective as argmin asks for it, value and gradient apart: the last point serves both.
+/// The objective for argmin, which requests value and gradient separately; the last point is stored for both.
 struct Objective<'a> {
     problem: &'a dyn LeastSquares,
     rho: f64,
@@ -18,7 +18,7 @@ struct Known<'a> {
     last: Option<(Vec<f64>, f64, Vec<f64>)>,
     best: (f64, Vec<f64>),
     visit: &'a mut dyn FnMut(&[f64], f64) -> bool,
-    /// What ended the search, if not argmin did.
+    /// The error that ended the search, if there was one.
     error: Option<Error>,
 }
 
@@ -30,7 +30,7 @@ impl Objective<'_> {
         }
         let linearized = match self.problem.at(theta) {
             Ok(Some(linearized)) => linearized,
-            // The line search comes back from where nothing stands.
+            // The line search returns from points where the network is unstable.
             Ok(None) => return Ok((f64::INFINITY, vec![0.0; theta.len()])),
             Err(error) => {
                 known.error = Some(error.clone());
@@ -67,8 +67,8 @@ impl Gradient for &Objective<'_> {
     }
 }
 
-/// Goes down from θ in at most `iterations` steps with `memory` pairs of steps and gradients (Liu and Nocedal 1989); returns the
-/// lowest point. `visit` is told each point that is the lowest so far and may end the search by returning false.
+/// Minimises from θ in at most `iterations` steps with `memory` pairs of steps and gradients (Liu and Nocedal 1989);
+/// returns the lowest point. `visit` is called with each new lowest point and may end the search by returning false.
 pub(super) fn lbfgs(
     problem: &dyn LeastSquares,
     rho: f64,
@@ -81,7 +81,7 @@ pub(super) fn lbfgs(
     let objective = Objective { problem, rho, known: RefCell::new(known) };
     let configure = |state: IterState<_, _, _, _, _, f64>| state.param(theta.to_vec()).max_iters(iterations as u64);
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), memory);
-    // A line search that fails ends the search where it stands.
+    // If a line search fails, the search ends at the present point.
     let _ = Executor::new(&objective, solver).configure(configure).ctrlc(false).run();
     let known = objective.known.into_inner();
     match known.error {

@@ -1,4 +1,4 @@
-//! Distances of the network's displacements and frequencies from those that are wanted.
+//! The differences between the network's displacements and frequencies and the targets.
 
 use super::gradients::SpringGradients;
 use super::linearized::{LeastSquares, Linearized, Tangent};
@@ -10,36 +10,38 @@ use crate::solve::{Factor, System, lowest_modes};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// `r_l = √w_l (u_l(θ) − ū_l)/‖ū_l‖` of some loads, and `½ √w_ω ln(ω_i²/ω̄_i²)` of some frequencies.
+/// The residuals `r_l = √w_l (u_l(θ) − ū_l)/‖ū_l‖` of some loads, and `½ √w_ω ln(ω_i²/ω̄_i²)` of some frequencies.
 #[derive(Debug)]
 pub struct Displacements<'a> {
     object: &'a Object<'a>,
     pub(super) targets: Vec<&'a Target>,
     frequencies: Option<&'a Frequencies>,
     pub(super) scales: Vec<Vec<f64>>,
-    /// Loads of equal support.
+    /// Groups of loads with the same support.
     pub(super) groups: Vec<Vec<usize>>,
-    /// The equations of each group, whose pattern stays.
+    /// The equations of each group, whose pattern is reused.
     systems: Mutex<Vec<Option<Arc<System>>>>,
-    /// Where the next search for an equilibrium begins.
+    /// The displacements from which the next search for an equilibrium starts.
     guesses: Mutex<Vec<Option<Vec<f64>>>>,
 }
 
 /// The displacements of every load, and the tangents there.
 type Moved = (Vec<Vec<f64>>, Vec<Tangent>);
-/// The residuals of frequencies, and their derivatives by every factor.
+/// The residuals of the frequencies, and their derivatives in every factor.
 type Vibrating = (Vec<f64>, Vec<Vec<f64>>);
 
-/// Relative errors of a network.
+/// The relative errors of a network.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Errors {
     /// `‖u_l − ū_l‖_W/‖ū_l‖_W` of each load.
     pub loads: Vec<f64>,
-    /// `ω_i/ω̄_i − 1`.
+    /// `ω_i/ω̄_i − 1` of each frequency.
     pub frequencies: Vec<f64>,
 }
 
 impl<'a> Displacements<'a> {
+    /// The residuals of these targets.
+    ///
     /// # Errors
     /// A load moves nothing.
     pub fn new(
@@ -72,13 +74,13 @@ impl<'a> Displacements<'a> {
         Ok(Displacements { object, targets, frequencies, scales, groups, systems, guesses })
     }
 
-    /// Forgets the displacements from which those at the next θ are found. What follows then depends on θ alone, to the last bit,
-    /// and not on where the fit came from.
+    /// Forgets the displacements from which the next equilibrium is searched. The result at the next θ then depends on
+    /// θ alone, to the last bit, and not on the path of the fit.
     pub fn forget(&self) {
         self.guesses.lock().expect("nothing panics while it holds the guesses").fill(None);
     }
 
-    /// How far the displacements and frequencies are off at θ; `None` where the network does not stand.
+    /// The errors of displacements and frequencies at θ; `None` if the network is not stable there.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -93,7 +95,8 @@ impl<'a> Displacements<'a> {
         }))
     }
 
-    /// The factor on all constants that brings displacements nearest to those wanted, as far as they are small and by forces: `u ∝ 1/α`.
+    /// The common factor on all constants that minimises the error of the displacements, as far as they are small and
+    /// caused by forces, so that `u ∝ 1/α`.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -113,7 +116,7 @@ impl<'a> Displacements<'a> {
         Ok(Some(own / both).filter(|alpha| *alpha > 0.0 && alpha.is_finite()))
     }
 
-    /// The stiffness with the springs at rest, factorised for each support; `None` where it is not positive definite.
+    /// The stiffness with the springs at rest, factorised for each support; `None` if it is not positive definite.
     fn factorize(
         &self,
         group: usize,
@@ -129,7 +132,7 @@ impl<'a> Displacements<'a> {
         Ok(system.cholesky()?.map(|factor| (system, Arc::new(factor))))
     }
 
-    /// Displacements of every load, and the tangents at them.
+    /// The displacements of every load, and the tangents there.
     fn small(&self, entries: &Entries) -> Result<Option<Moved>> {
         let mut displacements = vec![Vec::new(); self.targets.len()];
         let mut tangents = Vec::new();
@@ -184,7 +187,7 @@ impl<'a> Displacements<'a> {
         Ok(Some((displacements, tangents)))
     }
 
-    /// Residuals of the frequencies and `∂/∂c_s = ½ √w T⁰_s (∇c_s·φ_i)²/ω_i²` of each.
+    /// The residuals of the frequencies and the derivative `∂/∂c_s = ½ √w T⁰_s (∇c_s·φ_i)²/ω_i²` of each.
     fn vibrations(&self, entries: &Entries) -> Result<Option<Vibrating>> {
         let Some(wanted) = self.frequencies else { return Ok(Some((Vec::new(), Vec::new()))) };
         let (object, count) = (self.object, wanted.squares.len());

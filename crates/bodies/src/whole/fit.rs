@@ -1,4 +1,4 @@
-//! Whole-object fits from what is wanted to what was found.
+//! Runs a whole-object fit from its targets to the fitted network.
 
 use super::displacements::{Displacements, Errors};
 use super::object::Object;
@@ -7,35 +7,37 @@ use super::settings::{Validation, Wanted, WholeSettings};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Network;
 
-/// What a whole-object fit found.
+/// The result of a whole-object fit.
 #[derive(Debug, Clone)]
 pub struct WholeFit {
+    /// The fitted network.
     pub network: Network,
-    /// The ρ that was taken; `None` where the start was best.
+    /// The regularization ρ that was chosen; `None` if the start was best.
     pub regularization: Option<f64>,
-    /// Of the loads of the fit and of frequencies, before and after.
+    /// The errors on the loads of the fit and on frequencies, before and after.
     pub trained: [Errors; 2],
-    /// Of the loads of the validation.
+    /// The errors on the loads of the validation, before and after.
     pub validated: [Errors; 2],
-    /// Steps that were made.
+    /// The number of steps that were made.
     pub steps: usize,
     /// The largest factor by which a constant changed.
     pub change: f64,
-    /// The largest constant of a length spring, as a multiple of the least.
+    /// The ratio of the largest to the least constant of the length springs.
     pub range: f64,
-    /// Whether a smaller ρ was left because the range would have been too large.
+    /// Whether a smaller ρ was rejected because this ratio would have been too large.
     pub limited: bool,
-    /// Whether the network stands under every load at the start; else it is left as it is.
+    /// Whether the network is stable under every load at the start; otherwise it is returned unchanged.
     pub stands: bool,
-    /// Whether it was ended before its time.
+    /// Whether the fit was cancelled.
     pub cancelled: bool,
 }
 
-/// Fits the constants of the object. `from` is where an earlier run of the same fit stood. A network that does not stand at the start
-/// is no error.
+/// Fits the constants of the object. `from` is a state of an earlier run of the same fit. A network that is unstable at
+/// the start is not an error.
 ///
 /// # Errors
-/// There is no load or one moves nothing, the snapshot is of another fit, or the equations do not fit into memory.
+/// There is no load, or one moves nothing; the snapshot belongs to another fit; or the equations do not fit into
+/// memory.
 pub fn fit_whole(
     object: &Object,
     wanted: &Wanted,
@@ -80,7 +82,7 @@ pub fn fit_whole(
     let mut begins = true;
     if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
         snapshot.stages = leave_one_out(object, wanted, settings, &mut count)?;
-        // Ended while it tried what to leave out, it has not begun.
+        // Cancelled during cross-validation, the fit has not begun.
         begins = snapshot.stages.is_some();
     }
     let best = match begins {

@@ -1,17 +1,19 @@
-//! Gauss and Newton's method without matrices: conjugate gradients on the linearized residuals within a trust region.
+//! The Gauss–Newton method without matrices: conjugate gradients on the linearised residuals within a trust region.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 use super::linearized::{LeastSquares, Linearized};
 use crate::error::Result;
 use crate::springs::{dot, norm};
 
-/// How the Gauss–Newton steps are made (Nocedal and Wright 2006, algorithms 4.1 and 7.2).
+/// The settings of the Gauss–Newton steps (Nocedal and Wright 2006, algorithms 4.1 and 7.2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GaussNewton {
-    /// Products with the Jacobian and its transpose for one step.
+    /// The largest number of products with the Jacobian and its transpose for one step.
     pub products: usize,
-    /// Of the residual of the linear equations, where a step is good enough.
+    /// The relative residual of the linear equations at which a step is accurate enough.
     pub accuracy: f64,
-    /// It ends where a step lowers the objective by a smaller share.
+    /// The iteration ends if a step lowers the objective by a smaller share than this.
     pub decrease: f64,
 }
 
@@ -21,16 +23,16 @@ impl Default for GaussNewton {
     }
 }
 
-/// First radius of the trust region: the root mean square of a step, in logarithms.
+/// The first radius of the trust region: the root mean square of a step in θ, which is a logarithm.
 const RADIUS: f64 = 1.0;
-/// Smaller ones end the search.
+/// A smaller radius ends the search.
 const LEAST_RADIUS: f64 = 1e-6;
-/// The share of the decrease that the linearized residuals promise which a step must bring.
+/// The least share of the predicted decrease that a step must achieve.
 const ACCEPTED: f64 = 1e-3;
 
 impl GaussNewton {
-    /// Goes down from θ in at most `iterations` steps; returns the lowest point. `visit` is told each point and may end the search
-    /// by returning false.
+    /// Minimises from θ in at most `iterations` steps; returns the lowest point. `visit` is called with each point and
+    /// may end the search by returning false.
     pub(super) fn descend(
         &self,
         problem: &dyn LeastSquares,
@@ -47,7 +49,7 @@ impl GaussNewton {
         for _ in 0..iterations {
             let (lowered, found) = loop {
                 let (step, promised) = self.step(&now, rho, &gradient, radius);
-                // Where the gradient is zero there is nowhere to go.
+                // If the gradient is zero there is no direction to go.
                 if !(promised > 0.0) {
                     break (0.0, None);
                 }
@@ -80,7 +82,8 @@ impl GaussNewton {
         Ok(theta)
     }
 
-    /// A step towards the least of `gᵀd + dᵀ(JᵀJ + ρ/m)d` with `‖d‖ ≤ radius`, and how much it promises (Steihaug 1983).
+    /// A step towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d` with `‖d‖ ≤ radius`, and the predicted decrease (Steihaug
+    /// 1983).
     fn step(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> (Vec<f64>, f64) {
         let share = rho / gradient.len().max(1) as f64;
         let mut step = vec![0.0; gradient.len()];
@@ -95,7 +98,7 @@ impl GaussNewton {
             let moved = at.forward(&direction);
             let curvature = moved.iter().flatten().map(|r| r * r).sum::<f64>() + share * dot(&direction, &direction);
             let mut length = square / curvature;
-            // How far to the edge of the trust region.
+            // The distance to the boundary of the trust region.
             let (a, b, c) = (dot(&direction, &direction), dot(&step, &direction), dot(&step, &step) - radius * radius);
             let edge = ((b * b - a * c).max(0.0).sqrt() - b) / a;
             let ends = !(length < edge);

@@ -1,20 +1,21 @@
-//! What the springs feel of small displacements.
+//! The gradients of the measures of all springs at given positions.
 
 use crate::model::Network;
 use crate::springs::Measure;
 use crate::stiffness::gather;
 
-/// `∇c_s` of every spring at given positions, on the spring's own degrees of freedom.
+/// `∇c_s` of every spring at given positions, on the degrees of freedom of the spring.
 #[derive(Debug)]
 pub struct SpringGradients {
-    /// Where each spring begins in the others, `[springs + 1]`.
+    /// The index at which each spring begins in the other lists, `[springs + 1]`.
     starts: Vec<usize>,
     dofs: Vec<usize>,
     values: Vec<f64>,
 }
 
 impl SpringGradients {
-    /// At the positions `x`, `[points × dimension]`, m; and how hard each spring pulls there, N where it measures a length.
+    /// The gradients at the positions `x`, `[points × dimension]`, m; and the force of each spring there, in N if it
+    /// measures a length.
     pub fn at(network: &Network, x: &[f64]) -> (SpringGradients, Vec<f64>) {
         let d = network.dimension;
         let (mut starts, mut dofs, mut values) = (vec![0], Vec::new(), Vec::new());

@@ -1,4 +1,6 @@
-//! Residuals of a whole-object fit at one point, and products with their Jacobian by solves with one factor.
+//! The residuals of a whole-object fit at one point, and products with their Jacobian by solves with one factor.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 use super::gradients::SpringGradients;
 use super::unknowns::Unknowns;
@@ -6,12 +8,12 @@ use crate::error::Result;
 use crate::solve::{Factor, System};
 use std::sync::Arc;
 
-/// A sum of squares to be made small.
+/// A sum of squares that is minimised.
 pub trait LeastSquares {
-    /// How many θ there are.
+    /// The number of unknowns θ.
     fn unknowns(&self) -> usize;
 
-    /// The residuals at θ; `None` where there are none, as where the network does not stand.
+    /// The residuals at θ; `None` if there are none, for example if the network is unstable.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -19,36 +21,38 @@ pub trait LeastSquares {
 }
 
 /// Residual vectors `r_l = s_l ∘ (u_l − ū_l)`, one per load, then one of frequencies, with
-/// `∂r_l/∂c = −s_l ∘ K⁻¹ Σ_s T_sl ∇c_s`, c the factors on the springs and T_sl how hard spring s pulls at factor 1.
+/// `∂r_l/∂c = −s_l ∘ K⁻¹ Σ_s T_sl ∇c_s`, where c are the factors on the springs and T_sl is the force of spring s at
+/// factor 1.
 #[derive(Debug)]
 pub struct Linearized<'a> {
+    /// The residual vectors.
     pub residuals: Vec<Vec<f64>>,
     pub(super) theta: Vec<f64>,
     pub(super) unknowns: &'a Unknowns,
     pub(super) tangents: Vec<Tangent>,
-    /// s_l: of each load, on its degrees of freedom.
+    /// s_l of each load, on its degrees of freedom.
     pub(super) scales: &'a [Vec<f64>],
-    /// Of the residuals of frequencies, by every factor.
+    /// The derivatives of the residuals of frequencies in every factor.
     pub(super) rows: Vec<Vec<f64>>,
 }
 
-/// Loads that share a factor.
+/// The loads that share a factorisation.
 #[derive(Debug, Clone)]
 pub(super) struct Tangent {
     pub system: Arc<System>,
     pub factor: Arc<Factor>,
     pub gradients: Arc<SpringGradients>,
-    /// Index of each load, and its T_sl, `[springs]`.
+    /// The index of each load, and its T_sl, `[springs]`.
     pub loads: Vec<(usize, Arc<Vec<f64>>)>,
 }
 
 impl Linearized<'_> {
-    /// `Σ ‖r_l‖²`.
+    /// The sum of squares `Σ ‖r_l‖²`.
     pub fn square(&self) -> f64 {
         self.residuals.iter().flatten().map(|r| r * r).sum()
     }
 
-    /// `J v`.
+    /// The product `J v`.
     pub fn forward(&self, v: &[f64]) -> Vec<Vec<f64>> {
         let change = self.unknowns.forward(&self.theta, v);
         let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
@@ -70,7 +74,7 @@ impl Linearized<'_> {
         all
     }
 
-    /// `Jᵀ w`, by one adjoint solve per load.
+    /// The product `Jᵀ w`, by one adjoint solve per load.
     pub fn adjoint(&self, w: &[Vec<f64>]) -> Vec<f64> {
         let mut total = vec![0.0; self.unknowns.springs()];
         for tangent in &self.tangents {
@@ -90,7 +94,7 @@ impl Linearized<'_> {
         self.unknowns.adjoint(&self.theta, &total)
     }
 
-    /// `Σ ‖r_l‖² + (ρ/m) ‖θ‖²` and its gradient.
+    /// The objective `Σ ‖r_l‖² + (ρ/m) ‖θ‖²` and its gradient.
     pub fn objective(&self, rho: f64) -> (f64, Vec<f64>) {
         let share = rho / self.theta.len().max(1) as f64;
         let value = self.square() + share * self.theta.iter().map(|t| t * t).sum::<f64>();

@@ -1,4 +1,6 @@
-//! Loads made from a mesh and its supports, to see how the object moves.
+//! Loads that are generated from a mesh and its supports.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
@@ -6,24 +8,26 @@ use crate::springs::{dot, norm, unit};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
-/// A named set of nodal forces, `[points · dimension]`, N.
+/// A named set of nodal forces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NodalLoad {
+    /// The name in reports.
     pub name: String,
+    /// The forces, `[points · dimension]`, N.
     pub forces: Vec<f64>,
 }
 
-/// Waves across the object in the random fields.
+/// The number of waves across the object in the random fields.
 const WAVES: f64 = 0.5;
-/// Sines that a component of a random field is the sum of.
+/// The number of sines of which a component of a random field is the sum.
 const SINES: usize = 4;
 
-/// Tractions `t = σ n` on the boundary and body forces, of size 1 Pa and 1 N/m³:
+/// Tractions `t = σ n` on the boundary, and body forces, of size 1 Pa and 1 N/m³:
 ///
-/// - "stress xx", "stress xy", …: σ one at all points, in each of its components;
-/// - "torsion" of solids, `σ = (a × r) aᵀ + a (a × r)ᵀ`, and "bending" about each axis across, `σ = (e·r) a aᵀ`: a points from
-///   what is held to the middle of the object, r is the place from there in units of the object's size; both leave the inside of
-///   the object in balance;
+/// - "stress xx", "stress xy", …: a uniform σ with one component equal to one;
+/// - "torsion" of solids, `σ = (a × r) aᵀ + a (a × r)ᵀ`, and "bending" about each axis across, `σ = (e·r) a aᵀ`, where
+///   a points from the support to the middle of the object, and r is the position from there in units of the object's
+///   size; both are in equilibrium inside the object;
 /// - "gravity x", …: a body force.
 pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLoad> {
     let d = mesh.dimension;
@@ -68,13 +72,13 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLo
                 .expect("a mesh has cells to act on"),
         }
     }));
-    // A load that moves nothing tells nothing: no sides of a chain of rods, or all of them held.
+    // A load that moves nothing has no information: a chain of rods has no sides, or all sides are held.
     let acts = |load: &NodalLoad| load.forces.iter().zip(&support.prescribed).any(|(f, p)| p.is_none() && *f != 0.0);
     loads.into_iter().filter(acts).collect()
 }
 
-/// "random 1", …: smooth body forces, each component a sum of sines with up to half a wave across the object; a seed gives the
-/// same ones always.
+/// "random 1", …: smooth body forces, each component a sum of sines with up to half a wave across the object. The same
+/// seed always gives the same loads.
 pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize, seed: u64) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
@@ -98,13 +102,13 @@ pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize
     (1..=count).map(&mut field).collect()
 }
 
-/// Where the object is, and which way it points away from what holds it.
+/// The middle of the object, and its direction away from the supports.
 struct Frame {
     middle: Vec<f64>,
-    /// The longest side of the box around it, m.
+    /// The longest side of the box around the object, m.
     size: f64,
     axis: Vec<f64>,
-    /// Unit vectors orthogonal to the axis and to each other.
+    /// Unit vectors that are orthogonal to the axis and to each other.
     across: Vec<Vec<f64>>,
 }
 
@@ -124,14 +128,14 @@ impl Frame {
         let size = sides.iter().copied().fold(0.0, f64::max);
         let middle = mean(&all);
         let mut axis: Vec<f64> = middle.iter().zip(mean(&held)).map(|(a, b)| a - b).collect();
-        // Held all around, it has no direction: its longest side serves.
+        // An object that is held all around has no direction: its longest side is used.
         if held.is_empty() || !(norm(&axis) > 0.05 * size) {
             axis = (0..d).map(|k| sides[k]).collect();
             let longest = (0..d).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
             axis.iter_mut().enumerate().for_each(|(k, a)| *a = f64::from(u8::from(k == longest)));
         }
         axis = unit(&axis);
-        // The coordinate direction that is farthest from the axis, made orthogonal to it.
+        // The coordinate direction farthest from the axis, made orthogonal to it.
         let farthest = (0..d).fold(0, |best, k| if axis[k].abs() < axis[best].abs() { k } else { best });
         let first: Vec<f64> = (0..d).map(|k| f64::from(u8::from(k == farthest)) - axis[farthest] * axis[k]).collect();
         let mut across = vec![unit(&first)];

@@ -1,9 +1,12 @@
-//! Spring constants from the displacements of the whole object: the network is fitted to move like the finite elements, or like a
-//! measured object, under a set of loads, and judged under others.
+//! Spring constants from the displacements of the whole object. The network is fitted to move like the finite elements,
+//! or like a measured object, under a set of loads, and is validated under others.
 //!
-//! `min_θ Σ_l w_l ‖u_l − ū_l‖²_W/‖ū_l‖²_W + Σ_i w_ω (ln ω_i/ω̄_i)² + (ρ/m) ‖θ‖²`, where m unknowns `θ` are logarithms of factors on
-//! the constants at the start, `F(u_l; k(θ)) = f_l`: constants stay positive, and the last term keeps them near those of the
-//! elements. Products with the Jacobian and its transpose cost one solve per load on the factor of the tangent.
+//! The fit is `min_θ Σ_l w_l ‖u_l − ū_l‖²_W/‖ū_l‖²_W + Σ_i w_ω (ln ω_i/ω̄_i)² + (ρ/m) ‖θ‖²` with `F(u_l; k(θ)) = f_l`.
+//! The m unknowns `θ` are logarithms of factors on the constants at the start, so that constants stay positive; the
+//! last term keeps them near those of the elements. Products with the Jacobian and its transpose cost one solve per
+//! load with the factor of the tangent.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 mod balance;
 mod descent;

@@ -1,4 +1,4 @@
-//! A network on its points, with what is varied.
+//! A network on its points, with the unknowns of a fit.
 
 use super::gradients::SpringGradients;
 use super::unknowns::Unknowns;
@@ -9,31 +9,33 @@ use crate::solve::Newton;
 use crate::springs::{Force, distance};
 use std::sync::Arc;
 
-/// A network whose constants are to be found.
+/// A network whose constants are fitted.
 #[derive(Debug)]
 pub struct Object<'a> {
-    /// With the constants at θ = 0, all above zero where the springs are linear.
+    /// The network with the constants at θ = 0, which are positive if the springs are linear.
     pub(super) network: Network,
-    /// At rest, `[points × dimension]`, m.
+    /// The positions at rest, `[points × dimension]`, m.
     pub(super) points: &'a [f64],
     pub(super) unknowns: Unknowns,
-    /// How loads are followed; absent at small displacements.
+    /// How loads are applied at large displacements; `None` at small displacements.
     pub(super) newton: Option<Newton>,
-    /// At rest.
+    /// The gradients at rest.
     pub(super) gradients: Arc<SpringGradients>,
     pub(super) pulls_at_rest: bool,
 }
 
-/// Constants that are next to nothing start at this share of the median.
+/// Nearly vanishing constants start at this share of the median: large enough to take part in the fit, too small to
+/// change the start much.
 const LEAST: f64 = 0.03;
-/// The share of the median up to which they are.
+/// The share of the median below which a constant is nearly vanishing.
 const NOTHING: f64 = 1e-4;
 
 impl<'a> Object<'a> {
-    /// `newton` says how loads are followed where displacements are large.
+    /// `newton` says how loads are applied at large displacements; `None` stands for small displacements.
     ///
     /// # Errors
-    /// The network has no springs or none above zero, at small displacements one pulls at rest, or a law has no factor.
+    /// The network has no springs, or none with a positive constant; at small displacements a spring pulls at rest; or
+    /// a law has no factor.
     pub fn new(network: &Network, points: &'a [f64], unknowns: Unknowns, newton: Option<Newton>) -> Result<Object<'a>> {
         if network.is_empty() {
             return Err(Error::expected("springs", "a network with springs", "none").of_kind(ErrorKind::Infeasible));
@@ -60,11 +62,12 @@ impl<'a> Object<'a> {
         Ok(Object { network, points, unknowns, newton, gradients: Arc::new(gradients), pulls_at_rest })
     }
 
+    /// The unknowns.
     pub fn unknowns(&self) -> &Unknowns {
         &self.unknowns
     }
 
-    /// How hard each spring pulls at factor 1 under small displacements: `T_s = k_s g_s·u`.
+    /// The force of each spring at factor 1 under small displacements: `T_s = k_s g_s·u`.
     pub(super) fn pulls(&self, u: &[f64]) -> Vec<f64> {
         self.gradients.along(u).zip(self.slopes()).map(|(along, slope)| slope * along).collect()
     }
@@ -75,8 +78,8 @@ impl<'a> Object<'a> {
         self.network.lengths.iter().map(|s| s.constant).chain(others)
     }
 
-    /// With all length springs alike, others as stiff against the strain of what they measure, and the trace of the stiffness
-    /// `Σ_s k_s ‖g_s‖²` as before.
+    /// The object with equal constants of all length springs, the others equally stiff against the strain of their
+    /// measure, and the trace of the stiffness, `Σ_s k_s ‖g_s‖²`, unchanged.
     #[must_use]
     pub fn alike(mut self) -> Object<'a> {
         let d = self.network.dimension;
@@ -93,7 +96,7 @@ impl<'a> Object<'a> {
         self.scaled(before / after)
     }
 
-    /// With all constants `factor` times as large.
+    /// The object with all constants multiplied by `factor`.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Object<'a> {
         self.network = self.network.scaled(&vec![factor; self.network.len()]);
@@ -106,8 +109,8 @@ impl<'a> Object<'a> {
     }
 }
 
-/// Raises the constants of linear springs that are next to nothing, so that the fit can make something of them: to a share of the
-/// median of those in the same spring group.
+/// Raises nearly vanishing constants of linear springs to a share of the median of those in the same group, so that the
+/// fit can change them; the unknowns are factors, and zero times a factor stays zero.
 pub fn raise_idle(fits: &mut [CellFits]) {
     for fit in fits.iter_mut().filter(|fit| fit.force == Force::Linear) {
         let m = fit.springs.len().max(1);
@@ -118,7 +121,7 @@ pub fn raise_idle(fits: &mut [CellFits]) {
     }
 }
 
-/// Raises what is next to nothing to a share of the median of what is above zero.
+/// Raises nearly vanishing values to a share of the median of the positive ones.
 fn raise(constants: Vec<&mut f64>) {
     let mut positive: Vec<f64> = constants.iter().map(|k| **k).filter(|k| *k > 0.0).collect();
     positive.sort_by(f64::total_cmp);

@@ -1,4 +1,6 @@
-//! The path of regularizations, from much to little: how far it is followed is chosen by loads that the fit does not see.
+//! The path of regularizations, from strong to weak. Validation loads, which are not fitted, choose where it ends.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 use super::balance::Balance;
 use super::descent::lbfgs;
@@ -9,41 +11,45 @@ use super::settings::{Method, Residual, Validation, Wanted, WholeSettings};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Where a fit stands at the beginning of a stage, to go on from later: with the same steps to the same end as without a break.
+/// The state of a fit at the beginning of a stage. A run that continues from it makes the same steps to the same end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    /// The place of ρ among the regularizations.
+    /// The index of ρ among the regularizations.
     pub stage: usize,
+    /// The unknowns θ.
     pub theta: Vec<f64>,
-    /// Of least error on the validation so far.
+    /// The stage with the least error on the validation so far.
     pub best: Best,
-    /// Whether a ρ was better but its range too large.
+    /// Whether a better ρ was rejected because of its range of constants.
     pub limited: bool,
-    /// How many stages are gone through, where leaving loads out has told.
+    /// The number of stages, once leave-one-out validation has chosen it.
     pub stages: Option<usize>,
 }
 
-/// The best of the stages that are done.
+/// The best of the finished stages.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Best {
-    /// Mean logarithm of the relative errors; `None` before the first.
+    /// The mean logarithm of the relative errors; `None` before the first stage.
     pub error: Option<f64>,
+    /// The unknowns θ of that stage.
     pub theta: Vec<f64>,
-    /// Its place among the regularizations; `None` for the start.
+    /// Its index among the regularizations; `None` for the start.
     pub stage: Option<usize>,
 }
 
-/// Told where the fit stands after each step, nothing while it tries what to leave out; ends it by returning false.
+/// A callback after each step, with the current state, or `None` during cross-validation. Returning false ends the fit.
 pub type Watch<'a> = dyn FnMut(Option<&Snapshot>) -> bool + 'a;
 
-/// Stages without a gain after which the path ends.
+/// The number of stages without improvement after which the path ends.
 const PATIENCE: usize = 2;
-/// No constant changes by more than the exponential of this.
+/// The largest size of θ: no constant changes by more than the factor e¹⁰⁰.
 const LARGEST: f64 = 100.0;
 
 impl Snapshot {
+    /// Checks the snapshot.
+    ///
     /// # Errors
-    /// It is not one of a fit with m unknowns and so many stages.
+    /// It is not one of a fit with m unknowns and this number of stages.
     pub fn check(&self, m: usize, stages: usize) -> Result<()> {
         let fits = |theta: &[f64]| theta.len() == m && theta.iter().all(|t| t.abs() <= LARGEST);
         let known = |stage: Option<usize>| stage.is_none_or(|stage| stage < stages);
@@ -55,7 +61,7 @@ impl Snapshot {
     }
 }
 
-/// What stays the same along the regularizations.
+/// What does not change along the path.
 pub(super) struct Path<'a> {
     pub object: &'a Object<'a>,
     pub wanted: &'a Wanted,
@@ -63,8 +69,8 @@ pub(super) struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// Goes on from a snapshot until the judge sees no gain any more, the path ends, or `watch` says so; the best that was found,
-    /// which is that of the snapshot unless a stage was ended early.
+    /// Continues from a snapshot until the validation shows no improvement, the path ends, or `watch` returns false.
+    /// Returns the best result, which is that of the snapshot unless a stage was ended early.
     pub fn follow(
         &self,
         problem: &Displacements,
@@ -79,7 +85,8 @@ impl Path<'_> {
             let stage = snapshot.stage;
             let now = snapshot.clone();
             let mut goes_on = true;
-            // A search that began anew in the middle of a stage would come to another end: the stage is what is gone on with.
+            // A search that restarted in the middle of a stage would end elsewhere, so that stages are the units of
+            // continuation.
             let mut visit = |_: &[f64], _: f64| {
                 goes_on = watch(Some(&now));
                 goes_on
@@ -90,10 +97,10 @@ impl Path<'_> {
             let error = judge.errors(&theta)?.and_then(|errors| mean(&errors));
             let better = match (error, snapshot.best.error) {
                 (Some(now), Some(before)) => now < before,
-                // Without a judge each stage is better than the one before.
+                // Without validation each stage counts as better than the previous one.
                 _ => snapshot.best.error.is_none(),
             };
-            // A ρ that was asked for is taken whatever comes of it.
+            // A single requested ρ is used whatever its result is.
             let wide = self.wanted.validation != Validation::None && range(&theta) > limit;
             let best = if better && !wide {
                 Best { error, theta: theta.clone(), stage: Some(stage) }
@@ -101,11 +108,11 @@ impl Path<'_> {
                 snapshot.best.clone()
             };
             if !goes_on {
-                // What is reached counts, but the stage is not done.
+                // The result counts, but the stage is not finished.
                 return Ok(best);
             }
             *snapshot = Snapshot { stage: stage + 1, theta, best, limited: better && wide, stages: snapshot.stages };
-            // The largest ρ may keep too near to a start that is good under some loads by chance.
+            // The largest ρ may keep the network too close to a start that happens to be good under some loads.
             if wide || snapshot.best.stage.is_some_and(|best| stage >= best + PATIENCE) {
                 break;
             }
@@ -154,7 +161,8 @@ impl Path<'_> {
     }
 }
 
-/// The number of stages after which the error on loads that are left out, one at a time, is least; `None` where `watch` ended it.
+/// The number of stages after which the error on loads that are left out, one at a time, is least; `None` if `watch`
+/// returned false.
 pub(super) fn leave_one_out(
     object: &Object,
     wanted: &Wanted,
@@ -189,7 +197,7 @@ pub(super) fn leave_one_out(
     Ok((0..stages).min_by(|&a, &b| sums[a].total_cmp(&sums[b])).map(|stage| stage + 1))
 }
 
-/// Of the logarithms.
+/// The mean of the logarithms.
 pub(super) fn mean(errors: &Errors) -> Option<f64> {
     let sum: f64 = errors.loads.iter().map(|e| e.ln()).sum();
     (!errors.loads.is_empty()).then(|| sum / errors.loads.len() as f64)

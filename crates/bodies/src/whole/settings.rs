@@ -1,52 +1,61 @@
-//! What a whole-object fit is to meet, and how it goes on.
+//! The targets and settings of a whole-object fit.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 use super::gauss_newton::GaussNewton;
 use super::target::{Frequencies, Target};
 use crate::model::Entries;
 
-/// What minimises the objective.
+/// The method that minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
+    /// Gauss–Newton steps within a trust region.
     GaussNewton(GaussNewton),
-    /// With so many pairs of steps and gradients.
+    /// L-BFGS.
     Lbfgs {
+        /// The number of pairs of steps and gradients that it stores.
         memory: usize,
     },
 }
 
-/// Pairs that L-BFGS remembers.
+/// The default number of pairs of L-BFGS.
 const MEMORY: usize = 10;
 
 crate::named!(Method { "gauss-newton" => GaussNewton { 0: GaussNewton::default() }, "l-bfgs" => Lbfgs { memory: MEMORY } });
 
-/// What is made small.
+/// The residuals whose squares are minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Residual {
+    /// Differences of displacements, see [`Displacements`](super::Displacements).
     #[default]
     Displacements,
-    /// See [`Balance`](super::Balance).
+    /// Residual forces at the target displacements, see [`Balance`](super::Balance).
     Forces,
-    /// Of forces at the largest ρ, then of displacements.
+    /// Residual forces at the largest ρ, then differences of displacements.
     ForcesFirst,
 }
 
 crate::named!(Residual { "displacements" => Displacements, "forces" => Forces, "forces-first" => ForcesFirst });
 
-/// How a whole-object fit goes on.
+/// The settings of a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WholeSettings {
-    /// Values of ρ from the first to the last, each started where the one before ended.
+    /// The values of ρ in order; each fit starts from the result of the previous one.
     pub regularizations: Vec<f64>,
-    /// Steps with each.
+    /// The largest number of steps with each ρ.
     pub iterations: usize,
+    /// The method that minimises the objective.
     pub method: Method,
+    /// The residuals.
     pub residual: Residual,
-    /// A ρ with which a length spring becomes so many times as stiff as another is not taken, unless they are at the start.
+    /// The largest ratio of the constants of two length springs. A ρ that leads to a larger one is rejected, unless the
+    /// start has it.
     pub range: f64,
 }
 
 impl WholeSettings {
-    /// Values of ρ where loads tell which of them is best.
+    /// The values of ρ if a validation chooses among them: one per power of ten, from almost no change to almost no
+    /// regularization.
     pub const REGULARIZATIONS: [f64; 8] = [1e1, 1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 }
 
@@ -62,20 +71,20 @@ impl Default for WholeSettings {
     }
 }
 
-/// What chooses ρ.
+/// How ρ is chosen.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Validation {
-    /// The last one is taken.
+    /// The last one is used.
     #[default]
     None,
-    /// That of least error on these loads, which are not fitted.
+    /// The one with the least error on these loads, which are not fitted.
     Loads(Vec<Target>),
-    /// That of least error on the loads of the fit, each left out once (Stone 1974).
+    /// The one with the least error on the loads of the fit, each left out once (Stone 1974).
     LeaveOneOut,
 }
 
 impl Validation {
-    /// Of loads that are not fitted.
+    /// The loads of the validation that are not fitted.
     pub fn loads(&self) -> &[Target] {
         match self {
             Validation::Loads(loads) => loads,
@@ -84,12 +93,16 @@ impl Validation {
     }
 }
 
-/// What is to be met: the loads of the fit, what chooses ρ, frequencies, and the stiffness of the finite elements where forces are
-/// balanced.
+/// The targets: the loads of the fit, the validation, frequencies, and the stiffness of the finite elements if residual
+/// forces are used.
 #[derive(Debug, Clone, Default)]
 pub struct Wanted {
+    /// The loads of the fit.
     pub trained: Vec<Target>,
+    /// How ρ is chosen.
     pub validation: Validation,
+    /// The target frequencies, if there are any.
     pub frequencies: Option<Frequencies>,
+    /// The stiffness of the finite elements, for residual forces.
     pub body: Option<Entries>,
 }

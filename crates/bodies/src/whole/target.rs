@@ -1,45 +1,48 @@
-//! What a whole-object fit is to meet.
+//! The loads and frequencies that a whole-object fit should reproduce.
 
 use crate::model::Support;
 
-/// A load and how the object moves under it.
+/// A load, and the displacements of the object under it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
+    /// The name in reports.
     pub name: String,
+    /// The support.
     pub support: Support,
-    /// `[points · dimension]`, N.
+    /// The forces, `[points · dimension]`, N.
     pub forces: Vec<f64>,
-    /// Of the finite elements, or measured; `[points · dimension]`, m.
+    /// The displacements of the finite elements or of a measurement, `[points · dimension]`, m.
     pub displacement: Vec<f64>,
-    /// W, of each degree of freedom: zero where the displacement is not known.
+    /// The weights W of the degrees of freedom, `[points · dimension]`; zero where the displacement is not known.
     pub weights: Vec<f64>,
-    /// w_l.
+    /// The weight w_l of the load.
     pub weight: f64,
 }
 
-/// Natural frequencies to be met.
+/// Natural frequencies that the network should have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frequencies {
+    /// The support.
     pub support: Support,
-    /// `[points]`, kg.
+    /// The masses, `[points]`, kg.
     pub masses: Vec<f64>,
-    /// ω², rad²/s², ascending.
+    /// The squares ω², rad²/s², ascending.
     pub squares: Vec<f64>,
-    /// w_ω.
+    /// The weight w_ω.
     pub weight: f64,
 }
 
 impl Target {
-    /// Known everywhere alike.
+    /// A load with displacements that are known everywhere with equal weight.
     pub fn new(name: String, support: Support, forces: Vec<f64>, displacement: Vec<f64>) -> Target {
         let weights = vec![1.0; displacement.len()];
         Target { name, support, forces, displacement, weights, weight: 1.0 }
     }
 
-    /// `√(w_l W)/‖ū_l‖_W`; `None` where nothing that is free to move is known to.
+    /// `√(w_l W)/‖ū_l‖_W`; `None` if no displacement is known that is free to change.
     pub(super) fn scale(&self) -> Option<Vec<f64>> {
         let known = || self.displacement.iter().zip(&self.weights).map(|(u, w)| w.sqrt() * u);
-        // Its square may be beyond the range of numbers.
+        // The square may overflow.
         let largest = known().fold(0.0, |a: f64, u| a.max(u.abs()));
         let size = largest * known().map(|u| (u / largest).powi(2)).sum::<f64>().sqrt();
         let free = self.weights.iter().zip(&self.support.prescribed).any(|(w, p)| *w > 0.0 && p.is_none());

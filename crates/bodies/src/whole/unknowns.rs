@@ -1,4 +1,6 @@
-//! What a whole-object fit varies: factors on the constants at the start, each with springs of its own or shared by many.
+//! The unknowns of a whole-object fit: factors on the constants at the start, each for one spring or shared by many.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
@@ -7,10 +9,10 @@ use crate::model::Network;
 use crate::springs::Force;
 use std::collections::{BTreeMap, HashMap};
 
-/// `factor_s = Σ_p share_sp exp θ_p`, the shares of a spring adding up to 1.
+/// The factors `factor_s = Σ_p share_sp exp θ_p`, where the shares of a spring sum to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknowns {
-    /// Where the shares of each spring begin, `[springs + 1]`.
+    /// The index at which the shares of each spring begin, `[springs + 1]`.
     starts: Vec<usize>,
     /// Unknown and share.
     shares: Vec<(usize, f64)>,
@@ -18,13 +20,13 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
-    /// One for each spring of the network.
+    /// One unknown for each spring of the network.
     pub fn per_spring(network: &Network) -> Unknowns {
         let count = network.len();
         Unknowns { starts: (0..=count).collect(), shares: (0..count).map(|s| (s, 1.0)).collect(), count }
     }
 
-    /// One for each spring group of the elements.
+    /// One unknown for each spring group of the elements.
     ///
     /// # Errors
     /// Those of [`Unknowns::per_element`].
@@ -33,7 +35,8 @@ impl Unknowns {
         Unknowns::labelled(mesh, fits, network, name)
     }
 
-    /// One for each spring group in each region of the mesh: cells that belong to the same physical groups.
+    /// One unknown for each spring group in each region of the mesh, which consists of the cells that belong to the
+    /// same physical groups.
     ///
     /// # Errors
     /// Those of [`Unknowns::per_element`].
@@ -47,15 +50,15 @@ impl Unknowns {
         })
     }
 
-    /// One for each spring of each element, before springs between the same two points are added up.
+    /// One unknown for each spring of each element, before springs between the same two points are added.
     ///
     /// # Errors
-    /// The springs have laws of force or rest lengths of their own: only whole springs can be scaled then.
+    /// The springs have force laws or rest lengths of their own, so that only whole springs can be scaled.
     pub fn per_element(mesh: &Mesh, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
         Unknowns::labelled(mesh, fits, network, |cell, spring| (cell.block, cell.cell, spring))
     }
 
-    /// One for each label that a spring of a cell can have.
+    /// One unknown for each label that a spring of a cell can have.
     fn labelled<L: Ord>(
         mesh: &Mesh,
         fits: &[CellFits],
@@ -82,7 +85,7 @@ impl Unknowns {
                             Some(next - 1)
                         }
                     };
-                    // Constants of opposite sign may cancel, and leave no spring.
+                    // Constants of opposite sign may cancel and leave no spring.
                     let Some(at) = at else { continue };
                     let count = known.len();
                     let unknown = *known.entry(label(CellIndex { block: index, cell }, spring)).or_insert(count);
@@ -102,10 +105,12 @@ impl Unknowns {
         Ok(unknowns)
     }
 
+    /// The number of springs.
     pub fn springs(&self) -> usize {
         self.starts.len() - 1
     }
 
+    /// The number of unknowns.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -115,7 +120,7 @@ impl Unknowns {
         self.each().map(|own| own.iter().map(|(p, share)| share * theta[*p].exp()).sum()).collect()
     }
 
-    /// How fast the factors change when the unknowns do at the rate v: `Σ_p share_sp exp θ_p v_p`.
+    /// The rate of change of the factors if the unknowns change at the rate v: `Σ_p share_sp exp θ_p v_p`.
     pub fn forward(&self, theta: &[f64], v: &[f64]) -> Vec<f64> {
         self.each().map(|own| own.iter().map(|(p, share)| share * theta[*p].exp() * v[*p]).sum()).collect()
     }

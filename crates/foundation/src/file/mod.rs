@@ -1,4 +1,6 @@
-//! Files on disk: read with an error that names them, written whole or not at all.
+//! Files on disk. A file is read with an error that names it, and is written whole or not at all.
+//!
+//! TOML is read into structures with errors that name the key and the line.
 
 mod identity;
 mod partial;
@@ -14,12 +16,13 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-/// More than a mesh has that fits into memory with its model; what is no file on a disk may never end.
+/// The largest file that is read, in bytes. A mesh of this size would not fit into memory together with its model, and
+/// a path that is not a regular file (a pipe, a device) may never end.
 const LARGEST_FILE: u64 = 4_000_000_000;
-/// Elements of hundreds of nodes have less.
+/// The longest TOML text, in bytes. Files of elements with hundreds of nodes are shorter.
 const LONGEST_TOML: usize = 1_000_000;
 
-/// The file's bytes.
+/// Reads the file's bytes.
 ///
 /// # Errors
 /// The file is missing or unreadable, or larger than 4 GB.
@@ -33,7 +36,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The length that the file has by its folder, and its bytes unless they are more than `most`.
+/// The length of the file by its metadata, and its bytes if they are not more than `most`.
 fn content(path: &Path, most: u64) -> std::io::Result<(u64, Vec<u8>)> {
     let file = fs::File::open(path)?;
     let length = file.metadata()?.len();
@@ -45,7 +48,7 @@ fn content(path: &Path, most: u64) -> std::io::Result<(u64, Vec<u8>)> {
     Ok((length, bytes))
 }
 
-/// The file's text.
+/// Reads the file's text.
 ///
 /// # Errors
 /// The file is missing, unreadable or not UTF-8.
@@ -54,31 +57,33 @@ pub fn read_text(path: &Path) -> Result<String> {
     String::from_utf8(read(path)?).map_err(|_| not_text())
 }
 
-/// The path's ending without its dot, in small letters; empty if it has none.
+/// The extension of the path without its dot, in lower case; empty if the path has none.
 pub fn ending(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-/// Creates `path` with `content`, or replaces it; a failure leaves what was there before. A link stays one, and a file that is
-/// replaced keeps its permissions; what is no file, such as a device, is written to as it is. What killed programs left of such files
-/// in that folder is removed.
+/// Creates `path` with `content`, or replaces it.
+///
+/// The content goes to a temporary file beside `path`, which is then renamed, so that a failure leaves the old file as
+/// it was. A symbolic link stays a link, and a replaced file keeps its permissions. A path that is not a regular file,
+/// such as a device, is written to directly. Temporary files that killed processes left in the folder are removed.
 ///
 /// # Errors
-/// The folder is missing or read-only, or the disk is full.
+/// The folder does not exist or is read-only, the file is read-only, or the disk is full.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
     write_with(path, |file| file.write_all(content))
 }
 
-/// As [`write_whole`], with content that is made while it is written.
+/// Writes a file as [`write_whole`] does, with content that is produced while it is written.
 ///
 /// # Errors
-/// As there.
+/// The same as those of [`write_whole`], and failures of `content`.
 pub fn write_with(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     if path.file_name().is_none() || path.is_dir() {
         return Err(unwritable("expected the name of a file to write, found a folder", path));
     }
     refuse_protected(path)?;
-    // A file that is not there yet has no other name.
+    // A file that does not exist yet has no other name.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = fs::metadata(&target).ok();
     let write = |file: &fs::File| {
@@ -101,12 +106,12 @@ pub fn write_with(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Resul
     written.map_err(|e| Error::io("cannot be written", e).in_file(path))
 }
 
-/// A file or folder that cannot be written, as is known before the system is asked to.
+/// The error for a path that is known to be unwritable before the system is asked.
 fn unwritable(problem: &str, path: &Path) -> Error {
     Error::new(problem).of_kind(ErrorKind::Io).in_file(path)
 }
 
-/// Files that are read-only and links that lead nowhere are not replaced.
+/// Refuses to replace read-only files and symbolic links whose target does not exist.
 fn refuse_protected(path: &Path) -> Result<()> {
     let problem = match (fs::metadata(path), fs::symlink_metadata(path)) {
         (Ok(old), _) if old.is_file() && old.permissions().readonly() => "cannot be written: the file is read-only",
@@ -116,15 +121,16 @@ fn refuse_protected(path: &Path) -> Result<()> {
     Err(unwritable(problem, path))
 }
 
-/// Whether files could be written into `path`, which may not be there yet: asked before long work. Nothing stays behind.
+/// Checks that files could be written into `path`, which may not exist yet. It is called before long work starts and
+/// leaves nothing behind.
 ///
 /// # Errors
-/// Something that is no folder stands in the way, or the folder is read-only.
+/// A file is in the place of a folder, or the folder is read-only.
 pub fn check_folder(path: &Path) -> Result<()> {
     probe(path, path)
 }
 
-/// The same of the folder `path`, with errors that name the file `name`.
+/// Checks the folder `path`; errors name the file `name`.
 fn probe(path: &Path, name: &Path) -> Result<()> {
     let exists = |p: &&Path| !p.as_os_str().is_empty() && p.exists();
     let place = path.ancestors().find(exists).unwrap_or(Path::new("."));
@@ -135,10 +141,10 @@ fn probe(path: &Path, name: &Path) -> Result<()> {
     tried.map_err(|e| Error::io("nothing can be written there", e).in_file(name))
 }
 
-/// Whether [`write_whole`] could write that file.
+/// Checks that [`write_whole`] could write this file.
 ///
 /// # Errors
-/// It is a folder, or its folder is missing or read-only.
+/// The path is a folder, or its folder does not exist or is read-only.
 pub fn check_file(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match path.is_dir() {
@@ -152,7 +158,7 @@ pub fn check_file(path: &Path) -> Result<()> {
     }
 }
 
-/// The files in `folder` that end in `.ending`, by name.
+/// The files in `folder` with the extension `ending`, sorted by name.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -172,12 +178,12 @@ pub fn files_in(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
 /// Creates the folder and those above it.
 ///
 /// # Errors
-/// A file stands in the way, or the folder above is read-only.
+/// A file is in the place of a folder, or the folder above is read-only.
 pub fn create_folder(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(|e| Error::io("the folder cannot be created", e).in_file(path))
 }
 
-/// Reads TOML into a structure; what is wrong is named by key and line.
+/// Reads TOML into a structure. Errors name the key and the line.
 ///
 /// # Errors
 /// The text is too long or not TOML, or a key is unknown, missing or of the wrong type.
@@ -199,7 +205,7 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
     })
 }
 
-/// As [`parse_toml`], of a table that has been read; an error has no line.
+/// Reads a table that is parsed already into a structure, as [`parse_toml`] does. Errors name the key but no line.
 ///
 /// # Errors
 /// A key is unknown, missing or of the wrong type.
@@ -207,8 +213,8 @@ pub fn parse_table<T: serde::de::DeserializeOwned>(table: toml::Table) -> Result
     serde_path_to_error::deserialize(table).map_err(|e| keyed(&e))
 }
 
-/// Names the line of the value that the error's key leads to in the TOML text, or of the nearest table around it, unless the error has a
-/// line or a file.
+/// Adds to `error` the line of the value that its key leads to in the TOML text, or of the nearest table around that
+/// value. An error that has a line or a file already is returned as it is.
 pub fn on_line_of_key(error: Error, text: &str) -> Error {
     if error.line().is_some() || error.file().is_some() {
         return error;
@@ -217,18 +223,18 @@ pub fn on_line_of_key(error: Error, text: &str) -> Error {
     line.into_iter().fold(error, Error::on_line)
 }
 
-/// The line of the value of this key in the TOML text, or of the nearest table around it.
+/// The line (from 1) of the value of `key` in the TOML text, or of the nearest table around it.
 pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     place_of(text, key).map(|place| text[..place].matches('\n').count() + 1)
 }
 
-/// Where the value of this key, such as `nodes[3].shape`, or the nearest table around it begins, in bytes.
+/// The byte at which the value of a key such as `nodes[3].shape`, or the nearest table around it, begins.
 fn place_of(text: &str, key: &str) -> Option<usize> {
     let root = DeTable::parse(text).ok()?;
     let mut place = None;
     let mut entry = next_entry(root.get_ref(), key);
     while let Some((name, value, rest)) = entry {
-        // A table that other headers imply has no place of its own.
+        // A table that exists only because headers below it name it has no position of its own.
         place = Some(if value.get_ref().is_table() {
             name.span().start.min(value.span().start)
         } else {
@@ -247,7 +253,7 @@ fn place_of(text: &str, key: &str) -> Option<usize> {
     place
 }
 
-/// The longest name of the table that `key` begins with, its value, and the rest of the key.
+/// The longest table name with which `key` begins, its value, and the rest of the key.
 fn next_entry<'t, 'i, 'k>(
     table: &'t DeTable<'i>,
     key: &'k str,
@@ -266,7 +272,8 @@ fn keyed(error: &serde_path_to_error::Error<toml::de::Error>) -> Error {
     if key == "." { Error::new(problem) } else { Error::at(key, problem) }
 }
 
-/// What an unknown key or name was probably meant to be: serde quotes it first, and the known ones after it.
+/// A suggestion for an unknown key or name. The message of serde quotes the unknown name first and the known names
+/// after it.
 fn meant(message: &str) -> String {
     let is_unknown = ["unknown field", "unknown variant"].iter().any(|words| message.starts_with(words));
     let mut quoted = message.split('`').skip(1).step_by(2);
@@ -277,7 +284,7 @@ fn meant(message: &str) -> String {
 }
 
 fn one_line(message: &str) -> String {
-    // serde speaks of Rust's types.
+    // The messages of serde use the names of Rust types.
     let words = [("expected f64", "expected a number"), ("expected usize", "expected a whole number")];
     let words =
         words.iter().chain(&[("expected u64", "expected a whole number"), ("expected a sequence", "expected a list")]);

@@ -1,45 +1,54 @@
-//! The coordinates of a point side by side in one register: what a loop over springs and cells that share points computes with,
-//! where a register with one cell per lane would be filled and emptied number by number.
+//! The three coordinates of a point in one register, for loops over springs and cells that share points.
+//!
+//! Such loops read and write points at scattered places. With one cell per SIMD lane, every number would be gathered
+//! and scattered one by one; with one point per register it is loaded and stored at once.
 
 #[cfg(target_arch = "x86_64")]
 use pulp::{Simd, WithSimd, cast, x86::V3};
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::__m256d;
 
-/// A vector of three coordinates, with one place to spare; `self` selects the kind of register where a method makes a new one.
+/// A vector of three coordinates and one unused entry. Where a method makes a new vector, `self` only selects the kind
+/// of register.
 pub trait Coordinates: Copy {
+    /// Reads four numbers.
     fn load(self, from: &[f64; 4]) -> Self;
 
+    /// Writes four numbers.
     fn store(self, to: &mut [f64; 4]);
 
+    /// `self + other`.
     fn plus(self, other: Self) -> Self;
 
+    /// `self − other`.
     fn minus(self, other: Self) -> Self;
 
+    /// `factor · self`.
     fn scaled(self, factor: f64) -> Self;
 
     /// `self + factor · other`.
     fn plus_scaled(self, factor: f64, other: Self) -> Self;
 
-    /// `(y, z, x)`.
+    /// The cyclic permutation `(y, z, x)` of `(x, y, z)`, from which cross products are built.
     fn turned(self) -> Self;
 
-    /// `a b − c d` of each coordinate, with `self` as a.
+    /// `a b − c d` for each coordinate, with `self` as `a`.
     fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self;
 
-    /// `x x' + y y' + z z'`.
+    /// The scalar product `x x' + y y' + z z'`.
     fn dot(self, other: Self) -> f64;
 }
 
-/// Work that is written once for every kind of register.
+/// A computation that is written once for every kind of register.
 pub trait CoordinatesWork {
+    /// What the computation returns.
     type Output;
 
-    /// `zero` selects the kind.
+    /// Runs the computation. `zero` selects the kind of register.
     fn run<C: Coordinates>(self, zero: C) -> Self::Output;
 }
 
-/// Does the work with one register for a point where this machine has such.
+/// Runs `work` with one register per point if the machine has AVX2, and with arrays otherwise.
 pub fn with_coordinates<W: CoordinatesWork>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = V3::try_new() {
@@ -61,7 +70,8 @@ impl<W: CoordinatesWork> WithSimd for Wide<W> {
     }
 }
 
-/// Named instructions, for the compiler pairs the operations of an array's entries as it likes and shuffles in between.
+/// Uses explicit instructions: from operations on the entries of an array the compiler forms pairs and shuffles between
+/// them.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
 struct Register {
@@ -127,7 +137,7 @@ impl Coordinates for Register {
     }
 }
 
-/// Where the machine has no such register.
+/// For machines without such registers.
 impl Coordinates for [f64; 4] {
     #[inline(always)]
     fn load(self, from: &[f64; 4]) -> [f64; 4] {

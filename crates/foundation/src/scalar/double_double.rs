@@ -1,16 +1,21 @@
-//! Numbers of twice the digits of `f64`, the reference that rounding is measured against, and `f32`, the other way.
+//! Double-double numbers, with twice the digits of `f64`: the reference against which rounding errors are measured.
+//! Also `f32`, with half the digits.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::lanes::with_fused_products;
 use super::{Real, Scalar};
 use std::ops::{Add, Div, Mul, Sub};
 
-/// `hi + lo`, with lo at most half a unit in the last place of hi: 32 digits in the range of `f64`.
+/// `hi + lo`, with |lo| at most half a unit in the last place of `hi`: 32 decimal digits in the range of `f64`.
 ///
-/// Sum and product are algorithms 6 and 12 of Joldes, Muller, Popescu, ACM Trans. Math. Softw. 44 (2017); the quotient takes a
-/// third digit by long division, the root one step of Newton's method (Karp and Markstein 1997).
+/// Sum and product are algorithms 6 and 12 of Joldes, Muller, Popescu, ACM Trans. Math. Softw. 44 (2017). The quotient
+/// adds a third digit by long division; the square root is one step of Newton's method (Karp and Markstein 1997).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DoubleDouble {
+    /// The nearest `f64`.
     pub hi: f64,
+    /// The rest.
     pub lo: f64,
 }
 
@@ -20,7 +25,7 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-/// `a + b` exactly.
+/// `a + b`, exactly.
 #[inline(always)]
 fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
@@ -28,7 +33,7 @@ fn two_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: (a - (hi - other)) + (b - other) }
 }
 
-/// `a + b` exactly where |a| ≥ |b|.
+/// `a + b`, exactly, for |a| ≥ |b|.
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
@@ -96,12 +101,12 @@ impl Scalar for DoubleDouble {
         value
     }
 
-    /// A quotient errs by less than 10·2⁻¹⁰⁶, the worst of the four.
+    /// The bound of the quotient, 10·2⁻¹⁰⁶; those of the other three operations are smaller.
     fn epsilon() -> f64 {
         10.0 * 2f64.powi(-106)
     }
 
-    /// For the machine's products that are rounded once with their sum.
+    /// Enables the fused multiply-add instructions of the machine, which make products exact in one operation.
     #[inline(never)]
     fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
         with_fused_products(work)

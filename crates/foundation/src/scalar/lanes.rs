@@ -1,25 +1,25 @@
-//! As many numbers side by side as one register of the machine holds, found out at run time.
+//! Several `f64` side by side, as many as one register of the machine holds. The width is found at run time.
 
 use super::{Real, Scalar};
 use pulp::{Simd, WithSimd, bytemuck};
 use std::ops::{Add, Div, Mul, Sub};
 
-/// One number per element, for [`Lanes::COUNT`] elements at once.
+/// One number for each of [`Lanes::COUNT`](Packed::COUNT) elements.
 #[derive(Debug, Clone, Copy)]
 pub struct Lanes<S: Simd> {
     simd: S,
     values: S::f64s,
 }
 
-/// Several numbers of `f64` that are computed together.
+/// Several `f64` that are computed together.
 pub trait Packed: Real {
-    /// How many.
+    /// How many numbers there are.
     const COUNT: usize;
 
-    /// `[COUNT]`.
+    /// The numbers; shape `[COUNT]`.
     fn as_slice(&self) -> &[f64];
 
-    /// `[COUNT]`.
+    /// The numbers, to be changed; shape `[COUNT]`.
     fn as_mut_slice(&mut self) -> &mut [f64];
 }
 
@@ -37,7 +37,7 @@ impl<S: Simd> Packed for Lanes<S> {
     }
 }
 
-/// A single number: what is left where the machine has no registers for more.
+/// A single number: the fallback for machines without wider registers.
 impl Packed for f64 {
     const COUNT: usize = 1;
 
@@ -52,15 +52,16 @@ impl Packed for f64 {
     }
 }
 
-/// Work that is written once for every width of registers.
+/// A computation that is written once for every width of registers.
 pub trait PackedWork {
+    /// What the computation returns.
     type Output;
 
-    /// `zero` selects the kind of number.
+    /// Runs the computation. `zero` selects the kind of number.
     fn run<T: Packed>(self, zero: T) -> Self::Output;
 }
 
-/// Does the work with the widest registers of this machine.
+/// Runs `work` with the widest registers of this machine.
 pub fn widest<W: PackedWork>(work: W) -> W::Output {
     match pulp::Arch::new() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -74,6 +75,7 @@ pub fn widest<W: PackedWork>(work: W) -> W::Output {
 }
 
 impl<S: Simd> Lanes<S> {
+    /// The same value in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Lanes<S> {
         Lanes { simd, values: simd.splat_f64s(value) }
@@ -103,7 +105,8 @@ impl<S: Simd> Scalar for Lanes<S> {
 
     const UNROLLED: bool = true;
 
-    // Copied, for a closure might not be inlined into the function that has the machine's instructions.
+    // Array literals instead of a closure: a closure might not be inlined into the function that is compiled for the
+    // machine's instructions.
     #[inline(always)]
     fn repeated<const N: usize>(&self) -> [Lanes<S>; N] {
         [*self; N]
@@ -180,7 +183,7 @@ impl<S: Simd> Real for Lanes<S> {
     }
 }
 
-/// Does the work with instructions that round `a b + c` once, where the machine has them.
+/// Runs `work` with instructions that round `a b + c` only once, if the machine has them.
 pub(super) fn with_fused_products<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if let Some(simd) = pulp::x86::V3::try_new() {

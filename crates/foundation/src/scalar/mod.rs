@@ -1,7 +1,10 @@
-//! What the kernels of the least-squares fits need of a number: + − × ÷ and one comparison.
+//! The numbers that kernels compute with: the traits [`Scalar`] (+ − × ÷ and one comparison) and [`Real`] (roots and
+//! choices).
 //!
-//! The same source runs on `f64`, on [`Lanes`] of them (one element per lane), on `f32` and on pairs of `f64` for studies of
-//! rounding, and on exact rationals.
+//! One source of each kernel serves `f64`, [`Lanes`] (one element per lane), `f32` and [`DoubleDouble`] for studies of
+//! rounding, exact rationals, and the rational functions of [`symbolic`](crate::symbolic).
+//!
+//! Theory: page *Digits* of the book.
 
 mod coordinates;
 mod double_double;
@@ -19,6 +22,7 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 use std::ops::{Add, Div, Mul, Sub};
 
+/// A number of a kernel: exact or rounded, single or one per lane.
 pub trait Scalar:
     Clone
     + for<'a> Add<&'a Self, Output = Self>
@@ -26,72 +30,77 @@ pub trait Scalar:
     + for<'a> Mul<&'a Self, Output = Self>
     + for<'a> Div<&'a Self, Output = Self>
 {
-    /// A number that is the same for all elements: entries of a tabulation, moduli.
+    /// A number that is the same for all elements: an entry of a tabulation, a modulus.
     type Constant: Clone + Zero + One;
 
-    /// Whether a kernel is worth a copy for each of the common numbers of nodes and springs, in which its loops unroll.
+    /// Whether a kernel is compiled once more for each of the common numbers of nodes and springs, so that its loops
+    /// unroll. This is worth its compile time for lanes only.
     const UNROLLED: bool = false;
 
-    /// Does the work in a function of its own, compiled for the machine's instructions. It is never inlined into its caller, so that
-    /// the compiler optimises each kernel once and by itself.
+    /// Runs `work` in a function of its own that is compiled for the machine's instructions. The function is never
+    /// inlined into its caller, so that the compiler optimises each kernel once and separately.
     fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
         outlined(work)
     }
 
-    /// N copies.
+    /// An array of N copies.
     #[inline(always)]
     fn repeated<const N: usize>(&self) -> [Self; N] {
         std::array::from_fn(|_| self.clone())
     }
 
-    /// A rows of B copies.
+    /// A rows of B copies each.
     #[inline(always)]
     fn repeated_rows<const A: usize, const B: usize>(&self) -> [[Self; B]; A] {
         std::array::from_fn(|_| self.repeated())
     }
 
-    /// `value` exactly, where the type can.
+    /// `value`, exactly if the type can represent it.
     fn exact(value: f64) -> Self::Constant;
 
-    /// Largest relative error of one operation.
+    /// The largest relative error of one operation.
     fn epsilon() -> f64;
 
-    /// Largest relative error of what is given, coordinates and tabulations; what lies below is not told from zero.
+    /// The largest relative error of the input data, coordinates and tabulations. Differences below it count as zero.
     fn given() -> f64 {
         Self::epsilon()
     }
 
-    /// Below this share of the largest that its columns' lengths allow a Jacobian determinant counts as zero: of as many digits its
-    /// own rounding takes. Lanes leave more to numbers that have them.
+    /// A Jacobian determinant below this share of its largest possible value, the product of the lengths of its columns
+    /// (Hadamard's bound), counts as zero: its rounding error is of this size. Lanes use a larger threshold and leave
+    /// the cells below it to numbers with more digits.
     fn delicate() -> f64 {
         9.0 * Self::given()
     }
 
-    /// `c` as a number of the kind of `self`.
+    /// `c` as a number of the same kind as `self`.
     fn constant(&self, c: &Self::Constant) -> Self;
 
     /// `self · c`.
     fn scaled(self, c: &Self::Constant) -> Self;
 
-    /// `self + a b`, rounded once where that is as fast.
+    /// `self + a b`; rounded only once where this costs no more.
     fn plus_product(self, a: &Self, b: &Self) -> Self;
 
-    /// `self − a b`, rounded once where that is as fast.
+    /// `self − a b`; rounded only once where this costs no more.
     fn minus_product(self, a: &Self, b: &Self) -> Self;
 
-    /// Whether `self > other`, in every lane; false where one is not a number.
+    /// Whether `self > other` in every lane; false if a lane is NaN.
     fn exceeds(&self, other: &Self) -> bool;
 
+    /// Zero, of the same kind as `self`.
     #[inline(always)]
     fn zero(&self) -> Self {
         self.constant(&Self::Constant::zero())
     }
 
+    /// One, of the same kind as `self`.
     #[inline(always)]
     fn one(&self) -> Self {
         self.constant(&Self::Constant::one())
     }
 
+    /// `self²`.
     #[inline(always)]
     fn squared(self) -> Self {
         let same = self.clone();
@@ -104,39 +113,45 @@ fn outlined<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-// Vectors of a known dimension. Loops instead of closures: what is not inlined into the function that the processor's
-// instructions were chosen for does not use them.
+// Vectors of a known dimension follow. They use loops instead of closures: code that is not inlined into the function
+// that is compiled for the machine's instructions does not use these instructions.
 
+/// The zero vector of D components.
 #[inline(always)]
 pub fn zeros<T: Scalar, const D: usize>(zero: &T) -> [T; D] {
     zero.repeated()
 }
 
-/// What the solvers need besides: roots and choices, lane by lane.
+/// What the solvers need besides: roots and choices, in each lane separately.
 pub trait Real: Scalar<Constant = f64> {
+    /// The square root; NaN below zero.
     fn sqrt(self) -> Self;
 
-    /// `yes` where `self > 0`, otherwise `no`; also where `self` is not a number.
+    /// `yes` if `self > 0`, otherwise `no`; also `no` if `self` is NaN.
     fn choose(&self, yes: &Self, no: &Self) -> Self;
 
-    /// The nearest `f64`, of the first lane.
+    /// The nearest `f64`; that of the first lane.
     fn rounded(&self) -> f64;
 
+    /// The lesser of the two numbers.
     #[inline(always)]
     fn least(&self, other: &Self) -> Self {
         (other.clone() - self).choose(self, other)
     }
 
+    /// The greater of the two numbers.
     #[inline(always)]
     fn greatest(&self, other: &Self) -> Self {
         (self.clone() - other).choose(self, other)
     }
 
+    /// `−self`.
     #[inline(always)]
     fn negated(&self) -> Self {
         self.zero() - self
     }
 
+    /// `|self|`.
     #[inline(always)]
     fn magnitude(&self) -> Self {
         self.choose(self, &self.negated())
@@ -160,7 +175,7 @@ impl Real for f64 {
     }
 }
 
-/// `Σ_k a_k b_k`.
+/// The scalar product `Σ_k a_k b_k`.
 #[inline(always)]
 pub fn dot<T: Scalar, const D: usize>(a: &[T; D], b: &[T; D]) -> T {
     let mut sum = a[0].clone() * &b[0];
@@ -190,7 +205,7 @@ pub fn plus_multiple<T: Scalar, const D: usize>(a: &[T; D], c: &T, b: &[T; D]) -
     result
 }
 
-/// `c A`.
+/// `c A`, for a matrix of shape `[D][D]`.
 #[inline(always)]
 pub fn multiple<T: Scalar, const D: usize>(c: &T, a: &[[T; D]; D]) -> [[T; D]; D] {
     let mut result = a.clone();
@@ -202,7 +217,7 @@ pub fn multiple<T: Scalar, const D: usize>(c: &T, a: &[[T; D]; D]) -> [[T; D]; D
     result
 }
 
-/// `A b`.
+/// `A b`, for a matrix of shape `[D][D]`.
 #[inline(always)]
 pub fn product<T: Scalar, const D: usize>(a: &[[T; D]; D], b: &[T; D]) -> [T; D] {
     let mut result = b.clone();
@@ -212,7 +227,7 @@ pub fn product<T: Scalar, const D: usize>(a: &[[T; D]; D], b: &[T; D]) -> [T; D]
     result
 }
 
-/// `adj(A)` and `det A`, so that `A⁻¹ = adj(A)/det A`.
+/// The adjugate and the determinant of `A`, so that `A⁻¹ = adj(A)/det A`; D is 1, 2 or 3.
 #[inline(always)]
 pub fn adjugate<T: Scalar, const D: usize>(a: &[[T; D]; D]) -> ([[T; D]; D], T) {
     let zero = a[0][0].zero();

@@ -1,20 +1,21 @@
-//! Lengths of vectors, whatever their size.
+//! Euclidean lengths of vectors, without overflow or underflow.
 
-/// Within these bounds no square that counts has left the range of numbers.
+/// If a norm lies within these bounds, no square that contributes to it has overflowed or underflowed.
 const ORDINARY: std::ops::Range<f64> = 1e-140..1e140;
 
-/// `‖v‖`. Not finite only if an entry is not, or the length itself leaves the range of numbers.
+/// The Euclidean norm `‖v‖`. It is not finite only if an entry is not finite or the norm itself overflows.
 pub fn norm(v: &[f64]) -> f64 {
     scaled_norm(v, |v| v.iter().map(|x| x * x).sum())
 }
 
-/// `‖b − a‖`, as [`norm`].
+/// The distance `‖b − a‖`, with the range of [`norm`].
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     let size = a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
     if ORDINARY.contains(&size) { size } else { norm(&a.iter().zip(b).map(|(a, b)| b - a).collect::<Vec<_>>()) }
 }
 
-/// The root of `squares`, a sum of squares of `v`; where these leave the range of numbers, that of `v` divided by its largest entry.
+/// The square root of `squares(v)`, a sum of squares of entries of `v`. If the squares overflow or underflow, `v` is
+/// first divided by its largest entry.
 pub fn scaled_norm(v: &[f64], squares: impl Fn(&[f64]) -> f64) -> f64 {
     let size = squares(v).sqrt();
     if ORDINARY.contains(&size) {

@@ -1,8 +1,8 @@
-//! Sums of millions of terms.
+//! Compensated sums, for millions of terms.
 
 use super::DoubleDouble;
 
-/// A sum that keeps what rounding takes from it: of n terms x it errs by one rounding of the result and `n² u² Σ|x|`, u = 2⁻⁵³
+/// A compensated sum. For n terms x its error is at most one rounding of the result and `n² u² Σ|x|`, with u = 2⁻⁵³
 /// (Neumaier, Z. Angew. Math. Mech. 54, 1974).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sum {
@@ -11,23 +11,25 @@ pub struct Sum {
 }
 
 impl Sum {
+    /// Adds a term.
     pub fn add(&mut self, term: f64) {
         let sum = self.sum + term;
-        // What the smaller of both has lost.
+        // The part of the smaller number that rounding has lost.
         self.lost += if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
         self.sum = sum;
     }
 
-    /// The sum as it is kept.
+    /// The sum with its compensation.
     pub fn kept(&self) -> DoubleDouble {
         let value = self.value();
-        // What is infinite has lost nothing.
+        // An infinite sum has no compensation.
         let lo = if value.is_finite() { (self.sum - value) + self.lost } else { 0.0 };
         DoubleDouble { hi: value, lo }
     }
 
+    /// The sum, rounded to `f64`.
     pub fn value(&self) -> f64 {
-        // Beyond the range of numbers nothing can be kept.
+        // After an overflow there is nothing to compensate.
         if self.sum.is_finite() { self.sum + self.lost } else { self.sum }
     }
 }

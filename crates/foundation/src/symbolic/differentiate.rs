@@ -1,9 +1,11 @@
+//! Exact derivatives of expressions.
+
 use super::{Expr, Function};
 use num_rational::BigRational;
 use num_traits::One;
 
 impl Expr {
-    /// `∂self/∂variable`, exact.
+    /// The exact derivative `∂self/∂variable`.
     pub fn derivative(&self, variable: usize) -> Expr {
         match self {
             Expr::Number(_) => Expr::integer(0),
@@ -45,7 +47,8 @@ impl Expr {
 }
 
 impl Expr {
-    /// At least as many parts as a derivative has before zeros drop out: a product repeats all its factors for each.
+    /// An upper bound of the number of parts of a derivative before zeros are removed: the derivative of a product
+    /// repeats all of its factors for each factor.
     pub fn most_parts_of_derivative(&self) -> usize {
         match self {
             Expr::Number(_) | Expr::Variable(_) => 1,

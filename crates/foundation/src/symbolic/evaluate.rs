@@ -1,20 +1,29 @@
+//! Values of expressions in any kind of number.
+
 use super::{Expr, Function};
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 
-/// A number with more binary digits, or a larger power, is not worth being exact: no text can ask for hours.
+/// The largest number of binary digits of an exact result. Beyond it the exact value is given up, so that no text can
+/// cause hours of work.
 const MOST_EXACT_BITS: u64 = 8000;
+/// The largest exponent of an exact power, for the same reason.
 const LARGEST_EXACT_EXPONENT: i32 = 1000;
 
-/// A number an expression can be evaluated in. `None` where the value is not one of these numbers.
+/// A number in which an expression can be evaluated. An operation returns `None` if its result is not such a number.
 pub trait Value: Clone {
+    /// The number `c`.
     fn from_rational(c: &BigRational) -> Option<Self>;
+    /// `self + other`.
     fn plus(self, other: Self) -> Self;
+    /// `self · other`.
     fn times(self, other: Self) -> Self;
+    /// `self` to the power of `exponent`.
     fn to_power(self, exponent: &BigRational) -> Option<Self>;
+    /// The value of `function` at `self`.
     fn apply(self, function: Function) -> Option<Self>;
 
-    /// Whether it is small enough to go on with.
+    /// Whether the number is small enough for the evaluation to continue.
     fn is_moderate(&self) -> bool {
         true
     }
@@ -94,10 +103,11 @@ fn bits(c: &BigRational) -> u64 {
 }
 
 impl Expr {
-    /// The value at `at` (one entry per variable), or `None` where it is not a number of this kind:
-    /// `sqrt(2)` has no rational value.
+    /// The value at `at`, which has one entry per variable. `None` if the value is not a number of this kind: `sqrt(2)`
+    /// is not a rational number.
     ///
-    /// Indexing panics when `at` is shorter than the scope the expression was parsed in.
+    /// # Panics
+    /// If `at` is shorter than the list of variables of the scope in which the expression was parsed.
     pub fn value<T: Value>(&self, at: &[T]) -> Option<T> {
         match self {
             Expr::Number(c) => T::from_rational(c),
@@ -115,7 +125,8 @@ impl Expr {
         }
     }
 
-    /// The value in floating point; NaN or infinite where the expression has no finite value.
+    /// The value in floating point at `at`, which has one entry per variable; NaN or infinite if the expression has no
+    /// finite value there.
     pub fn evaluate(&self, at: &[f64]) -> f64 {
         self.value(at).unwrap_or(f64::NAN)
     }

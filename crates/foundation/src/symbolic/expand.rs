@@ -1,14 +1,19 @@
+//! Expansion of expressions into polynomials, with bounds on the work.
+
 use super::{Expr, Polynomial};
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive};
 
-/// More terms than any element needs, and a higher degree; an expansion beyond them is given up.
+/// The largest number of terms, well above that of any shape function. Larger expansions are given up.
 const MOST_TERMS: usize = 5000;
+/// The largest degree of an expansion.
 const LARGEST_DEGREE: u32 = 1000;
+/// The largest power of a sum that is expanded.
 const LARGEST_POWER: u32 = 64;
-/// Binary digits of a coefficient.
+/// The largest number of binary digits of a coefficient.
 const MOST_BITS: u64 = 8000;
-/// Sums and products of two coefficients of few digits, over all steps of an expansion: a fifth of a second or so.
+/// The largest number of sums and products of short coefficients over all steps of an expansion; this takes about a
+/// fifth of a second.
 const MOST_WORK: u64 = 400_000;
 
 impl Polynomial {
@@ -63,9 +68,10 @@ impl Expansion {
         Some(p * q).filter(|product| product.term_count() <= MOST_TERMS)
     }
 
-    /// `None` if numbers of so many digits, or so many operations on them, are too much.
+    /// Counts the work of `operations` on numbers of `bits` binary digits; `None` if the numbers are too long or the
+    /// work is too much.
     fn spend(&mut self, operations: usize, bits: u64) -> Option<()> {
-        // A sum of fractions takes a common divisor, which takes a pass over the digits for each digit.
+        // A sum of fractions requires a greatest common divisor, which takes one pass over the digits for each digit.
         let each = 1 + bits / 16 + (bits / 256).pow(2);
         self.work_left = self.work_left.checked_sub((operations as u64).saturating_mul(each))?;
         (bits <= MOST_BITS).then_some(())

@@ -1,41 +1,45 @@
+//! Automatic differentiation: the value of an expression with its gradient and Hessian.
+
 use super::evaluate::Value;
 use super::{Expr, Function};
 use crate::scalar::Real;
 use num_rational::BigRational;
 
-/// A number with its first and second derivatives in some variables: what an expression evaluates to, exact but for
-/// rounding, without forming the derivatives as expressions. Without the second ones where they are not asked for.
+/// A number with its first and second derivatives in some variables. Evaluating an expression in jets gives its
+/// derivatives, exact up to rounding, without forming them as expressions. Second derivatives are computed only where
+/// they are asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Jet<T = f64> {
+    /// The value.
     pub value: T,
-    /// `[variables]`; empty for a constant.
+    /// The gradient, `[variables]`; empty for a constant.
     pub gradient: Vec<T>,
-    /// `[variables × variables]`, both triangles; empty for a constant.
+    /// The Hessian, `[variables × variables]`, both triangles; empty for a constant.
     pub hessian: Vec<T>,
 }
 
-/// The numbers that have derivatives: doubles, and pairs of them.
+/// The numbers of which derivatives can be computed: `f64` and [`DoubleDouble`](crate::scalar::DoubleDouble).
 pub trait Differentiable: Value + Real + From<f64> {}
 
 impl<T: Value + Real + From<f64>> Differentiable for T {}
 
 impl<T: Differentiable> Jet<T> {
-    /// `expr`, its gradient and its Hessian at the point `at`; NaN where it has none.
+    /// The value, gradient and Hessian of `expr` at the point `at`; NaN where it has no value.
     pub fn evaluate(expr: &Expr, at: &[T]) -> Jet<T> {
         Jet::of_order(expr, at, at.len() * at.len())
     }
 
-    /// The gradient of `expr` alone.
+    /// The value and the gradient of `expr` at the point `at`, without the Hessian.
     pub fn gradient(expr: &Expr, at: &[T]) -> Vec<T> {
         Jet::of_order(expr, at, 0).gradient
     }
 
-    /// The variables themselves, with both derivatives.
+    /// The variables themselves as jets, with both derivatives.
     pub fn variables(at: &[T]) -> Vec<Jet<T>> {
         Jet::variables_of_order(at, at.len() * at.len())
     }
 
-    /// `second` entries of the Hessian, all or none.
+    /// The variables as jets whose Hessians have `second` entries: all or none.
     fn variables_of_order(at: &[T], second: usize) -> Vec<Jet<T>> {
         let variable = |i: usize| {
             let mut gradient = vec![T::from(0.0); at.len()];
@@ -45,15 +49,17 @@ impl<T: Differentiable> Jet<T> {
         (0..at.len()).map(variable).collect()
     }
 
-    /// A number that no variable changes.
+    /// A constant.
     pub fn number(value: T) -> Jet<T> {
         Jet { value, gradient: Vec::new(), hessian: Vec::new() }
     }
 
+    /// `self + other`.
     pub fn sum(self, other: &Jet<T>) -> Jet<T> {
         self.plus(other.clone())
     }
 
+    /// `self · other`.
     pub fn product(self, other: &Jet<T>) -> Jet<T> {
         self.times(other.clone())
     }
@@ -62,7 +68,7 @@ impl<T: Differentiable> Jet<T> {
         Jet::of_variables(expr, &Jet::variables_of_order(at, second), at.len(), second)
     }
 
-    /// `expr` of these jets, which have `n` variables; NaN where it has no value.
+    /// The value of `expr` at these jets in `n` variables; NaN where it has no value.
     fn of_variables(expr: &Expr, at: &[Jet<T>], n: usize, second: usize) -> Jet<T> {
         let nan = || T::from(f64::NAN);
         let nothing = || Jet { value: nan(), gradient: vec![nan(); n], hessian: vec![nan(); second] };
@@ -72,7 +78,7 @@ impl<T: Differentiable> Jet<T> {
         jet
     }
 
-    /// `f(self)` with `f′` and `f″` at the value.
+    /// The chain rule for `f(self)`, with `f`, `f′` and `f″` at the value.
     fn chain(self, value: T, first: &T, second: &T) -> Jet<T> {
         let n = self.gradient.len();
         let mut jet = Jet { value, ..self };
@@ -86,7 +92,8 @@ impl<T: Differentiable> Jet<T> {
 }
 
 impl Expr {
-    /// The value where the variables are these jets, in `n` variables of their own; NaN where it has none.
+    /// The value where the variables of the expression are the jets `at`, which depend on `n` variables of their own;
+    /// NaN where it has no value.
     pub fn jet<T: Differentiable>(&self, at: &[Jet<T>], n: usize) -> Jet<T> {
         Jet::of_variables(self, at, n, n * n)
     }
@@ -126,7 +133,7 @@ impl<T: Differentiable> Value for Jet<T> {
     fn to_power(self, exponent: &BigRational) -> Option<Jet<T>> {
         let (x, p) = (self.value.clone(), T::from_rational(exponent)?);
         let power = |shift: i64| x.clone().to_power(&(exponent - BigRational::from_integer(shift.into())));
-        // A factor of zero stays zero where the power below it is infinite.
+        // A factor of zero stays zero even if the lower power is infinite.
         let times = |factor: T, power: T| if factor.rounded() == 0.0 { T::from(0.0) } else { factor * &power };
         let twice = p.clone() * &(p.clone() - &T::from(1.0));
         Some(self.chain(power(0)?, &times(p, power(1)?), &times(twice, power(2)?)))

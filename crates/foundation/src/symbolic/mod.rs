@@ -1,6 +1,9 @@
-//! Expressions in named variables: read from text, differentiated, evaluated, expanded into polynomials.
+//! Expressions in named variables: parsed from text, differentiated, evaluated, and expanded into polynomials.
 //!
-//! Constants are exact rationals, so `1/3` is one third until a number is asked for.
+//! Shape functions, spring measures, energies and conditions on coordinates are such expressions. Constants are exact
+//! rationals: `1/3` is one third until a floating-point value is asked for.
+//!
+//! Theory: page *Stiffness* of the book.
 
 mod differentiate;
 mod evaluate;
@@ -22,34 +25,50 @@ pub use program::Program;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-/// A real function of real variables, which are known by their index.
+/// A real function of real variables. Variables are known by their index.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expr {
+    /// A rational constant.
     Number(BigRational),
+    /// The variable with this index.
     Variable(usize),
+    /// The sum of the terms.
     Sum(Vec<Expr>),
+    /// The product of the factors.
     Product(Vec<Expr>),
+    /// A base to a constant rational exponent.
     Power(Box<Expr>, BigRational),
+    /// A function of one argument.
     Call(Function, Box<Expr>),
 }
 
-/// The functions an expression may call.
+/// The functions that an expression may call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Function {
+    /// `e^x`.
     Exp,
+    /// The natural logarithm.
     Ln,
+    /// The sine of an angle in radians.
     Sin,
+    /// The cosine of an angle in radians.
     Cos,
+    /// The tangent of an angle in radians.
     Tan,
+    /// The inverse sine, in radians.
     Asin,
+    /// The inverse cosine, in radians.
     Acos,
+    /// The inverse tangent, in radians.
     Atan,
+    /// The absolute value.
     Abs,
-    /// 1 from 0 on, 0 below.
+    /// The unit step: 1 for x ≥ 0, 0 below.
     Step,
 }
 
 impl Function {
+    /// All functions with their names.
     pub const ALL: [(&'static str, Function); 10] = [
         ("exp", Function::Exp),
         ("ln", Function::Ln),
@@ -63,20 +82,22 @@ impl Function {
         ("step", Function::Step),
     ];
 
+    /// The name of the function in expressions.
     pub fn name(self) -> &'static str {
         Function::ALL.iter().find(|(_, f)| *f == self).map_or("", |(name, _)| name)
     }
 }
 
-/// Beyond this exponent a power of a number stays unevaluated, so that no text can ask for gigabytes of digits.
+/// A power of a number with a larger exponent stays unevaluated, so that no text can ask for gigabytes of digits.
 const LARGEST_FOLDED_EXPONENT: i64 = 256;
 
 impl Expr {
+    /// The number `value`.
     pub fn integer(value: i64) -> Expr {
         Expr::Number(BigRational::from_integer(value.into()))
     }
 
-    /// `Σ terms`, flattened, with the constants added up.
+    /// `Σ terms`. Sums in it are flattened and constants are added.
     pub fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
         let mut constant = BigRational::zero();
         let mut rest = Vec::new();
@@ -101,7 +122,7 @@ impl Expr {
         }
     }
 
-    /// `Π factors`, flattened, with the constants multiplied; zero if a factor is.
+    /// `Π factors`. Products in it are flattened and constants are multiplied; zero if a factor is zero.
     pub fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
         let mut constant = BigRational::one();
         let mut rest = Vec::new();
@@ -129,7 +150,7 @@ impl Expr {
         }
     }
 
-    /// `base ^ exponent` with a constant exponent.
+    /// `base ^ exponent`, with a constant exponent.
     pub fn power(base: Expr, exponent: BigRational) -> Expr {
         if exponent.is_zero() {
             return Expr::integer(1);
@@ -146,20 +167,22 @@ impl Expr {
         Expr::Power(Box::new(base), exponent)
     }
 
+    /// `−self`.
     pub fn negated(self) -> Expr {
         Expr::product([Expr::integer(-1), self])
     }
 
+    /// `function(argument)`.
     pub fn call(function: Function, argument: Expr) -> Expr {
         Expr::Call(function, Box::new(argument))
     }
 
-    /// The number, if the expression is one.
+    /// The number, if the expression is a constant.
     pub fn as_number(&self) -> Option<&BigRational> {
         if let Expr::Number(c) = self { Some(c) } else { None }
     }
 
-    /// Whether the variable occurs in it.
+    /// Whether the variable occurs in the expression.
     pub fn uses(&self, variable: usize) -> bool {
         match self {
             Expr::Number(_) => false,
@@ -169,7 +192,7 @@ impl Expr {
         }
     }
 
-    /// How many numbers, variables and operations it consists of.
+    /// How many numbers, variables and operations the expression consists of.
     pub fn parts(&self) -> usize {
         1 + match self {
             Expr::Number(_) | Expr::Variable(_) => 0,
@@ -178,7 +201,8 @@ impl Expr {
         }
     }
 
-    /// Bits of the constant that was last folded: the number itself, or the first of a sum or product.
+    /// The number of bits of the constant that was folded last: the expression itself, or the first operand of a sum or
+    /// product.
     fn largest_constant(&self) -> u64 {
         match self {
             Expr::Number(c) => c.numer().bits().max(c.denom().bits()),
@@ -187,7 +211,7 @@ impl Expr {
         }
     }
 
-    /// Whether it prints with a leading minus.
+    /// Whether the expression prints with a leading minus sign.
     fn is_negative(&self) -> bool {
         match self {
             Expr::Number(c) => c.is_negative(),

@@ -1,7 +1,9 @@
-//! Text into expressions. evalexpr builds the operator tree; a lexer in front of it rejects what evalexpr would
-//! misread (`a b`, `a**b`, `+a`, `//`), gives positions, and keeps every literal exact by handing evalexpr a name for it.
+//! The parser of expressions and conditions.
 //!
-//! `-x^2` is `-(x^2)`. A power of a power and a sign inside a term need parentheses: `(a^b)^c`, `a*(-b)`.
+//! The crate `evalexpr` builds the operator tree. A lexer in front of it rejects what evalexpr would misread (`a b`,
+//! `a**b`, `+a`, `//`), reports columns, and keeps every literal exact by handing evalexpr a name in its place.
+//!
+//! `-x^2` is `-(x^2)`. A power of a power and a sign inside a term require parentheses: `(a^b)^c`, `a*(-b)`.
 
 use super::predicate::{Comparison, Predicate};
 use super::{Expr, Function};
@@ -12,17 +14,21 @@ use num_rational::BigRational;
 use num_traits::{One, Pow, Zero};
 use std::cell::Cell;
 
+/// The longest text, in characters; the shipped elements use a few hundred.
 const LONGEST_TEXT: usize = 10_000;
+/// The deepest nesting of parentheses. The parser is recursive, and a deeper text could overflow the stack.
 const DEEPEST_NESTING: usize = 100;
-/// A chain of operators is a tree as deep as it is long.
+/// The largest number of operators, because a chain of operators becomes a tree as deep as it is long.
 const MOST_OPERATORS: usize = 1000;
-/// Named sub-expressions are copied to where they are used, and `ramp(a)` is `a*step(a)`; this bounds what they grow to.
+/// The largest number of parts of an expression. Named sub-expressions are copied to each place of use and `ramp(a)`
+/// becomes `a*step(a)`, so that a short text can grow exponentially.
 const MOST_PARTS: usize = 2000;
-/// About a thousand digits.
+/// The largest number of bits of a constant: about a thousand decimal digits.
 const MOST_BITS: u64 = 3322;
+/// The largest decimal exponent of a literal: a little above the range of `f64`.
 const LARGEST_DECIMAL_EXPONENT: i32 = 400;
 
-/// The names an expression may use: variables by position, and named sub-expressions.
+/// The names that an expression may use: variables, known by position, and named sub-expressions.
 #[derive(Debug, Clone, Default)]
 pub struct Scope {
     variables: Vec<String>,
@@ -30,11 +36,12 @@ pub struct Scope {
 }
 
 impl Scope {
+    /// A scope with these variables and no sub-expressions.
     pub fn new<S: AsRef<str>>(variables: &[S]) -> Scope {
         Scope { variables: variables.iter().map(|v| v.as_ref().to_string()).collect(), definitions: Vec::new() }
     }
 
-    /// Lets `name` stand for `text` in whatever is parsed later.
+    /// Defines `name` as an abbreviation of `text` for every expression that is parsed later.
     ///
     /// # Errors
     /// `text` does not parse, or `name` is taken or not a name.
@@ -53,7 +60,8 @@ impl Scope {
     /// Parses a real-valued expression.
     ///
     /// # Errors
-    /// With the column, what was expected there and what was found.
+    /// The text is malformed, or it is a condition. The error gives the column, what was expected there and what was
+    /// found.
     pub fn expression(&self, text: &str) -> Result<Expr> {
         match self.parse(text)? {
             Parsed::Real(expr) => Ok(expr),
@@ -64,7 +72,8 @@ impl Scope {
     /// Parses a condition: comparisons joined by `&&`, `||`, `!`.
     ///
     /// # Errors
-    /// With the column, what was expected there and what was found.
+    /// The text is malformed, or it is a number. The error gives the column, what was expected there and what was
+    /// found.
     pub fn predicate(&self, text: &str) -> Result<Predicate> {
         match self.parse(text)? {
             Parsed::Condition(predicate) => Ok(predicate),
@@ -217,16 +226,16 @@ fn shortened(text: &str) -> String {
     if text.chars().count() <= 60 { text.to_string() } else { text.chars().take(57).chain("...".chars()).collect() }
 }
 
-/// The text with each literal replaced by `#index`, and the literals.
+/// The text with each literal replaced by `#index`, and the values of the literals.
 struct Lexed {
     rewritten: String,
     literals: Vec<BigRational>,
-    /// Terms and factors that have been copied so far.
+    /// The number of terms and factors that have been copied so far.
     parts: Cell<usize>,
 }
 
 impl Lexed {
-    /// That one more copy of `expr` is not too much.
+    /// Counts one more copy of `expr`; an error if there are too many.
     fn count(&self, expr: &Expr) -> Result<()> {
         self.parts.set(self.parts.get() + expr.parts());
         if self.parts.get() <= MOST_PARTS {
@@ -236,7 +245,7 @@ impl Lexed {
     }
 }
 
-/// Splits into numbers, names, operators and parentheses, and makes sure that operands and operators alternate.
+/// Splits the text into numbers, names, operators and parentheses, and checks that operands and operators alternate.
 fn lex(text: &str) -> Result<Lexed> {
     if text.len() > LONGEST_TEXT {
         return Err(excessive(format!("expected at most {LONGEST_TEXT} characters, found {}", text.len())));
@@ -329,7 +338,7 @@ fn lex(text: &str) -> Result<Lexed> {
     Ok(lexed)
 }
 
-/// The names in a text that are not called, in the order in which they appear.
+/// The names in a text that are not called as functions, in the order in which they appear.
 pub fn variables_of(text: &str) -> Vec<String> {
     let chars: Vec<char> = text.chars().collect();
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -369,7 +378,8 @@ fn end_of_number(chars: &[char], start: usize) -> usize {
     if end > signed { end } else { at }
 }
 
-/// An exact rational from `12`, `0.1`, `2.5e-3`; `None` if it is not a decimal number of moderate size.
+/// The exact rational value of `12`, `0.1` or `2.5e-3`; `None` if the text is not a decimal number or its exponent is
+/// too large.
 fn decimal(literal: &str) -> Option<BigRational> {
     let (mantissa, exponent) = match literal.find(['e', 'E']) {
         Some(e) => (&literal[..e], literal[e + 1..].parse::<i32>().ok()?),
@@ -387,7 +397,7 @@ fn decimal(literal: &str) -> Option<BigRational> {
 /// The rational value of a constant expression such as `1/3` or `-0.25`.
 ///
 /// # Errors
-/// The text does not parse or has no rational value.
+/// The text does not parse, or has no rational value.
 pub fn parse_rational(text: &str) -> Result<BigRational> {
     let expr = Scope::default().expression(text)?;
     expr.value(&[]).ok_or_else(|| Error::new(format!("expected a rational number, found \"{text}\"")))

@@ -1,4 +1,6 @@
-//! Expressions in pairs of doubles: elementary functions to 30 digits.
+//! Expressions evaluated in double-double numbers, with elementary functions to 30 digits.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::Function;
 use super::evaluate::Value;
@@ -6,13 +8,15 @@ use crate::scalar::{DoubleDouble, Real, Scalar};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
-/// `ln 2` and `π/2`, each in three doubles.
+/// `ln 2`, as the sum of three doubles.
 const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.3190468138462996e-17, 5.707708438416212e-34];
+/// `π/2`, as the sum of three doubles.
 const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591698e-33];
-/// Halvings of the argument of an exponential.
+/// How often the argument of an exponential is halved: from at most ln(2)/2 to below 10⁻³.
 const HALVINGS: i32 = 9;
-/// Terms of its series, and of those of sine and cosine up to π/4: what is left out is below 10⁻³⁴.
+/// Terms of the exponential series; the remainder is below 10⁻³⁴.
 const TERMS: usize = 12;
+/// Terms of the series of sine and cosine for arguments up to π/4; the remainder is below 10⁻³⁴.
 const WAVES: usize = 16;
 
 impl Value for DoubleDouble {
@@ -53,7 +57,7 @@ impl Value for DoubleDouble {
             return Some(DoubleDouble::from(near));
         }
         let first = DoubleDouble::from(near);
-        // Inverse functions by one step of Newton's method from the double.
+        // Inverse functions are one step of Newton's method from the `f64` value.
         Some(match function {
             Function::Exp => exp(self),
             Function::Ln => first + &(self * &exp(first.negated()) - &self.one()),
@@ -73,7 +77,7 @@ impl Value for DoubleDouble {
     }
 }
 
-/// x less `count` times a number in three doubles.
+/// `x` minus `count` times a number that is given as three doubles.
 fn less(x: DoubleDouble, count: f64, parts: &[f64; 3]) -> DoubleDouble {
     parts.iter().fold(x, |x, part| x - &(DoubleDouble::from(*part) * &DoubleDouble::from(count)))
 }
@@ -91,7 +95,7 @@ fn exp(x: DoubleDouble) -> DoubleDouble {
         // e^2r − 1 = (e^r − 1) (e^r − 1 + 2)
         sum = sum * &(sum + &DoubleDouble::from(2.0));
     }
-    // In two factors, for 2^n alone may be beyond the range of numbers.
+    // In two factors, because 2^n alone may overflow.
     let half = (count / 2.0).floor() as i32;
     (sum + &r.one()).scaled(&2f64.powi(half)).scaled(&2f64.powi(count as i32 - half))
 }
@@ -116,7 +120,7 @@ fn sine_and_cosine(x: DoubleDouble) -> [DoubleDouble; 2] {
     }
 }
 
-/// The angle of `(cosine, sine)` near the double `first`.
+/// The angle whose cosine and sine are given, near the `f64` value `first`.
 fn arc(sine: DoubleDouble, cosine: DoubleDouble, first: DoubleDouble) -> DoubleDouble {
     let [s, c] = sine_and_cosine(first);
     let across = sine * &c - &(cosine * &s);

@@ -1,10 +1,12 @@
+//! Expressions printed as text that can be parsed again.
+
 use super::Expr;
 use num_rational::BigRational;
 use num_traits::{One, Signed};
 use std::fmt::Write;
 
 impl Expr {
-    /// The expression as text that parses back, its variables called `names`.
+    /// The expression as text that can be parsed again, with the variables called `names`.
     pub fn text(&self, names: &[&str]) -> String {
         match self {
             Expr::Number(c) => c.to_string(),

@@ -1,12 +1,14 @@
+//! Expressions compiled for repeated evaluation in floating point.
+
 use super::evaluate::Value;
 use super::{Expr, Function};
 use num_traits::ToPrimitive;
 
-/// Values that a program keeps without asking for memory.
+/// Values that a program keeps on the stack, without allocating memory; more than shape functions and energies need.
 const ROOM: usize = 32;
 
-/// An expression made ready to be evaluated in floating point many times: its constants are numbers already, its operations in
-/// the order of [`Expr::evaluate`], so that the values are the same.
+/// An expression prepared for many evaluations in floating point. Its constants are converted and its operations are in
+/// the order of [`Expr::evaluate`], so that the values agree to the last bit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Program {
     steps: Vec<Step>,
@@ -17,7 +19,7 @@ pub struct Program {
 enum Step {
     Number(f64),
     Variable(usize),
-    /// The last two values for their sum, or their product.
+    /// Replaces the last two values by their sum; [`Step::Multiply`] by their product.
     Add,
     Multiply,
     PowerOf(i32),
@@ -26,18 +28,19 @@ enum Step {
 }
 
 impl Program {
+    /// Compiles the expression.
     pub fn of(expr: &Expr) -> Program {
         let mut program = Program { steps: Vec::new(), depth: 0 };
         program.push(expr, 0);
         program
     }
 
-    /// Whether it is the number zero.
+    /// Whether the expression is the constant zero.
     pub fn is_zero(&self) -> bool {
         self.steps == [Step::Number(0.0)]
     }
 
-    /// Appends the steps of `expr`, which find `below` values there.
+    /// Appends the steps of `expr`, which finds `below` values on the stack.
     fn push(&mut self, expr: &Expr, below: usize) {
         self.depth = self.depth.max(below + 1);
         match expr {
@@ -65,13 +68,14 @@ impl Program {
         }
     }
 
-    /// The value at `at`, one entry per variable; NaN or infinite where the expression has no finite value.
+    /// The value at `at`, which has one entry per variable; NaN or infinite if the expression has no finite value
+    /// there.
     pub fn evaluate(&self, at: &[f64]) -> f64 {
         if self.depth <= ROOM { self.run(at, &mut [0.0; ROOM]) } else { self.run(at, &mut vec![0.0; self.depth]) }
     }
 
-    /// [`Program::evaluate`] at N places at once, `at` one entry per variable; each step is read once for all. `values` is memory
-    /// that it may use.
+    /// Evaluates as [`Program::evaluate`] does, at N points at once, `at` with one entry per variable. Each step is
+    /// read once for all points. `values` is working memory.
     pub fn evaluate_each<const N: usize>(&self, at: &[[f64; N]], values: &mut Vec<[f64; N]>) -> [f64; N] {
         values.resize(self.depth.max(values.len()), [0.0; N]);
         let mut next = 0;

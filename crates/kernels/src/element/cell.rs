@@ -1,34 +1,51 @@
-//! Reference cells: the closed list of shapes an element can have.
+//! Reference cells: the closed list of shapes that an element can have.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use serde::Deserialize;
 
-/// A reference cell. Intervals, squares and cubes span [-1, 1] in each coordinate; simplices are the corner at the
-/// origin with unit legs. A wedge is the triangle times [-1, 1]; a pyramid stands on the square, its apex at (0, 0, 1); the
-/// corners of the pentagon are rational points of the unit circle, nearly evenly spaced.
+/// The reference cell of an element.
+///
+/// Intervals, squares and cubes span [−1, 1] in each coordinate. Triangle and tetrahedron have their corners at the
+/// origin and at the unit points of the axes. A wedge is the triangle times [−1, 1]. A pyramid has the square as its
+/// base and its apex at (0, 0, 1). The corners of the pentagon are rational points of the unit circle, nearly evenly
+/// spaced, so that exact arithmetic is possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cell {
+    /// One dimension, [−1, 1].
     Interval,
+    /// The simplex of two dimensions.
     Triangle,
+    /// The square [−1, 1]².
     Quadrilateral,
+    /// Five corners on the unit circle.
     Pentagon,
+    /// The simplex of three dimensions.
     Tetrahedron,
+    /// The cube [−1, 1]³.
     Hexahedron,
+    /// A triangle times an interval: a triangular prism.
     Wedge,
+    /// A square base and an apex.
     Pyramid,
 }
 
+/// Rational points of the unit circle near the corners of the regular pentagon.
 const PENTAGON: [&[f64]; 5] =
     [&[3. / 5., -4. / 5.], &[176. / 185., 57. / 185.], &[0., 1.], &[-176. / 185., 57. / 185.], &[-3. / 5., -4. / 5.]];
 
-/// A side of a cell: its own shape, and where its corners stand in the cell.
+/// A side of a cell: its own shape, and where its corners are in the cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Side {
+    /// The reference cell of the side.
     pub cell: Cell,
+    /// The corners of the parent cell at which the corners of the side are.
     pub corners: &'static [usize],
 }
 
 impl Cell {
+    /// All cells, by dimension.
     pub const ALL: [Cell; 8] = [
         Cell::Interval,
         Cell::Triangle,
@@ -40,6 +57,7 @@ impl Cell {
         Cell::Pyramid,
     ];
 
+    /// The number of reference coordinates.
     pub fn dimension(self) -> usize {
         match self {
             Cell::Interval => 1,
@@ -48,22 +66,23 @@ impl Cell {
         }
     }
 
-    /// Whether it is a product of intervals.
+    /// Whether the cell is a product of intervals.
     pub fn is_box(self) -> bool {
         matches!(self, Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron)
     }
 
+    /// Whether the cell is a triangle or a tetrahedron.
     pub fn is_simplex(self) -> bool {
         matches!(self, Cell::Triangle | Cell::Tetrahedron)
     }
 
-    /// Length, area or volume of the reference cell.
+    /// Length, area or volume of the reference cell, without a unit.
     pub fn content(self) -> f64 {
         match self {
             Cell::Interval => 2.0,
             Cell::Triangle => 1.0 / 2.0,
             Cell::Quadrilateral => 4.0,
-            // Half the cross products of successive corners.
+            // Half the sum of the cross products of successive corners.
             Cell::Pentagon => 2199.0 / 925.0,
             Cell::Tetrahedron => 1.0 / 6.0,
             Cell::Hexahedron => 8.0,
@@ -72,7 +91,7 @@ impl Cell {
         }
     }
 
-    /// The corners' reference coordinates.
+    /// The reference coordinates of the corners, `[corners][dimension]`.
     pub fn corners(self) -> &'static [&'static [f64]] {
         match self {
             Cell::Interval => &[&[-1.], &[1.]],
@@ -97,13 +116,14 @@ impl Cell {
         }
     }
 
-    /// The mean of the corners.
+    /// The mean of the corners, `[dimension]`.
     pub fn centre(self) -> Vec<f64> {
         let corners = self.corners();
         (0..self.dimension()).map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64).collect()
     }
 
-    /// Exponents of the products of coordinates that a map of the cell with straight edges may hold beyond the linear ones.
+    /// The exponents of the products of coordinates, beyond the linear terms, that the map of a cell with straight
+    /// edges can contain.
     pub fn straight_terms(self) -> &'static [&'static [i32]] {
         match self {
             Cell::Quadrilateral => &[&[1, 1]],
@@ -113,7 +133,7 @@ impl Cell {
         }
     }
 
-    /// Pairs of corners that an edge joins.
+    /// Pairs of corners that are joined by an edge.
     pub fn edges(self) -> Vec<[usize; 2]> {
         let mut edges: Vec<[usize; 2]> = Vec::new();
         for side in self.sides() {
@@ -129,7 +149,7 @@ impl Cell {
         if edges.is_empty() { vec![[0, 1]] } else { edges }
     }
 
-    /// Whether the point is in the cell or on its boundary, to rounding.
+    /// Whether the point is in the cell or on its boundary, up to rounding.
     pub fn contains(self, at: &[f64]) -> bool {
         let centre = self.centre();
         if self == Cell::Interval {
@@ -142,7 +162,7 @@ impl Cell {
         })
     }
 
-    /// The sides of one dimension less.
+    /// The sides, which have one dimension less.
     pub fn sides(self) -> &'static [Side] {
         use Cell::{Interval, Quadrilateral, Triangle};
         macro_rules! sides {
@@ -185,9 +205,8 @@ impl Cell {
 }
 
 impl Side {
-    /// The affine map from the side's own reference cell into that of `parent`: origin, then one tangent per coordinate.
-    ///
-    /// `ξ(s) = origin + Σ_k s_k tangent_k`.
+    /// The affine map `ξ(s) = origin + Σ_k s_k tangent_k` from the side's own reference cell into that of `parent`: the
+    /// origin, and one tangent per coordinate of the side.
     pub fn embedding(&self, parent: Cell) -> (Vec<f64>, Vec<Vec<f64>>) {
         let corner = |i: usize| parent.corners()[self.corners[i]];
         let between = |i: usize, j: usize, f: f64| corner(i).iter().zip(corner(j)).map(|(a, b)| f * (b - a)).collect();
@@ -198,7 +217,8 @@ impl Side {
         };
         let mut origin = corner(0).to_vec();
         if !self.cell.is_simplex() {
-            // The centre of [-1, 1]^k is at s = 0, so the first corner is one tangent back in each direction.
+            // The centre of [−1, 1]^k is at s = 0, so the origin is the first corner plus one tangent in each
+            // direction.
             for tangent in &tangents {
                 origin.iter_mut().zip(tangent).for_each(|(o, t)| *o += t);
             }
@@ -207,7 +227,8 @@ impl Side {
     }
 }
 
-/// Distance of `x` above the line or plane `origin + span(tangents)`, times the tangents' length or area.
+/// The distance of `x` above the line or plane `origin + span(tangents)`, multiplied by the length or area of the
+/// tangents.
 pub fn height(x: &[f64], origin: &[f64], tangents: &[Vec<f64>]) -> f64 {
     let r: Vec<f64> = x.iter().zip(origin).map(|(a, b)| a - b).collect();
     match tangents {

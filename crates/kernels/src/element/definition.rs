@@ -1,4 +1,4 @@
-//! The element file as it is written, key by key.
+//! The structure of an element file, key by key, before it is checked.
 
 use super::cell::Cell;
 use super::constant::Constant;
@@ -11,7 +11,7 @@ pub struct Definition {
     pub name: String,
     pub title: String,
     pub cell: Cell,
-    /// Names of the reference coordinates, as the shape functions use them.
+    /// Names of the reference coordinates in the shape functions.
     pub coordinates: Vec<String>,
     /// Where the shape functions are published.
     pub source: Option<String>,
@@ -20,7 +20,7 @@ pub struct Definition {
     pub definitions: toml::Table,
     pub nodes: Vec<NodeEntry>,
     pub quadrature: Rule,
-    /// The rule of the term λ (div u)²; the same as of all others if absent.
+    /// The quadrature rule of the term λ (div u)²; if it is absent, the rule of all other terms.
     pub volumetric_quadrature: Option<Rule>,
     #[serde(default)]
     pub springs: Vec<SpringEntry>,
@@ -49,13 +49,14 @@ pub enum Rule {
 pub struct SpringEntry {
     pub group: String,
     pub kind: SpringKind,
-    /// The nodes of each spring; none where the whole cell is measured.
+    /// The nodes of each spring; absent if the whole cell is measured.
     pub nodes: Option<NodeLists>,
-    /// Of the kind `measure`: a function of the coordinates `x0, y0, z0, x1, …` of the nodes of one spring.
+    /// For the kind `measure`: a function of the coordinates `x0, y0, z0, x1, …` of the nodes of one spring.
     pub measure: Option<String>,
-    /// `auto` divides the springs into classes that the cell's symmetry takes into each other, a group for each.
+    /// `auto` divides the springs into classes that the symmetry of the cell maps onto each other, one group for each
+    /// class.
     pub class: Option<SpringClass>,
-    /// Used only where a fit names the group.
+    /// Whether the group is used only by fits that name it.
     #[serde(default)]
     pub optional: bool,
 }
@@ -66,7 +67,7 @@ pub enum SpringClass {
     Auto,
 }
 
-/// Lists of nodes, or `"complete"`: all pairs that have no spring yet.
+/// Lists of nodes, or `"complete"`: all pairs of nodes that have no spring yet.
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "lists of nodes, or \"complete\"")]
 pub enum NodeLists {
@@ -74,20 +75,24 @@ pub enum NodeLists {
     Given(Vec<Vec<usize>>),
 }
 
-/// What mesh files call the element.
+/// The cell types of the element in mesh files.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Formats {
+    /// The type in Gmsh files.
     pub gmsh: Option<FormatEntry>,
+    /// The type in VTK files.
     pub vtk: Option<FormatEntry>,
 }
 
+/// A cell type of a mesh format, with the order in which the format lists the nodes.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FormatEntry {
     /// The number of the cell type.
     #[serde(rename = "type")]
     pub cell_type: u32,
-    /// `order[i]` is the place of our node i in the file's list; the same order if absent.
+    /// `order[i]` is the position of node i of the element in the list of the file. If it is absent, the orders are
+    /// equal.
     pub order: Option<Vec<usize>>,
 }

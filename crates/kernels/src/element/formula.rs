@@ -1,9 +1,9 @@
-//! What springs measure, as formulas in the coordinates of their nodes.
+//! Formulas of what springs measure, as texts in the coordinates of their nodes.
 
 use crate::error::Result;
 use crate::symbolic::{Expr, Scope};
 
-/// Builds formulas in the coordinates of a few points.
+/// Builds formulas in the coordinates of some points.
 pub struct Formula {
     names: Vec<String>,
     scope: Scope,
@@ -17,6 +17,8 @@ impl Formula {
         Formula { scope: Scope::new(&names), names, nodes, dimension }
     }
 
+    /// Parses a formula.
+    ///
     /// # Errors
     /// Those of an expression.
     pub fn expression(&self, text: &str) -> Result<Expr> {
@@ -34,7 +36,8 @@ impl Formula {
         format!("sqrt({})", dot(&u, &u))
     }
 
-    /// `θ = 2 atan(|u × v|/(|u||v| + u·v))`, which loses no digits at any angle (Kahan 2006).
+    /// `θ = 2 atan(|u × v|/(|u||v| + u·v))`, the angle at the second of three points. It is accurate at every angle
+    /// (Kahan 2006).
     pub fn angle(&self) -> String {
         let (u, v) = (self.vector(1, 0), self.vector(1, 2));
         let across: Vec<String> = cross(&u, &v);
@@ -42,7 +45,7 @@ impl Formula {
         format!("2*atan(sqrt({})/(sqrt(({uu})*({vv})) + {uv}))", dot(&across, &across))
     }
 
-    /// Half the cross products of the fan from the first point: their sum in the plane, its length in space.
+    /// Half the sum of the cross products of the fan from the first point; in space the length of that vector.
     pub fn area(&self) -> String {
         let fan = |i: usize| cross(&self.vector(0, i), &self.vector(0, i + 1));
         let parts: Vec<Vec<String>> = (1..self.nodes - 1).map(fan).collect();
@@ -63,13 +66,13 @@ pub fn dot(u: &[String], v: &[String]) -> String {
     u.iter().zip(v).map(|(a, b)| format!("{a}*{b}")).collect::<Vec<_>>().join(" + ")
 }
 
-/// The cross product; in the plane its one component.
+/// The cross product; in the plane its single component.
 fn cross(u: &[String], v: &[String]) -> Vec<String> {
     let part = |k: usize, l: usize| format!("({}*{} - {}*{})", u[k], v[l], u[l], v[k]);
     if u.len() == 2 { vec![part(0, 1)] } else { vec![part(1, 2), part(2, 0), part(0, 1)] }
 }
 
-/// The names of the coordinates of a few nodes: `x0, y0, z0, x1, …`.
+/// The names of the coordinates of some nodes: `x0, y0, z0, x1, …`.
 pub fn coordinate_names(nodes: usize, dimension: usize) -> Vec<String> {
     let axes = &["x", "y", "z"][..dimension];
     (0..nodes).flat_map(|a| axes.iter().map(move |axis| format!("{axis}{a}"))).collect()

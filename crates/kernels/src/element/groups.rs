@@ -1,4 +1,4 @@
-//! Groups of springs from the entries of an element file.
+//! Groups of springs, made from the entries of an element file.
 
 use super::definition::{Definition, NodeLists, SpringEntry};
 use super::formula::coordinate_names;
@@ -9,32 +9,35 @@ use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Scope};
 use std::collections::{BTreeMap, HashSet};
 
-/// Springs that are equivalent under the cell's symmetry.
+/// Springs that the symmetry of the cell maps onto each other, and that a fit may tie to one constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpringGroup {
+    /// The name of the group in files and options.
     pub name: String,
+    /// What its springs measure.
     pub kind: SpringKind,
-    /// The nodes of each spring; empty where the whole cell is measured.
+    /// The nodes of each spring, `[springs][nodes of a spring]`; empty if the whole cell is measured.
     pub nodes: Vec<Vec<usize>>,
-    /// Of the kind `measure`: what it measures, in the coordinates of the nodes of one spring.
+    /// For the kind `measure`: what is measured, as a function of the coordinates of the nodes of one spring.
     pub measure: Option<Expr>,
+    /// Whether the group is used only by fits that name it.
     pub optional: bool,
 }
 
 impl SpringGroup {
-    /// Whether it is the one spring on the area or volume of the whole cell.
+    /// Whether the group is the one spring on the area or volume of the whole cell.
     pub fn is_content(&self) -> bool {
         self.nodes.is_empty()
     }
 }
 
-/// The groups of a file.
+/// The groups of a file, with node positions `[nodes × dimension]`.
 ///
 /// # Errors
-/// Names the entry that is wrong.
+/// An entry is wrong; the error names it.
 pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<SpringGroup>> {
     let mut groups: Vec<SpringGroup> = Vec::new();
-    // What is measured already.
+    // What is measured by a spring already.
     let mut taken = HashSet::new();
     for (i, entry) in definition.springs.iter().enumerate() {
         let key = |rest: &str| format!("springs[{i}].{rest}");
@@ -147,7 +150,7 @@ fn nodes_of(
     Ok(lists.clone())
 }
 
-/// The user's measure, that no rigid motion changes it, and that no other kind has one.
+/// The measure of the file, which must not change under rigid motions; an error if another kind has a measure.
 fn measure_of(
     i: usize,
     entry: &SpringEntry,
@@ -178,7 +181,7 @@ fn measure_of(
     }
 }
 
-/// What two springs that measure the same have in common.
+/// The key that is equal for two springs that measure the same.
 fn identity(entry: &SpringEntry, nodes: &[usize]) -> (SpringKind, String, Vec<usize>) {
     let nodes = entry.kind.properties().symmetry.representative(nodes);
     (entry.kind, entry.measure.clone().unwrap_or_default(), nodes)

@@ -1,4 +1,7 @@
-//! Tables for loads and masses: their rules are chosen by the degree of what is integrated, whatever the rule of the stiffness.
+//! Tables of shape functions for loads and masses. The degree of the integrand determines their quadrature, whatever
+//! the rule of the stiffness is.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use super::cell::Cell;
 use super::quadrature::Quadrature;
@@ -8,34 +11,39 @@ use crate::symbolic::Polynomial;
 /// What is integrated over a cell or over its sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Integrand {
-    /// `N_a b`, b a polynomial of this degree in the place x.
+    /// `N_a b`, with b a polynomial of this degree in the position x.
     Load(usize),
     /// `N_a N_b`.
     Mass,
 }
 
-/// Integrals of functions that are no polynomials have settled where a rule of a higher degree changes them by this at most, relative to
-/// the content of the cell.
+/// For functions that are not polynomials: an integral is accepted if a rule of higher degree changes it by at most
+/// this share of the content of the cell. It is a few hundred rounding errors.
 const SETTLED: f64 = 1e-13;
-/// By how much the degree of that rule is higher.
+/// The difference of the degrees of these two rules.
 const FURTHER: usize = 6;
-/// The largest order that is tried, by the dimension: 34 points per direction in the plane, 15 in space.
+/// The largest order that is tried, by dimension: 34 points per direction in the plane, 15 in space.
 const MOST_ORDER: [usize; 3] = [28, 28, 11];
 
 impl Element {
-    /// The shape functions at the points of a rule that integrates the integrand with its Jacobian exactly over every isoparametric
-    /// cell, where the shape functions are polynomials in the reference coordinates, or of a pyramid in the collapsed ones; to rounding
-    /// where they are smooth. The degree is
-    /// - on boxes and pyramids, in each coordinate with order p: `p + m p + d p − 1`, or `2 p + d p − 1` for masses;
-    /// - on other cells, in all: `p + m p + d (p − 1)`, or `2 p + d (p − 1)`;
+    /// The shape functions at the points of a rule that integrates the integrand and its Jacobian.
     ///
-    /// m the degree of the load, which grows by p with the place, and d p − 1 or d (p − 1) that of the Jacobian's determinant.
+    /// The integral is exact over every isoparametric cell if the shape functions are polynomials in the reference
+    /// coordinates (for a pyramid, in the collapsed coordinates), and accurate to rounding if they are smooth. With m
+    /// the degree of the load and p the order of the element, the degree of the rule is
+    ///
+    /// - on boxes and pyramids, in each coordinate: `p + m p + d p − 1` for loads, `2 p + d p − 1` for masses;
+    /// - on other cells, in all coordinates together: `p + m p + d (p − 1)` for loads, `2 p + d (p − 1)` for masses.
+    ///
+    /// The term m p is the degree of the load in the reference coordinates, and d p − 1 or d (p − 1) is that of the
+    /// Jacobian determinant.
     pub fn integration_table(&self, integrand: Integrand) -> Tabulation {
         let degree = self.degree_of(self.cell, integrand);
         Tabulation::new(&self.functions, &Quadrature::of_degree(self.cell, degree), None)
     }
 
-    /// The same for integrals along each side, in the order of [`Element::sides`], of its nodes alone.
+    /// Tables as those of [`Element::integration_table`], for integrals along each side, in the order of
+    /// [`Element::sides`]. Each holds the nodes of its side only.
     pub fn side_integration_tables(&self, integrand: Integrand) -> Vec<Tabulation> {
         let sides = self.cell.sides().iter().zip(self.sides());
         let table = |(side, known): (&Side, &SideTable)| {
@@ -59,8 +67,8 @@ impl Element {
         p.saturating_add(factor).saturating_add(jacobian)
     }
 
-    /// The degree of the shape functions, in each coordinate of a box, or in all; where they are no polynomials, the least whose double
-    /// is the degree of a rule that has settled `∫ N_a dV` and `∫ N_a² dV`.
+    /// The degree of the shape functions: in each coordinate on a box, in all together otherwise. For functions that
+    /// are not polynomials, half the least degree whose rule integrates `∫ N_a dV` and `∫ N_a² dV` to rounding.
     fn order(&self) -> usize {
         *self.order.get_or_init(|| self.polynomial_order().unwrap_or_else(|| self.settled_order()).max(1))
     }
@@ -86,7 +94,7 @@ impl Element {
         (1..most).find(|order| !changed(order)).unwrap_or(most)
     }
 
-    /// `∫ N_a dV` and `∫ N_a² dV` over the reference cell by the rule of that degree.
+    /// `∫ N_a dV` and `∫ N_a² dV` over the reference cell, by the rule of this degree.
     fn moments(&self, degree: usize) -> Vec<f64> {
         let table = Tabulation::new(&self.functions, &Quadrature::of_degree(self.cell, degree), None);
         let mut moments = vec![0.0; 2 * table.nodes];

@@ -1,18 +1,19 @@
-//! Whether a measure is the same wherever a body is and however it is turned.
+//! Checks that a measure does not change when a body is moved or turned.
 
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Jet};
 
-/// Shapes that are moved. An expression that differs under motion at all differs on almost every shape.
+/// The number of shapes that are moved. An expression that is not invariant changes on almost every shape.
 const TRIALS: usize = 12;
-/// Of the terms that the measure is a sum of: rounding is a millionth of it.
+/// The allowed change, relative to the terms of which the measure is a sum. Their rounding is a millionth of it.
 const TOLERANCE: f64 = 1e-9;
 
-/// That `measure`, of the coordinates of some nodes, does not change under rigid motions: otherwise a spring would resist them.
-/// It is evaluated on shapes near `positions`, `[nodes × dimension]`, before and after each was shifted and turned.
+/// Checks that `measure`, a function of the coordinates of some nodes, does not change under rigid motions: a spring
+/// would resist them otherwise. It is evaluated on shapes near `positions`, `[nodes × dimension]`, before and after a
+/// translation and a rotation.
 ///
 /// # Errors
-/// It changes; the error has no key.
+/// The measure changes; the error has no key.
 pub fn expect_invariant(measure: &Expr, positions: &[f64], dimension: usize) -> Result<()> {
     let mut random = Sequence(0);
     let size = positions.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
@@ -35,13 +36,13 @@ pub fn expect_invariant(measure: &Expr, positions: &[f64], dimension: usize) -> 
     Ok(())
 }
 
-/// `Σ |∂c/∂x_i| |x_i|`, or zero where it is not finite.
+/// `Σ |∂c/∂x_i| |x_i|`, or zero if it is not finite.
 fn weight(measure: &Expr, x: &[f64]) -> f64 {
     let sum: f64 = Jet::gradient(measure, x).iter().zip(x).map(|(g, x)| (g * x).abs()).sum();
     if sum.is_finite() { sum } else { 0.0 }
 }
 
-/// The positions turned about the origin, by reflections at two random planes one after the other.
+/// The positions turned about the origin, by reflections at two random planes in succession.
 fn turned(x: &[f64], dimension: usize, random: &mut Sequence) -> Vec<f64> {
     if dimension == 1 {
         return x.to_vec();
@@ -58,7 +59,7 @@ fn turned(x: &[f64], dimension: usize, random: &mut Sequence) -> Vec<f64> {
     x
 }
 
-/// Numbers between -1 and 1 that are spread evenly and are the same in every run.
+/// Evenly spread numbers between −1 and 1, the same in every run.
 struct Sequence(u64);
 
 impl Sequence {

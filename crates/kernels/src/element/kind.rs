@@ -1,36 +1,40 @@
-//! The kinds of springs, a row for each.
+//! The kinds of springs, one row of properties for each.
+//!
+//! Theory: pages *Stiffness* and *Exact networks* of the book.
 
 use super::formula::Formula;
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
-/// What a spring measures.
+/// What a spring measures. Its energy is ½ k (c − c₀)², with c the measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringKind {
-    /// The distance of two nodes, m.
+    /// The distance of two nodes, in m.
     Length,
-    /// The angle at the second of three nodes, rad.
+    /// The angle at the second of three nodes, in rad.
     Angle,
-    /// The area of a polygon of nodes, or of the whole cell in two dimensions, m².
+    /// The area of a polygon of nodes, or of the whole cell in two dimensions, in m².
     Area,
-    /// The volume of a tetrahedron of nodes, or of the whole cell in three dimensions, m³.
+    /// The volume of a tetrahedron of nodes, or of the whole cell in three dimensions, in m³.
     Volume,
-    /// The sum of the distances a-b and c-d of four nodes, m, whose square holds the product of the two elongations.
+    /// The sum of the distances a-b and c-d of four nodes, in m. Its square contains the product of the two
+    /// elongations.
     Coupling,
-    /// An expression of the nodes' coordinates.
+    /// An expression in the coordinates of the nodes, given by the element file.
     Measure,
-    /// The content of a cell that belongs to one point of its quadrature rule: of a line m, of an area m², of a volume m³.
-    /// Exact networks have such springs; no element file can ask for them.
+    /// The part of the content of a cell that belongs to one quadrature point: a length in m, an area in m², a volume
+    /// in m³. Exact networks have such springs; an element file cannot ask for them.
     #[serde(skip)]
     PointContent,
-    /// The area of the parallelogram that two tangents of a cell span at a point of its quadrature rule, m². As before.
+    /// The area of the parallelogram that two tangents of a cell span at a quadrature point, in m². For exact networks
+    /// only.
     #[serde(skip)]
     PointArea,
-    /// A sum of shares of the contents of the cells around a point, m² or m³. As before.
+    /// A weighted sum of the contents of the cells around a node, in m² or m³. For exact networks only.
     #[serde(skip)]
     Patch,
-    /// The stretch of fibres at a point of the quadrature rule of a cell. As before.
+    /// The stretch of the fibres at a quadrature point of a cell. For exact networks only.
     #[serde(skip)]
     Fibre,
 }
@@ -48,39 +52,40 @@ crate::named!(SpringKind {
     "fibre" => Fibre,
 });
 
-/// The longest list of nodes of a spring.
+/// The longest list of nodes of a spring, that of the polygon of an area.
 const MOST_NODES: usize = 8;
 
 /// The properties of a kind of springs.
 pub struct Kind {
-    /// How many nodes a spring has.
+    /// How many nodes a spring may have.
     pub nodes: RangeInclusive<usize>,
-    /// Of the cell.
+    /// The least dimension of the cell.
     pub least_dimension: usize,
-    /// The dimension of the cells of which a spring without nodes measures the content.
+    /// The dimension of the cells whose content a spring without nodes measures; none for other kinds.
     pub content: Option<usize>,
+    /// The orders of the nodes in which a spring measures the same.
     pub symmetry: Symmetry,
-    /// Of a spring constant, in J per square of the measure's unit.
+    /// The unit of a spring constant: J divided by the square of the unit of the measure.
     pub unit: &'static str,
-    /// The measure as a formula, where the kind alone determines it.
+    /// The measure as a formula, if the kind alone determines it.
     pub(crate) formula: Option<fn(&Formula) -> String>,
 }
 
-/// The orders of a spring's nodes in which it measures the same.
+/// The orders of the nodes in which a spring measures the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Symmetry {
-    /// All.
+    /// All orders.
     Any,
-    /// The first and the last node may change places.
+    /// The given order, and the one with the first and last node exchanged.
     Ends,
-    /// The nodes of each of two pairs may change places, and the pairs.
+    /// The nodes of each of two pairs may be exchanged, and the pairs.
     Pairs,
-    /// The given one alone.
+    /// The given order only.
     Ordered,
 }
 
 impl SpringKind {
-    /// The row of the kind.
+    /// The properties of the kind.
     pub fn properties(self) -> Kind {
         match self {
             SpringKind::Length => Kind {
@@ -144,7 +149,7 @@ impl SpringKind {
 }
 
 impl Symmetry {
-    /// The same list for all orders in which a spring measures the same.
+    /// One list that represents all orders in which a spring measures the same.
     pub(super) fn representative(self, nodes: &[usize]) -> Vec<usize> {
         match self {
             Symmetry::Any => {
@@ -165,7 +170,7 @@ impl Symmetry {
         }
     }
 
-    /// Whether so many nodes differ as a spring needs.
+    /// Whether the nodes that have to differ do so.
     pub(super) fn are_different(self, nodes: &[usize]) -> bool {
         match self {
             Symmetry::Pairs => nodes[0] != nodes[1] && nodes[2] != nodes[3] && pair(&nodes[..2]) != pair(&nodes[2..]),

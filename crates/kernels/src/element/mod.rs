@@ -1,4 +1,9 @@
-//! Finite elements from text: a cell, nodal shape functions, a quadrature rule and groups of springs.
+//! Finite elements read from text: a cell, nodal shape functions, a quadrature rule and groups of springs.
+//!
+//! No element is named in the code. The files of the folder `elements` are embedded in the program; files of users have
+//! the same rights. [`Element::load`] proves the properties that every other module relies on.
+//!
+//! Theory: page *Stiffness* of the book.
 
 mod cell;
 mod constant;
@@ -36,42 +41,50 @@ use num_rational::BigRational;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// An element that has been proved consistent.
+/// An element whose file has been checked: Kronecker property, partition of unity, linear completeness, quadrature,
+/// springs.
 #[derive(Debug, Clone)]
 pub struct Element {
+    /// The name in files and options.
     pub name: String,
+    /// The name in headings.
     pub title: String,
     /// Where the shape functions are published.
     pub source: Option<String>,
+    /// The reference cell.
     pub cell: Cell,
+    /// The names of the reference coordinates.
     pub coordinates: Vec<String>,
-    /// Reference positions, `[nodes × dimension]`.
+    /// Reference positions of the nodes, `[nodes × dimension]`.
     pub positions: Vec<f64>,
-    /// The same as exact numbers, where all are rational.
+    /// The reference positions as exact numbers, if all are rational.
     pub rational_positions: Option<Vec<BigRational>>,
+    /// The shape functions with their symbolic gradients.
     pub functions: ShapeFunctions,
-    /// At the points of the element's own quadrature rule.
+    /// The shape functions at the points of the element's own quadrature rule.
     pub tabulation: Tabulation,
+    /// The groups of springs, in the order of the file.
     pub springs: Vec<SpringGroup>,
+    /// The cell types in mesh files.
     pub formats: Formats,
-    /// The order of nodes that turns the element inside out, if it has one.
+    /// The order of the nodes that turns the element inside out, if there is one.
     pub reflection: Option<Vec<usize>>,
     sides: OnceLock<Vec<SideTable>>,
-    /// The degree of the shape functions that loads and masses reckon with.
+    /// The degree of the shape functions on which the rules of loads and masses are based.
     order: OnceLock<usize>,
 }
 
 /// A side of the element: its nodes, and the shape functions along it.
 #[derive(Debug, Clone)]
 pub struct SideTable {
-    /// Element nodes that lie on the side.
+    /// The nodes of the element that are on the side.
     pub nodes: Vec<usize>,
-    /// Values of those nodes' shape functions, and their derivatives along the side.
+    /// The shape functions of these nodes, and their derivatives along the side.
     pub tabulation: Tabulation,
 }
 
 impl Element {
-    /// The shipped element of that name, or the element in the file of that path.
+    /// The shipped element with this name, or the element in the file at this path.
     ///
     /// # Errors
     /// There is no such element, or its file is wrong.
@@ -93,15 +106,15 @@ impl Element {
     /// The element of a shipped file.
     ///
     /// # Errors
-    /// None for the files that are shipped: all are tested.
+    /// None for the shipped files, which are all tested.
     pub fn shipped(file: &ElementFile) -> Result<Element> {
         Element::parse(file.text).map_err(|e| e.in_file(Path::new(&format!("elements/{}.toml", file.name))))
     }
 
-    /// Parses and proves the text of an element file.
+    /// Parses the text of an element file and proves its properties.
     ///
     /// # Errors
-    /// Names the line, the key, what was expected and what was found.
+    /// The text is wrong. The error names the line and the key, what was expected and what was found.
     pub fn parse(text: &str) -> Result<Element> {
         Element::proved(text).map_err(|e| file::on_line_of_key(e, text))
     }
@@ -153,15 +166,17 @@ impl Element {
         })
     }
 
+    /// The number of reference coordinates.
     pub fn dimension(&self) -> usize {
         self.cell.dimension()
     }
 
+    /// The number of nodes.
     pub fn nodes(&self) -> usize {
         self.functions.values.len()
     }
 
-    /// Coordinates of a node; more than the dimension for a cell of a surface or curve.
+    /// The number of coordinates of a node; more than the dimension for a cell of a surface or curve.
     pub fn space(&self) -> usize {
         self.tabulation.space
     }
@@ -172,18 +187,18 @@ impl Element {
         self
     }
 
-    /// Whether it has motions beyond those of constant strain.
+    /// Whether the element has motions other than those of constant strain.
     pub fn has_higher_modes(&self) -> bool {
         self.nodes() > self.dimension() + 1
     }
 
-    /// The node that sits at a corner of the cell.
+    /// The node at a corner of the cell, if there is one.
     pub fn corner_node(&self, corner: usize) -> Option<usize> {
         let at = self.cell.corners()[corner];
         self.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < 1e-9))
     }
 
-    /// One table per side of the cell, in the cell's order, exact for a traction that is constant on flat sides.
+    /// One table per side, in the order of the sides of the cell. It is exact for a constant traction on flat sides.
     pub fn sides(&self) -> &[SideTable] {
         self.sides.get_or_init(|| self.cell.sides().iter().map(|side| self.side_table(side)).collect())
     }
@@ -197,7 +212,7 @@ impl Element {
         SideTable { nodes, tabulation }
     }
 
-    /// The functions of `nodes` along the side at the points of the rule of that degree.
+    /// The shape functions of `nodes` along the side, at the points of the rule of this degree.
     fn side_tabulation(&self, side: &Side, nodes: &[usize], degree: usize) -> Tabulation {
         let d = self.dimension();
         let (origin, tangents) = side.embedding(self.cell);
@@ -224,7 +239,7 @@ impl Element {
         self.functions.values.iter().all(|n| Polynomial::expand(n, self.dimension()).is_some())
     }
 
-    /// The largest degree of a shape function; for one that is no polynomial, the number of nodes stands in.
+    /// The largest degree of a shape function; the number of nodes if one is not a polynomial.
     fn degree(&self) -> usize {
         let degree = |n| Polynomial::expand(n, self.dimension()).map_or(self.nodes(), |p| p.degree() as usize);
         self.functions.values.iter().map(degree).max().unwrap_or(1)
@@ -233,7 +248,7 @@ impl Element {
     /// The groups that a fit uses: the named ones, or all that are not optional.
     ///
     /// # Errors
-    /// A name is no group of this element.
+    /// The element has no group of this name.
     pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
         let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
         if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
@@ -246,8 +261,8 @@ impl Element {
     }
 }
 
-/// Swapping the first two reference coordinates, or else mirroring the first, maps every cell onto itself and turns it
-/// inside out.
+/// A map of the cell onto itself that turns it inside out: it exchanges the first two reference coordinates, or else
+/// mirrors the first one.
 fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
     let nodes: Vec<&[f64]> = positions.chunks_exact(dimension).collect();
     let swapped = |at: &[f64]| {

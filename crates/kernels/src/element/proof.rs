@@ -1,5 +1,7 @@
-//! What an element file must satisfy before a number is computed from it. Identities of polynomials with rational
-//! coefficients are decided exactly; those of other functions are sampled in floating point.
+//! The properties that an element file must have before a number is computed from it.
+//!
+//! Identities of polynomials with rational coefficients are decided exactly. Those of other functions are tested at
+//! sample points in floating point.
 
 use super::cell::Cell;
 use super::constant::Constant;
@@ -11,15 +13,17 @@ use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;
 use num_traits::Zero;
 
+/// The largest number of nodes, that of a cube with 8³ nodes: the proofs evaluate each shape function at each node.
 const MOST_NODES: usize = 512;
-/// Twice those of a cube of 8³ nodes.
+/// The largest number of parts of all shape functions: twice that of a cube of 8³ nodes.
 const MOST_PARTS: usize = 80_000;
+/// The largest number of parts of all gradients, so that they fit into memory.
 const MOST_GRADIENT_PARTS: usize = 5_000_000;
-/// A few seconds.
+/// The largest number of evaluation steps of a tabulation; it takes a few seconds.
 const MOST_STEPS: usize = 1_000_000_000;
-/// Sampled identities hold to this; a few roundings of numbers of size one.
+/// The tolerance of sampled identities: some thousand rounding errors of numbers of size one.
 const ROUNDING: f64 = 1e-12;
-/// How far inside the cell, as a share of the way to its centre, a function is looked at that has no value at a node.
+/// If a function has no value at a node, it is evaluated inside the cell, at this share of the way to the centre.
 const CONTINUED: f64 = 1e-5;
 
 pub fn coordinates(definition: &Definition) -> Result<()> {
@@ -44,7 +48,8 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
     }
 }
 
-/// That the proofs, which look at every shape function at every node, end soon, and that the gradients fit into memory.
+/// Checks that the proofs, which evaluate every shape function at every node, end soon, and that the gradients fit into
+/// memory.
 pub fn moderate(definition: &Definition, shapes: &[Expr]) -> Result<()> {
     let check = |what: &str, most: usize, parts: usize| {
         let expected = format!("{what} of at most {most} numbers, names and operations in all");
@@ -55,7 +60,7 @@ pub fn moderate(definition: &Definition, shapes: &[Expr]) -> Result<()> {
     check("gradients", MOST_GRADIENT_PARTS, definition.cell.dimension() * parts)
 }
 
-/// That the shape functions and their gradients can be evaluated at so many points.
+/// Checks that the shape functions and their gradients can be evaluated at so many points in a few seconds.
 pub fn tabulable(functions: &ShapeFunctions, points: usize) -> Result<()> {
     let steps = functions.parts().saturating_mul(points);
     if steps <= MOST_STEPS {
@@ -66,7 +71,7 @@ pub fn tabulable(functions: &ShapeFunctions, points: usize) -> Result<()> {
     Err(Error::expected("quadrature", expected, found).of_kind(ErrorKind::Limit))
 }
 
-/// Kronecker property, partition of unity, linear completeness.
+/// Checks the Kronecker property, the partition of unity and linear completeness.
 pub fn nodal(definition: &Definition, shapes: &[Expr]) -> Result<()> {
     for (a, shape) in shapes.iter().enumerate() {
         for (b, node) in definition.nodes.iter().enumerate() {
@@ -107,7 +112,7 @@ fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, S
     if value.is_finite() {
         return ((value - expected as f64).abs() <= ROUNDING, value.to_string());
     }
-    // At the apex of a pyramid a rational function is continued from inside, linearly from two points.
+    // At the apex of a pyramid a rational function is continued linearly from two points inside.
     let centre = cell.centre();
     let inside = |share: f64| {
         let at: Vec<f64> = at.iter().enumerate().map(|(k, x)| x + share * (centre[k] - x)).collect();
@@ -118,7 +123,7 @@ fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, S
     ((value - expected as f64).abs() <= 1e3 * CONTINUED * CONTINUED, value.to_string())
 }
 
-/// Whether the defect is zero everywhere; if not, its value somewhere, as text.
+/// Whether the defect is zero everywhere; otherwise its value at some point, as text.
 fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), String> {
     let d = definition.cell.dimension();
     let sample = Quadrature::of_degree(definition.cell, 6);
@@ -137,7 +142,7 @@ fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), St
     if holds { Ok(()) } else { Err(format!("{worst:+.3e} at {at:.3?}")) }
 }
 
-/// The quadrature rule called `name` in the file.
+/// The quadrature rule that is called `name` in the file.
 pub fn quadrature(definition: &Definition, rule: &Rule, name: &str) -> Result<Quadrature> {
     let cell = definition.cell;
     let d = cell.dimension();

@@ -1,26 +1,31 @@
 //! Quadrature rules on reference cells.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use super::cell::Cell;
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 
-/// `∫ f ≈ Σ_q w_q f(ξ_q)` over a reference cell.
+/// A quadrature rule `∫ f ≈ Σ_q w_q f(ξ_q)` over a reference cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quadrature {
+    /// The number of coordinates of a point.
     pub dimension: usize,
-    /// `[points × dimension]`.
+    /// The points ξ_q, `[points × dimension]`.
     pub points: Vec<f64>,
-    /// `[points]`.
+    /// The weights w_q, `[points]`.
     pub weights: Vec<f64>,
 }
 
-/// The largest number of points per direction that a rule may have.
+/// The largest number of points per direction. In three dimensions these are 32 768 points.
 pub const MOST_POINTS: usize = 32;
 
 impl Quadrature {
-    /// Exact for polynomials up to `degree` on the cell: Gauss–Legendre products, and on simplices the centroid,
-    /// the d + 1 point rule of degree 2 (Hammer and Stroud 1956), or the conical product (Stroud 1971), of which the other
-    /// cells are made up.
+    /// A rule that is exact for polynomials up to `degree` on the cell.
+    ///
+    /// On boxes it is a product of Gauss–Legendre rules. On simplices it is the centroid (degree 1), the rule of d + 1
+    /// points of degree 2 (Hammer and Stroud 1956), or the conical product rule (Stroud 1971). The rules of the other
+    /// cells are composed of these.
     pub fn of_degree(cell: Cell, degree: usize) -> Quadrature {
         match cell {
             Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron => {
@@ -65,7 +70,8 @@ impl Quadrature {
         rule
     }
 
-    /// A square rule in every plane of constant ζ, squeezed by 1 − ζ; its area adds two to the degree along ζ.
+    /// The rule of the square in each plane of constant ζ, scaled by 1 − ζ. The area of the section adds two to the
+    /// degree along ζ.
     fn pyramid(degree: usize) -> Quadrature {
         let square = Quadrature::gauss_legendre(2, degree / 2 + 1);
         let line = Quadrature::gauss_legendre(1, (degree + 2) / 2 + 1);
@@ -80,7 +86,7 @@ impl Quadrature {
         rule
     }
 
-    /// The product rule with `points` Gauss–Legendre points per direction on [-1, 1]^dimension.
+    /// The product rule with `points` Gauss–Legendre points per direction on [−1, 1]^dimension.
     pub fn gauss_legendre(dimension: usize, points: usize) -> Quadrature {
         let line: Vec<(f64, f64)> = GaussLegendre::new(one_to_most(points)).iter().map(|(x, w)| (*x, *w)).collect();
         product(&vec![line; dimension], |s| s.to_vec())
@@ -91,7 +97,8 @@ impl Quadrature {
         Quadrature { dimension: d, points: vec![1.0 / (d + 1) as f64; d], weights: vec![cell.content()] }
     }
 
-    /// Points at barycentric coordinates (a, b, …, b), b = (d+2 − √(d+2)) / ((d+1)(d+2)), with equal weights.
+    /// Points with the barycentric coordinates (a, b, …, b), b = (d + 2 − √(d + 2))/((d + 1)(d + 2)), and equal
+    /// weights.
     fn hammer_stroud(cell: Cell) -> Quadrature {
         let d = cell.dimension();
         let e = (d + 2) as f64;
@@ -101,8 +108,9 @@ impl Quadrature {
         Quadrature { dimension: d, points, weights: vec![cell.content() / (d + 1) as f64; d + 1] }
     }
 
-    /// Gauss–Legendre points in collapsed coordinates: the simplex is the cube squeezed towards one corner, and the
-    /// Jacobian `(1 − s)^(d−1−k)` of each coordinate adds to the degree that its line must integrate.
+    /// Gauss–Legendre points in collapsed coordinates: the cube is compressed towards one corner of the simplex. The
+    /// Jacobian `(1 − s)^(d−1−k)` of each coordinate adds to the degree that the rule along this coordinate must
+    /// integrate.
     fn conical(dimension: usize, degree: usize) -> Quadrature {
         let line = |k: usize| -> Vec<(f64, f64)> {
             let squeezed = dimension - 1 - k;
@@ -127,7 +135,7 @@ fn one_to_most(points: usize) -> NonZeroUsize {
     NonZeroUsize::new(points.clamp(1, MOST_POINTS)).expect("it is at least one")
 }
 
-/// All combinations of the lines' points, the first coordinate fastest, mapped by `place`.
+/// All combinations of the points of the lines, the first coordinate fastest, mapped by `place`.
 fn product(lines: &[Vec<(f64, f64)>], place: impl Fn(&[f64]) -> Vec<f64>) -> Quadrature {
     let count: usize = lines.iter().map(Vec::len).product();
     let mut rule = Quadrature { dimension: lines.len(), points: Vec::new(), weights: Vec::new() };

@@ -1,4 +1,4 @@
-//! Quadrature and shape functions in exact rationals, where an element has such.
+//! Quadrature and shape functions in exact rational numbers, for closed forms.
 
 use super::cell::Cell;
 use super::{Element, Tabulation};
@@ -10,13 +10,15 @@ fn ratio(above: i64, below: i64) -> BigRational {
     BigRational::new(above.into(), below.into())
 }
 
-/// Points and weights.
+/// The points and weights of a rule in one coordinate.
 type Line = Vec<(BigRational, BigRational)>;
+/// The points and weights of a rule on a cell.
 type Rule = Vec<(Vec<BigRational>, BigRational)>;
 
 impl Element {
-    /// The element's tabulation at rational points that integrate its stiffness exactly on a cell with constant Jacobian;
-    /// the same numbers as its own rule gives there, if that is exact. `None` if a node or a value is not rational.
+    /// The element's tabulation at rational points that integrate its stiffness exactly on a cell with constant
+    /// Jacobian. It gives the same matrix as the element's own rule if that is exact there. `None` if a node or a value
+    /// is not rational.
     pub fn rational_tabulation(&self) -> Option<Tabulation<BigRational>> {
         let d = self.dimension();
         let exponent = |n, k| Polynomial::expand(n, d).map_or(3, |p| p.degree_in(k) as usize);
@@ -46,7 +48,8 @@ impl Element {
     }
 }
 
-/// Exact for polynomials of these degrees along the coordinates of a box, or of this degree in all of a simplex.
+/// A rule that is exact for polynomials of these degrees along the coordinates of a box, or of the degree `total` on a
+/// simplex.
 fn rule(cell: Cell, degrees: &[usize], total: usize) -> Option<Rule> {
     let d = degrees.len();
     let corner = |from: &[Line]| -> Rule { products(from).into_iter().map(|(s, w)| collapse(s, w)).collect() };
@@ -65,7 +68,7 @@ fn rule(cell: Cell, degrees: &[usize], total: usize) -> Option<Rule> {
             };
             Some(corner(&collapsed(2)).into_iter().flat_map(raise).collect())
         }
-        // In ξ = (1 − ζ) u, η = (1 − ζ) v its functions are polynomials.
+        // In the coordinates ξ = (1 − ζ) u, η = (1 − ζ) v the shape functions of the pyramid are polynomials.
         Cell::Pyramid => {
             let lines = [line(degrees[0], false), line(degrees[1], false), line(degrees[2] + 2, true)];
             let squeeze = |(s, w): (Vec<BigRational>, BigRational)| {
@@ -78,7 +81,7 @@ fn rule(cell: Cell, degrees: &[usize], total: usize) -> Option<Rule> {
     }
 }
 
-/// `x₀ = s₀, x₁ = s₁ (1 − s₀), …`
+/// The collapsed coordinates `x₀ = s₀, x₁ = s₁ (1 − s₀), …`.
 fn collapse(s: Vec<BigRational>, mut weight: BigRational) -> (Vec<BigRational>, BigRational) {
     let mut left = BigRational::one();
     let mut x = Vec::new();
@@ -92,7 +95,7 @@ fn collapse(s: Vec<BigRational>, mut weight: BigRational) -> (Vec<BigRational>, 
     (x, weight)
 }
 
-/// Equally spaced inner points of [−1, 1], or of [0, 1], with the weights that integrate powers up to `degree` exactly.
+/// Equally spaced inner points of [−1, 1], or of [0, 1], with weights that integrate powers up to `degree` exactly.
 fn line(degree: usize, unit: bool) -> Line {
     let n = degree as i64 + 1;
     let points: Vec<BigRational> =
@@ -102,7 +105,7 @@ fn line(degree: usize, unit: bool) -> Line {
         (false, 0) => ratio(2, k + 1),
         (false, _) => BigRational::zero(),
     };
-    // Lagrange's polynomial of each point, integrated term by term.
+    // The Lagrange polynomial of each point, integrated term by term.
     let weight = |i: usize| {
         let mut polynomial = vec![BigRational::one()];
         for (j, x) in points.iter().enumerate().filter(|(j, _)| *j != i) {
@@ -119,7 +122,7 @@ fn line(degree: usize, unit: bool) -> Line {
     (0..points.len()).map(|i| (points[i].clone(), weight(i))).collect()
 }
 
-/// All combinations of the lines' points.
+/// All combinations of the points of the lines.
 fn products(lines: &[Line]) -> Rule {
     let mut all: Rule = vec![(Vec::new(), BigRational::one())];
     for line in lines {

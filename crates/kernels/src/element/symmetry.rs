@@ -3,10 +3,11 @@
 use super::cell::Cell;
 use nalgebra::{DMatrix, DVector};
 
-/// Coordinates of reference cells that differ by less are the same.
+/// Coordinates of reference cells, which are of size one, are equal if they differ by less.
 const SAME: f64 = 1e-9;
 
-/// For each affine map of the cell onto itself that takes nodes to nodes, where each node goes; the identity among them.
+/// For each affine map of the cell onto itself that maps nodes to nodes: the image of each node. The identity is one of
+/// them.
 pub fn permutations(cell: Cell, positions: &[f64]) -> Vec<Vec<usize>> {
     let d = cell.dimension();
     let corners: Vec<DVector<f64>> = cell.corners().iter().map(|c| DVector::from_column_slice(c)).collect();
@@ -44,7 +45,7 @@ fn frame(corners: &[DVector<f64>], d: usize) -> Vec<usize> {
     frame
 }
 
-/// The vectors from the first of `chosen` to the others, as columns.
+/// The vectors from the first of the `chosen` corners to the others, as columns.
 fn edges(corners: &[DVector<f64>], chosen: &[usize]) -> DMatrix<f64> {
     let columns: Vec<DVector<f64>> = chosen[1..].iter().map(|&i| &corners[i] - &corners[chosen[0]]).collect();
     DMatrix::from_columns(&columns)

@@ -1,28 +1,32 @@
 //! Shape functions and their gradients as numbers, at the points of a quadrature rule.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use super::quadrature::Quadrature;
 use crate::symbolic::{Expr, Program};
 
-/// What the numerical code knows of an element: `N_a(ξ_q)`, `∂N_a/∂ξ_k(ξ_q)`, `w_q`.
+/// The numbers by which kernels know an element: `N_a(ξ_q)`, `∂N_a/∂ξ_k(ξ_q)` and `w_q`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tabulation<C = f64> {
+    /// The number of nodes.
     pub nodes: usize,
+    /// The number of reference coordinates.
     pub dimension: usize,
-    /// Coordinates of a node; more than the dimension for a cell of a surface or curve.
+    /// The number of coordinates of a node; more than the dimension for a cell of a surface or curve.
     pub space: usize,
-    /// `[points]`.
+    /// The weights w_q, `[points]`.
     pub weights: Vec<C>,
-    /// Weights of the term λ (div u)², `[points]`; empty where they are the same. A point that serves one term alone has
-    /// no weight in the other.
+    /// Weights of the term λ (div u)², `[points]`; empty if they are equal to `weights`. A point that serves only one
+    /// of the two terms has a weight of zero in the other.
     pub volumetric: Vec<C>,
-    /// `[points × nodes]`.
+    /// The values `N_a(ξ_q)`, `[points × nodes]`.
     pub values: Vec<C>,
-    /// `[points × nodes × dimension]`, with respect to the reference coordinates.
+    /// The gradients `∂N_a/∂ξ_k(ξ_q)`, `[points × nodes × dimension]`.
     pub gradients: Vec<C>,
 }
 
 impl Tabulation {
-    /// At the points of `rule`, and of `volumetric` where the term λ (div u)² has a rule of its own.
+    /// The table at the points of `rule`, and of `volumetric` if the term λ (div u)² has a rule of its own.
     pub fn new(functions: &ShapeFunctions, rule: &Quadrature, volumetric: Option<&Quadrature>) -> Tabulation {
         let mut table = Tabulation {
             nodes: functions.values.len(),
@@ -48,7 +52,7 @@ impl Tabulation {
         table
     }
 
-    /// The same table with every tangent direction of a side in place of the cell's own coordinates:
+    /// The same table with derivatives along the tangents of a side instead of the cell's own coordinates:
     /// `∂N_a/∂s_k = Σ_l ∂N_a/∂ξ_l tangent_k,l`.
     pub fn along(self, tangents: &[Vec<f64>]) -> Tabulation {
         let gradients = self
@@ -75,13 +79,14 @@ impl<C> Tabulation<C> {
         }
     }
 
+    /// The number of quadrature points.
     pub fn points(&self) -> usize {
         self.weights.len()
     }
 }
 
 impl Tabulation {
-    /// The weight of point q, or, where it has none, that in the term λ (div u)².
+    /// The weight of point q, or, if that is zero, its weight in the term λ (div u)².
     pub fn point_weight(&self, q: usize) -> f64 {
         match (self.weights[q], self.volumetric.get(q)) {
             (0.0, Some(volumetric)) => *volumetric,
@@ -93,19 +98,20 @@ impl Tabulation {
 /// Shape functions and their symbolic gradients.
 #[derive(Debug, Clone)]
 pub struct ShapeFunctions {
-    /// `[nodes]`.
+    /// The shape functions `N_a`, `[nodes]`.
     pub values: Vec<Expr>,
-    /// `[nodes][dimension]`.
+    /// The gradients `∂N_a/∂ξ_k`, `[nodes][dimension]`.
     pub gradients: Vec<Vec<Expr>>,
 }
 
 impl ShapeFunctions {
+    /// Shape functions in `dimension` coordinates, with their gradients.
     pub fn new(values: Vec<Expr>, dimension: usize) -> ShapeFunctions {
         let gradients = values.iter().map(|n| (0..dimension).map(|k| n.derivative(k)).collect()).collect();
         ShapeFunctions { values, gradients }
     }
 
-    /// How many numbers, variables and operations they consist of.
+    /// The number of numbers, variables and operations of all of them.
     pub(super) fn parts(&self) -> usize {
         self.values.iter().chain(self.gradients.iter().flatten()).map(Expr::parts).sum()
     }

@@ -1,4 +1,6 @@
-//! Fits of many cells, one cell per lane of the machine's registers.
+//! Fits of many cells, one cell per SIMD lane.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::closed::Closed;
 use super::constrained::solve_nonnegative;
@@ -14,31 +16,32 @@ use crate::scalar::{Packed, PackedWork, distance, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 
-/// The cells of one block and where their constants go.
+/// The cells of one block, and the memory for their constants.
 pub struct Batch<'a> {
     pub element: &'a Element,
     pub springs: &'a Springs,
-    /// `[points × dimension]`, m.
+    /// The positions of all points, `[points × dimension]`, m.
     pub points: &'a [f64],
-    /// `[cells × nodes]`.
+    /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
     pub moduli: Moduli,
     pub fit: Fit,
-    /// `[cells × springs]`.
+    /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
 }
 
-/// Two nodes nearer than this, relative to the cell, leave the gradients of springs on functions less than ten digits in `f64`.
+/// If two nodes are nearer than this, relative to the cell, the gradients of springs on functions have less than ten
+/// digits in `f64`.
 const NEAR: f64 = 1e-6;
 
-/// What is to be said of the cells besides their constants.
+/// What is reported of the cells besides their constants.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tally {
-    /// Cells whose normal equations were singular.
+    /// The number of cells whose normal equations were singular.
     pub deficient: usize,
-    /// Cells whose iteration did not reach its end.
+    /// The number of cells whose iteration did not converge.
     pub unreached: usize,
-    /// `[cells]` where the objective has certificates, otherwise empty.
+    /// One certificate per cell if the objective has certificates, otherwise empty.
     pub certificates: Vec<Certificate>,
 }
 
@@ -54,7 +57,7 @@ impl Batch<'_> {
     /// Fits every cell.
     ///
     /// # Errors
-    /// The first cell that has no stiffness, from 0.
+    /// A cell has no stiffness. The error gives the first such cell, counted from 0.
     pub fn run(self) -> Result<Tally, (usize, Fault)> {
         widest(self)
     }
@@ -76,7 +79,8 @@ impl PackedWork for Batch<'_> {
             if workspace.fit(nodes, constants, &mut tally) {
                 cell += count;
             } else if count > 1 {
-                // One of them has no regular equations. Each alone in all lanes: its digits do not depend on the others.
+                // One of the cells has no regular equations. Each is solved alone in all lanes, so that its digits do
+                // not depend on the others.
                 alone = cell + count;
             } else {
                 tally.add(workspace.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
@@ -87,15 +91,15 @@ impl PackedWork for Batch<'_> {
     }
 }
 
-/// What the cells of one register's width need.
+/// The working memory for as many cells as there are lanes.
 struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
     moduli: Moduli,
     fit: Fit,
-    /// Of the objectives that have a closed form.
+    /// For objectives with a closed form.
     closed: Option<Closed<T>>,
-    /// Of those that need the reduced element.
+    /// For objectives that need the reduced element.
     method: Option<Method<T>>,
     packing: Packing<'a, T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
@@ -120,7 +124,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
     }
 
     /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
-    /// Jacobian of one is not safely positive or its equations are not regular.
+    /// Jacobian of a cell is not safely positive or its equations are not regular.
     fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
         if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
             return false;
@@ -146,7 +150,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         regular
     }
 
-    /// [`Workspace::fit`] by the closed form.
+    /// [`Workspace::fit`] for objectives with a closed form.
     fn fit_closed(&mut self, constants: &mut [f64], tally: &mut Tally) -> bool {
         let Workspace { element, springs, moduli, fit, .. } = *self;
         let Some(closed) = &mut self.closed else { return false };
@@ -179,7 +183,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         true
     }
 
-    /// A single cell; in twice the digits if it is delicate, or its shape is.
+    /// Fits a single cell; in double-double numbers if its equations or its shape are delicate.
     fn fit_alone(&mut self, nodes: &[usize], constants: &mut [f64], is_delicate: bool) -> Result<Verdict, Fault> {
         let mut x = vec![0.0; self.packing.x.len()];
         self.packing.place(nodes, &mut x)?;
@@ -197,7 +201,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             let d = element.dimension();
             let mut given = x.clone();
             if element.space() == d {
-                // As they are, for their differences are exact in more digits.
+                // Absolute positions, because their differences are exact in numbers of more digits.
                 gather(self.packing.points, d, nodes, &mut given);
             }
             if let Some(verdict) = delicate.constants(&given, (&x, &geometry), constants) {
@@ -218,13 +222,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
-    /// Whether springs measure functions of nodes at `x`, `[nodes × dimension]`, two of which are nearly at one place.
+    /// Whether springs measure functions of nodes at `x`, `[nodes × dimension]`, two of which nearly coincide.
     fn are_near(&self, x: &[f64]) -> bool {
         !self.measured.is_empty() && nearness(x, self.element.dimension()) < NEAR
     }
 
-    /// The gradients of the springs on functions in the first `cells` lanes; the others repeat the first. False if one is zero
-    /// or not finite.
+    /// The gradients of the springs on functions in the first `cells` lanes; the other lanes repeat the first. False if
+    /// a gradient is zero or not finite.
     fn measure(&mut self, cells: usize) -> bool {
         if self.measured.is_empty() {
             return true;

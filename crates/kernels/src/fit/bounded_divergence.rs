@@ -1,43 +1,50 @@
-//! The divergence under `κ ≥ 0` to its optimality conditions: `∂f/∂κ_i = 0` where κ_i > 0, and not below zero where κ_i = 0.
+//! The divergence under `κ ≥ 0`, solved until its optimality conditions hold: `∂f/∂κ_i = 0` if κ_i > 0, and
+//! `∂f/∂κ_i ≥ 0` if κ_i = 0.
 //!
-//! The barrier tells which constants are about zero. From there a projected Newton method goes on (Bertsekas, SIAM J. Control Optim.
-//! 20, 221, 1982): constants that are zero and would fall stay, the others take the Newton step, as far as it leads to less. Each
-//! step ends at bounds, not before them, so that it is as long on flattened shapes, where optimal constants differ by decades.
+//! The barrier method identifies the constants that are nearly zero. From its result a projected Newton method starts
+//! (Bertsekas, SIAM J. Control Optim. 20, 221, 1982): constants that are zero and would decrease stay zero, and the
+//! others take the Newton step, as far as it decreases the objective. A step is projected onto the bounds instead of
+//! ending before them, so that it remains long on flat cells, whose optimal constants differ by orders of magnitude.
+//!
+//! Theory: page *Divergence* of the book.
 
 use super::dense::{add_outers, at_half, at_rounding, factorize, inner, invert, row_products, solve, tie, trace};
 use super::objective::Balance;
 use crate::scalar::Real;
 
+/// The largest number of Newton steps.
 const STEPS: usize = 200;
+/// The largest number of halvings of a step; 2⁻⁴⁰ of it changes no more than the last digits.
 const HALVINGS: usize = 40;
-/// Pivots below this are rounding.
+/// Relative pivots below this are rounding errors.
 const FLOOR: f64 = 1e-14;
-/// The share of the slope that a step must bring.
+/// The share of the slope by which a step must decrease the objective (Armijo's condition).
 const DESCENT: f64 = 1e-4;
-/// A decrement whose square is below this leaves the value without digits to fall by.
+/// If the squared Newton decrement is below this, rounding hides a further decrease of the objective.
 const CLOSE: f64 = 1e-10;
-/// What a slope may be of the terms that it is the sum of. Rounding leaves less unless the Hessian is next to singular.
+/// The largest slope at the optimum, relative to the terms of which it is a sum. Rounding leaves less unless the
+/// Hessian is nearly singular.
 const OPTIMAL: f64 = 1e-10;
-/// The step that is left, relative to the constants.
+/// The largest remaining step, relative to the constants.
 const LEFT: f64 = 1e-10;
 
-/// The objective at a point, with slopes and curvatures by each unknown.
+/// The objective at a point, with its slope and curvature for each unknown.
 struct Point<T> {
     value: f64,
     slope: Vec<T>,
-    /// The sums of the sizes of its terms.
+    /// The sums of the absolute values of the terms of the slopes.
     terms: Vec<f64>,
-    /// `[unknowns × unknowns]`, lower triangle.
+    /// The Hessian, `[unknowns × unknowns]`, lower triangle.
     hessian: Vec<T>,
 }
 
-/// Improves κ, `[unknowns]`, from a point at which `A = Σ κ h hᵀ` is positive definite, to the optimum under `κ ≥ 0`; `h` are
-/// `[springs × p]`, in units of R̂. False where the optimality conditions are not reached.
+/// Improves κ, `[unknowns]`, to the optimum under `κ ≥ 0`, from a point at which `A = Σ κ h hᵀ` is positive definite.
+/// `h` has the rows h_s, `[springs × p]`, in units of R̂. False if the optimality conditions are not reached.
 pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, kappa: &mut [T]) -> bool {
     let at = |kappa: &[T]| Point::at(h, p, unknowns, balance.value(), kappa);
     let count = kappa.len();
     let zero = kappa[0].zero();
-    // What the bound holds is not there for the barrier alone: constants that a Newton step of their own takes beyond zero.
+    // The constants that only the barrier keeps from zero: a Newton step of their own makes them negative.
     let mut from = kappa.to_vec();
     let Some(start) = at(&from) else { return false };
     for i in 0..count {
@@ -84,14 +91,14 @@ pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, 
         let Some((to, next)) = next else { break };
         (from, point) = (to, next);
     }
-    // As far as rounding leads: the conditions decide.
+    // The iteration continues as far as rounding allows; the optimality conditions decide.
     let is_optimal = point.is_optimal(&from);
     kappa.clone_from_slice(&from);
     is_optimal
 }
 
 impl<T: Real> Point<T> {
-    /// None where A is not positive definite.
+    /// None if A is not positive definite.
     fn at(h: &[T], p: usize, unknowns: &[usize], balance: f64, kappa: &[T]) -> Option<Point<T>> {
         let (m, count, zero) = (unknowns.len(), kappa.len(), kappa[0].zero());
         let room = |size: usize| vec![zero.clone(); size];

@@ -1,4 +1,6 @@
-//! The fits of all cells of one element.
+//! The fits of all cells of one element type.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::batch::{Batch, Tally};
 use super::congruence::Congruence;
@@ -17,37 +19,40 @@ use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
 
-/// Cells that one thread fits in one go.
+/// The number of cells that one thread fits at a time: enough that starting the thread costs nothing.
 pub(super) const CHUNK: usize = 512;
-/// Cells between two reports of progress.
+/// The number of cells between two reports of progress.
 pub(super) const ROUND: usize = 64 * CHUNK;
 
 /// The constants of all cells of one element type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellFits {
+    /// The springs of each cell.
     pub springs: Springs,
-    /// `[cells × springs]`, N/m; that of an area or volume spring N/m³ or N/m⁵. The slope of the force at rest.
+    /// The constants, `[cells × springs]`, N/m; of springs on areas N/m³, on volumes N/m⁵. For a force law, its slope
+    /// at rest.
     pub constants: Vec<f64>,
+    /// The force law of the springs.
     pub force: Force,
-    /// Of the springs of each cell one after another, see [`Force::places`].
+    /// The further parameters of the springs, cell by cell and spring by spring, see [`Force::places`].
     pub parameters: Vec<f64>,
-    /// Cells whose normal equations were singular, see [`Rank::Deficient`](super::Rank::Deficient).
+    /// The number of cells whose normal equations were singular, see [`Rank::Deficient`](super::Rank::Deficient).
     pub deficient: usize,
-    /// Cells whose iteration did not reach its end; of cells of one shape only the fitted one counts.
+    /// The number of cells whose iteration did not converge; of congruent cells only the fitted one counts.
     pub unreached: usize,
-    /// Cells that have the shape of another and took its constants over; where the objective has no closed form.
+    /// The number of cells that received the constants of a congruent cell; for objectives without a closed form.
     pub reused: usize,
-    /// `[cells]` for the spectral objective, otherwise empty.
+    /// For the spectral objective one certificate per cell, otherwise empty.
     pub certificates: Vec<Certificate>,
 }
 
-/// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+/// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
-/// `progress` receives the number of finished cells from time to time.
+/// `progress` is called from time to time with the number of finished cells.
 ///
 /// # Errors
-/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, or a
-/// cell is reversed, tangled or flat; the error names it, counted from 1.
+/// An array has a wrong length; a number is not finite or is out of its range; the springs belong to another element;
+/// or a cell is reversed, tangled or flat. The error names the cell, counted from 1.
 pub fn fit_cells(
     element: &Element,
     springs: &Springs,
@@ -76,7 +81,7 @@ impl CellFits {
         }
     }
 
-    /// Those of some of the cells, without what was counted or certified of all.
+    /// The constants of some of the cells, without counts and certificates.
     pub fn of_cells(&self, cells: &[usize]) -> CellFits {
         let m = self.springs.len();
         let p = self.force.places(&self.springs)[m];
@@ -91,7 +96,7 @@ impl CellFits {
         }
     }
 
-    /// [`fit_cells`] into the memory of an earlier fit.
+    /// As [`fit_cells`], with the memory of an earlier fit.
     ///
     /// # Errors
     /// Those of [`fit_cells`].
@@ -145,7 +150,7 @@ impl CellFits {
         self.fit_each(element, points, connectivity, moduli, fit, progress)
     }
 
-    /// Fits every cell by itself; the constants have room for them.
+    /// Fits every cell separately; the memory for the constants has been allocated.
     fn fit_each(
         &mut self,
         element: &Element,
@@ -204,7 +209,7 @@ impl CellFits {
         Ok(())
     }
 
-    /// The constants of one cell of each shape for all cells; `shapes` gives the shape of each.
+    /// Copies the constants of one cell of each shape to all cells; `shapes` gives the shape of each cell.
     fn copy_by_shape(&mut self, fitted: &CellFits, shapes: &[usize]) {
         let m = self.springs.len();
         for (constants, &shape) in self.constants.chunks_exact_mut(m).zip(shapes) {
@@ -230,7 +235,7 @@ fn check_constants(element: &Element, first: usize, springs: usize, values: &[f6
 /// The constants of a single element with nodes at `x`, `[nodes × space]`, m; `[springs]`.
 ///
 /// # Errors
-/// Those of [`fit_cells`], and the springs pull at rest: constants alone do not describe them.
+/// Those of [`fit_cells`]; or the springs pull at rest, so that constants alone do not describe them.
 pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
     check_nodes(element, element.space(), x)?;
     fit.check_constants_alone()?;

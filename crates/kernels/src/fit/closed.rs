@@ -1,4 +1,6 @@
 //! Least squares in closed form: the constants of one element, or of one per lane, from the node positions alone.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::least_squares::{equations, normal_equations};
 use super::nodal::{Nodal, is_shorter};
@@ -12,7 +14,7 @@ use crate::scalar::Real;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// How a fit solves its equations, and the memory that it does so in.
+/// How the equations of a fit are solved, with the working memory.
 #[derive(Debug, Clone)]
 pub struct Closed<T> {
     weight: ClosedWeight,
@@ -21,7 +23,7 @@ pub struct Closed<T> {
     nodal: Nodal<T>,
     normal: Normal<T>,
     tied: Normal<T>,
-    /// The equations before their elimination, where constants are bounded.
+    /// The equations before elimination, if constants are bounded.
     kept: Normal<T>,
 }
 
@@ -29,7 +31,7 @@ pub struct Closed<T> {
 enum Steps {
     /// `M = 2I`: each constant is half of its right-hand side.
     Decoupled,
-    /// By the equations of the nodes, which are fewer than those of the springs.
+    /// The equations of the nodes, which are fewer than those of the springs.
     Nodes,
     Springs,
     /// One equation per group.
@@ -37,7 +39,7 @@ enum Steps {
 }
 
 impl<T: Real> Closed<T> {
-    /// None for the objectives that have no closed form.
+    /// None for objectives without a closed form.
     pub fn of(springs: &Springs, fit: &Fit) -> Option<Closed<T>> {
         let Route::Closed(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
         let lengths_alone = springs.content.is_none() && springs.parallel.is_empty();
@@ -58,8 +60,8 @@ impl<T: Real> Closed<T> {
         })
     }
 
-    /// Solves for the element with nodes at `x`, `[nodes × dimension]`, and fills in its geometry. Returns false if the Jacobian is
-    /// not safely positive or the equations are not regular.
+    /// Solves for the element with nodes at `x`, `[nodes × dimension]`, and fills in its geometry. Returns false if the
+    /// Jacobian is not safely positive or the equations are not regular.
     pub fn solve(
         &mut self,
         table: &Tabulation,
@@ -119,7 +121,7 @@ impl<T: Real> Closed<T> {
         equations.solve_regular()
     }
 
-    /// The constant of spring `s` after [`Closed::solve`], N/m, without regard to a bound.
+    /// The constant of spring `s` after [`Closed::solve`], in N/m, without bounds.
     pub fn constant(&self, springs: &Springs, s: usize) -> &T {
         match self.steps {
             Steps::Groups => &self.tied.rhs[springs.groups[s]],
@@ -134,7 +136,8 @@ impl<T: Real> Closed<T> {
         normal
     }
 
-    /// The equations that [`Closed::solve`] solved, for bounded constants; none where each constant has one of its own.
+    /// The equations that [`Closed::solve`] solved, for bounded constants; none if each constant has an equation of its
+    /// own.
     pub fn equations(
         &mut self,
         springs: &Springs,

@@ -1,4 +1,6 @@
-//! Least-squares fits as formulas: the same kernels on exact rational functions of the side lengths.
+//! Least-squares fits as formulas: the same kernels, run on exact rational functions of the side lengths.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::least_squares::normal_equations;
 use super::normal::Normal;
@@ -12,24 +14,25 @@ use crate::stiffness::Geometry;
 use crate::symbolic::Fraction;
 use num_rational::BigRational;
 
-/// The last variable of all formulas; the lengths of the sides come before it.
+/// The name of the last variable of all formulas, Poisson's ratio. The side lengths come before it.
 pub const RATIO: &str = "nu";
+/// The names of the side lengths.
 const SIDES: [&str; 3] = ["a", "b", "c"];
 
-/// An element whose matrices are formulas: everything linear in the moduli λ and μ is a pair of coefficients.
+/// An element whose matrices are formulas. Quantities that are linear in the moduli λ and μ are pairs of coefficients.
 #[derive(Debug)]
 pub struct ClosedForm {
-    /// Names of the variables: of the sides, if they are variables, and ν.
+    /// The names of the variables: of the sides, if they are variable, and of ν.
     pub variables: Vec<String>,
-    /// Positions of the nodes, `[nodes × dimension]`, m.
+    /// The positions of the nodes, `[nodes × dimension]`, m.
     pub positions: Vec<Fraction>,
-    /// `R = λ R_λ + μ R_μ`, `[size × size]` each.
+    /// The stiffness `R = λ R_λ + μ R_μ`, `[size × size]` each, size = nodes·dimension.
     pub stiffness: [Vec<Fraction>; 2],
-    /// Springs that a symmetry of the shape takes into each other.
+    /// The classes of springs that a symmetry of the shape maps onto each other.
     pub classes: Vec<SymmetryClass>,
-    /// `‖R‖²` as coefficients of λ², λμ, μ².
+    /// `‖R‖²` as the coefficients of λ², λμ and μ².
     pub norm: [Fraction; 3],
-    /// The springs between all pairs of nodes of the exact network, as [`ClosedForm::exact`] has them.
+    /// The springs between all pairs of nodes of the exact network, for [`ClosedForm::exact`].
     exact: Vec<SymmetryClass>,
     springs: Springs,
     plain: [Normal<Fraction>; 2],
@@ -39,36 +42,39 @@ pub struct ClosedForm {
 /// Springs that have the same constant because the shape is symmetric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SymmetryClass {
+    /// The group of the springs.
     pub group: String,
-    /// The nodes of its springs; all nodes for the spring on the content.
+    /// The nodes of each spring; all nodes for the spring on the content.
     pub springs: Vec<Vec<usize>>,
 }
 
-/// The exact network: springs of rest length zero, and springs on content.
+/// The exact network: springs of rest length zero, and springs on the content.
 #[derive(Debug)]
 pub struct ExactForm {
-    /// Pairs of nodes that a symmetry of the shape takes into each other, and the constant of each spring for μ = 1, N/m.
+    /// The classes of pairs of nodes that a symmetry of the shape maps onto each other, and the constant of each spring
+    /// for μ = 1, in N/m.
     pub pairs: Vec<(SymmetryClass, Fraction)>,
-    /// Length, area or volume V of the cell, that of all quadrature points together.
+    /// Length, area or volume V of the cell, the sum over all quadrature points.
     pub content: Fraction,
 }
 
-/// The constants of one objective.
+/// The constants under one weight.
 #[derive(Debug)]
 pub struct ClosedFit {
+    /// The weight.
     pub weight: Weight,
-    /// Per class, N/m for λ = 1 and for μ = 1.
+    /// One pair per class, in N/m: the constants for λ = 1 and for μ = 1.
     pub constants: Vec<[Fraction; 2]>,
-    /// `‖R − K‖²` with all entries, as coefficients of λ², λμ, μ².
+    /// `‖R − K‖²` with all entries, as the coefficients of λ², λμ and μ².
     pub residual: [Fraction; 3],
 }
 
 impl ClosedForm {
-    /// The element at its reference positions, or, with `sides`, stretched along its axes to the lengths a, b, c.
+    /// The element at its reference positions or, with `sides`, stretched along its axes to the lengths a, b, c.
     ///
     /// # Errors
-    /// The springs are those of another element, a node or shape function is not rational, the element's own quadrature is not exact on such a shape, or a spring
-    /// measures something that needs roots.
+    /// The springs belong to another element; a node or shape function is not rational; the element's own quadrature is
+    /// not exact on such a shape; or the measure of a spring requires roots.
     pub fn new(element: &Element, springs: &Springs, sides: bool) -> Result<ClosedForm> {
         springs.check(element)?;
         let refuse = |why: &str| {
@@ -122,7 +128,7 @@ impl ClosedForm {
         Ok(ClosedForm { variables, positions: x, stiffness, classes, norm, exact, springs, plain, geometry })
     }
 
-    /// `k_ab = −μ ∫ ∇N_a·∇N_b dV` of every pair of nodes, and the content.
+    /// The exact network: `k_ab = −μ ∫ ∇N_a·∇N_b dV` of every pair of nodes, and the content.
     pub fn exact(&self) -> ExactForm {
         let (n, d) = (self.geometry.nodes, self.geometry.dimension);
         let constant = |class: &SymmetryClass| {
@@ -142,7 +148,7 @@ impl ClosedForm {
     /// The constants under this weight.
     ///
     /// # Errors
-    /// The weight has no closed form, as `relative`, or it does not determine the springs.
+    /// The weight has no closed form, such as `relative`, or it does not determine the springs.
     pub fn fit(&self, weight: Weight) -> Result<ClosedFit> {
         let closed = weight.closed(false)?;
         let zero = self.positions[0].zero();
@@ -193,7 +199,7 @@ fn to_f64(value: &BigRational) -> f64 {
     num_traits::ToPrimitive::to_f64(value).unwrap_or(f64::NAN)
 }
 
-/// λ = 1 and μ = 1.
+/// The moduli λ = 1 and μ = 1.
 fn units() -> [Moduli<BigRational>; 2] {
     let (one, zero) = (BigRational::from_integer(1.into()), BigRational::from_integer(0.into()));
     [Moduli { lambda: one.clone(), mu: zero.clone() }, Moduli { lambda: zero, mu: one }]
@@ -203,13 +209,13 @@ fn sum(terms: impl Iterator<Item = Fraction>, any: &Fraction) -> Fraction {
     terms.fold(any.zero(), |sum, term| sum + &term)
 }
 
-/// The coefficients of λ², λμ, μ² in a product of what is linear in both.
+/// The coefficients of λ², λμ and μ² in a product of two quantities that are linear in both.
 fn quadratic(parts: &[Vec<Fraction>; 2], product: impl Fn(&[Fraction], &[Fraction]) -> Fraction) -> [Fraction; 3] {
     let two = BigRational::from_integer(2.into());
     [product(&parts[0], &parts[0]), product(&parts[0], &parts[1]).scaled(&two), product(&parts[1], &parts[1])]
 }
 
-/// Whether the rule of the file gives the same stiffness of the reference cell as the exact one.
+/// Whether the rule of the file and the exact rule give the same stiffness of the reference cell.
 fn is_exact(element: &Element, exact: &crate::element::Tabulation) -> bool {
     let with = |table: &crate::element::Tabulation| {
         let mut geometry = Geometry::new(table);
@@ -254,7 +260,8 @@ fn stiffness(geometry: &Geometry<Fraction>, moduli: &Moduli<BigRational>) -> Vec
     r
 }
 
-/// The springs in the orbits of the permutations of nodes that keep every distance, in the order of their first springs.
+/// The orbits of the springs under the permutations of nodes that keep every distance, in the order of their first
+/// springs.
 fn classes(element: &Element, springs: &Springs, x: &[Fraction]) -> Vec<SymmetryClass> {
     let (d, n) = (element.dimension(), element.nodes());
     let square = |a: usize, b: usize| {

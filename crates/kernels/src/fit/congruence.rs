@@ -1,4 +1,4 @@
-//! Cells of the same shape: what is costly to fit is fitted once for all of them.
+//! Congruent cells: objectives that are expensive are fitted once for all cells of the same shape.
 
 use super::visit::each_cell;
 use crate::element::Element;
@@ -6,11 +6,11 @@ use crate::error::Result;
 use crate::springs::distance;
 use std::collections::HashMap;
 
-/// Lengths that differ by less than this fraction count as equal; boxes have rounding of about 1e-14.
+/// The relative difference below which lengths are equal; rounding in generated boxes is about 1e-14.
 const EQUAL: f64 = 1e-12;
 
-/// Cells grouped by the distances of their nodes, which are equal for cells that a rigid motion or a mirror takes into each
-/// other, and those have the same constants.
+/// Cells grouped by the distances of their nodes. These are equal for cells that a rigid motion or a mirror maps onto
+/// each other, and such cells have the same constants.
 pub struct Congruence {
     /// One cell of each shape.
     pub representatives: Vec<usize>,
@@ -19,6 +19,8 @@ pub struct Congruence {
 }
 
 impl Congruence {
+    /// Groups cells that a rigid motion or a mirror maps onto each other.
+    ///
     /// # Errors
     /// A cell is reversed, tangled or flat.
     pub fn of(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
@@ -30,7 +32,7 @@ impl Congruence {
         })
     }
 
-    /// Of cells that a translation alone takes into each other: turned ones count as others.
+    /// Groups cells that a translation maps onto each other; rotated cells count as different.
     ///
     /// # Errors
     /// A cell is reversed, tangled or flat.
@@ -39,7 +41,7 @@ impl Congruence {
         Congruence::by(element, points, connectivity, |x| (d..x.len()).map(|i| x[i] - x[i % d]).collect())
     }
 
-    /// `lengths` of the node positions are what cells of one shape have in common.
+    /// `lengths` computes, from the node positions, the numbers that are equal for cells of one shape.
     fn by(
         element: &Element,
         points: &[f64],

@@ -1,5 +1,7 @@
-//! `min ½ kᵀ M k − bᵀ k` over `k ≥ 0`: block principal pivoting, checked by its optimality conditions, with a conic
-//! solver behind it for what pivoting cannot settle.
+//! The quadratic programme `min ½ kᵀ M k − bᵀ k` under `k ≥ 0`: block principal pivoting, whose result is checked by
+//! the optimality conditions. A conic solver takes over the problems that pivoting does not solve.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::dense::at_rounding;
 use super::normal::{Normal, Rank};
@@ -7,17 +9,17 @@ use crate::scalar::{Real, Scalar};
 use clarabel::algebra::{CscMatrix, MatrixMathMut};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 
-/// Optimality conditions hold to this fraction of the largest |b|, in the scaling with a unit diagonal.
+/// The tolerance of the optimality conditions, as a fraction of the largest |b| in the scaling with a unit diagonal.
 const OPTIMALITY: f64 = 1e-10;
 
-/// Solves by block principal pivoting (Júdice and Pires 1994; Kim and Park 2011): guess which constants are positive,
-/// solve for them, exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. Where `M` is singular or the exchange does not
+/// Solves by block principal pivoting (Júdice and Pires 1994; Kim and Park 2011): assume which constants are positive,
+/// solve for them, and exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. If `M` is singular or the exchanges do not
 /// end, the interior-point solver decides.
 pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
     normal.solve_determined(solve_scalable)
 }
 
-/// The optimum of equations in numbers of more digits; and the least pivot, as in [`Normal::least_pivot`].
+/// The optimum of equations in numbers of more digits, and the least pivot as defined by [`Normal::least_pivot`].
 pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding: f64) -> (Vec<f64>, Rank, f64) {
     let (near, mut free) = (normal.rounded(), normal.clone());
     if !free.solve_to(rounding) {
@@ -43,8 +45,8 @@ pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding:
     }
 }
 
-/// The optimum in which the constants that are zero in `near` are zero, if that is the one under `k ≥ 0`: `Some(None)` if it is not.
-/// None where the others are linearly dependent.
+/// The optimum in which the constants that are zero in `near` are zero, if it is the optimum under `k ≥ 0`; otherwise
+/// `Some(None)`. None if the other constants are linearly dependent.
 pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Option<Vec<T>>> {
     let (scaled, scale) = normal.scaled();
     let set: Vec<usize> = (0..near.len()).filter(|&s| near[s] > 0.0).collect();
@@ -74,7 +76,7 @@ fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
     (k, rank)
 }
 
-/// Where what is given errs by `rounding`.
+/// Pivoting for input data with the relative error `rounding`.
 fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
     let m = normal.size();
     let tolerance = at_rounding::<T>(OPTIMALITY) * normal.rhs.iter().fold(0.0f64, |a, b| a.max(b.rounded().abs()));
@@ -95,7 +97,7 @@ fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
         if wrong.is_empty() {
             return Some(k);
         }
-        // Exchange all while that helps; then only the last, which cannot cycle (Murty 1974).
+        // Exchange all as long as that helps; then only the last one, which cannot cycle (Murty 1974).
         if wrong.len() < fewest {
             (fewest, patience) = (wrong.len(), 3);
         } else if patience > 0 {
@@ -107,7 +109,7 @@ fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
     None
 }
 
-/// The same problem by Clarabel's interior-point method; `None` if it reports no solution.
+/// The same problem solved by Clarabel's interior-point method; `None` if it reports no solution.
 pub fn interior_point(normal: &Normal) -> Option<Vec<f64>> {
     let m = normal.size();
     let upper: Vec<(usize, usize)> = (0..m).flat_map(|t| (0..=t).map(move |s| (s, t))).collect();

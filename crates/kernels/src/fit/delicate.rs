@@ -1,4 +1,7 @@
-//! Cells that take more digits than `f64` has, slivers and needles: in numbers of twice as many.
+//! Cells that require more digits than `f64` has, such as slivers and needles. They are fitted in double-double
+//! numbers.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::constrained::solve_precisely;
 use super::least_squares::normal_equations;
@@ -22,9 +25,10 @@ pub struct DelicateCells<'a> {
 }
 
 impl DelicateCells<'_> {
-    /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m; `plain` and `shape` are that
-    /// from its first in `f64`. None where the Jacobian vanishes, a spring has no gradient, or springs on functions are seen block by
-    /// block, which is known in `f64` alone.
+    /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m. `plain` and `shape` are the
+    /// positions relative to the first node and the geometry, in `f64`. None if the Jacobian vanishes, a spring has no
+    /// gradient, or the objective is that of the blocks and springs measure functions, which is implemented for `f64`
+    /// only.
     pub fn constants(&self, x: &[f64], (plain, shape): (&[f64], &Geometry), constants: &mut [f64]) -> Option<Verdict> {
         let DelicateCells { element, springs, moduli, fit } = *self;
         let any = DoubleDouble::from(0.0);
@@ -48,7 +52,8 @@ impl DelicateCells<'_> {
     }
 }
 
-/// Whether no spring's matrix is a sum of the others', to rounding: whatever they are fitted to, there is one optimum.
+/// Whether the matrix of no spring is a linear combination of those of the others, up to rounding: then the optimum is
+/// unique whatever the stiffness is.
 fn are_independent(springs: &Springs, tied: bool, x: &[f64], geometry: &Geometry) -> bool {
     let (m, size) = (springs.len(), x.len());
     let mut g = Vec::new();

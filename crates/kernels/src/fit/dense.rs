@@ -1,10 +1,11 @@
-//! Small dense matrices of any kind of number, row by row; of symmetric ones the lower triangle counts.
+//! Small dense matrices of any kind of number, stored row by row. Of symmetric matrices only the lower triangle is
+//! used.
 
 use crate::scalar::{Real, Scalar};
 
-/// Takes the terms of the columns before from the entries `t..t + B` of a row, in an elimination of order m.
+/// Subtracts the terms of the previous columns from the entries `t..t + B` of a row, in an elimination of order m.
 ///
-/// Several at once: their sums are independent, where the terms of one must wait for each other.
+/// Several entries at once, because their sums are independent, whereas the terms of one sum wait for each other.
 #[inline(always)]
 fn eliminate<T: Scalar, const B: usize>(row: &mut [T], before: &[T], m: usize, t: usize) {
     let (done, rest) = row.split_at_mut(t);
@@ -51,7 +52,8 @@ pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], inverse: &[T], m: u
     pivot
 }
 
-/// Does `$body` with the order `$n` as a constant for those of the common elements: loops of known length unroll.
+/// Runs `$body` with the order `$n` as a constant, for the orders of the common elements: loops of known length are
+/// unrolled.
 macro_rules! known_order {
     ($n:ident => $body:expr) => {
         match $n {
@@ -68,8 +70,9 @@ macro_rules! known_order {
     }};
 }
 
-/// `A = L D Lᵀ`: L in the strict lower triangle, `1/D` in `inverse`. Returns the least of the pivots, each divided by its
-/// diagonal entry; one not above `floor` is replaced by a huge one, which takes its direction out.
+/// The factorisation `A = L D Lᵀ`: L in the strict lower triangle, `1/D` in `inverse`. Returns the least pivot, each
+/// relative to its diagonal entry. A pivot not above `floor` is replaced by a very large one, which removes its
+/// direction.
 pub fn factorize<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) -> T {
     let any = a[0].clone();
     any.vectorize(
@@ -101,7 +104,7 @@ pub fn least_pivot<T>(a: &[T], n: usize, inverse: &[T], lane: impl Fn(&T) -> f64
     (0..n).map(|s| 1.0 / (lane(&inverse[s]) * lane(&a[s * n + s]))).fold(1.0, f64::min)
 }
 
-/// `b ← A⁻¹ b` with the factors of [`factorize`].
+/// `b ← A⁻¹ b`, with the factors from [`factorize`].
 #[inline(always)]
 pub fn solve<T: Scalar>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {
     for s in 1..n {
@@ -121,7 +124,7 @@ pub fn solve<T: Scalar>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {
     }
 }
 
-/// `A⁻¹`, both triangles, from the factors; `rows` is room of the same size.
+/// `A⁻¹`, both triangles, from the factors; `rows` is working memory of the same size.
 pub fn invert<T: Real>(a: &[T], n: usize, inverse: &[T], rows: &mut [T], out: &mut [T]) {
     a[0].vectorize(
         #[inline(always)]
@@ -174,9 +177,9 @@ pub fn mirror<T: Scalar>(a: &mut [T], n: usize) {
     }
 }
 
-/// `out_st = a_s · b_t` for rows of length n; of a square result the lower triangle alone if `lower`.
+/// `out_st = a_s · b_t` for rows of length n; with `lower` only the lower triangle of a square result.
 ///
-/// Four rows by four, so that each number that is loaded serves four sums.
+/// Computed in blocks of four rows by four, so that each number that is loaded serves four sums.
 pub fn row_products<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut [T]) {
     a[0].vectorize(
         #[inline(always)]
@@ -265,7 +268,8 @@ pub fn inner<T: Scalar>(a: &[T], b: &[T]) -> T {
     sum
 }
 
-/// `A ← A ± Σ_I c_I Σ_{s∈I} g_s g_sᵀ`, lower triangle, for rows g of the order n of A; `unknowns` gives each row's I.
+/// `A ← A ± Σ_I c_I Σ_{s∈I} g_s g_sᵀ`, lower triangle, for rows g of the order n of A; `unknowns` gives the I of each
+/// row.
 pub fn add_outers<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: &[usize], sign: f64) {
     c[0].vectorize(
         #[inline(always)]
@@ -313,12 +317,12 @@ fn outers<T: Scalar, const A: usize>(a: &mut [T], g: &[T], n: usize, s: usize, c
     }
 }
 
-/// A limit set for `f64` at half of its digits, in numbers of another precision.
+/// A limit that is half the digits of `f64`, in numbers of another precision.
 pub fn at_half<T: Real>(limit: f64) -> f64 {
     limit * (2.0 * T::epsilon() / f64::EPSILON).sqrt()
 }
 
-/// A limit set at the rounding of `f64`.
+/// A limit at the rounding error of `f64`, in numbers of another precision.
 pub fn at_rounding<T: Real>(limit: f64) -> f64 {
     limit * 2.0 * T::epsilon() / f64::EPSILON
 }
@@ -334,7 +338,7 @@ pub fn room_below<T: Real>(kappa: &[T], step: &[T]) -> T {
     longest.scaled(&0.9)
 }
 
-/// The sum of the diagonal.
+/// The trace.
 #[inline(always)]
 pub fn trace<T: Scalar>(a: &[T], n: usize) -> T {
     let mut sum = a[0].zero();
@@ -344,7 +348,7 @@ pub fn trace<T: Scalar>(a: &[T], n: usize) -> T {
     sum
 }
 
-/// Sums `term(a_st, b_st)` over the springs of each pair of unknowns, lower triangle of width `width`.
+/// Sums `term(a_st, b_st)` over the springs of each pair of unknowns; lower triangle of width `width`.
 #[inline(always)]
 pub fn tie<T: Scalar>(
     a: &[T],

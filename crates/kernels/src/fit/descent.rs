@@ -1,10 +1,11 @@
-//! General optimisers on the raw objective, as the older literature searched it: what they reach beside the native solver.
+//! General optimisers on the raw objective, as the older literature used them; they show what such a search reaches
+//! compared with the native solver.
 //!
-//! Annealing found spring constants in O. Deussen, L. Kobbelt, P. Tücke, "Using simulated annealing to obtain good approximations
-//! of deformable bodies", EG Workshop on Computer Animation and Simulation 1995; genetic searches found them in A. Joukhadar,
-//! F. Garat, C. Laugier, "Parameter identification for dynamic simulation", ICRA 1997, and which springs there are as well in
-//! G. Bianchi et al., "Simultaneous topology and stiffness identification for mass-spring models based on FEM reference
-//! deformations", MICCAI 2004.
+//! Annealing found spring constants in O. Deussen, L. Kobbelt, P. Tücke, "Using simulated annealing to obtain good
+//! approximations of deformable bodies", EG Workshop on Computer Animation and Simulation 1995. Genetic searches found
+//! them in A. Joukhadar, F. Garat, C. Laugier, "Parameter identification for dynamic simulation", ICRA 1997, and
+//! together with the set of springs in G. Bianchi et al., "Simultaneous topology and stiffness identification for
+//! mass-spring models based on FEM reference deformations", MICCAI 2004.
 
 use super::objective::Objective;
 use super::reduction::Reduced;
@@ -23,12 +24,12 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use std::sync::Mutex;
 
-/// The objective of one element as a function of its unknowns κ, followed by their switches if they have any.
+/// The objective of one element as a function of its unknowns κ, followed by their switches if there are any.
 struct Raw<'a> {
     reduced: &'a Reduced<f64>,
     objective: Objective,
     nonnegative: bool,
-    /// What a spring costs that is on.
+    /// The cost of each spring that is on.
     price: f64,
     /// The length of a random step.
     stride: f64,
@@ -36,7 +37,7 @@ struct Raw<'a> {
 }
 
 impl Raw<'_> {
-    /// With the price of the springs that are on.
+    /// The objective, with the cost of the springs that are on.
     fn cost_of(&self, at: &[f64]) -> f64 {
         let kappa = self.kappa(at);
         let on = self.reduced.unknowns.iter().filter(|&&unknown| kappa[unknown] != 0.0).count();
@@ -62,7 +63,7 @@ impl Raw<'_> {
         }
     }
 
-    /// The κ within their bounds, zero where they are off.
+    /// The κ within their bounds, and zero if they are switched off.
     fn kappa(&self, at: &[f64]) -> Vec<f64> {
         let (kappa, switches) = at.split_at(self.reduced.scales.len());
         let is_off = |i: usize| switches.get(i).is_some_and(|switch| *switch < 0.0);
@@ -93,11 +94,12 @@ impl Anneal for &Raw<'_> {
         let mut random = self.random.lock().expect("nothing panics while it holds the generator");
         let (kappa, switches) = at.split_at(self.reduced.scales.len());
         let extent = extent.min(1.0);
-        // Where a spring goes the others have to follow: steps that fall as the temperature would be too short for it.
+        // When a spring is removed the others have to adapt: steps that shrink with the temperature would be too short
+        // for that.
         let size = self.stride * if switches.is_empty() { extent } else { extent.sqrt() };
         let mut next: Vec<f64> = kappa.iter().map(|k| k + size * random.random_range(-1.0..=1.0)).collect();
         next.extend(switches);
-        // A switch is on or off: small steps would leave it as it is.
+        // A switch is on or off: small steps would not change it.
         if !switches.is_empty() && random.random_bool(FLIPPING) {
             let flipped = random.random_range(kappa.len()..at.len());
             next[flipped] = -next[flipped];
@@ -106,15 +108,17 @@ impl Anneal for &Raw<'_> {
     }
 }
 
-/// How often annealing flips one of the switches.
+/// The probability with which a step of annealing flips one of the switches.
 const FLIPPING: f64 = 0.25;
-/// Iterations after which a swarm has agreed on which springs are on: the next ones go to another swarm.
+/// The number of iterations after which a swarm has agreed on the set of springs. The remaining iterations go to
+/// another swarm.
 const AGREED: u64 = 200;
 
-/// The constants of the element with nodes at `x`, `[springs]`, N/m; never of a larger objective, sparsity included, than the start.
+/// The constants of the element with nodes at `x`, `[springs]`, N/m. The objective, with the cost of the springs, is
+/// never larger than at the start.
 ///
 /// # Errors
-/// What the optimiser says when it fails.
+/// The message of an optimiser that fails.
 pub fn search(
     springs: &Springs,
     x: &[f64],
@@ -146,7 +150,7 @@ pub fn search(
             run.map_err(failed)?.state.take_best_param()
         }
         Search::ParticleSwarm => {
-            // Springs that stay carry what the others did.
+            // The remaining springs take the load of those that are removed.
             let most = if topology.is_some() { 10.0 } else { 3.0 };
             let bound = |sign: f64| {
                 let reach = stride * if sign > 0.0 { most } else { -3.0 };
@@ -175,7 +179,7 @@ pub fn search(
             run.map_err(failed)?.state.take_best_param()
         }
     };
-    // An optimiser that found nothing better leaves what it was given.
+    // If an optimiser finds nothing better, its start is returned.
     let best = best.filter(|best| raw.cost_of(best) <= raw.cost_of(&start));
     let kappa = raw.kappa(&best.unwrap_or(start));
     Ok(reduced.unknowns.iter().map(|&unknown| kappa[unknown] * reduced.scales[unknown]).collect())

@@ -1,9 +1,12 @@
-//! `min_κ tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R̂^(−1/2) K(κ) R̂^(−1/2)`: the springs' energy relative to the body's.
+//! The divergence `min_κ tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R̂^(−1/2) K(κ) R̂^(−1/2)`: the energy of the
+//! springs relative to that of the element.
 //!
-//! Convex, and infinite where A is not positive: the springs of an element never lose their stand. c = 0 is Stein's loss
-//! (James and Stein 1961), which errs to the soft side; c = 1 is symmetric in A and A⁻¹. With h_s in units of R̂, Newton's
-//! method needs A⁻¹ alone: slope `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, curvature
-//! `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
+//! The problem is convex, and infinite where A is not positive definite, so that the springs of an element always
+//! resist every deformation. c = 0 is Stein's loss (James and Stein 1961), whose optimum is too soft rather than too
+//! stiff; c = 1 is symmetric in A and A⁻¹. With h_s in units of R̂, Newton's method needs only A⁻¹: the slope is
+//! `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, and the curvature is `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
+//!
+//! Theory: page *Divergence* of the book.
 
 use super::dense::{
     add_outers, at_rounding, factorize, inner, invert, least_pivot, room_below, row_products, solve, tie, trace,
@@ -12,20 +15,22 @@ use super::objective::Balance;
 use super::reduction::Reduced;
 use crate::scalar::Real;
 
-/// Near the incompressible the first steps are damped by the stiffness of the content, and there are hundreds.
+/// The largest number of Newton steps. For nearly incompressible materials the stiffness of the content damps the first
+/// steps, of which there can be hundreds.
 const STEPS: usize = 1000;
+/// Relative pivots below this are rounding errors.
 const FLOOR: f64 = 1e-14;
-/// The square of the Newton decrement at which the next step leaves 1e-10 of the scale of the problem.
+/// The squared Newton decrement at which the next step leaves an error of 1e-10, relative to the scale of the problem.
 const CLOSE: f64 = 1e-10;
-/// Weight of the barrier that keeps constants positive, first and last.
+/// The weight of the barrier that keeps constants positive, at the start and at the end.
 const BARRIER: [f64; 2] = [1e-1, 1e-9];
 
-/// Room for the solver, and its result.
+/// The working memory of the solver, and its result.
 #[derive(Debug, Clone)]
 pub struct Divergence<T> {
-    /// κ, `[unknowns]`.
+    /// The unknowns κ, `[unknowns]`.
     pub kappa: Vec<T>,
-    /// Positive where the optimum was reached.
+    /// Positive if the optimum was reached.
     pub reached: T,
     pub balance: Balance,
     nonnegative: bool,
@@ -66,12 +71,12 @@ impl<T: Real> Divergence<T> {
         }
     }
 
-    /// The least pivot of the last Hessian of one lane, relative to its diagonal entry.
+    /// The least pivot of the last Hessian in one lane, relative to its diagonal entry.
     pub fn least_pivot(&self, lane: impl Fn(&T) -> f64) -> f64 {
         least_pivot(&self.hessian, self.kappa.len(), &self.hessian_pivots, lane)
     }
 
-    /// Solves for the element in `reduced`, which must be seen through the weight `relative`, in every lane.
+    /// Solves for the element in `reduced`, which must be reduced with the weight `relative`, in every lane.
     pub fn solve(&mut self, reduced: &Reduced<T>) {
         let any = self.reached.clone();
         any.vectorize(
@@ -95,7 +100,7 @@ impl<T: Real> Divergence<T> {
         let mut barrier = one.constant(if self.nonnegative { &BARRIER[0] } else { &0.0 });
         let last = one.constant(if self.nonnegative { &BARRIER[1] } else { &0.0 });
         self.reached = zero.clone() - &one;
-        // Stein's loss first: its Newton steps are long from far away, where those of tr A⁻¹ are not.
+        // Stein's loss first: far from the optimum its Newton steps are long, and those of tr A⁻¹ are not.
         let full = one.constant(&self.balance.value());
         let mut balance = zero.clone();
         for _ in 0..STEPS {
@@ -110,7 +115,7 @@ impl<T: Real> Divergence<T> {
                 }
             }
             add_outers(&mut self.matrix, h, p, &self.trial, &reduced.unknowns, 1.0);
-            // A pivot that is only rounding is no stand.
+            // A pivot that is only a rounding error does not count as positive.
             let definite =
                 factorize(&mut self.matrix, p, 0.0, &mut self.pivots) - &one.constant(&at_rounding::<T>(FLOOR));
             inside = inside.least(&definite);
@@ -155,15 +160,15 @@ impl<T: Real> Divergence<T> {
             }
             solve(&self.hessian, c, &self.hessian_pivots, &mut self.trial);
             let decrement = inner(&self.trial, &self.gradient).negated();
-            // Relative to the objective, which is large where the body is next to flat.
+            // Relative to the objective, which is large if the element is nearly flat.
             let size = one.clone().plus_product(&balance, &trace(&self.inverse, p).scaled(&(1.0 / p as f64)));
             let close = inside.choose(&(size.scaled(&CLOSE) - &decrement), &zero);
             let ended = close.choose(&(last.clone().scaled(&1.001) - &barrier), &zero);
-            // Barrier gone (both zero) counts as ended, too.
+            // If the barrier has ended (both weights are zero), this condition holds as well.
             let ended = if self.nonnegative { ended } else { close.clone() };
             let ended = (full.clone() - &balance).choose(&zero, &ended);
             let ended = self.reached.choose(&one, &ended);
-            // The step that is at hand once it is close enough leaves rounding alone.
+            // The step at which the iteration is close enough leaves only rounding errors.
             let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
             let mut length = (one.constant(&0.25) - &decrement).choose(&one, &length);
             if self.nonnegative {

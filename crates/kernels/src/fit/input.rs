@@ -1,20 +1,20 @@
-//! What the public functions of the fits check once, before any cell is looked at.
+//! The checks that the public functions of the fits make once, before any cell is computed.
 
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::material::Moduli;
 use crate::springs::Springs;
 
-/// Values that are checked without a branch between them.
+/// The number of values that are checked without a branch between them.
 const BLOCK: usize = 64;
 
-/// Rounding of moduli near the bounds of Poisson's ratio, relative to the larger one.
+/// The rounding error of moduli near the bounds of Poisson's ratio, relative to the larger modulus.
 const ROUNDING: f64 = 1e-9;
 
-/// Cells with nodes `connectivity`, `[cells × nodes]`, among `points`, `[points × space]`, m.
+/// Checks cells with nodes `connectivity`, `[cells × nodes]`, among `points`, `[points × space]`, m.
 ///
 /// # Errors
-/// A length is no multiple of the element's, a coordinate is not finite, or a node is not among the points.
+/// A length is not a multiple of the element's, a coordinate is not finite, or a node is not among the points.
 pub fn check_cells(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
     let (n, space) = (element.nodes(), element.space());
     if !points.len().is_multiple_of(space) {
@@ -25,7 +25,7 @@ pub fn check_cells(element: &Element, points: &[f64], connectivity: &[usize]) ->
         return Err(Error::expected("connectivity", format!("{n} nodes of each cell"), connectivity.len()));
     }
     let count = points.len() / space;
-    // The sign bit of count − 1 − node, and that of the node: sums without a branch, which every machine has lanes for.
+    // The sign bits of count − 1 − node and of the node: sums without a branch, which can be vectorised.
     let last = count.wrapping_sub(1);
     let signs = connectivity.iter().fold(last, |signs, node| signs | last.wrapping_sub(*node) | node);
     if signs > usize::MAX / 2
@@ -37,21 +37,25 @@ pub fn check_cells(element: &Element, points: &[f64], connectivity: &[usize]) ->
     Ok(())
 }
 
-/// A single element with nodes at `x`, `[nodes × dimension]`, m, with `dimension` coordinates of each.
+/// Checks a single element with nodes at `x`, `[nodes × dimension]`, m.
 ///
 /// # Errors
-/// The length is another, or a coordinate is not finite.
+/// The length differs, or a coordinate is not finite.
 pub fn check_nodes(element: &Element, dimension: usize, x: &[f64]) -> Result<()> {
     check_length("x", x.len(), element.nodes() * dimension)?;
     check_finite("x", x)
 }
 
+/// Checks the length of an array.
+///
 /// # Errors
-/// The length of an array is another.
+/// The length differs.
 pub fn check_length(key: &str, found: usize, expected: usize) -> Result<()> {
     if found == expected { Ok(()) } else { Err(Error::expected(key, format!("{expected} numbers"), found)) }
 }
 
+/// Checks that all values are finite.
+///
 /// # Errors
 /// A value is not finite.
 pub fn check_finite(key: &str, values: &[f64]) -> Result<()> {
@@ -61,10 +65,10 @@ pub fn check_finite(key: &str, values: &[f64]) -> Result<()> {
     }
 }
 
-/// Moduli of which the energy of no strain is negative: `μ ≥ 0` and `d λ + 2 μ ≥ 0` in d dimensions, not both zero.
+/// Checks that no strain has a negative energy: `μ ≥ 0` and `d λ + 2 μ ≥ 0` in d dimensions, and not both zero.
 ///
 /// # Errors
-/// The moduli are not finite, or others.
+/// The moduli are not finite, or violate these conditions.
 pub fn check_moduli(moduli: &Moduli, dimension: usize) -> Result<()> {
     let Moduli { lambda, mu } = *moduli;
     let size = lambda.abs().max(mu.abs());
@@ -76,7 +80,7 @@ pub fn check_moduli(moduli: &Moduli, dimension: usize) -> Result<()> {
     Ok(())
 }
 
-/// Cells, springs and moduli of one fit.
+/// Checks the cells, springs and moduli of one fit.
 ///
 /// # Errors
 /// Those of [`check_cells`], [`check_moduli`] and [`Springs::check`].
@@ -92,7 +96,7 @@ pub fn check_fit(
     check_cells(element, points, connectivity)
 }
 
-/// The place of the first value that fails the test.
+/// The index of the first value that fails the test.
 fn first_other<T>(values: &[T], test: impl Fn(&T) -> bool) -> Option<usize> {
     let passes = |block: &[T]| block.iter().fold(true, |all, value| all & test(value));
     let block = values.chunks(BLOCK).position(|block| !passes(block))?;

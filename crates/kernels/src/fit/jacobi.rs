@@ -1,12 +1,13 @@
-//! Eigenvalues and eigenvectors of small symmetric matrices, one in each lane, by Jacobi's rotations.
+//! Eigenvalues and eigenvectors of small symmetric matrices, one per lane, by Jacobi rotations.
 
 use crate::scalar::Real;
 
-/// Sweeps over all pairs at most; six to eight are enough.
+/// The largest number of sweeps over all pairs; six to eight are usually enough.
 const SWEEPS: usize = 16;
 
-/// `A = Vᵀ Λ V` of order n: Λ on the diagonal of `a`, of which both triangles are read, the eigenvectors in the rows of `v`. A lane
-/// that is at its end rests, so that its digits do not depend on the others.
+/// The decomposition `A = Vᵀ Λ V` of order n: Λ on the diagonal of `a`, of which both triangles are read, and the
+/// eigenvectors in the rows of `v`. A lane that has converged is not changed any more, so that its digits do not depend
+/// on the others.
 pub fn eigenvectors<T: Real>(a: &mut [T], n: usize, v: &mut [T]) {
     let (zero, one) = (a[0].zero(), a[0].one());
     for i in 0..n {
@@ -40,14 +41,14 @@ pub fn eigenvectors<T: Real>(a: &mut [T], n: usize, v: &mut [T]) {
     );
 }
 
-/// Takes `A_ij` out, where `moves` is above zero.
+/// Eliminates `A_ij` if `moves` is above zero.
 #[inline(always)]
 fn rotate<T: Real>(a: &mut [T], n: usize, v: &mut [T], (i, j): (usize, usize), moves: &T) {
     let zero = moves.zero();
     let entry = a[i * n + j].clone();
     let difference = a[j * n + j].clone() - &a[i * n + i];
     let twice = entry.clone().scaled(&2.0);
-    // tan of the angle, of the two the smaller: 2 A_ij / (d ± √(d² + 4 A_ij²))
+    // The tangent of the angle, the smaller of the two solutions: 2 A_ij/(d ± √(d² + 4 A_ij²)).
     let root = twice.clone().squared().plus_product(&difference, &difference).sqrt();
     let denominator = difference.magnitude() + &root;
     let tangent = denominator.choose(&(twice / &denominator.choose(&denominator, &zero.one())), &zero);
@@ -84,7 +85,7 @@ mod tests {
     fn vectors_are_orthonormal_and_rebuild_the_matrix() {
         for n in 1..20 {
             for repeated in [false, true] {
-                // Repeated eigenvalues: a multiple of I beside one direction.
+                // Repeated eigenvalues: a multiple of I plus one direction.
                 let entry = |i: usize, j: usize| match repeated {
                     true => f64::from(u8::from(i == j)) + 0.5 / ((1 + i) * (1 + j)) as f64,
                     false => ((3 * i * j + i + j) as f64).sin() + 1.0 / (1 + i + j) as f64,

@@ -1,13 +1,16 @@
-//! Normal equations `M k = b` of `min_k ‖R − Σ_s k_s g_s g_sᵀ‖` in a Frobenius norm, from the node positions alone.
+//! The normal equations `M k = b` of `min_k ‖R − Σ_s k_s g_s g_sᵀ‖` in a Frobenius norm, from the node positions alone.
 //!
-//! A length spring has `g = (−n at i, n at j)` and `n nᵀ = d dᵀ/‖d‖²`, d = x_j − x_i: nothing needs a square root, and
+//! A length spring has `g = (−n at i, n at j)` and `n nᵀ = d dᵀ/‖d‖²`, d = x_j − x_i: no square root is needed, and
 //! neither R nor any `g gᵀ` is formed. Each weight gives a spring a motion `y_s`, whose gradient at a point is `n wᵀ`:
+//!
 //! - all entries: `y_s = g_s`, `w = ∇N_j − ∇N_i`, `M_st = (g_s·g_t)²`, `b_s = g_sᵀ R g_s`; Natsupakpong and Çavuşoğlu
 //!   (2010), (23);
-//! - blocks of different nodes: `b_s = −2 nᵀ R_ij n`, and `M_st = 2` only where s and t join the same nodes;
-//! - modal: `y_s = h² g_s + (1 − h²) P g_s`, `M_st = (g_s·y_t)²`, `b_s = y_sᵀ R y_s`, with P the projection on the linear
-//!   motions `u_a = A r_a`, r_a = x_a less the mean of the nodes, in which g has no rotation. With `S = Σ r_a r_aᵀ`,
-//!   `(P g)_a = (r_aᵀ S⁻¹ d) n`, so that `w = h² (∇N_j − ∇N_i) + (1 − h²) S⁻¹ d`.
+//! - blocks of different nodes: `b_s = −2 nᵀ R_ij n`, and `M_st = 2` only if s and t join the same nodes;
+//! - modal: `y_s = h² g_s + (1 − h²) P g_s`, `M_st = (g_s·y_t)²`, `b_s = y_sᵀ R y_s`, with P the projection on the
+//!   linear motions `u_a = A r_a`, r_a the position of node a relative to the mean of the nodes, and A without a
+//!   rotation. With `S = Σ r_a r_aᵀ`, `(P g)_a = (r_aᵀ S⁻¹ d) n`, so that `w = h² (∇N_j − ∇N_i) + (1 − h²) S⁻¹ d`.
+//!
+//! Theory: pages *Least squares* and *Modal weights* of the book.
 
 use super::input::check_length;
 use super::linear_motions::{LinearMotions, from_mean};
@@ -24,8 +27,9 @@ use crate::stiffness::Geometry;
 /// `[nodes × dimension]`.
 ///
 /// # Errors
-/// The springs and the table have not as many nodes and dimensions, `x` has another length, the weight is `relative` or springs
-/// measure functions, which need roots, the Jacobian is not positive everywhere, or the springs are linearly dependent.
+/// The springs and the table differ in their numbers of nodes or dimensions; `x` has another length; the weight is
+/// `relative` or springs measure functions, both of which require roots; the Jacobian is not positive everywhere; or
+/// the springs are linearly dependent.
 pub fn constants_in<T: Scalar>(
     weight: Weight,
     springs: &Springs,
@@ -46,7 +50,7 @@ pub fn constants_in<T: Scalar>(
     }
     let mut normal = Normal::default();
     normal_equations(weight, springs, x, &geometry, moduli, &mut normal);
-    // What is not a number is not one more than itself.
+    // NaN is not equal to itself plus one.
     let is_finite = |k: &T| (k.one() + &(k.clone() - k)).exceeds(&k.zero());
     if !(normal.solve_regular() && normal.rhs.iter().all(is_finite)) {
         return Err(none("the springs are linearly dependent"));
@@ -54,7 +58,7 @@ pub fn constants_in<T: Scalar>(
     Ok(normal.rhs)
 }
 
-/// Fills in the lower triangle of `M`, and `b`, of the element with nodes at `x`, `[nodes × dimension]`.
+/// Fills in the lower triangle of `M`, and `b`, for the element with nodes at `x`, `[nodes × dimension]`.
 pub fn normal_equations<T: Scalar>(
     weight: ClosedWeight,
     springs: &Springs,
@@ -74,7 +78,7 @@ pub fn normal_equations<T: Scalar>(
     );
 }
 
-/// [`normal_equations`] in D dimensions; a number of nodes that is known to the compiler unrolls the loops.
+/// [`normal_equations`] in D dimensions; a number of nodes that the compiler knows lets it unroll the loops.
 #[inline(always)]
 pub(super) fn equations<T: Scalar, const D: usize>(
     n: usize,
@@ -148,7 +152,8 @@ pub(super) fn equations<T: Scalar, const D: usize>(
                     (dot(&edges[s], &w).squared(), dot(&w, &w))
                 },
             );
-            // g_s·y_t = (h² c_st + (1 − h²) d_sᵀ S⁻¹ d_t) n_s·n_t, d_sᵀ S⁻¹ d_t in the basis where it is diagonal, c_st the ends of equal sign less those of unequal
+            // g_s·y_t = (h² c_st + (1 − h²) d_sᵀ S⁻¹ d_t) n_s·n_t, with d_sᵀ S⁻¹ d_t in the basis where S is diagonal,
+            // and c_st the number of shared ends of equal sign less those of unequal sign.
             for t in 0..lengths {
                 images[t] = difference(&q[pairs[t][1]], &q[pairs[t][0]]);
                 let along = linear.weighted(&rest, &images[t]);
@@ -169,7 +174,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     }
 }
 
-/// The equations of the blocks of different nodes where springs measure functions, of which only g is known:
+/// The equations of the blocks of different nodes if springs measure functions, of which only g is known:
 /// `M_st = (g_s·g_t)² − Σ_a (g_sa·g_ta)²`, `b_s = g_sᵀ R g_s − Σ_a g_saᵀ R_aa g_sa`.
 pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, moduli: Moduli) -> Normal {
     let (d, m, size) = (springs.dimension, springs.len(), x.len());
@@ -192,7 +197,7 @@ pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry,
     normal
 }
 
-/// One element, or one per lane.
+/// One element, or one per lane, with the vectors of its length springs.
 pub struct Cell<'a, T, const D: usize> {
     springs: &'a Springs,
     x: &'a [[T; D]],
@@ -206,7 +211,7 @@ pub struct Cell<'a, T, const D: usize> {
 }
 
 impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
-    /// Fills the room for the edges with those of the element, and `rhs` with zeros.
+    /// Fills `edges` and `q` with those of the element, and `rhs` with zeros.
     #[inline(always)]
     pub fn new(
         springs: &'a Springs,
@@ -269,8 +274,8 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
         }
     }
 
-    /// The last row of `M` and entry of `b`: the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V the
-    /// content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
+    /// The last row of `M` and entry of `b`, of the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V
+    /// the content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
     pub fn content(&self, weight: ClosedWeight, row: &mut [T], rhs: &mut [T]) {
         self.lambda.vectorize(
             #[inline(always)]
@@ -355,7 +360,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
     }
 }
 
-/// Twice the energy density `λ (tr H)² + μ (H : H + H : Hᵀ)` of a displacement gradient.
+/// Twice the energy density, `λ (tr H)² + μ (H : H + H : Hᵀ)`, of a displacement gradient H.
 #[inline(always)]
 fn density<T: Scalar, const D: usize>(h: &[[T; D]; D], lambda: &T, mu: &T) -> T {
     let (mut trace, mut squares) = (lambda.zero(), lambda.zero());
@@ -375,7 +380,7 @@ fn scales<T: Scalar>(zero: &T, higher: Higher) -> (T, T) {
     (h2.clone(), zero.one() - &h2)
 }
 
-/// Zeros in the lower triangle.
+/// Sets the lower triangle to zero.
 #[inline(always)]
 fn clear<T: Scalar>(gram: &mut [T], m: usize, zero: &T) {
     for s in 0..m {

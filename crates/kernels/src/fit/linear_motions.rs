@@ -1,12 +1,15 @@
-//! The linear motions of an element, `u_a = A r_a` with r_a its nodes from their mean: what modal weights tell apart.
+//! The linear motions `u_a = A r_a` of an element, with r_a the node positions relative to their mean. Modal weights
+//! distinguish them from all other deformations.
+//!
+//! Theory: page *Modal weights* of the book.
 
 use crate::scalar::{Scalar, plus_multiple, zeros};
 
-/// `R = Q U` with Q of orthogonal columns and U unit upper triangular, R the rows r_a: `S⁻¹ = (RᵀR)⁻¹ = U⁻¹ D⁻¹ U⁻ᵀ`,
-/// `D = QᵀQ`, and the projection on the linear motions is `Q D⁻¹ Qᵀ`.
+/// The factorisation `R = Q U` of the matrix R with rows r_a, with Q of orthogonal columns and U unit upper triangular:
+/// `S⁻¹ = (RᵀR)⁻¹ = U⁻¹ D⁻¹ U⁻ᵀ`, `D = QᵀQ`, and the projection on the linear motions is `Q D⁻¹ Qᵀ`.
 ///
-/// By Gram and Schmidt's modified method, which loses the condition of R in digits, where S would lose its square; without roots,
-/// which rational numbers have not.
+/// Computed by the modified Gram–Schmidt method. Its error grows with the condition of R, where that of S would grow
+/// with its square; and it needs no roots, which rational numbers do not have.
 pub struct LinearMotions<T, const D: usize> {
     /// `U⁻¹`, upper triangular: row k, column l.
     pub back: [[T; D]; D],
@@ -15,7 +18,7 @@ pub struct LinearMotions<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> LinearMotions<T, D> {
-    /// Replaces the rows R in `q` by those of Q.
+    /// Replaces the rows of R in `q` by those of Q.
     #[inline(always)]
     pub fn of(q: &mut [[T; D]]) -> LinearMotions<T, D> {
         let zero = q[0][0].zero();
@@ -45,7 +48,7 @@ impl<T: Scalar, const D: usize> LinearMotions<T, D> {
         LinearMotions { back, inverse_squares }
     }
 
-    /// `D⁻¹ v` times `factor`.
+    /// `factor D⁻¹ v`.
     #[inline(always)]
     pub fn weighted(&self, factor: &T, v: &[T; D]) -> [T; D] {
         let mut weighted = v.clone();

@@ -1,4 +1,6 @@
-//! The objectives that need R itself, on one element or on one per lane.
+//! The objectives that require R itself, for one element or one per lane.
+//!
+//! Theory: pages *The barrier* and *Divergence* of the book.
 
 use super::bounded_divergence::settle;
 use super::constrained::{bounded_optimum, solve_nonnegative, solve_precisely};
@@ -15,38 +17,40 @@ use crate::scalar::Real;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// Below this curvature of the barrier (see [`Spectral`]) the optimum may not be unique.
+/// If the curvature of the barrier (see [`Spectral`]) is below this, the optimum may not be unique.
 const AMBIGUOUS: f64 = 1e6;
 
-/// A motion softer than this, relative to the stiffest, leaves the squares in normal equations half of the digits of `f64`.
+/// If a motion is softer than this, relative to the stiffest motion, the squares in the normal equations have lost half
+/// of the digits of `f64`.
 const SOFTEST: f64 = 1e-4;
 
-/// A pivot of the normal equations below this has cost more than seven digits.
+/// A pivot of the normal equations below this means a loss of more than seven digits.
 const LEAST_PIVOT: f64 = 1e-6;
-/// The same, of every objective, where springs measure functions: their gradients have lost some digits before.
+/// The same limit for every objective if springs measure functions, whose gradients have lost some digits before.
 const LEAST_MEASURED_PIVOT: f64 = 1e-4;
-/// A softest motion of so many rounding errors is known to nine digits.
+/// The softest motion is known to nine digits if its stiffness is this many rounding errors.
 const KNOWN: f64 = 1e9;
 
-/// Doublings of a value that rounding of the constants has spoilt.
+/// The largest number of doublings of the excess of a value that is spoilt by rounding of the constants.
 const TRIALS: usize = 100;
 
-/// Optimum and bound of a certified fit, in N/m (of the weighted matrix).
+/// The value and the bound of a spectral fit, in N/m (of the weighted matrix). Together they prove how close it is to
+/// the optimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
-    /// `‖W (R − K) W‖₂` is at most this,
+    /// `‖W (R − K) W‖₂` is at most this.
     pub value: f64,
-    /// and for no constants less than this.
+    /// No constants reach less than this.
     pub bound: f64,
-    /// Whether other constants reach the same value: then these have the least Frobenius error among them. Not looked
-    /// into where constants are bounded.
+    /// Whether other constants reach the same value; then these have the least Frobenius error among them. Not
+    /// determined if constants are bounded.
     pub ambiguous: bool,
-    /// `‖R‖`, to which the gap of a value that is nearly zero is relative.
+    /// `‖R‖`, to which the gap of a nearly vanishing value is relative.
     size: f64,
 }
 
 impl Certificate {
-    /// `(value − bound)/value`; relative to a millionth of ‖R‖ where the value is smaller.
+    /// `(value − bound)/value`; relative to a millionth of ‖R‖ if the value is smaller than that.
     pub fn gap(&self) -> f64 {
         (self.value - self.bound) / self.value.max(EXACT * self.size)
     }
@@ -58,7 +62,7 @@ impl Certificate {
     }
 }
 
-/// The reduced element and the solver's room.
+/// The reduced element and the working memory of the solver.
 #[derive(Debug, Clone)]
 pub struct Method<T> {
     reduced: Reduced<T>,
@@ -76,19 +80,19 @@ enum Solver<T> {
     Divergence(Divergence<T>),
 }
 
-/// What one cell got.
+/// The outcome of one cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Verdict {
     pub certificate: Option<Certificate>,
     pub rank: Rank,
-    /// The iteration reached what it was asked for.
+    /// Whether the iteration reached the requested accuracy.
     pub reached: bool,
-    /// So soft a motion beside so stiff ones takes too many digits.
+    /// Whether the softest motion is so much softer than the stiffest that more digits are required.
     pub delicate: bool,
 }
 
 impl<T: Real> Method<T> {
-    /// None for the objectives that do not need the reduced element.
+    /// None for objectives that do not require the reduced element.
     pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
         let Route::Reduced(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
         let reduced = Reduced::like(any, springs, fit.tied);
@@ -107,7 +111,7 @@ impl<T: Real> Method<T> {
         Some(Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver })
     }
 
-    /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] needs it.
+    /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
     pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli, measured: &[T]) {
         self.reduced.set(self.weight, springs, x, geometry, moduli, measured);
         match &mut self.solver {
@@ -135,8 +139,8 @@ impl<T: Real> Method<T> {
         }
     }
 
-    /// The constants as they are, `[springs]`, N/m: no bound is kept, and of several optima it is the one that was found. None
-    /// where springs are linearly dependent or an iteration did not end.
+    /// The constants without bounds, `[springs]`, N/m; if there are several optima, the one that was found. None if
+    /// springs are linearly dependent or an iteration did not converge.
     pub fn constants(mut self) -> Option<Vec<T>> {
         let kappa = match &mut self.solver {
             Solver::LeastSquares { normal, .. } => {
@@ -153,8 +157,9 @@ impl<T: Real> Method<T> {
         Some(self.reduced.unknowns.iter().map(constant).collect())
     }
 
-    /// The constants under `k ≥ 0`, `[springs]`, N/m, if it is those of `near` above zero that the optimum has there: `Some(None)` where
-    /// its conditions do not hold. None where springs are linearly dependent, or the optimum is proved otherwise.
+    /// The constants under `k ≥ 0`, `[springs]`, N/m, if the optimum has the same positive constants as `near`;
+    /// `Some(None)` if its conditions do not hold. None if springs are linearly dependent, or if the optimum is proved
+    /// in another way.
     pub fn bounded_constants(mut self, near: &[f64]) -> Option<Option<Vec<T>>> {
         let any = self.reduced.size.clone();
         let mut kappa = vec![any.zero(); self.reduced.scales.len()];
@@ -179,14 +184,14 @@ impl<T: Real> Method<T> {
         Some(found.map(|kappa| self.reduced.unknowns.iter().map(|unknown| constant(&kappa, unknown)).collect()))
     }
 
-    /// [`Method::finish`] of a method that solves one cell alone, in numbers of more digits than the constants have; `independent`
-    /// tells whether its springs are, whatever they are fitted to.
+    /// As [`Method::finish`], for a method that solves a single cell in numbers of more digits than the constants have;
+    /// `independent` tells whether the springs are linearly independent.
     pub fn finish_alone(mut self, independent: impl Fn() -> bool, constants: &mut [f64]) -> Verdict {
-        // What is as soft as rounding says nothing of the constants.
+        // Motions as soft as rounding errors do not determine the constants.
         let is_known = self.reduced.softest.rounded() > KNOWN * T::epsilon();
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
         if let Solver::LeastSquares { normal, .. } = &self.solver {
-            // Relative weights make pivots as small as the softest motion: that says nothing of what is given.
+            // Relative weights make pivots as small as the softest motion; this does not affect the accuracy.
             let relative = self.weight.divides_by_stiffness() && independent();
             let rounding = if relative { T::epsilon() } else { T::given() };
             let (kappa, rank, pivot) = solve_precisely(normal, self.nonnegative, rounding);
@@ -207,11 +212,11 @@ impl<T: Real> Method<T> {
         let found = self.finish(Real::rounded, || 1.0, constants);
         verdict = Verdict { reached: found.reached && is_known, ..found };
         if let Some(certificate) = &mut verdict.certificate {
-            // The constants are rounded to what they are written as.
+            // The constants are rounded to the numbers that are stored.
             certificate.value += 4.0 * self.reduced.order as f64 * f64::EPSILON * certificate.size;
         }
         let Some(mut certificate) = verdict.certificate else { return verdict };
-        // Where that is more than the gap allows, what they reach is found by trial.
+        // If this loses more than the gap allows, the value that they reach is found by trial.
         for _ in 0..TRIALS {
             if self.distance_from_optimum(constants, certificate.value).is_some() {
                 break;
@@ -223,8 +228,9 @@ impl<T: Real> Method<T> {
         verdict
     }
 
-    /// After a spectral solution: how far constants are from the optimum at most, relative to the value, if they reach the
-    /// `value` (N/m) that is said of them, which is proved here by the pivots of `value I ± (R − K)`.
+    /// After a spectral solution: an upper bound of the distance of the constants from the optimum, relative to the
+    /// value. It requires that they reach the stated `value` (N/m), which is proved here by the pivots of
+    /// `value I ± (R − K)`.
     pub fn distance_from_optimum(&mut self, constants: &[f64], value: f64) -> Option<f64> {
         let Solver::Spectral(solver) = &self.solver else { return None };
         let (p, any) = (self.reduced.order, self.reduced.size.clone());
@@ -246,8 +252,8 @@ impl<T: Real> Method<T> {
         Some(((value - &solver.bound) / &floor).rounded())
     }
 
-    /// Writes the constants of one lane, `[springs]`, N/m; `lane` reads a number of it, and `quality` measures its cell where that
-    /// counts.
+    /// Writes the constants of one lane, `[springs]`, N/m. `lane` reads a number of that lane, and `quality` measures
+    /// its cell if needed.
     pub fn finish(&mut self, lane: impl Fn(&T) -> f64, quality: impl Fn() -> f64, constants: &mut [f64]) -> Verdict {
         let delicate = !(lane(&self.reduced.softest) > SOFTEST);
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true, delicate };
@@ -273,7 +279,7 @@ impl<T: Real> Method<T> {
                 let kappa = solver.kappa.iter().map(&lane).collect();
                 let mut optimum = Optimum { kappa, value: lane(&solver.value), bound: lane(&solver.bound) };
                 let problem = Problem::of(&self.reduced, solver, &lane, quality());
-                // Half of more digits than a double has is enough.
+                // Half of the digits is enough in numbers of more digits than `f64`.
                 if T::epsilon() >= T::given() {
                     refine(&problem, &mut optimum);
                 }
@@ -281,7 +287,7 @@ impl<T: Real> Method<T> {
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
                 let ambiguous = doubtful && least_frobenius(&problem, &mut optimum);
                 verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
-                // How far an optimum of nothing is reached is rounding.
+                // For an optimum of zero the gap is only rounding.
                 verdict.delicate |= optimum.value <= EXACT;
                 let Optimum { kappa, value, bound } = optimum;
                 let certificate = Certificate { value: size * value, bound: size * bound, ambiguous, size };
@@ -293,7 +299,7 @@ impl<T: Real> Method<T> {
                 verdict.reached = lane(&solver.reached) > 0.0;
                 verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
                 let mut kappa: Vec<f64> = solver.kappa.iter().map(&lane).collect();
-                // Numbers of more digits have settled theirs.
+                // Numbers of more digits have done this already.
                 if self.nonnegative && T::epsilon() >= T::given() {
                     let rows: Vec<f64> = self.reduced.rows().iter().map(&lane).collect();
                     verdict.reached =

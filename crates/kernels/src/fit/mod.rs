@@ -1,4 +1,11 @@
-//! Spring constants from the stiffness of each element.
+//! Spring constants from the stiffness of each element: `min_k ‖R − K(k)‖`, `K(k) = Σ_s k_s g_s g_sᵀ`, and other
+//! objectives.
+//!
+//! [`fit_cells`] fits all cells of one element type; [`fit_exact`] makes networks that are equal to the finite element;
+//! [`fit_sampled`] fits to forces at large deformation; [`published`] holds the formulas of other authors.
+//!
+//! Theory: pages *Least squares*, *The barrier*, *Divergence*, *Modal weights*, *Exact networks* and *Sampled fits* of
+//! the book.
 
 mod batch;
 mod bounded_divergence;

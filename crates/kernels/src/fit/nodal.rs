@@ -1,9 +1,11 @@
-//! The plain Frobenius fit of elements with many springs, by way of their nodes.
+//! The plain Frobenius fit of elements with many springs, by the equations of their nodes.
 //!
-//! Two length springs have something in common only in the diagonal blocks of the nodes that they share:
-//! `M = 2I + V W Vᵀ`, where row s of V holds the entries on and below the diagonal of `n_s n_sᵀ` once for each end of the
-//! spring, and W counts those below twice. With d(d+1)/2 entries per node that is of lower rank than the number of springs
-//! from about eight nodes on, and `M⁻¹ b = ½ (b − V S⁻¹ Vᵀ b)`, `S = 2W⁻¹ + VᵀV` (Woodbury 1950).
+//! Two length springs interact only through the diagonal blocks of the nodes that they share: `M = 2I + V W Vᵀ`, where
+//! row s of V holds the entries on and below the diagonal of `n_s n_sᵀ` once for each end of the spring, and W counts
+//! those below the diagonal twice. With d(d+1)/2 entries per node this has a lower rank than the number of springs from
+//! about eight nodes on, and `M⁻¹ b = ½ (b − V S⁻¹ Vᵀ b)`, `S = 2W⁻¹ + VᵀV` (Woodbury 1950).
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::dense::solve as substitute;
 use super::least_squares::Cell;
@@ -14,14 +16,14 @@ use crate::scalar::Scalar;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// Room for the nodes' equations.
+/// Working memory for the equations of the nodes.
 #[derive(Debug, Clone)]
 pub struct Nodal<T> {
-    /// `S`, and `Vᵀ b` in its place for the right-hand side.
+    /// `S`, with `Vᵀ b` as its right-hand side.
     small: Normal<T>,
-    /// `V`, `[springs × d(d+1)/2]`: the entries, the same at both ends.
+    /// `V`, `[springs × d(d+1)/2]`: the entries, which are equal at both ends.
     entries: Vec<T>,
-    /// The row of the content in M, then its image `A⁻¹ c`.
+    /// The row of the content in M, and then its image `A⁻¹ c`.
     border: Vec<T>,
     image: Vec<T>,
 }
@@ -32,7 +34,7 @@ impl<T> Default for Nodal<T> {
     }
 }
 
-/// Whether this way is the shorter one.
+/// Whether the equations of the nodes are fewer than those of the springs.
 pub fn is_shorter(springs: &Springs) -> bool {
     let small = springs.nodes * springs.dimension * (springs.dimension + 1) / 2;
     springs.functions.is_empty() && springs.parallel.is_empty() && 5 * small < 4 * springs.pairs.len()
@@ -80,7 +82,7 @@ impl<T: Scalar> Nodal<T> {
         }
         self.set_entries(&cell);
         self.set_small::<D>(springs, &zero);
-        // k = A⁻¹ b of the length springs alone
+        // k = A⁻¹ b of the length springs alone.
         self.gather::<D>(springs, rhs);
         if !self.small.solve_regular() {
             return false;
@@ -89,7 +91,7 @@ impl<T: Scalar> Nodal<T> {
         if springs.content.is_none() {
             return true;
         }
-        // M = [A c; cᵀ e]: the content's constant is (b_e − cᵀ A⁻¹ b)/(e − cᵀ A⁻¹ c)
+        // M = [A c; cᵀ e]: the constant of the content is (b_e − cᵀ A⁻¹ b)/(e − cᵀ A⁻¹ c).
         self.image.clone_from(&self.border);
         let mut image = std::mem::take(&mut self.image);
         self.gather::<D>(springs, &image);
@@ -125,7 +127,8 @@ impl<T: Scalar> Nodal<T> {
         }
     }
 
-    /// The lower triangle of S: blocks of two nodes from the one spring between them, of one node from all of its springs.
+    /// The lower triangle of S: a block of two nodes from the one spring between them, a block of one node from all of
+    /// its springs.
     #[inline(always)]
     fn set_small<const D: usize>(&mut self, springs: &Springs, zero: &T) {
         let width = D * (D + 1) / 2;
@@ -159,7 +162,7 @@ impl<T: Scalar> Nodal<T> {
         }
     }
 
-    /// `Vᵀ b` into the small right-hand side.
+    /// Writes `Vᵀ b` into the small right-hand side.
     #[inline(always)]
     fn gather<const D: usize>(&mut self, springs: &Springs, b: &[T]) {
         let width = D * (D + 1) / 2;
@@ -175,7 +178,7 @@ impl<T: Scalar> Nodal<T> {
         }
     }
 
-    /// `b ← ½ (b − V y)`, y in the small right-hand side.
+    /// `b ← ½ (b − V y)`, with y in the small right-hand side.
     #[inline(always)]
     fn scatter<const D: usize>(&self, springs: &Springs, b: &mut [T]) {
         let width = D * (D + 1) / 2;

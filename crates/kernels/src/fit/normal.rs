@@ -1,37 +1,40 @@
-//! Normal equations `M k = b` of a least-squares fit: assembly by groups and solution.
+//! Normal equations `M k = b` of a least-squares fit: assembly by groups, and solution.
+//!
+//! Theory: page *Least squares* of the book.
 
 use super::dense::{eliminate_row, solve as substitute, tie};
 use crate::scalar::{Real, Scalar};
 use crate::springs::Springs;
 use nalgebra::{DMatrix, DVector};
 
-/// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves about m of them;
-/// what lies between is solved and the digits are lost that the condition costs.
+/// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves errors of about m
+/// roundings. Pivots above this limit are used, and the digits are lost that the condition costs.
 const RANK: f64 = 1000.0;
 
-/// `M`, row by row, and `b`, of one element or of one per lane. Only the lower triangle of `M` is ever read.
+/// The matrix `M`, row by row, and `b`, of one element or one per lane. Only the lower triangle of `M` is read.
 #[derive(Debug, Clone)]
 pub struct Normal<T = f64> {
     pub gram: Vec<T>,
     pub rhs: Vec<T>,
-    /// Room for the edge vectors `x_j − x_i` of the length springs, `[springs × dimension]`.
+    /// Memory for the edge vectors `x_j − x_i` of the length springs, `[springs × dimension]`.
     pub(super) edges: Vec<T>,
-    /// Room for their images under the inverse spread of the nodes, `[springs × dimension]`.
+    /// Memory for their images under the inverse spread of the nodes, `[springs × dimension]`.
     pub(super) images: Vec<T>,
-    /// Room for the nodes in an orthogonal basis of the linear motions, `[nodes × dimension]`.
+    /// Memory for the nodes in an orthogonal basis of the linear motions, `[nodes × dimension]`.
     pub(super) positions: Vec<T>,
-    /// Room for their inverse squares, `[springs]`.
+    /// Memory for the inverse squared lengths of the edges, `[springs]`.
     pub(super) inverse_squares: Vec<T>,
     pub(super) pivots: Vec<T>,
 }
 
-/// How the constants were determined.
+/// Whether the objective determines the constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rank {
+    /// It does.
     #[default]
     Full,
-    /// The springs are linearly dependent under this objective; of all optima the one of least norm was taken, in
-    /// the scaling in which `M` has a unit diagonal.
+    /// The springs are linearly dependent under this objective. Of all optima the one of least norm is returned, in the
+    /// scaling in which `M` has a unit diagonal.
     Deficient,
     /// The interior-point method that was to decide did not find an optimum: the constants are zero.
     Unsolved,
@@ -90,18 +93,18 @@ impl<T: Scalar> Normal<T> {
         groups
     }
 
-    /// `M = L D Lᵀ`, with L in the strict lower triangle, then `b ← M⁻¹ b`. Returns false if a pivot vanishes in some
-    /// lane; the diagonal is kept, the lower triangle not.
+    /// Computes `M = L D Lᵀ`, with L in the strict lower triangle, and `b ← M⁻¹ b`. Returns false if a pivot vanishes
+    /// in some lane. The diagonal of M is kept, the lower triangle is not.
     ///
-    /// No scaling is needed: each pivot and its diagonal entry scale alike.
+    /// No scaling is needed: each pivot scales as its diagonal entry.
     pub fn solve_regular(&mut self) -> bool {
         self.solve_to(T::given())
     }
 
-    /// The same where what is given errs by `rounding`.
+    /// As [`Normal::solve_regular`], for input data with the relative error `rounding`.
     pub fn solve_to(&mut self, rounding: f64) -> bool {
         let Some(any) = self.rhs.first().cloned() else { return true };
-        // A size that is known to the compiler unrolls the loops of the small systems, where they are most of the work.
+        // A size that the compiler knows unrolls the loops of the small systems, where they are most of the work.
         any.vectorize(
             #[inline(always)]
             || match self.size() {
@@ -155,21 +158,21 @@ impl<T: Real> Normal<T> {
         (Normal::new(gram, rhs), scale)
     }
 
-    /// `½ kᵀ M k − bᵀ k`'s gradient `M k − b`.
+    /// The gradient `M k − b` of `½ kᵀ M k − bᵀ k`.
     pub fn gradient(&self, k: &[T]) -> Vec<T> {
         let term = |s: usize, sum: T, (t, k): (usize, &T)| sum + &(self.entry(s, t) * k);
         let row = |s: usize| k.iter().enumerate().fold(k[s].zero(), |sum, tk| term(s, sum, tk));
         self.rhs.iter().enumerate().map(|(s, b)| row(s) - b).collect()
     }
 
-    /// The equations, or what stands in their place, in `f64`.
+    /// The equations, or what has replaced them, in `f64`.
     pub fn rounded(&self) -> Normal {
         let all = |values: &[T]| values.iter().map(Real::rounded).collect();
         Normal::new(all(&self.gram), all(&self.rhs))
     }
 
-    /// After [`Normal::solve_regular`]: the least pivot relative to its diagonal entry; its inverse times rounding is what elimination
-    /// has cost.
+    /// After [`Normal::solve_regular`]: the least pivot relative to its diagonal entry. The error of the elimination is
+    /// about its inverse times a rounding error.
     pub fn least_pivot(&self) -> f64 {
         let m = self.size();
         (0..m).map(|s| 1.0 / (self.pivots[s].rounded() * self.gram[s * m + s].rounded())).fold(1.0, f64::min)
@@ -177,13 +180,13 @@ impl<T: Real> Normal<T> {
 }
 
 impl Normal {
-    /// `2 bᵀd − dᵀ M d`: by how much `‖r − J d‖²` is less than `‖r‖²`, where `M = JᵀJ`, `b = Jᵀr`.
+    /// `2 bᵀd − dᵀ M d`: the decrease of `‖r − J d‖²` from `‖r‖²`, with `M = JᵀJ` and `b = Jᵀr`.
     pub fn fall(&self, d: &[f64]) -> f64 {
         let along = |v: &[f64]| v.iter().zip(d).map(|(v, d)| v * d).sum::<f64>();
         along(&self.rhs) - along(&self.gradient(d))
     }
 
-    /// The solution where unknowns that nothing depends on are zero, and `solve` finds the others.
+    /// The solution in which unknowns without influence are zero, and `solve` finds the others.
     pub fn solve_determined(&self, solve: impl Fn(&Normal) -> (Vec<f64>, Rank)) -> (Vec<f64>, Rank) {
         let determined: Vec<usize> = (0..self.size()).filter(|&s| self.entry(s, s) > 0.0).collect();
         if determined.len() == self.size() {
@@ -200,7 +203,7 @@ impl Normal {
         (k, Rank::Deficient)
     }
 
-    /// `k = M⁻¹ b`; where M is singular, the solution of least norm in the scaling with a unit diagonal.
+    /// `k = M⁻¹ b`; if M is singular, the solution of least norm in the scaling with a unit diagonal.
     pub fn solve(&self) -> (Vec<f64>, Rank) {
         self.solve_determined(Normal::solve_scalable)
     }
@@ -213,7 +216,8 @@ impl Normal {
         (self.least_norm(), Rank::Deficient)
     }
 
-    /// The optimum of least norm in the scaling with a unit diagonal; motions below rounding of the largest count as none.
+    /// The optimum of least norm in the scaling with a unit diagonal; eigenvalues below rounding of the largest count
+    /// as zero.
     pub fn least_norm(&self) -> Vec<f64> {
         let (scaled, scale) = self.scaled();
         let m = self.size();

@@ -1,27 +1,36 @@
-//! What a fit minimises: a measure of `R − K(k)`, `K(k) = Σ_s k_s g_s g_sᵀ`, seen through a weight.
+//! What a fit of each element minimises: a measure of `R − K(k)`, `K(k) = Σ_s k_s g_s g_sᵀ`, seen through a weight.
+//!
+//! Theory: pages *Least squares*, *The barrier*, *Divergence* and *Modal weights* of the book.
 
 use super::weight::{Higher, MotionWeight, Route, Weight};
 use crate::error::{Error, Result};
 use std::fmt;
 
+/// The measure of `R − K(k)` that a fit minimises, with R the stiffness of the finite element and K that of its
+/// springs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
-    /// `‖W (R − K) W‖_F`: normal equations.
+    /// The Frobenius norm `‖W (R − K) W‖_F`: solved by normal equations, in closed form for most weights.
     Frobenius(Weight),
-    /// `‖W (R − K) W‖₂`, the largest eigenvalue: a semidefinite programme, solved with a certificate.
+    /// The induced 2-norm `‖W (R − K) W‖₂`, the largest absolute eigenvalue: a semidefinite programme, solved with a
+    /// certificate.
     Spectral(MotionWeight),
-    /// `tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R^(−1/2) K R^(−1/2)`: K stays positive.
+    /// The divergence `tr A + c tr A⁻¹ − (1 − c) log det A`, `A = R^(−1/2) K R^(−1/2)`: K stays positive definite on
+    /// deformations.
     Divergence(Balance),
 }
 
-/// The balance c of the divergence, `0 ≤ c ≤ 1`.
+/// The balance c of the divergence, `0 ≤ c ≤ 1`. At 0 the springs tend to be too soft, at 1 too stiff.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Balance(f64);
 
 impl Balance {
-    /// Chosen by the study in the README.
+    /// c = 0.25: of the values that were compared on whole bodies, a compromise between the errors in tension and in
+    /// shear (page *How to choose* of the book).
     pub const DEFAULT: Balance = Balance(0.25);
 
+    /// The balance `balance`.
+    ///
     /// # Errors
     /// The number is not from 0 to 1.
     pub fn new(balance: f64) -> Result<Balance> {
@@ -31,6 +40,7 @@ impl Balance {
         Ok(Balance(balance))
     }
 
+    /// The number c.
     pub const fn value(self) -> f64 {
         self.0
     }
@@ -42,11 +52,14 @@ impl fmt::Display for Balance {
     }
 }
 
-/// The numbers and the weight that may go with an objective's name.
+/// The weight and the numbers that may be given with the name of an objective; `None` stands for the default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Choices<'a> {
+    /// The name of the weight.
     pub weight: Option<&'a str>,
+    /// The scale of the motions beyond constant strain, for the weight `modal`.
     pub higher: Option<f64>,
+    /// The balance of the divergence.
     pub balance: Option<f64>,
 }
 
@@ -69,10 +82,10 @@ crate::named!(Name {
 });
 
 impl Objective {
-    /// Besides these, `offdiag` and `modal` are short for `frobenius` with that weight.
+    /// The names of the objectives. Besides these, `offdiag` and `modal` are short for `frobenius` with that weight.
     pub const NAMES: &'static [&'static str] = Name::NAMES;
 
-    /// Every objective with its default numbers; modal ones where the element has motions beyond constant strain.
+    /// Every objective with its default numbers; modal ones only if the element has motions beyond constant strain.
     pub fn all(higher_modes: bool) -> Vec<Objective> {
         let entries = Weight::all().filter(|weight| higher_modes || !weight.needs_higher_modes());
         let motions = MotionWeight::all().filter(|weight| higher_modes || !Weight::from(*weight).needs_higher_modes());
@@ -83,7 +96,7 @@ impl Objective {
     /// The objective called `name`.
     ///
     /// # Errors
-    /// A name is unknown, a number out of its range, or a choice belongs to another objective.
+    /// The name is unknown, a number is out of its range, or a choice belongs to another objective.
     pub fn named(name: &str, choices: Choices) -> Result<Objective> {
         let known = Name::named(name).map_err(|e| e.at_key("objective"))?;
         let implied = match known {
@@ -144,7 +157,7 @@ impl Objective {
         name.name()
     }
 
-    /// The name with what goes with it, such as `spectral modal 0.316`.
+    /// The name with its weight and numbers, such as `spectral modal 0.316`.
     pub fn title(&self) -> String {
         let name = self.name();
         match self {
@@ -160,7 +173,7 @@ impl Objective {
         }
     }
 
-    /// The weight of a norm.
+    /// The weight of a norm; none for the divergence.
     pub fn weight(&self) -> Option<Weight> {
         match self {
             Objective::Frobenius(weight) => Some(*weight),
@@ -169,12 +182,12 @@ impl Objective {
         }
     }
 
-    /// The scale of the higher modes, where the objective has one.
+    /// The scale of the motions beyond constant strain, if the objective has one.
     pub fn higher(&self) -> Option<f64> {
         self.weight().and_then(Weight::higher).map(Higher::value)
     }
 
-    /// The balance of the divergence.
+    /// The balance of the divergence; none for the norms.
     pub fn balance(&self) -> Option<f64> {
         match self {
             Objective::Divergence(balance) => Some(balance.value()),
@@ -182,7 +195,7 @@ impl Objective {
         }
     }
 
-    /// How the equations are set up, with springs of which some measure a function of some nodes or none does.
+    /// How the equations are set up; `has_functions` tells whether springs measure a function of some nodes.
     pub(super) fn route(&self, has_functions: bool) -> Route {
         match *self {
             Objective::Frobenius(weight) => weight.route(has_functions),
@@ -194,7 +207,7 @@ impl Objective {
     /// The weight through which the objective is a function of the reduced element.
     ///
     /// # Errors
-    /// It is one of blocks, which the reduced element does not have.
+    /// The objective is that of the blocks, which the reduced element does not have.
     pub(super) fn of_motions(&self) -> Result<MotionWeight> {
         match *self {
             Objective::Frobenius(weight) => weight.of_motions(),

@@ -4,13 +4,13 @@ use crate::element::Element;
 use crate::scalar::Packed;
 use crate::stiffness::{Fault, Placement};
 
-/// Room for the nodes of as many cells as there are lanes.
+/// Memory for the nodes of as many cells as there are lanes.
 pub struct Packing<'a, T> {
     element: &'a Element,
-    /// `[points × space]`, m.
+    /// The positions of all points, `[points × space]`, m.
     pub points: &'a [f64],
     placement: Placement,
-    /// The positions of the nodes from the first of each cell, as [`Placement`] has them, `[nodes × dimension]`, m.
+    /// The positions of the nodes relative to the first of each cell, see [`Placement`], `[nodes × dimension]`, m.
     pub x: Vec<T>,
 }
 
@@ -20,8 +20,8 @@ impl<'a, T: Packed> Packing<'a, T> {
         Packing { element, points, placement: Placement::new(&element.tabulation), x }
     }
 
-    /// Fills [`Packing::x`] with these cells, at most one per lane; lanes without a cell repeat the first. False if a cell of a
-    /// surface or curve has no tangents.
+    /// Fills [`Packing::x`] with these cells, at most one per lane; lanes without a cell repeat the first. False if a
+    /// cell of a surface or curve has no tangents.
     pub fn gather(&mut self, nodes: &[usize]) -> bool {
         if self.element.space() > self.element.dimension() {
             return self.lay_out(nodes);
@@ -47,7 +47,7 @@ impl<'a, T: Packed> Packing<'a, T> {
         self.x.iter().map(|x| x.as_slice()[lane]).collect()
     }
 
-    /// Cells of surfaces and curves, in their own planes and lines; false if one has none.
+    /// The positions of cells of surfaces and curves, in their own planes and lines; false if a cell has no tangents.
     fn lay_out(&mut self, nodes: &[usize]) -> bool {
         let n = self.element.nodes();
         let mut x = vec![0.0; self.x.len()];

@@ -1,4 +1,6 @@
-//! One element in another kind of number: in twice the digits, to tell what rounding did, or in half of them.
+//! One element in another kind of number: in double-double numbers, to measure the effect of rounding, or in `f32`.
+//!
+//! Theory: page *Digits* of the book.
 
 use super::constrained::bounded_optimum;
 use super::input::{check_finite, check_length, check_moduli, check_nodes};
@@ -16,13 +18,14 @@ use crate::stiffness::Geometry;
 use crate::symbolic::Differentiable;
 
 /// The constants of one element with every operation in numbers of the kind of `any`, `[springs]`, N/m; nodes at `x`,
-/// `[nodes × dimension]`, m. Tabulation and moduli are taken as they are; gradients of springs on functions are known
-/// in twice the digits of `f64`. Iterations end where they do in `f64`, and bounds are ignored: [`bounded_constants`] keeps them.
+/// `[nodes × dimension]`, m. Tabulation and moduli are used as given, and the gradients of springs on functions are
+/// computed in double-double numbers. Iterations end by the same criteria as in `f64`. Bounds are ignored:
+/// [`bounded_constants`] respects them.
 ///
 /// # Errors
-/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, the
-/// Jacobian is not positive everywhere, the springs are linearly dependent or pull at rest, or the objective needs what is known in
-/// `f64` alone.
+/// An array has a wrong length; a number is not finite or is out of its range; the springs belong to another element;
+/// the Jacobian is not positive everywhere; the springs are linearly dependent or pull at rest; or the objective
+/// requires what is implemented in `f64` only.
 pub fn constants_of_kind<T: Real>(
     any: &T,
     element: &Element,
@@ -41,7 +44,7 @@ pub fn constants_of_kind<T: Real>(
     finite.ok_or_else(|| no_answer("the springs do not have one optimum, or the element has no stiffness"))
 }
 
-/// The normal equations of the unknowns of a fit that has a closed form.
+/// The normal equations of the unknowns of a fit with a closed form.
 fn closed_equations<T: Real>(
     any: &T,
     element: &Element,
@@ -61,11 +64,11 @@ fn closed_equations<T: Real>(
     Ok(Some(normal.by_unknowns(springs, fit.tied)))
 }
 
-/// The constants of a fit under `k ≥ 0` in twice the digits, `[springs]`, N/m, if it is the constants above zero of `near` that the
-/// optimum has there: `∂f/∂k` is zero for those and not below zero for the others. `None` where it is not.
+/// The constants of a fit under `k ≥ 0` in double-double numbers, `[springs]`, N/m, if the optimum has the same
+/// positive constants as `near`: `∂f/∂k` is zero for those and not negative for the others. `None` otherwise.
 ///
 /// # Errors
-/// Those of [`constants_of_kind`]; the objective is spectral, whose optimum is proved by [`distance_from_optimum`].
+/// Those of [`constants_of_kind`]; or the objective is spectral, whose optimum is proved by [`distance_from_optimum`].
 pub fn bounded_constants(
     element: &Element,
     springs: &Springs,
@@ -94,25 +97,25 @@ pub fn bounded_constants(
         .ok_or_else(|| no_answer("the springs do not have one optimum, or the element has no stiffness"))
 }
 
-/// What has no answer in this kind of number.
+/// The error for a problem without an answer in this kind of number.
 pub(super) fn no_answer(problem: &str) -> Error {
     Error::new(problem).of_kind(ErrorKind::Infeasible)
 }
 
-/// One element with nodes at `x`, `[nodes × dimension]`.
+/// Checks one element with nodes at `x`, `[nodes × dimension]`.
 fn check(element: &Element, springs: &Springs, x: &[f64], moduli: &Moduli) -> Result<()> {
     springs.check(element)?;
     check_moduli(moduli, element.dimension())?;
     check_nodes(element, element.dimension(), x)
 }
 
-/// How far the constants of a spectral fit are from the optimum at most, relative to the `value` (N/m) that is said of them, proved
-/// in twice the digits: that they reach it, by the pivots of `value I ± (R − K)`, and that nothing reaches less than the bound,
-/// by the dual pair.
+/// An upper bound of the distance of the constants of a spectral fit from the optimum, relative to the stated `value`
+/// (N/m), proved in double-double numbers: that the constants reach the value, by the pivots of `value I ± (R − K)`,
+/// and that none reach less than the bound, by the dual pair.
 ///
 /// # Errors
-/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, the
-/// objective is another, or the proof fails.
+/// An array has a wrong length; a number is not finite or is out of its range; the springs belong to another element;
+/// the objective is another; or the proof fails.
 pub fn distance_from_optimum(
     element: &Element,
     springs: &Springs,
@@ -131,7 +134,7 @@ pub fn distance_from_optimum(
     distance.ok_or_else(|| no_answer("it is not proved that the constants reach the value"))
 }
 
-/// [`solved`] for the element with nodes at `x`; None also if that has no stiffness or its springs no gradients.
+/// As [`solved`], for the element with nodes at `x`; None also if it has no stiffness or its springs have no gradients.
 fn shaped<T: Real>(
     any: &T,
     element: &Element,
@@ -157,8 +160,8 @@ pub(super) fn measured<T: Differentiable>(springs: &Springs, x: &[T]) -> Option<
     springs.function_gradients(x, &mut rows).then_some(rows)
 }
 
-/// The objective solved for one element in numbers of the kind of `x`, `measured` as [`Method::solve`] needs it; None if it does not
-/// need the reduced element.
+/// The objective solved for one element in numbers of the kind of `x`, with `measured` as [`Method::solve`] requires
+/// it; None if the objective does not require the reduced element.
 pub(super) fn solved<T: Real>(
     springs: &Springs,
     x: &[T],
@@ -172,12 +175,13 @@ pub(super) fn solved<T: Real>(
     Some(method)
 }
 
-/// The ratio of the largest to the least eigenvalue of the normal equations of an element, scaled to a unit diagonal; what a
-/// relative change of the shape or the stiffness does to the constants is at most about so many times as large.
+/// The condition number of the normal equations of an element, scaled to a unit diagonal: the ratio of the largest to
+/// the least eigenvalue. A relative change of the shape or the stiffness changes the constants by at most about this
+/// factor.
 ///
 /// # Errors
-/// An array has a wrong length, a number is not finite or out of its range, the springs are those of another element, the
-/// equations have no closed form or are singular, or the element has no stiffness.
+/// An array has a wrong length; a number is not finite or is out of its range; the springs belong to another element;
+/// the equations have no closed form or are singular; or the element has no stiffness.
 pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64], moduli: &Moduli) -> Result<f64> {
     check(element, springs, x, moduli)?;
     let weight = weight.closed(!springs.functions.is_empty())?;
@@ -190,12 +194,12 @@ pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64]
     let m = scaled.size();
     let eigenvalues = nalgebra::DMatrix::from_vec(m, m, scaled.gram).symmetric_eigenvalues();
     let (least, largest) = (eigenvalues.min(), eigenvalues.max());
-    // Below rounding of the largest the least says nothing.
+    // An eigenvalue below rounding of the largest has no meaning.
     let is_regular = least > m as f64 * f64::EPSILON * largest;
     if is_regular { Ok(largest / least) } else { Err(no_answer("the springs are linearly dependent")) }
 }
 
-/// The nodes from the first, which is exact where they are near each other.
+/// The nodes relative to the first one, which is exact if they are near each other.
 pub(super) fn differences<T: Real>(any: &T, dimension: usize, x: &[f64]) -> Vec<T> {
     x.iter().enumerate().map(|(i, v)| any.constant(v) - &any.constant(&x[i % dimension])).collect()
 }

@@ -1,5 +1,7 @@
-//! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, where R is
-//! regular, weighted and scaled to sizes of one.
+//! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, on which R
+//! is regular. They are weighted and scaled to a size of one.
+//!
+//! Theory: page *The barrier* of the book (the reduced space).
 
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;
@@ -9,10 +11,11 @@ use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`: one unknown κ_I per spring, or per group if tied.
+/// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`, with one unknown κ_I per spring, or per group if
+/// tied.
 #[derive(Debug, Clone)]
 pub struct Reduced<T> {
-    /// Order of the matrices: 2n − 3 or 3n − 6.
+    /// The order of the matrices: 2n − 3 or 3n − 6.
     pub order: usize,
     /// `R̂`, `[order × order]`, of trace `order`; both triangles.
     pub stiffness: Vec<T>,
@@ -22,22 +25,24 @@ pub struct Reduced<T> {
     pub unknowns: Vec<usize>,
     /// `k_I = scale_I κ_I`.
     pub scales: Vec<T>,
-    /// N/m, or 1 where the weight takes the unit out.
+    /// N/m, or 1 if the weight removes the unit.
     pub size: T,
-    /// What the weight takes out, N/m, or 1.
+    /// What the weight divides by, N/m, or 1.
     unit: T,
-    /// The least pivot of R̂ relative to its diagonal, where the weight divides by R; about the softest motion over the stiffest.
+    /// The least pivot of R̂ relative to its diagonal, if the weight divides by R; about the ratio of the softest to
+    /// the stiffest motion.
     pub softest: T,
     mix: Vec<T>,
     nodal: Vec<T>,
     work: Vec<T>,
-    /// Orthonormal rows that sum to zero, `[nodes − 1 × nodes]`: differences of nodes, which no translation changes.
+    /// Orthonormal rows that sum to zero, `[nodes − 1 × nodes]`: differences of nodes, which translations do not
+    /// change.
     differences: Vec<f64>,
     norms: Vec<T>,
 }
 
 impl<T: Real> Reduced<T> {
-    /// Room for the elements with these springs; `any` says the kind of number.
+    /// Memory for elements with these springs; `any` selects the kind of number.
     pub fn like(any: &T, springs: &Springs, tied: bool) -> Reduced<T> {
         let (n, d, m) = (springs.nodes, springs.dimension, springs.len());
         let unknowns = if tied { springs.groups.clone() } else { (0..m).collect() };
@@ -62,8 +67,8 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// Fills in the element with nodes at `x`, `[nodes × dimension]`; `measured` are the gradients of the springs that
-    /// measure a function, `[springs × nodes·dimension]`.
+    /// Fills in the element with nodes at `x`, `[nodes × dimension]`; `measured` are the gradients of the springs on
+    /// functions, `[springs × nodes·dimension]`.
     pub fn set(
         &mut self,
         weight: MotionWeight,
@@ -105,8 +110,8 @@ impl<T: Real> Reduced<T> {
         self.normalise();
     }
 
-    /// The map from nodes to differences, `[nodes − 1 × nodes]`. Modal: seen through `h + (1 − h) P`, P the projection on the
-    /// linear motions, `X S⁻¹ Xᵀ` with X the positions in differences and `S = XᵀX`.
+    /// The map from nodes to differences, `[nodes − 1 × nodes]`. For modal weights it is multiplied by `h + (1 − h) P`,
+    /// with P the projection on the linear motions, `X S⁻¹ Xᵀ`, X the positions in differences and `S = XᵀX`.
     #[inline(always)]
     fn set_mix<const D: usize>(&mut self, weight: MotionWeight, x: &[[T; D]]) {
         let n = x.len();
@@ -140,7 +145,7 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// `Σ_q v (λ ∇_a ∇_bᵀ + μ (∇_b ∇_aᵀ + ∇_a·∇_b I))` with the gradients of the differences.
+    /// `Σ_q v (λ ∇_a ∇_bᵀ + μ (∇_b ∇_aᵀ + ∇_a·∇_b I))`, with the gradients of the differences.
     #[inline(always)]
     fn set_stiffness<const D: usize>(&mut self, n: usize, geometry: &Geometry<T>, moduli: &Moduli) {
         let full = (n - 1) * D;
@@ -205,7 +210,7 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// Householder reflections that move each rotation into the last coordinate left, which is then dropped.
+    /// Householder reflections that turn each rotation into the last remaining coordinate, which is then removed.
     #[inline(always)]
     fn take_out_rotations<const D: usize>(&mut self, n: usize) {
         let full = (n - 1) * D;
@@ -224,7 +229,7 @@ impl<T: Real> Reduced<T> {
             let active = full - done;
             let (axis, rest) = rotations[done * full..].split_at_mut(full);
             let v = &mut axis[..active];
-            // v = ρ ± ‖ρ‖ e_last, with the sign that cancels nothing; β = 2/vᵀv
+            // v = ρ ± ‖ρ‖ e_last, with the sign that avoids cancellation; β = 2/vᵀv
             let norm = inner(v, v).sqrt();
             let signed = v[active - 1].choose(&norm, &norm.negated());
             v[active - 1] = v[active - 1].clone() + &signed;
@@ -254,7 +259,7 @@ impl<T: Real> Reduced<T> {
                 }
             }
         }
-        // The leading entries that are left, packed.
+        // The remaining leading entries, packed.
         let p = self.order;
         for i in 0..p {
             for j in 0..p {
@@ -268,9 +273,10 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// `h ← R̂^(−1/2) h`, here with the Cholesky factor, which differs by a rotation: `R̂ = L Lᵀ`, `h ← L⁻¹ h`, `R̂ ← I`.
+    /// `h ← R̂^(−1/2) h`, here with the Cholesky factor, which differs by a rotation: `R̂ = L Lᵀ`, `h ← L⁻¹ h`,
+    /// `R̂ ← I`.
     ///
-    /// R̂ has a trace of `order` before, for roots of numbers that are odd powers of two apart round differently.
+    /// R̂ has a trace of `order` before, because roots of numbers whose ratio is an odd power of two round differently.
     #[inline(always)]
     fn divide_by_stiffness(&mut self) {
         let p = self.order;
@@ -301,7 +307,7 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// Scales R̂ to trace `order`, and the h of every unknown to a mean square of one.
+    /// Scales R̂ to the trace `order`, and the h of every unknown to a mean square of one.
     #[inline(always)]
     fn normalise(&mut self) {
         let (p, m) = (self.order, self.norms.len());
@@ -311,7 +317,7 @@ impl<T: Real> Reduced<T> {
         for entry in &mut self.stiffness[..p * p] {
             *entry = entry.clone() * &inverse;
         }
-        // ‖g‖² per unknown, where length springs have g in terms of d instead of n = d/‖d‖
+        // ‖g‖² per unknown; length springs have g in terms of d instead of n = d/‖d‖.
         for scale in &mut self.scales {
             *scale = zero.clone();
         }
@@ -341,8 +347,8 @@ impl<T: Real> Reduced<T> {
         add_outers(e, self.rows(), p, kappa, &self.unknowns, -1.0);
     }
 
-    /// The Gram matrix of the springs' matrices, `Σ_{s∈I, t∈J} (h_s·h_t)²`, lower triangle of order `[unknowns]`;
-    /// `products` takes the `h_s·h_t`, `[springs × springs]`.
+    /// The Gram matrix of the matrices of the unknowns, `Σ_{s∈I, t∈J} (h_s·h_t)²`, lower triangle of order
+    /// `[unknowns]`. `products` receives the `h_s·h_t`, `[springs × springs]`.
     pub fn gram(&self, products: &mut [T], out: &mut [T]) {
         let (h, count) = (self.rows(), self.scales.len());
         row_products(h, h, self.order, true, products);
@@ -363,7 +369,7 @@ impl<T: Real> Reduced<T> {
         );
     }
 
-    /// The κ that, the same for all springs, makes them as stiff on average as the body.
+    /// The common value of all κ at which the springs are on average as stiff as the element.
     #[inline(always)]
     pub fn uniform(&self) -> T {
         let rows = self.rows();

@@ -1,4 +1,4 @@
-//! How far the springs of an element are from its stiffness.
+//! The difference between the stiffness of the springs of an element and that of the finite element.
 
 use super::cells::{CHUNK, CellFits};
 use super::input::{check_fit, check_length};
@@ -11,14 +11,16 @@ use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Mean and largest over the elements.
+/// Mean and maximum of a number over the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
+    /// The mean.
     pub mean: f64,
+    /// The maximum.
     pub max: f64,
 }
 
-/// `‖R − K‖/‖R‖` per element.
+/// The relative error `‖R − K‖/‖R‖` of each element.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ElementErrors {
     /// In the Frobenius norm, `[cells]`.
@@ -28,6 +30,7 @@ pub struct ElementErrors {
 }
 
 impl ElementErrors {
+    /// Appends the errors of further cells.
     pub fn extend(&mut self, other: ElementErrors) {
         self.frobenius.extend(other.frobenius);
         self.spectral.extend(other.spectral);
@@ -35,17 +38,18 @@ impl ElementErrors {
 }
 
 impl Spread {
+    /// Mean and maximum of the values.
     pub fn of(values: &[f64]) -> Spread {
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         Spread { mean, max: values.iter().copied().fold(0.0, f64::max) }
     }
 }
 
-/// The relative errors of every cell, with R and `K = Σ k_s g_s g_sᵀ` formed.
+/// The relative errors of every cell, from R and `K = Σ k_s g_s g_sᵀ`.
 ///
 /// # Errors
-/// An array has a wrong length, a coordinate or modulus is not finite or out of its range, the springs are those of another
-/// element, or a cell is reversed, tangled or flat.
+/// An array has a wrong length; a coordinate or modulus is not finite or is out of its range; the springs belong to
+/// another element; or a cell is reversed, tangled or flat.
 pub fn element_errors(
     element: &Element,
     points: &[f64],
@@ -88,7 +92,7 @@ pub fn element_errors(
     Ok(all)
 }
 
-/// What springs that pull at rest add to K: `Σ T_s ∇∇c_s`.
+/// The part of K that comes from springs that pull at rest: `Σ T_s ∇∇c_s`.
 struct Pulls {
     measures: Vec<(Vec<usize>, Measure)>,
     places: Vec<usize>,
@@ -96,7 +100,7 @@ struct Pulls {
 }
 
 impl Pulls {
-    /// Of linear springs, which do not pull at rest, nothing.
+    /// Linear springs, which do not pull at rest, have no such part.
     fn of(element: &Element, fits: &CellFits) -> Pulls {
         let measures = match fits.force {
             Force::Linear => Vec::new(),

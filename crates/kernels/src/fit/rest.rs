@@ -1,26 +1,28 @@
-//! How long the springs of a fit are when they do not pull.
+//! The rest lengths, or rest measures, of the springs of a fit.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use super::objective::Objective;
 use super::solver::Solver;
 use crate::error::{Error, Result};
 
-/// The measure at rest, c₀, of a spring that measures c at the rest shape of the mesh. With `T = k (c − c₀)` its tangent there is
-/// `k g gᵀ + T ∇∇c`. All springs of a cell together exert no force at rest: `Σ_s T_s g_s = 0`.
+/// The choice of the rest measure c₀ of a spring that measures c at the rest shape of the mesh. With `T = k (c − c₀)`
+/// its tangent at rest is `k g gᵀ + T ∇∇c`. All springs of a cell together exert no force at rest: `Σ_s T_s g_s = 0`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rest {
-    /// `c₀ = c`: no spring pulls.
+    /// `c₀ = c`: no spring pulls at rest.
     #[default]
     Mesh,
     /// k and T are both unknown. Tied springs share k and the ratio c₀/c.
     Free,
-    /// `c₀ = 0` of the springs on lengths, `T = k ℓ`; the others are as in [`Rest::Free`].
+    /// `c₀ = 0` for springs on lengths, so that `T = k ℓ`; the others are as in [`Rest::Free`].
     Zero,
 }
 
 crate::named!(Rest { "mesh" => Mesh, "free" => Free, "zero" => Zero });
 
 impl Rest {
-    /// That tensions can be unknowns of the objective and the solver.
+    /// Checks that the objective and the solver can determine tensions.
     ///
     /// # Errors
     /// They cannot.
@@ -41,7 +43,7 @@ impl Rest {
         }
     }
 
-    /// What it adds to the title of a fit.
+    /// The addition to the title of a fit.
     pub fn title(self) -> &'static str {
         match self {
             Rest::Mesh => "",

@@ -1,4 +1,4 @@
-//! What a fit of each element is asked for.
+//! The settings of a fit of each element.
 
 use super::objective::Objective;
 use super::rest::Rest;
@@ -9,30 +9,35 @@ use crate::springs::Springs;
 /// How the constants of each element are chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fit {
+    /// What is minimised.
     pub objective: Objective,
-    /// One constant per group instead of one per spring.
+    /// Whether there is one constant per group instead of one per spring.
     pub tied: bool,
-    /// No constant below zero.
+    /// Whether no constant may be negative.
     pub nonnegative: bool,
+    /// What minimises the objective.
     pub solver: Solver,
+    /// The rest measures of the springs.
     pub rest: Rest,
 }
 
 impl Fit {
+    /// A fit with this objective, one free constant per spring, the native solver, and springs that do not pull at
+    /// rest.
     pub fn new(objective: Objective) -> Fit {
         Fit { objective, tied: false, nonnegative: false, solver: Solver::Native, rest: Rest::Mesh }
     }
 
-    /// That its parts go together.
+    /// Checks that the settings are compatible.
     ///
     /// # Errors
-    /// They do not.
+    /// They are not.
     pub(super) fn check(&self) -> Result<()> {
         self.solver.check(self.objective)?;
         self.rest.check(self.objective, self.solver)
     }
 
-    /// That its springs do not pull at rest.
+    /// Checks that the springs do not pull at rest.
     ///
     /// # Errors
     /// They do.
@@ -51,12 +56,12 @@ impl Fit {
         self.objective.is_costly() || self.solver != Solver::Native
     }
 
-    /// [`Fit::spread`] of any kind of number.
+    /// [`Fit::spread`] for any kind of number.
     pub(super) fn spread_of<T: Clone>(&self, springs: &Springs, k: &[T]) -> Vec<T> {
         (0..springs.len()).map(|s| k[if self.tied { springs.groups[s] } else { s }].clone()).collect()
     }
 
-    /// One constant per spring from the solution of the equations, which has one per group where they are tied.
+    /// Writes one constant per spring from the solution of the equations, which has one per group if they are tied.
     pub(super) fn spread(&self, springs: &Springs, constants: &mut [f64], k: &[f64]) {
         for (s, constant) in constants.iter_mut().enumerate() {
             *constant = k[if self.tied { springs.groups[s] } else { s }];

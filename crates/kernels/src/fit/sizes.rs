@@ -1,7 +1,8 @@
-//! Sizes of elements that the compiler knows.
+//! Sizes of elements that are known to the compiler.
 
-/// Does `$work` in the registers of `$any`, a `$T`, with the dimension as a constant `$d` and the number of nodes as `$n`. The common
-/// sizes have a copy each, in which the loops unroll: for few nodes they are all overhead.
+/// Runs `$work` in the registers of `$any`, a `$T`, with the dimension as a constant `$d` and the number of nodes as
+/// `$n`. Each of the common sizes is compiled separately, so that its loops unroll: with few nodes the overhead of
+/// loops dominates.
 macro_rules! of_size {
     ($T:ty, $any:expr, $size:expr, |$d:ident, $n:ident| $work:expr) => {{
         macro_rules! with {

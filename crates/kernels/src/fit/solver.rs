@@ -1,33 +1,43 @@
-//! What minimises an objective.
+//! The solvers that can minimise an objective.
 
 use super::objective::Objective;
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 
-/// What minimises the objective.
+/// The solver that minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Solver {
-    /// Normal equations, pivoting, the barrier or Newton's method, as the objective needs.
+    /// The solver made for the objective: normal equations, pivoting, the barrier method or Newton's method.
     #[default]
     Native,
-    /// A general optimiser with at most so many iterations, from constants all alike; with a topology it may switch springs off.
-    General { method: Search, iterations: u64, topology: Option<Topology> },
+    /// A general optimiser, which starts from equal constants.
+    General {
+        /// The optimiser.
+        method: Search,
+        /// The largest number of iterations for each element.
+        iterations: u64,
+        /// Whether springs may be switched off, and at what cost.
+        topology: Option<Topology>,
+    },
 }
 
-/// Which springs are on is searched together with how stiff they are, as by Bianchi et al. (2004): every unknown carries a switch,
-/// one more coordinate from −1 to 1, and its springs are off, `k = 0`, where that is negative.
+/// A search for the set of springs together with their constants, as by Bianchi et al. (2004). Every unknown has a
+/// switch, an additional coordinate from −1 to 1; its springs are off, `k = 0`, if the switch is negative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Topology {
-    /// What each spring that is on adds to the objective, as a share of that at the start, where all are on. With none a spring goes
-    /// only if the objective falls without it.
+    /// The cost of each spring that is on, as a share of the objective at the start, where all are on. With 0 a spring
+    /// is removed only if the objective decreases without it.
     pub sparsity: f64,
 }
 
+/// A general optimiser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Search {
+    /// The downhill simplex method of Nelder and Mead (1965).
     NelderMead,
-    /// 40 particles.
+    /// Particle swarm optimisation with 40 particles.
     ParticleSwarm,
+    /// Simulated annealing.
     SimulatedAnnealing,
 }
 
@@ -48,13 +58,16 @@ crate::named!(Name {
 });
 
 impl Solver {
+    /// The names of the solvers, as files and options have them.
     pub const NAMES: &'static [&'static str] = Name::NAMES;
+    /// The number of iterations of a general optimiser if none is given.
     pub const DEFAULT_ITERATIONS: u64 = 2000;
 
-    /// The solver called `name`; `iterations` and `topology` belong to the general ones.
+    /// The solver called `name`; `iterations` and `topology` belong to the general solvers.
     ///
     /// # Errors
-    /// The name is unknown, no iterations are allowed, the native solver is given any, or the solver cannot do the topology.
+    /// The name is unknown; `iterations` is zero or too large; the native solver is given an option of the general
+    /// ones; or the solver cannot search the topology.
     pub fn named(name: &str, iterations: Option<u64>, topology: Option<Topology>) -> Result<Solver> {
         let method = match Name::named(name).map_err(|e| e.at_key("solver"))? {
             Name::Native => {
@@ -88,7 +101,7 @@ impl Solver {
         }
     }
 
-    /// That it can search for this objective.
+    /// Checks that the solver can minimise this objective.
     pub(super) fn check(&self, objective: Objective) -> Result<()> {
         if *self != Solver::Native && objective.of_motions().is_err() {
             let expected = "\"native\": the blocks of different nodes leave no choice to search";
@@ -97,6 +110,7 @@ impl Solver {
         self.check_numbers()
     }
 
+    /// The name in files and options.
     pub fn name(&self) -> &'static str {
         let name = match self {
             Solver::Native => Name::Native,
@@ -107,6 +121,7 @@ impl Solver {
         name.name()
     }
 
+    /// The search for the set of springs, if there is one.
     pub fn topology(&self) -> Option<Topology> {
         match self {
             Solver::Native => None,
@@ -114,7 +129,7 @@ impl Solver {
         }
     }
 
-    /// The name with what goes with it, such as `particle-swarm topology 0.01`.
+    /// The name with its options, such as `particle-swarm topology 0.01`.
     pub fn title(&self) -> String {
         match self.topology() {
             None => self.name().into(),

@@ -1,10 +1,11 @@
-//! Cells one after another, with errors that name them.
+//! Visits cells in order, with errors that name the cell.
 
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::stiffness::{self, Fault, Geometry};
 
-/// [`stiffness::each_cell`] with an error that names the cell, the first being number `first` (from 0) of its block.
+/// [`stiffness::each_cell`] with an error that names the cell; `first` is the number (from 0) of the first cell of the
+/// block.
 pub fn each_cell(
     element: &Element,
     points: &[f64],
@@ -16,7 +17,7 @@ pub fn each_cell(
         .map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
 }
 
-/// `cell` is counted from 0, and named from 1.
+/// The error for `cell`, which is counted from 0 and named from 1.
 pub fn cell_fault(element: &Element, cell: usize, fault: Fault) -> Error {
     Error::at(cell_name(element, cell), fault.to_string())
 }

@@ -1,4 +1,6 @@
-//! How much each part of `R − K` counts in a norm, and how the equations under a weight are set up.
+//! The weight of each part of `R − K` in a norm, and how the equations under a weight are set up.
+//!
+//! Theory: page *Modal weights* of the book.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fmt;
@@ -6,11 +8,13 @@ use std::fmt;
 /// A weight of a norm of the entries of `R − K`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Weight {
-    /// All entries alike.
+    /// All entries have the same weight.
     None,
-    /// The blocks of different nodes only; with length springs alone, `k_s = −nᵀ R_ij n`. No weight of motions.
+    /// Only the blocks of different nodes count; with length springs alone, `k_s = −nᵀ R_ij n`. This is not a weight of
+    /// motions.
     OffDiagonal,
-    /// `W = C Cᵀ + h · H Hᵀ`: C an orthonormal basis of the constant-strain motions, H of all other deformations.
+    /// `W = C Cᵀ + h · H Hᵀ`, with C an orthonormal basis of the constant-strain motions and H of all other
+    /// deformations.
     Modal(Higher),
     /// `W = R^(−1/2)` on the deformations: the relative error of the energy.
     Relative,
@@ -19,7 +23,7 @@ pub enum Weight {
 /// A weight W of motions, for which `W (R − K) W` has eigenvalues.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionWeight {
-    /// All motions alike.
+    /// All motions have the same weight.
     None,
     /// See [`Weight::Modal`].
     Modal(Higher),
@@ -36,14 +40,17 @@ crate::named!(Weight {
 
 crate::named!(MotionWeight { "none" => None, "modal" => Modal { 0: Higher::DEFAULT }, "relative" => Relative });
 
-/// The scale h of the motions beyond constant strain, which have 1; `0 < h ≤ 1`.
+/// The scale h of the motions beyond constant strain, `0 < h ≤ 1`; constant strain has the scale 1.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Higher(f64);
 
 impl Higher {
-    /// Chosen by the study in the README.
+    /// h = 0.316 ≈ 10^(−1/2): chosen by comparing the errors of whole bodies of hexahedra and quadrilaterals (page *How
+    /// to choose* of the book).
     pub const DEFAULT: Higher = Higher(0.316);
 
+    /// The scale `scale`.
+    ///
     /// # Errors
     /// The scale is not above 0 and at most 1.
     pub fn new(scale: f64) -> Result<Higher> {
@@ -53,6 +60,7 @@ impl Higher {
         Ok(Higher(scale))
     }
 
+    /// The number h.
     pub const fn value(self) -> f64 {
         self.0
     }
@@ -77,14 +85,15 @@ pub enum ClosedWeight {
 pub enum Route {
     /// Normal equations from the node positions alone.
     Closed(ClosedWeight),
-    /// Normal equations of the blocks of different nodes, from R and the springs' gradients, one cell at a time.
+    /// Normal equations of the blocks of different nodes, from R and the gradients of the springs, one cell at a time.
     Blocks,
-    /// R and the springs' gradients reduced to the deformations, seen through the weight.
+    /// R and the gradients of the springs reduced to the deformations, seen through the weight.
     Reduced(MotionWeight),
 }
 
 impl Weight {
-    /// How the normal equations are set up; the closed form does not know the springs that measure a function of some nodes.
+    /// How the normal equations are set up. The closed form does not include springs that measure a function of some
+    /// nodes.
     pub(super) fn route(self, has_functions: bool) -> Route {
         match (self, has_functions) {
             (Weight::None, false) => Route::Closed(ClosedWeight::None),
@@ -118,7 +127,7 @@ impl Weight {
         }
     }
 
-    /// The scale of the motions beyond constant strain, where the weight has one.
+    /// The scale of the motions beyond constant strain, if the weight has one.
     pub fn higher(self) -> Option<Higher> {
         match self {
             Weight::Modal(higher) => Some(higher),
@@ -126,7 +135,7 @@ impl Weight {
         }
     }
 
-    /// Whether it differs from no weight only on motions beyond constant strain.
+    /// Whether the weight differs from no weight only on motions beyond constant strain.
     pub(super) fn needs_higher_modes(self) -> bool {
         match self {
             Weight::Modal(_) => true,
@@ -137,7 +146,7 @@ impl Weight {
     /// The weight of motions.
     ///
     /// # Errors
-    /// Blocks are no motions.
+    /// The weight is that of blocks, which is not a weight of motions.
     pub(super) fn of_motions(self) -> Result<MotionWeight> {
         match self {
             Weight::None => Ok(MotionWeight::None),
@@ -151,7 +160,7 @@ impl Weight {
         }
     }
 
-    /// The same weight with this scale of the motions beyond constant strain, where it has one.
+    /// The same weight with another scale of the motions beyond constant strain, if it has one.
     pub(super) fn with_higher(self, higher: Higher) -> Weight {
         match self {
             Weight::Modal(_) => Weight::Modal(higher),
@@ -161,7 +170,7 @@ impl Weight {
 }
 
 impl MotionWeight {
-    /// Whether it divides by R.
+    /// Whether the weight divides by R.
     pub(super) fn divides_by_stiffness(self) -> bool {
         match self {
             MotionWeight::None | MotionWeight::Modal(_) => false,
@@ -169,7 +178,7 @@ impl MotionWeight {
         }
     }
 
-    /// The scale of the motions beyond constant strain, where it is not 1 by definition.
+    /// The scale of the motions beyond constant strain, if the weight has one.
     pub fn higher(self) -> Option<Higher> {
         Weight::from(self).higher()
     }

@@ -1,4 +1,6 @@
-//! Hyperelastic materials: an energy per volume at rest as an expression of the deformation's invariants.
+//! Hyperelastic materials: the energy per volume at rest, as an expression in the invariants of the deformation.
+//!
+//! Theory: pages *Stiffness* and *Exact networks* of the book.
 
 use super::{Material, Moduli};
 use crate::error::{Error, ErrorKind, Result};
@@ -11,17 +13,17 @@ use springfit_shipped::MATERIALS;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The second derivative of the energy, `∂P_ij/∂F_kl` at `[3i + j][3k + l]`.
+/// The second derivative of the energy, `∂P_ij/∂F_kl` at `[3i + j][3k + l]`, in Pa.
 pub type Tangent = SMatrix<f64, 9, 9>;
 
-/// What the energy may be a function of, beside the moduli and its own parameters.
+/// The variables of an energy, besides the moduli and its own parameters.
 const INVARIANTS: [&str; 7] = ["I1", "I2", "J", "I4", "l1", "l2", "l3"];
-/// The place of `I4`.
+/// The index of `I4`, the squared stretch of the fibres.
 const FIBRES: usize = 3;
-/// What follows from Young's modulus and Poisson's ratio.
+/// The constants that follow from Young's modulus and Poisson's ratio.
 const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
-/// Principal stretches that differ by less than this share are the same: the divided difference has rounding of 1e-10
-/// there, the limit an error of its square.
+/// Principal stretches that differ by less than this share count as equal: the divided difference has a rounding error
+/// of 1e-10 there, and the limit has an error of the square of this share.
 const SAME: f64 = 1e-6;
 
 #[derive(Debug, Deserialize)]
@@ -30,9 +32,9 @@ struct Definition {
     name: String,
     title: String,
     source: Option<String>,
-    /// Direction of the fibres at rest, of any length.
+    /// The direction of the fibres at rest; its length does not matter.
     fibre: Option<[f64; 3]>,
-    /// Numbers with their defaults.
+    /// The parameters with their defaults.
     #[serde(default)]
     parameters: BTreeMap<String, f64>,
     #[serde(default, rename = "let")]
@@ -40,38 +42,40 @@ struct Definition {
     energy: String,
 }
 
-/// `W(F)`, J/m³, of one material.
+/// The energy `W(F)` per volume at rest of one material, in J/m³.
 #[derive(Debug, Clone)]
 pub struct Energy {
+    /// The name in files and options.
     pub name: String,
+    /// The name in headings.
     pub title: String,
-    /// Where it is published.
+    /// Where the energy is published.
     pub source: Option<String>,
     fibre: Option<Vector3<f64>>,
-    /// Of the invariants, then the moduli, then the parameters.
+    /// A function of the invariants, then of the moduli, then of the parameters.
     expression: Expr,
-    /// Its derivatives in the invariants.
+    /// The derivatives in the invariants.
     slopes: Vec<Program>,
-    /// Of the moduli and parameters.
+    /// The values of the moduli and parameters.
     constants: Vec<f64>,
     by_stretches: bool,
 }
 
-/// Of one deformation gradient.
+/// The invariants of one deformation gradient.
 struct Invariants {
-    /// `FᵀF`.
+    /// The right Cauchy–Green tensor `C = FᵀF`.
     c: Matrix3<f64>,
-    /// `F a`.
+    /// The deformed fibre direction `F a`.
     fibre: Option<Vector3<f64>>,
     /// I1, I2, J, I4.
     values: [f64; 4],
 }
 
 impl Energy {
-    /// The shipped energy of that name, or that of the file of that path, with the moduli of `material`.
+    /// The shipped energy with this name, or the energy in the file at this path, with the moduli of `material`.
     ///
     /// # Errors
-    /// There is no such energy, its file is wrong, or it is not stress-free at rest with these moduli.
+    /// There is no such energy, its file is wrong, or with these moduli it is not free of stress at rest.
     pub fn load(name_or_path: &str, material: Material) -> Result<Energy> {
         if name_or_path.ends_with(".toml") {
             let path = Path::new(name_or_path);
@@ -89,10 +93,10 @@ impl Energy {
         }
     }
 
-    /// Parses the text of a material file and proves that the body at rest is free of stress.
+    /// Parses the text of a material file and proves that the body is free of stress at rest.
     ///
     /// # Errors
-    /// Names the line, the key, what was expected and what was found.
+    /// The text is wrong. The error names the line and the key, what was expected and what was found.
     pub fn parse(text: &str, material: Material) -> Result<Energy> {
         Energy::proved(text, material).map_err(|e| file::on_line_of_key(e, text))
     }
@@ -154,32 +158,34 @@ impl Energy {
         Ok(energy)
     }
 
-    /// Pa.
+    /// Young's modulus at rest, in Pa.
     pub fn young(&self) -> f64 {
         self.constants[0]
     }
 
+    /// Poisson's ratio at rest.
     pub fn poisson(&self) -> f64 {
         self.constants[1]
     }
 
-    /// Those of a solid, Pa.
+    /// The moduli of the solid at rest, in Pa.
     pub fn moduli(&self) -> Moduli {
         Moduli { lambda: self.constants[2], mu: self.constants[3] }
     }
 
-    /// W as a function of `I1`, `I2` and `J` alone, with fibres that are not stretched; `None` of energies of the stretches.
+    /// W as a function of `I1`, `I2` and `J` alone, with fibres that are not stretched; `None` for energies of the
+    /// principal stretches.
     pub fn of_invariants(&self, invariants: [f64; 3]) -> Option<f64> {
         let [i1, i2, j] = invariants;
         let at: Vec<f64> = [i1, i2, j, 1.0, 1.0, 1.0, 1.0].into_iter().chain(self.constants.iter().copied()).collect();
         (!self.by_stretches).then(|| self.expression.evaluate(&at))
     }
 
-    /// The direction of the fibres at rest and the force of a spring that measures their stretch c, per volume, as an
+    /// The direction of the fibres at rest, and the force per volume of a spring that measures their stretch c, as an
     /// expression with the parameter `a`: `a ∂W/∂c`, `I4 = c²`. `None` without fibres.
     ///
     /// # Errors
-    /// What the fibres do depends on more than their stretch; kind `Unsupported`.
+    /// The stress of the fibres depends on more than their stretch; the kind is `Unsupported`.
     pub fn fibre_law(&self) -> Result<Option<(Vector3<f64>, String)>> {
         let Some(direction) = self.fibre else { return Ok(None) };
         let slope = self.expression.derivative(FIBRES);
@@ -192,13 +198,13 @@ impl Energy {
         Ok(Some((direction, format!("a*2*c*({})", slope.text(&names)))))
     }
 
-    /// `W`, `P = ∂W/∂F` (the first Piola-Kirchhoff stress, Pa) and `∂P/∂F` at the deformation gradient F. Not finite where
-    /// the energy is not: at `J ≤ 0` of those with `ln(J)`.
+    /// The energy `W`, the first Piola–Kirchhoff stress `P = ∂W/∂F` in Pa, and `∂P/∂F`, at the deformation gradient F.
+    /// They are not finite where the energy is not: at `J ≤ 0` for energies with `ln(J)`.
     pub fn respond(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
         if self.by_stretches { self.by_stretches(f) } else { self.by_invariants(f) }
     }
 
-    /// `P = ∂W/∂F` alone, at a tenth of the cost.
+    /// The stress `P = ∂W/∂F` alone, at a tenth of the cost.
     pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
         let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
         let mut at = vec![i1, i2, j, i4, 1.0, 1.0, 1.0];
@@ -230,7 +236,7 @@ impl Energy {
         stress
     }
 
-    /// `I1 = tr C`, `I2 = (I1² − tr C²)/2`, `J = det F`, `I4 = |F a|²`, one without fibres.
+    /// `I1 = tr C`, `I2 = (I1² − tr C²)/2`, `J = det F`, `I4 = |F a|²`; the last is one without fibres.
     fn invariants(&self, f: &Matrix3<f64>) -> Invariants {
         let c = f.transpose() * f;
         let i1 = c.trace();
@@ -251,10 +257,10 @@ impl Energy {
     fn by_invariants(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
         let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
         let mut variables = Jet::variables(&[i1, i2, j, i4]);
-        // The stretches are not asked for here.
+        // The stretches are not needed here.
         variables.extend([1.0; 3].map(Jet::number));
         let w = self.jet(variables);
-        // cof F = J F^(−T), also where J = 0
+        // cof F = J F^(−T), also at J = 0.
         let cofactor = cofactor(f);
         let firsts = [
             2.0 * f,
@@ -323,7 +329,7 @@ impl Energy {
                     let below = a * a - b * b;
                     ((a * g[i] - b * g[j]) / below, (b * g[i] - a * g[j]) / below)
                 } else {
-                    // Means of both ends: the error is the square of the difference.
+                    // Means of the values at both stretches: the error is the square of their difference.
                     let bend = ((h[4 * i] + h[4 * j]) / 2.0 - h[3 * i + j]) / 2.0;
                     let pull = (g[i] + g[j]) / (2.0 * (a + b));
                     (bend + pull, bend - pull)
@@ -336,7 +342,8 @@ impl Energy {
     }
 }
 
-/// `F = Σ λ_i n_i N_iᵀ`: the n as columns, the λ, the N as columns; a reflection is the sign of the least stretch.
+/// The decomposition `F = Σ λ_i n_i N_iᵀ`: the n as columns, the λ, and the N as columns. A reflection appears as the
+/// sign of the least stretch.
 fn principal(f: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>, Matrix3<f64>)> {
     if !f.iter().all(|entry| entry.is_finite()) {
         return None;

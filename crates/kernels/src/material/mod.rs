@@ -1,4 +1,9 @@
-//! Isotropic linear elasticity.
+//! Isotropic linear elasticity: Young's modulus and Poisson's ratio, the moduli λ and μ, and the state of a plane or a
+//! rod.
+//!
+//! Hyperelastic energies are in [`Energy`].
+//!
+//! Theory: page *Stiffness* of the book.
 
 mod energy;
 
@@ -9,21 +14,31 @@ use crate::error::{Error, Result};
 use crate::range::positive;
 use serde::Deserialize;
 
-/// How a body of fewer dimensions relates to the solid it stands for.
+/// How a body of fewer than three dimensions stands for a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
-    /// A rod of that cross-section (m²), with no stress across it.
-    Rod { area: f64 },
-    /// Three dimensions.
+    /// A rod without stress across it.
+    Rod {
+        /// The cross-section, in m².
+        area: f64,
+    },
+    /// A body of three dimensions.
     Solid,
-    /// No stress through the thickness (m).
-    PlaneStress { thickness: f64 },
-    /// No strain through the thickness (m).
-    PlaneStrain { thickness: f64 },
+    /// A plate without stress through its thickness.
+    PlaneStress {
+        /// The thickness, in m.
+        thickness: f64,
+    },
+    /// A plate without strain through its thickness.
+    PlaneStrain {
+        /// The thickness, in m.
+        thickness: f64,
+    },
 }
 
 impl State {
-    /// What makes the cells' content a volume: the thickness in m, of a rod its cross-section in m²; 1 for a solid.
+    /// The factor that makes the content of a cell a volume: the thickness in m, the cross-section of a rod in m², 1
+    /// for a solid.
     pub fn thickness(self) -> f64 {
         match self {
             State::Solid => 1.0,
@@ -32,7 +47,7 @@ impl State {
         }
     }
 
-    /// Of the body.
+    /// The dimension of the body.
     pub fn dimension(self) -> usize {
         match self {
             State::Rod { .. } => 1,
@@ -41,8 +56,10 @@ impl State {
         }
     }
 
+    /// Checks that bodies of this dimension can be in this state.
+    ///
     /// # Errors
-    /// It is not a state of bodies of this dimension, or its thickness is not positive.
+    /// They cannot, or the thickness is not positive.
     pub(crate) fn check(self, dimension: usize) -> Result<()> {
         if self.dimension() != dimension {
             return Err(Error::expected("state", format!("one of a body of {dimension} dimensions"), self.dimension()));
@@ -58,11 +75,13 @@ impl State {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Plane {
+    /// Plane stress.
     Stress,
+    /// Plane strain.
     Strain,
 }
 
-/// An isotropic material that has been proved physical.
+/// An isotropic material whose constants have been checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     young: f64,
@@ -72,10 +91,13 @@ pub struct Material {
 
 /// The two constants of `σ = λ tr(ε) I + 2μ ε`, in Pa; in two dimensions multiplied by the thickness, in N/m.
 ///
-/// In plane stress λ is `Eν/(1−ν²) = 2λμ/(λ+2μ)`, the one that leaves no stress through the thickness.
+/// In plane stress λ is `Eν/(1−ν²) = 2λμ/(λ+2μ)` (on the right the λ of the solid), for which no stress acts through
+/// the thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moduli<C = f64> {
+    /// Lamé's first constant λ.
     pub lambda: C,
+    /// The shear modulus μ.
     pub mu: C,
 }
 
@@ -102,11 +124,11 @@ impl Material {
         Ok(Material { young, poisson, state })
     }
 
-    /// The material of a body of that dimension; in the plane `plane` defaults to stress and `thickness` to 1 m, a rod has a
-    /// cross-section of 1 m².
+    /// The material of a body of this dimension. In the plane, `plane` defaults to plane stress and `thickness` to 1 m;
+    /// a rod has a cross-section of 1 m².
     ///
     /// # Errors
-    /// A constant is out of range, or a plane state or thickness is given for a solid or a rod.
+    /// A constant is out of range, or a plane state or a thickness is given for a solid or a rod.
     pub fn for_body(
         dimension: usize,
         young: f64,
@@ -134,10 +156,10 @@ impl Material {
         Material::new(young, poisson, state)
     }
 
-    /// The same rod with that cross-section, m².
+    /// The same rod with another cross-section, in m².
     ///
     /// # Errors
-    /// The body is no rod, or the area is not positive.
+    /// The body is not a rod, or the area is not positive.
     pub fn with_area(self, area: f64) -> Result<Material> {
         match self.state {
             State::Rod { .. } => Material::new(self.young, self.poisson, State::Rod { area }),
@@ -146,27 +168,31 @@ impl Material {
         }
     }
 
+    /// Young's modulus, in Pa.
     pub fn young(&self) -> f64 {
         self.young
     }
 
+    /// Poisson's ratio.
     pub fn poisson(&self) -> f64 {
         self.poisson
     }
 
+    /// The state of the body.
     pub fn state(&self) -> State {
         self.state
     }
 
-    /// [`State::thickness`].
+    /// The factor that makes the content of a cell a volume, see [`State::thickness`].
     pub fn thickness(&self) -> f64 {
         self.state.thickness()
     }
 
+    /// The moduli in the dimensions of the body: in Pa for a solid, in N/m in the plane, in N for a rod.
     pub fn moduli(&self) -> Moduli {
         let (e, nu, t) = (self.young, self.poisson, self.thickness());
         let lambda = match self.state {
-            // Of λ + 2μ = E A it does not matter which is which.
+            // A rod has only λ + 2μ = E A; how it is divided does not matter.
             State::Rod { area } => return Moduli { lambda: 0.0, mu: area * e / 2.0 },
             State::PlaneStress { .. } => e * nu / ((1.0 + nu) * (1.0 - nu)),
             _ => e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),

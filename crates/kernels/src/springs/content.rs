@@ -1,32 +1,33 @@
-//! The content of a cell at given positions, by its quadrature: `Σ_q w_q |J_q|`, whole or of single points.
+//! The content (length, area or volume) of a cell at given positions, by its quadrature `Σ_q w_q |J_q|`: whole, or of
+//! single points.
 
 use super::vector::{dot, norm};
 use crate::element::Tabulation;
 use crate::symbolic::Jet;
 use std::ops::Range;
 
-/// The content at some points of the quadrature rule of a cell with its nodes at `x`, `[nodes × space]`.
+/// The content at some quadrature points of a cell with its nodes at `x`, `[nodes × space]`.
 pub struct Content<'a> {
     table: &'a Tabulation,
     points: Range<usize>,
     x: &'a [f64],
-    /// Coordinates of a node; more than the dimension for a cell of a surface or curve.
+    /// The number of coordinates of a node; more than the dimension for a cell of a surface or curve.
     space: usize,
 }
 
 impl<'a> Content<'a> {
-    /// Of all points.
+    /// The content at all points.
     pub fn of_cell(table: &'a Tabulation, x: &'a [f64]) -> Content<'a> {
         Content { table, points: 0..table.points(), x, space: x.len() / table.nodes }
     }
 
-    /// Of point q alone.
+    /// The content at point q alone.
     pub fn of_point(table: &'a Tabulation, q: usize, x: &'a [f64]) -> Content<'a> {
         Content { points: q..q + 1, ..Content::of_cell(table, x) }
     }
 
-    /// Calls `visit(∂N_a/∂ξ, w)`. A point that serves the volumetric rule alone has the weight that it has there, unless
-    /// all points are asked for.
+    /// Calls `visit(∂N_a/∂ξ, w)` for each point. A point that serves the volumetric rule alone has its weight in that
+    /// rule, unless all points are asked for.
     fn each_point(&self, mut visit: impl FnMut(&[f64], f64)) {
         let size = self.table.nodes * self.table.dimension;
         let is_single = self.points.len() == 1;
@@ -40,6 +41,7 @@ impl<'a> Content<'a> {
         self.space > self.table.dimension
     }
 
+    /// The content, in m, m² or m³.
     pub fn value(&self) -> f64 {
         let mut total = 0.0;
         self.each_point(|dn, w| {
@@ -53,7 +55,7 @@ impl<'a> Content<'a> {
         total
     }
 
-    /// `[nodes × space]`.
+    /// The gradient of the content in the positions, `[nodes × space]`.
     pub fn gradient(&self) -> Vec<f64> {
         let (d, size) = (self.table.dimension, self.x.len());
         let mut gradient = vec![0.0; size];
@@ -74,10 +76,11 @@ impl<'a> Content<'a> {
         gradient
     }
 
-    /// The value with its first and second derivatives in the positions.
+    /// The content with its first and second derivatives in the positions.
     ///
-    /// In a cell that fills its space the content is a polynomial of degree d: det is linear in each row J_k of the Jacobian, so
-    /// that in its derivatives by `x_ak` and `x_bm` ∇N_a and ∇N_b take the places of J_k and J_m.
+    /// In a cell that fills its space the content is a polynomial of degree d: det is linear in each row J_k of the
+    /// Jacobian, so that in its derivatives by `x_ak` and `x_bm` the gradients ∇N_a and ∇N_b take the places of J_k and
+    /// J_m.
     pub fn jet(&self) -> Jet {
         let (d, size) = (self.table.dimension, self.x.len());
         let mut hessian = vec![0.0; size * size];
@@ -86,7 +89,8 @@ impl<'a> Content<'a> {
                 self.bend(dn, w, &mut hessian);
                 return;
             }
-            // ∇N_a · (∇N_b × J_l) = J_l · (∇N_a × ∇N_b), l the axis that is neither k nor m: one cross product for each pair of nodes.
+            // ∇N_a · (∇N_b × J_l) = J_l · (∇N_a × ∇N_b), with l the axis other than k and m: one cross product for each
+            // pair of nodes.
             let j = self.rows(dn);
             for a in 0..size / d {
                 for b in 0..a {
@@ -106,7 +110,7 @@ impl<'a> Content<'a> {
         Jet { value: self.value(), gradient: self.gradient(), hessian }
     }
 
-    /// The rows `J_k = Σ_a x_ak ∇N_a` of the Jacobian, filled up with those of the identity to three dimensions.
+    /// The rows `J_k = Σ_a x_ak ∇N_a` of the Jacobian, extended by those of the identity to three dimensions.
     fn rows(&self, dn: &[f64]) -> [[f64; 3]; 3] {
         let d = self.table.dimension;
         let mut rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -128,8 +132,8 @@ impl<'a> Content<'a> {
         tangent
     }
 
-    /// The vector n whose length is the content, of a curve its tangent t, of a surface `t₁ × t₂`; and its derivatives in
-    /// the positions, `[nodes × space]`.
+    /// The vector n whose length is the content: of a curve its tangent t, of a surface `t₁ × t₂`. With its derivatives
+    /// in the positions, `[nodes × space]`.
     fn normal(&self, dn: &[f64]) -> ([f64; 3], Vec<[f64; 3]>) {
         let (d, space) = (self.table.dimension, self.space);
         let tangents = [self.tangent(dn, 0), if d == 2 { self.tangent(dn, 1) } else { [0.0; 3] }];

@@ -1,4 +1,6 @@
-//! Laws of force: how hard a spring pulls when what it measures has changed, as an expression with parameters.
+//! Force laws: the force of a spring as a function of what it measures, given as an expression with parameters.
+//!
+//! Theory: page *Sampled fits* of the book.
 
 use super::Springs;
 use crate::error::{Error, Result};
@@ -6,23 +8,27 @@ use crate::symbolic::{Expr, Program, Scope, variables_of};
 use gauss_quad::GaussLegendre;
 use std::sync::{Arc, OnceLock};
 
-/// What a law may be a function of, beside its parameters: `s = (c − c₀)/c₀`, `c` and `c₀`.
+/// The variables of a law besides its parameters: the strain `s = (c − c₀)/c₀`, `c` and `c₀`.
 const VARIABLES: [&str; 3] = ["s", "c", "c0"];
-/// Points of the quadrature that integrates the force.
+/// The number of points of the quadrature that integrates the force; it is exact for polynomials up to degree 31.
 const POINTS: usize = 16;
-/// A change of the measure by this share of that at rest needs no finer quadrature.
+/// A change of the measure by this share of its value at rest is integrated without subdivision.
 const SMOOTH: f64 = 0.1;
-/// Agreement of a quadrature with that of its halves, and how often these are halved at most.
+/// The relative agreement of a quadrature with that of its two halves at which it is accepted; about 50 rounding
+/// errors.
 const KNOWN: f64 = 1e-14;
+/// The largest number of halvings of the interval.
 const HALVINGS: usize = 10;
-/// Strains at which a law must vanish with its parameters to count as linear in them.
+/// Strains at which a law is tested for being linear in its parameters.
 const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
 
-/// `T(c)`, the derivative of a spring's energy in its measure c: in N where c is a length, in Pa where it is a volume.
+/// A force law `T(c)`, the derivative of a spring's energy in its measure c: in N if c is a length, in Pa if it is a
+/// volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
+    /// The expression.
     pub text: String,
-    /// The names in the text that are neither variables nor functions, in the order in which they appear.
+    /// The parameters: names in the text that are neither variables nor functions, in the order in which they appear.
     pub parameters: Vec<String>,
     force: Program,
     slope_in_strain: Program,
@@ -33,8 +39,10 @@ pub struct Law {
 }
 
 impl Law {
+    /// Parses a law.
+    ///
     /// # Errors
-    /// The text is no expression, or has no parameter.
+    /// The text is not an expression, or has no parameter.
     pub fn parse(text: &str) -> Result<Law> {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         let names = variables_of(&text);
@@ -71,24 +79,24 @@ impl Law {
         Ok(law)
     }
 
-    /// Whether the force is a linear function of the parameters: then they add up over springs in parallel, and a fit of
-    /// least squares is direct.
+    /// Whether the force is a linear function of the parameters. Then the parameters of parallel springs add up, and a
+    /// least-squares fit is direct.
     pub fn is_linear(&self) -> bool {
         self.linear
     }
 
-    /// Whether the force is linear in each parameter while the inner ones, those that are not, stay: `k` and not `a` of
-    /// `k*(exp(a*s) - 1)`.
+    /// For each parameter, whether it is an outer one. The force is linear in the outer parameters while the others,
+    /// the inner ones, are fixed: in `k*(exp(a*s) - 1)`, `k` is outer and `a` is inner.
     pub fn outer(&self) -> &[bool] {
         &self.outer
     }
 
-    /// `T(c)`.
+    /// The force `T(c)`.
     pub fn force(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
         at(c, rest, parameters, |at| self.force.evaluate(at))
     }
 
-    /// `T` of N springs; `at` are c, c₀ and the parameters of each, `values` memory that it may use.
+    /// The force `T` of N springs. `at` holds c, c₀ and the parameters of each spring; `values` is working memory.
     pub fn force_each<const N: usize>(&self, at: &[[f64; N]], values: &mut LawRoom<N>) -> [f64; N] {
         let LawRoom { at: all, values } = values;
         all.clear();
@@ -97,23 +105,23 @@ impl Law {
         self.force.evaluate_each(all, values)
     }
 
-    /// `∂T/∂c = (∂T/∂s)/c₀ + ∂T/∂c`.
+    /// The slope `dT/dc = (∂T/∂s)/c₀ + ∂T/∂c`.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
         at(c, rest, parameters, |at| {
-            // Where the measure at rest is zero there is no strain.
+            // There is no strain if the measure at rest is zero.
             let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(at) / rest };
             by_strain + self.slope_in_measure.evaluate(at)
         })
     }
 
-    /// `∂T/∂p`, `[parameters]`.
+    /// Writes the derivatives `∂T/∂p` into `slopes`, `[parameters]`.
     pub fn by_parameter(&self, c: f64, rest: f64, parameters: &[f64], slopes: &mut [f64]) {
         at(c, rest, parameters, |at| {
             slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(at))
         })
     }
 
-    /// `∫ T dc` from rest, by a quadrature that is refined until it agrees with its halves.
+    /// The energy `∫ T dc` from rest, by a quadrature that is refined until it agrees with that of its halves.
     pub fn energy(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
         let whole = self.work([rest, c], rest, parameters);
         if (c - rest).abs() <= SMOOTH * rest.abs() {
@@ -134,7 +142,7 @@ impl Law {
         (0..2).map(|i| self.refined(halves[i], works[i], rest, parameters, halvings - 1)).sum()
     }
 
-    /// `∫ T dc` by one rule.
+    /// `∫ T dc` by one rule without refinement.
     fn work(&self, [from, to]: [f64; 2], rest: f64, parameters: &[f64]) -> f64 {
         static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
         let points = POINTS.try_into().expect("there are points");
@@ -144,32 +152,36 @@ impl Law {
     }
 }
 
-/// Memory of [`Law::force_each`].
+/// Working memory of [`Law::force_each`].
 #[derive(Debug, Clone, Default)]
 pub struct LawRoom<const N: usize> {
     at: Vec<[f64; N]>,
     values: Vec<[f64; N]>,
 }
 
-/// The law of force that the springs of a fit share.
+/// The force law that the springs of a fit share.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Force {
-    /// `k (c − c₀)`, c₀ as at rest.
+    /// `k (c − c₀)`, with c₀ the measure at rest.
     #[default]
     Linear,
-    /// `k (c − L₀)` with a rest measure of its own, so that springs may pull at rest. Beside k the fit gives `k L₀`.
+    /// `k (c − L₀)` with a rest measure L₀ of its own, so that springs may pull at rest. The fit gives k and `k L₀`.
     FreeRest,
-    /// A law for each group, in the order of [`Springs::names`](super::Springs); the fit gives the parameters.
+    /// A law for each group, in the order of [`Springs::names`](super::Springs::names). The fit gives the parameters.
     Laws(Vec<Arc<Law>>),
-    /// `k c` of lengths and areas, which are zero at rest. Of contents `k (c − L₀)`, with `k L₀` beside k, or the law.
-    Exact { content: Option<Arc<Law>> },
+    /// For exact networks: `k c` for lengths and areas, whose rest measure is zero; for contents `k (c − L₀)`, with
+    /// `k L₀` beside k, or the law.
+    Exact {
+        /// The law of the springs on contents, unless they are linear.
+        content: Option<Arc<Law>>,
+    },
 }
 
 impl Force {
-    /// Checks that laws, where the force has any, are as many as the groups.
+    /// Checks that the number of laws is that of the groups.
     ///
     /// # Errors
-    /// There are more or fewer.
+    /// The numbers differ.
     pub(crate) fn check(&self, groups: usize) -> Result<()> {
         match self {
             Force::Laws(laws) if laws.len() != groups => {
@@ -179,12 +191,12 @@ impl Force {
         }
     }
 
-    /// The same law for so many groups.
+    /// The same law for each of so many groups.
     pub fn of_all(law: Law, groups: usize) -> Force {
         Force::Laws(std::iter::repeat_n(Arc::new(law), groups).collect())
     }
 
-    /// The law of spring s, where it has one.
+    /// The law of spring s, if it has one.
     pub fn law(&self, springs: &Springs, s: usize) -> Option<&Arc<Law>> {
         match self {
             Force::Linear | Force::FreeRest => None,
@@ -193,7 +205,7 @@ impl Force {
         }
     }
 
-    /// Numbers of spring s beside its constant.
+    /// The number of values that spring s has besides its constant.
     fn parameters(&self, springs: &Springs, s: usize) -> usize {
         match (self, self.law(springs, s)) {
             (_, Some(law)) => law.parameters.len(),
@@ -203,15 +215,16 @@ impl Force {
         }
     }
 
-    /// Where the numbers of each spring begin among those of a cell, and how many those are, `[springs + 1]`.
+    /// The index at which the values of each spring begin among those of a cell, and their total number,
+    /// `[springs + 1]`.
     pub fn places(&self, springs: &Springs) -> Vec<usize> {
         let mut places = vec![0];
         (0..springs.len()).for_each(|s| places.push(places[s] + self.parameters(springs, s)));
         places
     }
 
-    /// The force `T` of spring s where it measures `c`, and `rest` on the undeformed cell; `parameters` are those of
-    /// the spring.
+    /// The force `T` of spring s with the measure `c`, and the measure `rest` on the undeformed cell; `parameters` are
+    /// those of the spring.
     pub fn tension(&self, springs: &Springs, s: usize, constant: f64, parameters: &[f64], [c, rest]: [f64; 2]) -> f64 {
         match (self, self.law(springs, s)) {
             (_, Some(law)) => law.force(c, rest, parameters),
@@ -222,7 +235,7 @@ impl Force {
     }
 }
 
-/// Values of a law that need no memory of their own.
+/// The number of values that are kept on the stack; most laws have fewer.
 const ROOM: usize = 12;
 
 /// Calls `work` with the values of the variables and parameters.

@@ -1,4 +1,4 @@
-//! What a spring measures, c(x), with its first and second derivatives: all that its force and its tangent need.
+//! What a spring measures, c(x), with its first and second derivatives, from which its force and tangent follow.
 
 use super::content::Content;
 use super::patch::Patch;
@@ -7,36 +7,36 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Jet};
 use std::sync::Arc;
 
-/// One number c of the positions of some points.
+/// One number c that depends on the positions of some points.
 #[derive(Debug, Clone)]
 pub enum Measure {
-    /// The distance of two points, m.
+    /// The distance of two points, in m.
     Length,
     /// The area (m²) or volume (m³) of a cell, by its quadrature.
     Content(Arc<Element>),
-    /// The part of it that belongs to one point of the quadrature rule, `w |J|`.
+    /// The part of the content that belongs to one quadrature point, `w |J|`.
     PointContent(Arc<Element>, usize),
-    /// The area or the length that two tangents or one span at the single point of this table.
+    /// The length or area that one tangent or two tangents span at the single point of this table.
     Span(Arc<Tabulation>),
-    /// A weighted sum of contents, over the cells of a patch.
+    /// A weighted sum of the contents of the cells of a patch.
     Patch(Arc<Patch>),
-    /// A function of the points' coordinates, in the order x₀, y₀, (z₀,) x₁, …
+    /// A function of the coordinates of the points, in the order x₀, y₀, (z₀,) x₁, …
     Function(Arc<Expr>),
 }
 
-/// A spring's pull at given positions.
+/// Energy, force and tangent of a spring at given positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
-    /// U, of a linear spring `½ k (c − c₀)²`, J.
+    /// The energy U, in J; `½ k (c − c₀)²` for a linear spring.
     pub energy: f64,
-    /// On its points, `−T ∇c`, of a linear spring with `T = k (c − c₀)`, `[points × dimension]`, N.
+    /// The forces on its points, `−T ∇c`, `[points × dimension]`, N; `T = k (c − c₀)` for a linear spring.
     pub force: Vec<f64>,
-    /// `T' ∇c ∇cᵀ + T ∇∇c`, `[points·dimension × points·dimension]`, N/m.
+    /// The tangent `T' ∇c ∇cᵀ + T ∇∇c`, `[points·dimension × points·dimension]`, N/m.
     pub tangent: Vec<f64>,
 }
 
 impl Measure {
-    /// The function that a kind measures on `nodes` points of `dimension` coordinates, for the kinds that have a formula.
+    /// The function that a kind measures on `nodes` points with `dimension` coordinates, for kinds that have a formula.
     ///
     /// # Errors
     /// The kind has no formula for so many points.
@@ -51,7 +51,7 @@ impl Measure {
         formula.expression(&text(&formula))
     }
 
-    /// The squared distances of the points 0-1, 2-3, … added up, m².
+    /// The sum of the squared distances of the points 0-1, 2-3, …, in m².
     ///
     /// # Errors
     /// Those of an expression.
@@ -64,7 +64,7 @@ impl Measure {
         formula.expression(&(0..pairs).map(square).collect::<Vec<_>>().join(" + "))
     }
 
-    /// The distance of the centre of the first `side` points from that of the `side` others, m.
+    /// The distance between the centres of the first `side` points and of the next `side` points, in m.
     ///
     /// # Errors
     /// Those of an expression.
@@ -79,7 +79,7 @@ impl Measure {
         formula.expression(&format!("sqrt({})", dot(&u, &u)))
     }
 
-    /// c and its derivatives at the positions `x`, `[points × dimension]`, m.
+    /// c and its first and second derivatives at the positions `x`, `[points × dimension]`, m.
     pub fn jet(&self, x: &[f64], dimension: usize) -> Jet {
         match self {
             Measure::Length => length(x, dimension),
@@ -103,7 +103,7 @@ impl Measure {
         }
     }
 
-    /// `∇c` at the positions `x`.
+    /// The gradient `∇c` at the positions `x`, `[points × dimension]`.
     pub fn gradient(&self, x: &[f64], dimension: usize) -> Vec<f64> {
         match self {
             Measure::Function(function) => Jet::gradient(function, x),
@@ -115,12 +115,13 @@ impl Measure {
         }
     }
 
-    /// The pull of a spring with this constant and rest measure at the positions `x`, `[points × dimension]`, m.
+    /// The response of a linear spring with this constant and rest measure at the positions `x`,
+    /// `[points × dimension]`, m.
     pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> Response {
         self.respond_by(|c| linear(constant, c - rest), x, dimension)
     }
 
-    /// The pull of a spring whose energy U, force `T = U'` and slope `T'` are `law(c)`.
+    /// The response of a spring whose energy U, force `T = U'` and slope `T'` are `law(c)`.
     pub fn respond_by(&self, law: impl Fn(f64) -> [f64; 3], x: &[f64], dimension: usize) -> Response {
         let Jet { value, gradient, hessian } = self.jet(x, dimension);
         let n = gradient.len();
@@ -134,12 +135,12 @@ impl Measure {
     }
 }
 
-/// Energy, force and its slope of a linear spring: `½ k x²`, `k x`, `k`.
+/// Energy, force and slope of a linear spring: `½ k x²`, `k x`, `k`.
 pub fn linear(constant: f64, change: f64) -> [f64; 3] {
     [constant * change * change / 2.0, constant * change, constant]
 }
 
-/// `ℓ = ‖d‖`, `∇ℓ = (−n, n)`, `∇∇ℓ = ±(I − n nᵀ)/ℓ`.
+/// The distance of two points: `ℓ = ‖d‖`, `∇ℓ = (−n, n)`, `∇∇ℓ = ±(I − n nᵀ)/ℓ`.
 fn length(x: &[f64], d: usize) -> Jet {
     let (a, b) = x.split_at(d);
     let value = super::distance(a, b);

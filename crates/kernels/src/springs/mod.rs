@@ -1,6 +1,9 @@
-//! The springs of an element: each measures one number c(x), and pulls with k (c − c₀) along its gradient g = ∇c.
+//! The springs of an element. Each measures one number c(x) of the positions of its nodes and pulls with k (c − c₀)
+//! along g = ∇c.
 //!
-//! At rest the tangent stiffness is `K(k) = Σ_s k_s g_s g_sᵀ`, so a fit needs nothing of a spring but g.
+//! At rest the tangent stiffness is `K(k) = Σ_s k_s g_s g_sᵀ`, so that a fit needs only the gradients g of the springs.
+//!
+//! Theory: pages *Stiffness* and *Exact networks* of the book.
 
 mod content;
 mod law;
@@ -20,43 +23,47 @@ use crate::stiffness::Geometry;
 use crate::symbolic::{Differentiable, Expr, Jet};
 use std::sync::Arc;
 
-/// The springs of one element type that a fit uses: length springs first, then those that measure a function of some
-/// nodes, then those of exact networks on areas and contents at quadrature points, then at most one on the cell's content.
+/// The springs of one element type that a fit uses.
+///
+/// Their order is: length springs; springs that measure a function of some nodes; the springs of exact networks, on
+/// areas and then on contents at quadrature points; and at most one spring on the content of the whole cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Springs {
-    /// Of the cell.
+    /// The dimension of the cell.
     pub(crate) dimension: usize,
-    /// Coordinates of a node, more than the dimension on surfaces and curves.
+    /// The number of coordinates of a node; more than the dimension on surfaces and curves.
     pub(crate) space: usize,
     pub(crate) nodes: usize,
-    /// Node pairs of the length springs.
+    /// The node pairs of the length springs.
     pub(crate) pairs: Vec<[usize; 2]>,
-    /// Angles, areas, volumes, couplings and users' own.
+    /// Springs on angles, areas, volumes, couplings and users' expressions.
     pub(crate) functions: Vec<FunctionSpring>,
-    /// What the area springs of exact networks measure: the single point of a table with two tangents.
+    /// What the area springs of exact networks measure: each is a table with a single point and two tangents.
     pub(crate) areas: Vec<Arc<Tabulation>>,
-    /// The quadrature points at which springs measure the content, as those of exact networks do.
+    /// The quadrature points at which springs of exact networks measure the content.
     pub(crate) points: Vec<usize>,
-    /// Whether the last spring measures the cell's area or volume.
+    /// The kind of the last spring, if it measures the area or volume of the cell.
     pub(crate) content: Option<SpringKind>,
     /// The group of each spring, as an index into `names`.
     pub(crate) groups: Vec<usize>,
     pub(crate) names: Vec<String>,
-    /// Length springs that share a node: `(s, t)`, s < t, `(g_s · g_t)² = (n_s · n_t)²`; all others are orthogonal.
+    /// Pairs `(s, t)`, s < t, of length springs that share a node, for which `(g_s · g_t)² = (n_s · n_t)²`; all other
+    /// pairs are orthogonal.
     pub(crate) touching: Vec<(usize, usize)>,
-    /// Those of them that join the same two nodes.
+    /// Those of these pairs that join the same two nodes.
     pub(crate) parallel: Vec<(usize, usize)>,
 }
 
 /// A spring on a function of the positions of some nodes of the element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FunctionSpring {
+    /// What it measures.
     pub kind: SpringKind,
-    /// Nodes of the element.
+    /// The nodes of the element, in the order of the function's coordinates.
     pub nodes: Vec<usize>,
-    /// Of their coordinates, in this order.
+    /// The function of the coordinates of these nodes.
     pub function: Arc<Expr>,
-    /// On a surface or curve in space: the same of the coordinates in space.
+    /// On a surface or curve in space: the same measure as a function of the coordinates in space.
     pub in_space: Option<Arc<Expr>>,
 }
 
@@ -64,7 +71,7 @@ impl Springs {
     /// The named groups of the element, or all that are not optional.
     ///
     /// # Errors
-    /// A name is no group of this element, or a group needs a cell that fills its space.
+    /// The element has no group of this name, or a group requires a cell that fills its space.
     pub fn select(element: &Element, names: Option<&[String]>) -> Result<Springs> {
         let mut chosen = element.select_groups(names)?;
         chosen.sort_by_key(|g| (g.kind != SpringKind::Length, g.is_content()));
@@ -123,7 +130,8 @@ impl Springs {
         Ok(springs)
     }
 
-    /// The length springs of these indices, then springs on functions and on the content, each with the name of its group.
+    /// The length springs with these indices, then springs on functions and on the content, each with the name of its
+    /// group.
     pub(crate) fn with(
         &self,
         lengths: &[usize],
@@ -157,9 +165,9 @@ impl Springs {
         springs
     }
 
-    /// The springs of an exact network: between all pairs of nodes; with `areas`, on those that pairs of tangents span at the
-    /// quadrature points; and on the content there. Where there is one point alone, its content is that of the cell. With
-    /// `whole`, one more measures the content of the cell.
+    /// The springs of an exact network: between all pairs of nodes; with `areas`, on the areas that pairs of tangents
+    /// span at the quadrature points; and on the content at these points. A single point measures the content of the
+    /// cell. With `whole`, one more spring measures the content of the cell.
     pub(crate) fn exact(element: &Element, areas: bool, whole: bool) -> Springs {
         let (table, dimension, nodes) = (&element.tabulation, element.dimension(), element.nodes());
         let kind = [None, Some(SpringKind::Area), Some(SpringKind::Volume)][dimension - 1];
@@ -190,7 +198,7 @@ impl Springs {
         s >= self.pairs.len() + self.functions.len() + self.areas.len()
     }
 
-    /// Nodes and measure of every spring of the element, in its own plane or line.
+    /// Nodes and measure of every spring of the element, in the cell's own plane or line.
     pub fn measures(&self, element: &Arc<Element>) -> Vec<(Vec<usize>, Measure)> {
         let every = || (0..self.nodes).collect();
         let lengths = self.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
@@ -201,10 +209,10 @@ impl Springs {
         lengths.chain(functions).chain(areas).chain(points).chain(content).collect()
     }
 
-    /// That they are of this element, or of one with as many nodes and dimensions.
+    /// Checks that the springs belong to this element, or to one with as many nodes and dimensions.
     ///
     /// # Errors
-    /// They are not.
+    /// They do not.
     pub fn check(&self, element: &Element) -> Result<()> {
         let expected = (element.nodes(), element.dimension(), element.space());
         if (self.nodes, self.dimension, self.space) != expected {
@@ -216,42 +224,42 @@ impl Springs {
         Ok(())
     }
 
-    /// Of the cell.
+    /// The dimension of the cell.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// Coordinates of a node, more than the dimension on surfaces and curves.
+    /// The number of coordinates of a node; more than the dimension on surfaces and curves.
     pub fn space(&self) -> usize {
         self.space
     }
 
-    /// Of the cell.
+    /// The number of nodes of the cell.
     pub fn nodes(&self) -> usize {
         self.nodes
     }
 
-    /// Node pairs of the length springs.
+    /// The node pairs of the length springs.
     pub fn pairs(&self) -> &[[usize; 2]] {
         &self.pairs
     }
 
-    /// Angles, areas, volumes, couplings and users' own.
+    /// The springs on angles, areas, volumes, couplings and users' expressions.
     pub fn functions(&self) -> &[FunctionSpring] {
         &self.functions
     }
 
-    /// What area springs measure: the single point of a table with two tangents.
+    /// What the area springs of exact networks measure: each is a table with a single point and two tangents.
     pub fn areas(&self) -> &[Arc<Tabulation>] {
         &self.areas
     }
 
-    /// The quadrature points at which springs measure the content.
+    /// The quadrature points at which springs of exact networks measure the content.
     pub fn points(&self) -> &[usize] {
         &self.points
     }
 
-    /// What the last spring measures, where that is the cell's area or volume.
+    /// The kind of the last spring, if it measures the area or volume of the cell.
     pub fn content(&self) -> Option<SpringKind> {
         self.content
     }
@@ -261,26 +269,28 @@ impl Springs {
         &self.groups
     }
 
-    /// Of the groups.
+    /// The names of the groups.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
+    /// The number of springs.
     pub fn len(&self) -> usize {
         self.groups.len()
     }
 
+    /// Whether there are no springs.
     pub fn is_empty(&self) -> bool {
         self.groups.is_empty()
     }
 
-    /// Writes the rows g_s, `[springs × nodes·dimension]`, of the element with nodes at `x`, `[nodes × dimension]`.
+    /// Writes the rows g_s, `[springs × nodes·dimension]`, of the element with nodes at `x`, `[nodes × dimension]`, m.
     ///
-    /// A length spring's g is dimensionless: −n at its first node and n at its second. That of the content is
-    /// `∫ ∇N dV`, in m² (m in two dimensions), so its constant is in N/m⁵ (N/m³).
+    /// The g of a length spring has no unit: −n at its first node and n at its second. That of the content is
+    /// `∫ ∇N dV`, in m² (in two dimensions in m), so that its constant is in N/m⁵ (N/m³).
     ///
     /// # Panics
-    /// `x` or the geometry is that of an element with fewer nodes.
+    /// If `x` or the geometry belongs to an element with fewer nodes.
     pub fn gradients(&self, x: &[f64], geometry: &Geometry, g: &mut Vec<f64>) {
         let d = self.dimension;
         let size = self.nodes * d;
@@ -307,11 +317,11 @@ impl Springs {
         }
     }
 
-    /// The rows of the springs on functions alone, `[functions × nodes·dimension]`, into rows of zeros. False if one is zero or
-    /// not finite.
+    /// Writes the rows of the springs on functions alone, `[functions × nodes·dimension]`, into `rows`, which must be
+    /// zero. False if a row is zero or not finite.
     ///
     /// # Panics
-    /// A length is another.
+    /// If `rows` has another length.
     pub fn function_gradients<T: Differentiable>(&self, x: &[T], rows: &mut [T]) -> bool {
         let d = self.dimension;
         let size = self.nodes * d;
@@ -319,7 +329,7 @@ impl Springs {
             let at: Vec<T> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).cloned().collect();
             let gradient = Jet::gradient(&spring.function, &at);
             for (&a, g) in spring.nodes.iter().zip(gradient.chunks_exact(d)) {
-                // Added: a coupling may name a node twice.
+                // Added, because a coupling may name a node twice.
                 row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row = row.clone() + g);
             }
         }
@@ -330,9 +340,9 @@ impl Springs {
     }
 }
 
-/// The pairs of tangents, as sums of the columns t₁, t₂, t₃ of the Jacobian, that span the areas `|n_k|` and `|n_k + n_l|`,
-/// k < l, of the columns n of its cofactor matrix: on a tetrahedron, twice the areas of three faces and those of three pairs
-/// of opposite edges.
+/// The pairs of tangents, as sums of the columns t₁, t₂, t₃ of the Jacobian, that span the areas `|n_k|` and
+/// `|n_k + n_l|`, k < l, with n the columns of its cofactor matrix. On a tetrahedron these are twice the areas of three
+/// faces and of the parallelograms of three pairs of opposite edges.
 const SPANS: [[[f64; 3]; 2]; 6] = [
     [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
@@ -356,7 +366,7 @@ fn area_tables(table: &Tabulation) -> Vec<Arc<Tabulation>> {
     (0..table.points()).flat_map(spanned).collect()
 }
 
-/// The springs `(s, t)`, s < t, that have at least `nodes` nodes in common.
+/// The pairs of springs `(s, t)`, s < t, that have at least `nodes` nodes in common.
 fn sharing(pairs: &[[usize; 2]], nodes: usize) -> Vec<(usize, usize)> {
     let common = |s: usize, t: usize| pairs[s].iter().filter(|node| pairs[t].contains(node)).count();
     (0..pairs.len()).flat_map(|t| (0..t).filter(move |&s| common(s, t) >= nodes).map(move |s| (s, t))).collect()

@@ -1,4 +1,4 @@
-//! The content of a patch: shares of the contents of the cells around a node.
+//! The content of a patch: a weighted sum of the contents of the cells around a node.
 
 use super::content::Content;
 use crate::element::Element;
@@ -6,11 +6,12 @@ use crate::stiffness::gather;
 use crate::symbolic::Jet;
 use std::sync::Arc;
 
-/// `Σ_c share_c V_c`, in m² or m³, of cells of one element.
+/// The content `Σ_c share_c V_c` of cells of one element, in m² or m³.
 #[derive(Debug, Clone)]
 pub struct Patch {
+    /// The element of all cells.
     pub element: Arc<Element>,
-    /// The nodes of each cell, as places among the points of the patch, and its share.
+    /// The nodes of each cell, as indices into the points of the patch, and the share of the cell.
     pub cells: Vec<(Vec<usize>, f64)>,
 }
 

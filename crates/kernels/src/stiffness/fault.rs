@@ -1,17 +1,24 @@
-//! Why an element has no stiffness.
+//! Reasons why an element has no stiffness.
 
 /// Why an element has no stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fault {
-    /// The Jacobian determinant is negative at every quadrature point: the nodes are numbered the other way round.
+    /// The Jacobian determinant is negative at every quadrature point: the nodes are numbered in the opposite order.
     Reversed,
-    /// The Jacobian changes sign, or vanishes somewhere; the quadrature point with the least determinant.
-    Tangled { point: usize, determinant: f64, largest: f64 },
-    /// The Jacobian vanishes at every quadrature point: no length, area or volume.
+    /// The Jacobian determinant changes sign, or vanishes at some quadrature point.
+    Tangled {
+        /// The quadrature point with the least determinant.
+        point: usize,
+        /// The determinant there.
+        determinant: f64,
+        /// The largest determinant over the points.
+        largest: f64,
+    },
+    /// The Jacobian determinant vanishes at every quadrature point: the cell has no length, area or volume.
     Flat,
-    /// One of its nodes is there twice.
+    /// Two nodes of the cell are the same.
     Collapsed,
-    /// What a spring measures has no finite gradient, or none at all.
+    /// The measure of a spring has no finite gradient, or its gradient is zero.
     Unmeasured,
 }
 

@@ -1,28 +1,31 @@
 //! One element at large deformation: energy, nodal forces and tangent of a hyperelastic material.
+//!
+//! Theory: page *Stiffness* of the book.
 
 use super::Geometry;
 use crate::material::{Energy, State, Tangent};
 use nalgebra::{DMatrix, Matrix3};
 
-/// Steps of the search for the stretch across a plane that leaves no stress there.
+/// The largest number of steps of the search for the stretch through the thickness that leaves no stress there.
 const STEPS: usize = 60;
 
-/// What an element does at given positions.
+/// Energy, forces and tangent of an element at given positions.
 #[derive(Debug, Clone)]
 pub struct Response {
-    /// `∫ W dV`, J.
+    /// The energy `∫ W dV`, in J.
     pub energy: f64,
-    /// `∂/∂x_a ∫ W dV = ∫ P ∇N_a dV`, `[nodes × dimension]`, N.
+    /// The gradient of the energy `∂/∂x_a ∫ W dV = ∫ P ∇N_a dV`, `[nodes × dimension]`, N.
     pub force: Vec<f64>,
-    /// `∫ ∇N_a · (∂P/∂F) ∇N_b dV`, `[nodes·dimension × nodes·dimension]`, N/m.
+    /// The tangent `∫ ∇N_a · (∂P/∂F) ∇N_b dV`, `[nodes·dimension × nodes·dimension]`, N/m.
     pub tangent: DMatrix<f64>,
 }
 
 impl Geometry {
-    /// The response with the nodes at `x`, `[nodes × dimension]`, m, the geometry being that at rest. `F = Σ_a x_a ∇N_aᵀ`, in
-    /// the plane with the stretch across it that the state has. `None` where the energy is not finite.
+    /// The response with the nodes at `x`, `[nodes × dimension]`, m, where `self` is the geometry at rest.
+    /// `F = Σ_a x_a ∇N_aᵀ`; in the plane F has the stretch through the thickness that the state implies. `None` if the
+    /// energy is not finite.
     ///
-    /// The rule of the term λ (div u)² has no part in it.
+    /// The separate quadrature rule of the term λ (div u)² is not used here.
     pub fn respond(&self, energy: &Energy, state: State, x: &[f64]) -> Option<Response> {
         let (n, d) = (self.nodes, self.dimension);
         let mut response = Response { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
@@ -42,7 +45,7 @@ impl Geometry {
                 for k in 0..d {
                     let row = a * d + k;
                     response.force[row] += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
-                    // ∇N_a · ∂P_k·/∂F, then with every ∇N_b
+                    // ∇N_a · ∂P_k·/∂F, then its product with every ∇N_b.
                     let half: Vec<f64> =
                         (0..9).map(|s| v * (0..d).map(|l| ga[l] * tangent[(3 * k + l, s)]).sum::<f64>()).collect();
                     for (b, gb) in grad.chunks_exact(d).enumerate() {
@@ -57,8 +60,8 @@ impl Geometry {
         Some(response)
     }
 
-    /// The nodal forces of [`Geometry::respond`] alone, into `force`; false where the energy is not finite, or where less than
-    /// the share `upright` of the volume is left at a quadrature point (of the area in the plane).
+    /// Writes the nodal forces of [`Geometry::respond`] alone into `force`. False if the energy is not finite, or if
+    /// less than the share `upright` of the volume (in the plane of the area) is left at a quadrature point.
     pub fn forces(&self, energy: &Energy, state: State, x: &[f64], upright: f64, force: &mut [f64]) -> bool {
         let (n, d) = (self.nodes, self.dimension);
         force.fill(0.0);
@@ -85,14 +88,15 @@ impl Geometry {
 }
 
 impl Geometry {
-    /// The least det F over the quadrature points, the geometry being that at rest; in the plane of F there.
+    /// The least det F over the quadrature points, where `self` is the geometry at rest; in the plane that of the F in
+    /// the plane.
     pub fn least_determinant(&self, x: &[f64]) -> f64 {
         let points = self.gradients.chunks_exact(x.len());
         points.map(|grad| deformation(grad, x, self.dimension).determinant()).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// `F = Σ_a x_a ∇N_aᵀ`, with the identity across planes and rods.
+/// `F = Σ_a x_a ∇N_aᵀ`, extended by the identity for planes and rods.
 fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
     let mut f = Matrix3::identity();
     (0..d).for_each(|k| f[(k, k)] = 0.0);
@@ -106,8 +110,8 @@ fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
     f
 }
 
-/// The response with the stretches along the `free` axes that leave no stress along them, condensed to the others. All free
-/// stretches are the same.
+/// The response with stretches along the `free` axes that leave no stress along them, condensed to the other axes. All
+/// free stretches are equal.
 fn without_stress(energy: &Energy, mut f: Matrix3<f64>, free: &[usize]) -> Option<(f64, Matrix3<f64>, Tangent)> {
     let place = |k: usize| 4 * k;
     let mut step = 1.0;
@@ -116,7 +120,7 @@ fn without_stress(energy: &Energy, mut f: Matrix3<f64>, free: &[usize]) -> Optio
         let pull: f64 = free.iter().map(|&k| stress[(k, k)]).sum();
         let stiffness: f64 = free.iter().flat_map(|&k| free.iter().map(move |&l| tangent[(place(k), place(l))])).sum();
         if !(w.is_finite() && stiffness > 0.0) {
-            // Too far: half of the last step back.
+            // Too far: go back by half of the last step.
             step /= 2.0;
             free.iter().for_each(|&k| f[(k, k)] = (f[(k, k)] + 1.0) / 2.0);
             if step < 1e-6 {

@@ -1,4 +1,6 @@
-//! The stiffness of one element: its geometry at the quadrature points, the strain energy, and R.
+//! The stiffness of one element: its geometry at the quadrature points, and `R = ∫ Bᵀ D B dV`.
+//!
+//! Theory: page *Stiffness* of the book.
 
 mod fault;
 mod large;
@@ -13,21 +15,24 @@ use crate::material::Moduli;
 use crate::scalar::{Scalar, adjugate, multiple};
 use nalgebra::DMatrix;
 
-/// Gradients of the shape functions and volumes at the quadrature points of one element, or of one per lane.
+/// Gradients of the shape functions and volumes at the quadrature points, of one element or of one per SIMD lane.
 #[derive(Debug, Clone)]
 pub struct Geometry<T = f64> {
+    /// The number of coordinates of a node.
     pub dimension: usize,
+    /// The number of nodes.
     pub nodes: usize,
-    /// `∂N_a/∂x_k`, `[points × nodes × dimension]`, 1/m.
+    /// The gradients `∂N_a/∂x_k`, `[points × nodes × dimension]`, 1/m.
     pub gradients: Vec<T>,
-    /// `w_q |J_q|`, `[points]`, m³ (m² in two dimensions).
+    /// The volumes `w_q |J_q|` of the points, `[points]`, m³ (m² in two dimensions).
     pub volumes: Vec<T>,
-    /// The same for the term λ (div u)²; empty where that has the same quadrature.
+    /// The volumes for the term λ (div u)²; empty if it has the same quadrature.
     pub volumetric: Vec<T>,
 }
 
 impl<T: Scalar> Geometry<T> {
-    /// Room for any element of this tabulation, filled by [`Geometry::update`]; `any` says the kind of number.
+    /// Memory for any element of this tabulation, to be filled by [`Geometry::update`]; `any` selects the kind of
+    /// number.
     pub fn like(any: &T, table: &Tabulation<T::Constant>) -> Geometry<T> {
         Geometry {
             dimension: table.dimension,
@@ -38,8 +43,8 @@ impl<T: Scalar> Geometry<T> {
         }
     }
 
-    /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m. Returns false where a Jacobian is not
-    /// safely positive, see [`Scalar::delicate`]; what is wrong then, [`Geometry::set`] can tell.
+    /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m. Returns false if a Jacobian determinant
+    /// is not safely positive, see [`Scalar::delicate`]; [`Geometry::set`] then finds the fault.
     pub fn update(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let n = self.nodes;
         x[0].vectorize(
@@ -52,7 +57,7 @@ impl<T: Scalar> Geometry<T> {
         )
     }
 
-    /// [`Geometry::update`] in D dimensions; a number of nodes that is known to the compiler unrolls the loops.
+    /// [`Geometry::update`] in D dimensions; a number of nodes that the compiler knows lets it unroll the loops.
     #[inline(always)]
     pub(crate) fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let x = &x.as_chunks::<D>().0[..n];
@@ -86,11 +91,12 @@ impl<T: Scalar> Geometry<T> {
         positive
     }
 
+    /// The number of quadrature points.
     pub fn points(&self) -> usize {
         self.volumes.len()
     }
 
-    /// `∂N_a/∂x_k`, the volume, and the volume for the term λ (div u)², at every quadrature point.
+    /// For every quadrature point `∂N_a/∂x_k`, its volume, and its volume for the term λ (div u)².
     #[inline(always)]
     pub fn each_point(&self) -> impl Iterator<Item = (&[T], &T, &T)> {
         let volumetric = if self.volumetric.is_empty() { &self.volumes } else { &self.volumetric };
@@ -108,7 +114,8 @@ impl<T: Scalar> Geometry<T> {
         sum
     }
 
-    /// `∫ ∂N_a/∂x_k dV`, `[nodes × dimension]`: the gradient of the element's content with respect to its nodes.
+    /// `∫ ∂N_a/∂x_k dV`, `[nodes × dimension]`: the gradient of the content of the element in the positions of its
+    /// nodes.
     #[inline(always)]
     pub fn content_gradient(&self) -> Vec<T> {
         let size = self.nodes * self.dimension;
@@ -123,8 +130,8 @@ impl<T: Scalar> Geometry<T> {
 }
 
 impl Geometry {
-    /// The content that a spring at quadrature point q measures: that of the weight of the point, or, where it has none,
-    /// of its weight in the term λ (div u)².
+    /// The content that a spring at quadrature point q measures: the volume of the point or, if that is zero, its
+    /// volume in the term λ (div u)².
     pub fn point_content(&self, q: usize) -> f64 {
         match self.volumes[q] {
             0.0 => self.volumetric.get(q).copied().unwrap_or(0.0),
@@ -132,14 +139,14 @@ impl Geometry {
         }
     }
 
-    /// Its gradient `w_q |J_q| ∇N_a` with respect to the nodes, `[nodes × dimension]`.
+    /// The gradient `w_q |J_q| ∇N_a` of that content in the positions of the nodes, `[nodes × dimension]`.
     pub fn point_content_gradient(&self, q: usize) -> Vec<f64> {
         let size = self.nodes * self.dimension;
         let volume = self.point_content(q);
         self.gradients[q * size..(q + 1) * size].iter().map(|g| volume * g).collect()
     }
 
-    /// Room for any element of this tabulation; filled by [`Geometry::set`].
+    /// Memory for any element of this tabulation, to be filled by [`Geometry::set`].
     pub fn new(table: &Tabulation) -> Geometry {
         Geometry::like(&0.0, table)
     }
@@ -159,8 +166,8 @@ impl Geometry {
         }
     }
 
-    /// The least `det J / Π ‖J_l‖` over the quadrature points of the element with nodes at `x`, J_l the columns of J: 1 for right angles,
-    /// 0 for no volume, negative where it is turned inside out.
+    /// The least `det J/Π ‖J_l‖` over the quadrature points of the element with nodes at `x`, with J_l the columns of
+    /// J: 1 for right angles, 0 for no volume, negative if the element is inverted.
     pub fn quality(table: &Tabulation, x: &[f64]) -> f64 {
         match table.dimension {
             2 => quality::<2>(table, x),
@@ -169,7 +176,7 @@ impl Geometry {
         }
     }
 
-    /// The fault of an element whose Jacobian is not safely positive; none if only the bound left the range of `f64`.
+    /// The fault of an element whose Jacobian is not safely positive; none if only the bound has overflowed.
     fn fault<const D: usize>(&self, table: &Tabulation, x: &[f64]) -> Result<(), Fault> {
         let (mut positive, mut negative) = (0, 0);
         for dn in table.gradients.chunks_exact(table.nodes * D) {
@@ -232,11 +239,12 @@ impl Geometry {
     }
 }
 
-/// Calls `visit(cell, x, geometry)` for every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × space]`,
-/// m; `x` the positions of the cell's nodes, in its own plane or line where it is less than its space.
+/// Calls `visit(cell, x, geometry)` for every cell. `connectivity` is `[cells × nodes]` into `points`,
+/// `[points × space]`, m; `x` holds the positions of the nodes of the cell, in its own plane or line if its dimension
+/// is less than that of its space.
 ///
 /// # Errors
-/// The first cell that is reversed, tangled or flat, counted from 0.
+/// A cell is reversed, tangled or flat. The error gives the first such cell, counted from 0.
 pub fn each_cell(
     table: &Tabulation,
     points: &[f64],
@@ -254,7 +262,7 @@ pub fn each_cell(
     Ok(())
 }
 
-/// `J_kl = ∂x_k/∂ξ_l = Σ_a x_ak ∂N_a/∂ξ_l`.
+/// The Jacobian `J_kl = ∂x_k/∂ξ_l = Σ_a x_ak ∂N_a/∂ξ_l`.
 #[inline(always)]
 fn jacobian<T: Scalar, const D: usize>(x: &[[T; D]], dn: &[[T::Constant; D]]) -> [[T; D]; D] {
     let zero = x[0][0].zero();
@@ -274,7 +282,7 @@ fn quality<const D: usize>(table: &Tabulation, x: &[f64]) -> f64 {
     let of = |dn: &[f64]| {
         let j = jacobian(x.as_chunks::<D>().0, dn.as_chunks::<D>().0);
         let (_, determinant) = adjugate(&j);
-        // Length by length: their product may be beyond the range of numbers.
+        // Divided length by length, because the product of the lengths may overflow.
         (0..D).fold(determinant, |ratio, l| {
             let length = (0..D).map(|k| j[k][l] * j[k][l]).sum::<f64>().sqrt();
             if length > 0.0 { ratio / length } else { 0.0 }
@@ -283,7 +291,7 @@ fn quality<const D: usize>(table: &Tabulation, x: &[f64]) -> f64 {
     table.gradients.chunks_exact(table.nodes * D).map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// The product of the squared lengths of the columns: `det² J` is at most that (Hadamard).
+/// The product of the squared lengths of the columns, which bounds `det² J` (Hadamard).
 #[inline(always)]
 fn squared_bound<T: Scalar, const D: usize>(j: &[[T; D]; D]) -> T {
     let mut bound = j[0][0].one();

@@ -1,30 +1,32 @@
-//! Where the nodes of a cell are from its first: in space, or in the cell's own plane or line where it is less than its space.
+//! The positions of the nodes of a cell relative to its first node: in space, or in the cell's own plane or line if its
+//! dimension is less than that of its space.
 //!
-//! Far from the origin coordinates have few digits left for a shape, and sums of them lose those; their differences are exact
-//! (Sterbenz 1974).
+//! Far from the origin, coordinates have few digits left for the shape of a cell, and sums of them lose these digits.
+//! Differences of nearby coordinates are exact (Sterbenz 1974).
 
 use super::fault::Fault;
 use crate::element::Tabulation;
 
-/// Room to place the nodes of one cell after the other.
+/// Memory to place the nodes of one cell after the other.
 ///
-/// A cell of a surface or a curve is laid into the mean of its tangent planes, orthogonally: exact for lines and flat
-/// cells, and for a slightly bent one the facet that stands for it.
+/// A cell of a surface or a curve is projected orthogonally onto the mean of its tangent planes. This is exact for
+/// lines and flat cells; a slightly curved cell is replaced by a flat facet.
 #[derive(Debug, Clone)]
 pub struct Placement {
-    /// Orthonormal vectors along the cell, `[dimension × space]`; empty where the cell fills its space.
+    /// Orthonormal vectors along the cell, `[dimension × space]`; empty if the cell fills its space.
     pub frame: Vec<f64>,
     spatial: Vec<f64>,
 }
 
 impl Placement {
+    /// Memory for the cells of an element with this table.
     pub fn new(table: &Tabulation) -> Placement {
         let embedded = table.dimension < table.space;
         let room = |size: usize| vec![0.0; if embedded { size } else { 0 }];
         Placement { frame: room(table.dimension * table.space), spatial: room(table.nodes * table.space) }
     }
 
-    /// Writes the positions of `nodes` among `points`, `[points × space]`, from the first of them into `x`,
+    /// Writes the positions of `nodes` among `points`, `[points × space]`, relative to the first of them into `x`,
     /// `[nodes × dimension]`.
     ///
     /// # Errors
@@ -74,7 +76,7 @@ impl Placement {
     }
 }
 
-/// Takes the first position from all.
+/// Subtracts the first position from all.
 fn from_first(dimension: usize, x: &mut [f64]) {
     let (first, rest) = x.split_at_mut(dimension);
     rest.chunks_exact_mut(dimension).for_each(|x| x.iter_mut().zip(&*first).for_each(|(x, o)| *x -= o));

@@ -1,28 +1,30 @@
-//! The material of a body, and what is assumed of it where an input does not say.
+//! The material of a body, and the defaults where an input gives no value.
 
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::mesh::Mesh;
 
-/// The constants of a material as an input gives them.
+/// The constants of a material, as an input gives them.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyConstants {
-    /// Pa.
+    /// Young's modulus, Pa.
     pub young: f64,
+    /// Poisson's ratio.
     pub poisson: f64,
+    /// The plane state; plane stress if absent.
     pub plane: Option<Plane>,
-    /// m.
+    /// The thickness, m.
     pub thickness: Option<f64>,
     /// The cross-section of rods, m².
     pub area: Option<f64>,
 }
 
 impl BodyConstants {
-    /// The material of the body that is meshed. A plane body may be given for one metre of its thickness, as is usual; a surface
-    /// in space is a membrane, which has a thickness.
+    /// The material of the meshed body. A plane body without a thickness is one metre thick, as is usual; a surface in
+    /// space is a membrane, and must have a thickness.
     ///
     /// # Errors
-    /// A constant is out of range, the plane state does not go with the mesh, or a surface in space has no thickness.
+    /// A constant is out of range, the mesh has no plane state, or a surface in space has no thickness.
     pub fn material(&self, mesh: &Mesh) -> Result<Material> {
         let material = self.of_dimension(mesh.cell_dimension())?;
         if is_surface(mesh) && self.thickness.is_none() {
@@ -32,17 +34,17 @@ impl BodyConstants {
         Ok(material)
     }
 
-    /// The material of a body of that dimension, one metre thick where nothing else is given.
+    /// The material of a body of this dimension, one metre thick if no thickness is given.
     ///
     /// # Errors
-    /// A constant is out of range, or the plane state does not go with the dimension.
+    /// A constant is out of range, or bodies of this dimension have no plane state.
     pub fn of_dimension(&self, dimension: usize) -> Result<Material> {
         let material = Material::for_body(dimension, self.young, self.poisson, self.plane, self.thickness)?;
         self.area.map_or(Ok(material), |area| material.with_area(area))
     }
 }
 
-/// What is assumed of the body because no input says it, as a sentence.
+/// A sentence about what is assumed of the body because no input gives it, if anything is.
 pub fn assumed(mesh: &Mesh, thickness: Option<f64>, area: Option<f64>) -> Option<String> {
     match mesh.cell_dimension() {
         2 if thickness.is_none() => {

@@ -1,4 +1,4 @@
-//! What ends a long fit early, and what it goes on from.
+//! Cancelling a long fit, and continuing it from a checkpoint.
 
 use crate::error::{Error, Result};
 use crate::file;
@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How a run may be ended early and gone on with.
+/// How a run can be cancelled and continued.
 #[derive(Debug, Default)]
 pub struct Controls {
-    /// Set from outside, it ends whole-object fits after the step they are at; the best point so far is kept.
+    /// Set from outside: whole-object fits end after their current step and keep the best point so far.
     pub cancelled: AtomicBool,
-    /// Where whole-object fits save their state every few seconds and at their end, and what they go on from if it is there.
+    /// The file to which whole-object fits save their state every few seconds and at their end, and from which they
+    /// continue if it exists.
     pub checkpoint: Option<PathBuf>,
 }
 
@@ -31,6 +32,7 @@ struct SavedFit {
     snapshot: Snapshot,
 }
 
+/// The time between two writes of a checkpoint: a crash loses no more than this.
 const INTERVAL: Duration = Duration::from_secs(5);
 
 /// The state of one fit, in memory and on disk.
@@ -46,10 +48,10 @@ impl Controls {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Asked for before the work.
+    /// Checks the checkpoint before the work starts.
     ///
     /// # Errors
-    /// What is there is no checkpoint, or none can be written.
+    /// The existing file is not a checkpoint, or none can be written.
     pub(super) fn check(&self) -> Result<()> {
         let Some(path) = &self.checkpoint else { return Ok(()) };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -73,10 +75,10 @@ impl Controls {
 }
 
 impl<'a> Saved<'a> {
-    /// The state that the fit goes on from, if there is one.
+    /// The state from which the fit continues, if there is one.
     ///
     /// # Errors
-    /// The file is no checkpoint, or its state is that of another fit of this name.
+    /// The file is not a checkpoint, or its state belongs to another fit of this name.
     pub fn open(
         controls: &'a Controls,
         name: &'a str,
@@ -101,7 +103,7 @@ impl<'a> Saved<'a> {
         self.controls.checkpoint.iter().fold(error, |error, path| error.in_file(path))
     }
 
-    /// Writes the state beside those of other fits, if the last time is a while ago.
+    /// Writes the state beside those of other fits, if the last write was some time ago or `at_once` is set.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -117,7 +119,7 @@ impl<'a> Saved<'a> {
     }
 }
 
-/// Of all that a fit begins with: the same on every machine (FNV-1a).
+/// A hash of all data with which a fit begins; it is the same on every machine (FNV-1a).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Fingerprint(u64);
 

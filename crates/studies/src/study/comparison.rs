@@ -21,36 +21,44 @@ use crate::springs::Springs;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// How often a fit is timed, unless once takes longer than `PATIENCE` seconds.
+/// The number of times a fit is timed, unless one run takes longer than `PATIENCE`.
 const RUNS: usize = 5;
+/// The time in s after which a fit is not repeated.
 const PATIENCE: f64 = 0.5;
+/// The seed of the shapes, so that every run compares the same ones.
 const SEED: u64 = 2010;
 /// The largest stretch of the shapes that are sampled for a scene.
 const SAMPLED: f64 = 0.35;
 
-/// One method on the random shapes of an element.
+/// The result of one method on the random shapes of an element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodOutcome {
+    /// The name of the fit.
     pub name: String,
+    /// The name of the solver, or `formula`.
     pub solver: &'static str,
-    /// Seconds per element over the runs: least, median, largest.
+    /// The least, median and largest time per element over the runs, in s.
     pub seconds: [f64; 3],
+    /// The number of runs.
     pub runs: usize,
+    /// The relative errors of R in the Frobenius norm.
     pub frobenius: Spread,
+    /// The relative errors of R in the induced 2-norm.
     pub spectral: Spread,
-    /// The largest relative duality gap, where there is one.
+    /// The largest relative duality gap, if the method has certificates.
     pub gap: Option<f64>,
-    /// Constants below zero, as a share of all.
+    /// The share of negative constants.
     pub negative: f64,
-    /// Of the springs on a periodic box of unit size; not of general solvers, nor of cells that fill no box.
+    /// The moduli of the springs on a periodic box of unit size; not for general solvers, nor for cells that do not
+    /// fill a box.
     pub moduli: Option<EffectiveModuli>,
 }
 
-/// Makes `shapes` random shapes of the element exact, and fits them with every objective, the spectral one with every solver, and by the published
-/// formulas that it has; on one thread.
+/// Fits exactly `shapes` random shapes of the element with every objective, the spectral one with every solver, and by
+/// the published formulas that it has; on one thread.
 ///
 /// # Errors
-/// `shapes` is 0 or so large that the shapes do not fit, or no valid shape is found.
+/// `shapes` is 0 or exceeds its bound, or no valid shape is found.
 pub fn compare_element(
     element: &Element,
     material: Material,
@@ -80,7 +88,8 @@ fn serves(method: Method, element: &Element, points: &[f64], cells: &[usize], ma
 /// Fits `shapes` random shapes of the element by each recipe, on one thread.
 ///
 /// # Errors
-/// Those of [`compare_element`]; a recipe is no fit of single elements, or a published method has no formula for this one.
+/// Those of [`compare_element`]; or a recipe does not fit single elements, or a published method has no formula for
+/// this one.
 pub fn measure_recipes(
     element: &Element,
     material: Material,
@@ -133,17 +142,17 @@ pub fn measure_recipes(
     Ok(outcomes)
 }
 
-/// The exact networks that the body has: with volume springs at points and on cells, and on patches where these can be.
+/// The exact networks that the body can have: with volume springs at points, on cells, and on patches if these exist.
 fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<NamedFit> {
     let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
     let recipes = VolumeSprings::all().map(recipe).filter(|recipe| recipe.serves(law, mesh, material));
     recipes.map(|recipe| NamedFit::of(Recipe::Exact(recipe), None)).collect()
 }
 
-/// Runs the scene with every objective in place of its own fits; with the content spring where the elements have one.
+/// Runs the scene with every objective in place of its own fits, and with the content spring if the elements have one.
 ///
 /// # Errors
-/// Those of [`run`], and a scene without loads.
+/// Those of [`run`](super::run()); or the scene has no loads.
 pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     if scene.loads().is_empty() {
         let problem = "expected at least one [[load]] to compare under, found none";
@@ -153,7 +162,7 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
     let higher_modes = mesh.blocks.iter().any(|block| block.element.has_higher_modes());
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
-    // Loads made from the mesh are linear, and need supports that hold the body without those of the scene.
+    // Generated loads are linear, and require supports that hold the body without those of the scene.
     let material = scene.material_of(&mesh)?;
     let support = load_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
     let controls = Controls::default();

@@ -1,4 +1,4 @@
-//! How large a body is.
+//! The size of a body.
 
 use crate::mesh::Mesh;
 

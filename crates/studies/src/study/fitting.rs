@@ -1,4 +1,4 @@
-//! The fit of one recipe to a body.
+//! Runs the fit of one recipe on a body.
 
 use super::fits::{NamedFit, Reference, Task};
 use super::outcome::FitOutcome;
@@ -9,10 +9,10 @@ use crate::fit::{ElementErrors, Spread, element_errors};
 use crate::material::Material;
 use crate::mesh::Mesh;
 
-/// Fits one objective on every cell and assembles the network; `reference` is needed by sampled and whole-object fits.
+/// Fits one recipe on every cell and assembles the network; `reference` is required by sampled and whole-object fits.
 ///
 /// # Errors
-/// A spring group is no group of the elements, a law does not go with the groups, or there is nothing to sample.
+/// The elements have no such spring group, a law does not belong to the groups, or there is nothing to sample.
 pub fn fit_mesh(
     mesh: &Mesh,
     material: Material,
@@ -20,7 +20,7 @@ pub fn fit_mesh(
     named: &NamedFit,
     progress: &mut Progress,
 ) -> Result<FitOutcome> {
-    // Threads start before the clock does.
+    // Threads are started before the clock.
     rayon::broadcast(|_| ());
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let fitted = named.recipe.kind().fit(&task, progress)?;

@@ -1,4 +1,4 @@
-//! The masses of a body's points.
+//! The masses of the points of a body.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Material;
@@ -9,7 +9,7 @@ use crate::range;
 /// The row sums of the mass matrix for a `density` in kg/m³, `[points]`, kg.
 ///
 /// # Errors
-/// The density is out of range, or a mass is not finite or the body has none: the key is `density`.
+/// The density is out of range, a mass is not finite, or the body has no mass; the key is `density`.
 pub fn point_masses(mesh: &Mesh, density: f64, material: Material) -> Result<Vec<f64>> {
     range::positive("density", density, "kg/m³")?;
     let masses = masses(mesh, density, material.thickness());

@@ -1,24 +1,27 @@
-//! How far a network is from the finite elements under a load.
+//! The error of a network relative to the finite elements under a load.
 
 use crate::model::Entries;
 use crate::scalar::{Sum, scaled_norm};
 
-/// What a solution may leave of the forces: a factor of a nearly singular matrix gives numbers that solve nothing.
+/// The largest relative residual of a solution. A factor of a nearly singular matrix gives numbers that do not solve
+/// the equations.
 pub const SOLVED: f64 = 1e-6;
 
-/// Distances of the network's points from those of the finite elements, in percent of the largest displacement.
+/// The distances of the points of the network from those of the finite elements, in percent of the largest
+/// displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisplacementError {
-    /// `100 √(mean_i |u_i^FEM − u_i^LEM|²) / max_i |u_i^FEM|`, over all points.
+    /// The root mean square `100 √(mean_i |u_i^FEM − u_i^LEM|²)/max_i |u_i^FEM|`, over all points.
     pub rms: f64,
-    /// `100 max_i |u_i^FEM − u_i^LEM| / max_i |u_i^FEM|`.
+    /// The maximum `100 max_i |u_i^FEM − u_i^LEM|/max_i |u_i^FEM|`.
     pub max: f64,
-    /// `100 |u_t^FEM − u_t^LEM| / |u_t^FEM|`, t the point that moves most in the finite elements.
+    /// The error `100 |u_t^FEM − u_t^LEM|/|u_t^FEM|` at the point t with the largest displacement of the finite
+    /// elements.
     pub tip: f64,
 }
 
-/// Natsupakpong and Çavuşoğlu (2010), section 3. `fem` and `lem` are `[points × dimension]`, m; `None` if the finite
-/// elements do not move, or a displacement or an error is not finite.
+/// The errors defined by Natsupakpong and Çavuşoğlu (2010), section 3. `fem` and `lem` are `[points × dimension]`, m.
+/// `None` if the finite elements do not move, or a displacement or an error is not finite.
 pub fn displacement_error(fem: &[f64], lem: &[f64], dimension: usize) -> Option<DisplacementError> {
     if !fem.iter().chain(lem).all(|u| u.is_finite()) {
         return None;
@@ -45,7 +48,7 @@ pub fn product(f: &[f64], u: &[f64]) -> f64 {
     f.iter().zip(u).map(|(f, u)| f * u).collect::<Sum>().value()
 }
 
-/// `uᵀ K u` of a symmetric matrix by its lower triangle.
+/// `uᵀ K u` of a symmetric matrix given by its lower triangle.
 pub fn square(stiffness: &Entries, u: &[f64]) -> f64 {
     let term = |entry: &faer::sparse::Triplet<usize, usize, f64>| {
         let both = if entry.row == entry.col { 1.0 } else { 2.0 };

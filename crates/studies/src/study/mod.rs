@@ -1,4 +1,12 @@
-//! Whole studies: a scene from its file to the errors and times of each fit.
+//! Whole studies: a scene, from its file to the errors and times of each fit.
+//!
+//! [`Scene`] reads and checks a scene file, and [`run`](run()) fits its springs, solves its loads with both models and
+//! compares them; the result is an [`Outcome`]. The other studies use the same parts: [`compare_element`] and
+//! [`compare_scene`] compare objectives and solvers, [`converge`] refines the mesh, [`compare_stretches`] pulls to
+//! large deformation, [`sweep`] tries extreme cases, [`inspect`] proves an element file, and [`run_paper`] repeats the
+//! experiments of a paper.
+//!
+//! Studies are silent; they report through a [`Progress`] callback.
 
 mod body;
 mod body_material;

@@ -1,4 +1,4 @@
-//! The elastic moduli that a network of springs has as a material, measured on a box that is repeated without end.
+//! The effective elastic moduli of a network of springs, measured on a periodic box.
 
 use crate::element::Element;
 use crate::error::Result;
@@ -14,20 +14,21 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Moduli of a homogenised material, that of the axes if it is not the same in all directions.
+/// The moduli of a homogenised material; if it is anisotropic, means over the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectiveModuli {
-    /// C, `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane N/m.
+    /// The stiffness C in `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane
+    /// N/m.
     pub stiffness: DMatrix<f64>,
-    /// Young's modulus, the mean of the axes.
+    /// Young's modulus, the mean over the axes, in the unit of the stiffness.
     pub young: f64,
     /// Poisson's ratio, the mean over all pairs of axes.
     pub poisson: f64,
-    /// `2 C_shear/(C₁₁ − C₁₂)`, means over the axes: one where the material is isotropic (Zener 1948).
+    /// Zener's ratio `2 C_shear/(C₁₁ − C₁₂)`, from means over the axes: 1 for an isotropic material (Zener 1948).
     pub zener: f64,
 }
 
-/// What one box of cells is made of.
+/// The cells and springs of a periodic box.
 #[derive(Debug)]
 pub struct Lattice {
     mesh: Mesh,
@@ -35,11 +36,11 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Fits the springs of `element` in a box of one cell per direction (for a simplex, of the d! that fill it), each
-    /// `size` long.
+    /// Fits the springs of `element` in a box of one cell per direction (for a simplex, of the d! cells that fill it),
+    /// each of length `size`, m.
     ///
     /// # Errors
-    /// The element's cells fill no box.
+    /// The cells of the element do not fill a box.
     pub fn fit(
         element: &Arc<Element>,
         springs: &Springs,
@@ -52,10 +53,10 @@ impl Lattice {
         })
     }
 
-    /// The same with the springs that `fit` finds for the cells, `[cells × nodes]` into the points.
+    /// As [`Lattice::fit`], with the springs that `fit` finds for the cells, `[cells × nodes]` into the points.
     ///
     /// # Errors
-    /// The element's cells fill no box, or those of `fit`.
+    /// The cells of the element do not fill a box; or those of `fit`.
     pub fn of(
         element: &Arc<Element>,
         size: &[f64],
@@ -74,20 +75,21 @@ impl Lattice {
         self
     }
 
-    /// The moduli of the springs; `None` where some strain meets no resistance.
+    /// The moduli of the springs; `None` if some strain meets no resistance.
     pub fn of_springs(&self) -> Option<EffectiveModuli> {
         let network = Network::assemble(&self.mesh, std::slice::from_ref(&self.fits));
         homogenise(&self.mesh, &network.stiffness(&self.mesh.points))
     }
 
-    /// The moduli of the finite elements, which are the material's.
+    /// The moduli of the finite elements, which are those of the material.
     pub fn of_elements(&self, material: Material) -> Option<EffectiveModuli> {
         homogenise(&self.mesh, &finite_elements(&self.mesh, material.moduli()))
     }
 }
 
-/// The moduli of a whole body under `u = ε x` on its boundary, the points inside finding their places: those of its material,
-/// the better the more points are inside. `None` where some strain meets no resistance, or no point is inside.
+/// The moduli of a whole body under `u = ε x` on its boundary, with its inner points in equilibrium. They approach
+/// those of its material as the number of inner points grows. `None` if some strain meets no resistance, or there is no
+/// inner point.
 pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<EffectiveModuli>> {
     let d = mesh.dimension;
     let on_side = |side: SideIndex| {
@@ -128,8 +130,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
     Ok(moduli(stiffness, d))
 }
 
-/// Displacements `u = ε x + ũ` with ũ the same at opposite points: `C_ij = (u_iᵀ K u_j)/V`, each ũ being the one of least
-/// energy.
+/// Displacements `u = ε x + ũ` with ũ periodic: `C_ij = (u_iᵀ K u_j)/V`, where each ũ has the least energy.
 fn homogenise(mesh: &Mesh, entries: &Entries) -> Option<EffectiveModuli> {
     let d = mesh.dimension;
     let (image, count) = images(mesh);
@@ -150,7 +151,7 @@ fn homogenise(mesh: &Mesh, entries: &Entries) -> Option<EffectiveModuli> {
         let x = mesh.point(row / d);
         (0..d).map(|l| strains[case][(row % d, l)] * x[l]).sum()
     });
-    // ũ = −(PᵀKP)⁺ PᵀK ε x, the pseudoinverse for the translations.
+    // ũ = −(PᵀKP)⁺ PᵀK ε x, with a pseudoinverse because of the translations.
     let inner = periodic.transpose() * &k * &periodic;
     let eigen = inner.symmetric_eigen();
     let floor = 1e-10 * eigen.eigenvalues.amax();
@@ -162,7 +163,7 @@ fn homogenise(mesh: &Mesh, entries: &Entries) -> Option<EffectiveModuli> {
     moduli(stiffness, d)
 }
 
-/// Points at opposite places of the box are images of each other.
+/// Points at opposite positions of the box are images of each other.
 fn images(mesh: &Mesh) -> (Vec<usize>, usize) {
     let d = mesh.dimension;
     let extent: Vec<f64> =

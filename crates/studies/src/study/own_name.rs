@@ -2,10 +2,10 @@
 
 use crate::error::{Error, Result};
 
-/// That `name` is not among `others`.
+/// Checks that `name` is not among `others`.
 ///
 /// # Errors
-/// It is; the key is `key`.
+/// It is; the error has the key `key`.
 pub fn expect_own_name<'a>(key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
     match others.any(|other| other == name) {
         true => Err(Error::expected(key, "a name of its own", format!("\"{name}\" again"))),

@@ -1,18 +1,26 @@
-//! How far a study has come.
+//! Progress reports of a study.
 
 /// What a study reports while it runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event<'a> {
-    /// `done` of `total` steps of a stage are complete.
-    Stage { name: &'a str, done: usize, total: usize },
-    /// A message for the user that does not wait for the end.
+    /// A step of a stage is complete.
+    Stage {
+        /// The name of the stage.
+        name: &'a str,
+        /// The number of finished steps.
+        done: usize,
+        /// The number of all steps.
+        total: usize,
+    },
+    /// A message for the user that should be shown at once.
     Note(&'a str),
 }
 
-/// Called with each [`Event`].
+/// A callback for each [`Event`].
 pub type Progress<'a> = dyn FnMut(Event) + 'a;
 
 impl<'a> Event<'a> {
+    /// The event that `done` of `total` steps of the stage `name` are complete.
     pub fn stage(name: &'a str, done: usize, total: usize) -> Event<'a> {
         Event::Stage { name, done, total }
     }

@@ -1,4 +1,4 @@
-//! Runs a scene: fit each objective, solve each load with both models, compare.
+//! Runs a scene: fits each objective, solves each load with both models, and compares them.
 
 use super::body::{Case, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
@@ -15,18 +15,18 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Deformation, Support};
 
-/// Runs the scene. Work is done only for what the scene names.
+/// Runs the scene. Only the work that the scene requests is done.
 ///
 /// # Errors
-/// An input is wrong: a group, a support, a load, the mesh. A network that does not stand is no error.
+/// An input is wrong: a group, a support, a load or the mesh. A network that is not stable is not an error.
 pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     run_with(scene, &Controls::default(), progress)
 }
 
-/// As [`run`]; whole-object fits may be ended early and gone on with.
+/// As [`run`]; whole-object fits can be cancelled and continued.
 ///
 /// # Errors
-/// As there, and the checkpoint is wrong or cannot be written.
+/// Those of [`run`]; or the checkpoint is wrong or cannot be written.
 pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     worked_out(scene, controls, progress).map_err(|e| scene.with_line(e))
 }
@@ -51,7 +51,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let masses = masses.map_err(|e| scene.at("material", e))?;
     let linear =
         |progress: &mut Progress| LinearBody::solve(&mesh, material.moduli(), &cases, progress).map_err(in_scene);
-    // Of the fits only those to the whole object need the body's displacements.
+    // Only fits to the whole object need the displacements of the body.
     let needed = large.is_none() && scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
     let body = if needed { Some(linear(progress)?) } else { None };
     let mut whole = WholeBody::new(&mesh, material, &support, controls);
@@ -146,7 +146,7 @@ fn held_points(mesh: &Mesh, support: &Support, cases: &[Case]) -> Vec<bool> {
     (0..mesh.point_count()).map(held).collect()
 }
 
-/// Asked for before the work, not after it.
+/// Checked before the work starts, not after it.
 fn drawable(scene: &Scene, mesh: &Mesh) -> Result<()> {
     match mesh.blocks.iter().find(|b| scene.output().vtu && b.element.formats.vtk.is_none()) {
         Some(block) => {

@@ -1,18 +1,18 @@
-//! Random shapes of an element. A seed gives the same shapes always.
+//! Random shapes of an element. The same seed always gives the same shapes.
 
 use super::random::Random;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::stiffness::Geometry;
 
-/// How far nodes are moved, in units of the reference cell.
+/// How far nodes are moved, in units of the reference cell: far enough to distort it, and most shapes remain valid.
 const JITTER: f64 = 0.15;
 
-/// Node positions of `count` elements, `[count × nodes × dimension]`: the reference cell under random affine maps, each node
-/// moved by up to 7 % of its size; those that tangle are drawn again.
+/// The node positions of `count` elements, `[count × nodes × dimension]`: the reference cell under random affine maps,
+/// with each node moved by up to 7 % of its size. Tangled shapes are drawn again.
 ///
 /// # Errors
-/// Nearly every shape tangles.
+/// Nearly every shape is tangled.
 pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f64>> {
     let d = element.dimension();
     let shapes = valid(element, count, seed, |random| {
@@ -31,8 +31,8 @@ pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f
     }
 }
 
-/// Node positions, `[nodes × dimension]`, of up to `count` elements with straight edges, far from tangled; fewer if most shapes
-/// tangle.
+/// The node positions, `[nodes × dimension]`, of up to `count` elements with straight edges, far from tangled; fewer if
+/// most shapes are tangled.
 pub fn straight_shapes(element: &Element, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let d = element.dimension();
     valid(element, count, seed, |random| {
@@ -49,13 +49,13 @@ pub fn straight_shapes(element: &Element, count: usize, seed: u64) -> Vec<Vec<f6
     })
 }
 
-/// The identity with entries of up to `size` added, `[dimension × dimension]`.
+/// The identity plus random entries of up to `size`, `[dimension × dimension]`.
 fn affine(dimension: usize, size: f64, random: &mut Random) -> Vec<f64> {
     let identity = |i: usize| f64::from(u8::from(i.is_multiple_of(dimension + 1)));
     (0..dimension * dimension).map(|i| identity(i) + size * random.symmetric()).collect()
 }
 
-/// The first `count` of the shapes drawn that are not tangled, of a hundred times as many at most.
+/// The first `count` shapes that are not tangled, among at most a hundred times as many.
 fn valid(element: &Element, count: usize, seed: u64, mut draw: impl FnMut(&mut Random) -> Vec<f64>) -> Vec<Vec<f64>> {
     let mut random = Random::new(seed);
     let mut geometry = Geometry::new(&element.tabulation);

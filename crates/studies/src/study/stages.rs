@@ -1,8 +1,8 @@
-//! What a scene asks for, before any of it is done.
+//! The stages of a scene, before any of them runs.
 
 use super::scene::Scene;
 
-/// The stages of a scene in order: what will run, or why it is left out.
+/// The stages of a scene in order: what will run, or the reason why it is left out.
 pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     let run = |what: String| (what, None);
     let skip = |what: &str, why: &str| (what.to_string(), Some(why.to_string()));

@@ -1,4 +1,5 @@
-//! Springs at large deformation: their error against the stretch, and that of a sampled fit against its shapes and run time.
+//! Springs at large deformation: their error as a function of the stretch, and that of a sampled fit as a function of
+//! the number of shapes and the run time.
 
 use super::body::LargeBody;
 use super::fits::{ExactRecipe, ForceRecipe, NamedFit, Recipe, Reference, SampledRecipe};
@@ -16,54 +17,63 @@ use crate::springs::{Law, Springs};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Stretches of the box, from those of the linear theory to twice its length.
+/// The stretches of the box, from the range of the linear theory to twice its length.
 pub const STRETCHES: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0];
-/// Shapes of the sampled fits.
+/// The numbers of shapes of the sampled fits.
 pub const SHAPES: [usize; 5] = [10, 100, 1000, 10_000, 100_000];
-/// Multiplications of one fit: a minute or so.
+/// The largest number of multiplications of one fit, about a minute.
 const LONGEST: f64 = 1e11;
-/// A load step stretches by at most so much.
+/// The largest stretch of one load step.
 const STEP: f64 = 0.1;
-/// A cubic whose slope is not below zero at strains up to a half, and a pull at rest, where no parameter is below zero.
+/// A cubic law with a tension at rest. If no parameter is negative, its slope is not negative at strains up to a half.
 const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s)^3 - 0.125) + p*(s + 1/2) + q*(s - 1)";
 
-/// One way to find the springs.
+/// One way to find the springs, and its errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StretchedFit {
+    /// The name of the fit.
     pub name: String,
-    /// Per element, on all threads.
+    /// The time per element, on all threads, s.
     pub seconds: f64,
-    /// %e_rms at each of [`STRETCHES`]; `None` where one of the models has no equilibrium.
+    /// %e_rms at each of [`STRETCHES`]; `None` if one of the models has no equilibrium.
     pub errors: Vec<Option<f64>>,
-    /// How much more force the network takes to be held there than the body, in percent.
+    /// By how many percent the force that holds the network at each stretch exceeds that of the body.
     pub excess: Vec<Option<f64>>,
 }
 
-/// A sampled fit with some number of shapes, of one element on one thread.
+/// A sampled fit with a number of shapes, of one element on one thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledRun {
+    /// The name of the fit.
     pub name: String,
+    /// The number of shapes.
     pub shapes: usize,
+    /// The time, s.
     pub seconds: f64,
-    /// `‖f − K‖/‖f‖` on the shapes of the fit and on others.
+    /// The relative error `‖f − K‖/‖f‖` on the shapes of the fit.
     pub trained: f64,
+    /// The relative error on other shapes.
     pub held_out: f64,
 }
 
 /// Both studies of one element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretches {
+    /// The name of the element.
     pub element: String,
+    /// The title of the law.
     pub law: String,
+    /// The fits, with their errors as functions of the stretch.
     pub fits: Vec<StretchedFit>,
+    /// The sampled fits, with their errors as functions of the number of shapes.
     pub runs: Vec<SampledRun>,
 }
 
-/// Pulls a unit box of the element, held at both ends, and fits its springs in every way; sampled shapes reach from a tenth of
-/// compression to the stretch `sampled`.
+/// Pulls a unit box of the element, held at both ends, and fits its springs in every way. Sampled shapes reach from a
+/// tenth of compression to the stretch `sampled`.
 ///
 /// # Errors
-/// The law is unknown or its file wrong, the element fills no box, or `sampled` is out of range.
+/// The law is unknown or its file is wrong, the element does not fill a box, or `sampled` is out of range.
 pub fn compare_stretches(
     element: &Arc<Element>,
     material: Material,
@@ -118,9 +128,9 @@ pub fn compare_stretches(
 
 /// An equilibrium of the box.
 struct Held {
-    /// `[points · dimension]`, m.
+    /// The displacements, `[points · dimension]`, m.
     displacement: Vec<f64>,
-    /// Of the pulled end along the box, N.
+    /// The force on the pulled end along the box, N.
     force: f64,
 }
 
@@ -139,11 +149,11 @@ fn recipes(element: &Element, sampled: f64) -> Vec<NamedFit> {
     objectives.into_iter().map(at_rest).chain(sampled_fits(element, Some(&every), sampled)).collect()
 }
 
-/// Sampled fits with the usual laws of force; with the groups named, or all that are not optional.
+/// Sampled fits with the usual force laws, with the named groups or all that are not optional.
 pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) -> Vec<NamedFit> {
     let used = element.select_groups(groups).expect("the groups are those of the element");
     let law = |text: &str| Law::parse(text).expect("a law of this study");
-    // Where there is a content spring: exact for a neo-Hookean simplex.
+    // If there is a content spring: exact for a neo-Hookean simplex.
     let by_group = |group: &&SpringGroup| {
         let text = if group.is_content() { "a/(1 + s) + b*ln(1 + s)/(1 + s)" } else { "k*c" };
         (group.name.clone(), law(text))
@@ -169,7 +179,7 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
     forces.into_iter().map(recipe).collect()
 }
 
-/// The box and what it is made of.
+/// The box and its material.
 struct Pulled {
     mesh: Mesh,
     material: Material,
@@ -177,7 +187,7 @@ struct Pulled {
 }
 
 impl Pulled {
-    /// The equilibrium at each of [`STRETCHES`], `None` where there is none.
+    /// The equilibrium at each of [`STRETCHES`]; `None` if there is none.
     fn follow(&self, model: &dyn Elastic) -> Result<Vec<Option<Held>>> {
         let d = self.mesh.dimension;
         let name = ["x", "y", "z"][d - 1];
@@ -201,7 +211,7 @@ impl Pulled {
         STRETCHES.iter().map(one).collect()
     }
 
-    /// The first cell alone.
+    /// The sampled fits of the first cell alone.
     fn sample(
         &self,
         name: &str,

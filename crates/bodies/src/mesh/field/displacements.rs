@@ -1,4 +1,4 @@
-//! Displacements of a mesh's points.
+//! Measured or simulated displacements of some points of a mesh.
 
 use super::reading::Reading;
 use super::{grid, table};
@@ -9,43 +9,43 @@ use crate::mesh::vtk;
 use crate::range;
 use std::path::Path;
 
-/// Displacements of some points of a mesh, as measured or simulated.
+/// Displacements of some points of a mesh, measured or simulated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    /// `[points · dimension]`, m; `None` where the file says nothing of this direction of the point.
+    /// The displacements, `[points · dimension]`, m; `None` if the file has no value for this direction of the point.
     pub displacements: Vec<Option<f64>>,
 }
 
 impl Field {
-    /// Reads `.csv`, `.vtu` or `.vtk`, told apart by the ending. Lengths in the file, positions as well as
-    /// displacements, are multiplied by `scale`, metres per unit of the file.
+    /// Reads `.csv`, `.vtu` or `.vtk`, according to the extension. Lengths in the file, positions as well as
+    /// displacements, are multiplied by `scale`, in metres per unit of the file.
     ///
-    /// A table has a header with the names of its columns, between commas, semicolons or tabs. `x`, `y` (and `z`) are
-    /// the position of the point at rest, or `point` is its number in the mesh, from 0; where both are there they must
+    /// A table has a header with the names of its columns, separated by commas, semicolons or tabs. `x`, `y` (and `z`)
+    /// are the position of the point at rest, or `point` is its number in the mesh, from 0; if both are given they must
     /// agree. `ux`, `uy`, `uz` are the displacement, or `x_deformed`, `y_deformed`, `z_deformed` the position after it;
-    /// some directions may be missing. Capitals, other columns, blank lines and those that begin with `#` do not
-    /// count. An empty cell or `nan` is not measured.
+    /// directions may be missing. Upper case is read as lower case; other columns, blank lines and lines that begin
+    /// with `#` are ignored. An empty cell or `nan` means not measured.
     ///
-    /// A grid has an array of its points called `displacement`, `displacements`, `u` or `disp`, in capitals or not, or
-    /// else a single one of three real components that is not called `normals`; `nan` is not measured.
+    /// A grid has a point array called `displacement`, `displacements`, `u` or `disp`, in upper or lower case, or else
+    /// exactly one array of three real components that is not called `normals`; `nan` means not measured.
     ///
-    /// Positions are those of the nearest point of the mesh, within 1e-6 of the mesh's largest extent. On a plane mesh
-    /// the third direction does not count.
+    /// Positions are matched to the nearest point of the mesh, within 1e-6 of the largest extent of the mesh. On a
+    /// plane mesh the third direction is ignored.
     ///
     /// # Errors
-    /// The file is missing, of another kind, damaged or cut short, lacks such columns or such an array, has a value
-    /// that is no finite number, names a point that the mesh does not have or one point twice, or measures nothing. A
-    /// grid may name a point twice with the same displacement, as its pieces do, and have points of no cell that the
-    /// mesh does not have.
+    /// The file is missing, of another kind, damaged or cut short; it lacks such columns or such an array; it has a
+    /// value that is not a finite number; it names a point that the mesh does not have, or one point twice; or it
+    /// measures nothing. A grid may name a point twice with the same displacement, as its pieces do, and may have
+    /// points that belong to no cell and are not in the mesh.
     pub fn read(path: &Path, mesh: &Mesh, scale: f64) -> Result<Field> {
         Field::read_named(path, mesh, scale, None)
     }
 
-    /// As [`Field::read`], but takes the displacements called `array`: this array of the points of a grid, or the
-    /// columns `array_x`, `array_y`, `array_z` of a table.
+    /// As [`Field::read`], with the displacements called `array`: this point array of a grid, or the columns `array_x`,
+    /// `array_y`, `array_z` of a table.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`Field::read`].
     pub fn read_named(path: &Path, mesh: &Mesh, scale: f64, array: Option<&str>) -> Result<Field> {
         range::positive("scale", scale, "metres per unit of the file")?;
         let mut reading = Reading::new(mesh, scale);

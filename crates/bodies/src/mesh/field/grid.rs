@@ -1,18 +1,18 @@
-//! Displacements as an array of the points of a grid.
+//! Displacements in a point array of a grid.
 
 use super::reading::{Reading, listed};
 use crate::error::{Error, Result};
 use crate::mesh::reader::quoted;
 use crate::mesh::vtk::{Piece, PointArray};
 
-/// In small letters.
+/// The names of arrays of displacements, in lower case.
 const NAMES: [&str; 4] = ["displacement", "displacements", "u", "disp"];
 
-/// Reads the array called `array` of the points, or the one that can only be meant.
+/// Reads the point array called `array`, or the only one that can hold displacements.
 ///
 /// # Errors
-/// The grid has no such array or several, or it has values that are not finite, points that are not
-/// in the mesh or one point with two displacements.
+/// The grid has no such array or several; or it has values that are not finite, points that are not in the mesh, or one
+/// point with two displacements.
 pub(super) fn read(mut pieces: Vec<Piece>, array: Option<&str>, reading: &mut Reading) -> Result<()> {
     pieces.retain(|piece| !piece.points.is_empty());
     let name = name_of_array(&pieces, array)?;
@@ -34,7 +34,7 @@ pub(super) fn read(mut pieces: Vec<Piece>, array: Option<&str>, reading: &mut Re
     Ok(())
 }
 
-/// `number` is that of the point in the file, from 0.
+/// `number` is the number of the point in the file, from 0.
 fn displace(number: usize, x: &[f64; 3], vector: &[f64], is_held: bool, reading: &mut Reading) -> Result<()> {
     let d = reading.mesh.dimension;
     let lengths = |values: &[f64]| values.iter().take(d).map(|&v| reading.length(v)).collect::<Result<Vec<_>>>();
@@ -59,7 +59,7 @@ fn displace(number: usize, x: &[f64; 3], vector: &[f64], is_held: bool, reading:
     }
 }
 
-/// Whether each point belongs to a cell; all do where there are no cells.
+/// Whether each point belongs to a cell; all do if there are no cells.
 fn points_of_cells(piece: &Piece) -> Vec<bool> {
     let mut held = vec![piece.connectivity.is_empty(); piece.points.len()];
     for &node in &piece.connectivity {

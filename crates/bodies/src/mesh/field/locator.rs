@@ -1,15 +1,16 @@
-//! The points of a mesh by their positions.
+//! Finds points of a mesh by their positions.
 
 use crate::mesh::mesh::Mesh;
 
-/// How far from its point a position may be, in parts of the mesh's largest extent.
+/// The largest distance of a position from its point, relative to the largest extent of the mesh. It covers positions
+/// that are written with seven digits.
 const TOLERANCE: f64 = 1e-6;
 
-/// Points sorted by the bin they lie in, where a bin is a few times wider than the tolerance.
+/// Points sorted by the bin in which they lie; a bin is a few times wider than the tolerance.
 pub(super) struct Locator {
     points: Vec<[f64; 3]>,
     corner: [f64; 3],
-    /// m.
+    /// The tolerance, m.
     tolerance: f64,
     bins: Vec<([i64; 3], usize)>,
 }
@@ -26,7 +27,7 @@ impl Locator {
         locator
     }
 
-    /// The nearest point within the tolerance; several if they are equally near, as in one place.
+    /// The nearest point within the tolerance; several if they are equally near, such as points at one position.
     pub fn at(&self, position: &[f64]) -> Vec<usize> {
         let x = spatial(position);
         let (low, high) = (self.bin(&x, -self.tolerance), self.bin(&x, self.tolerance));
@@ -52,21 +53,21 @@ impl Locator {
         found
     }
 
-    /// The nearest of all points, and how far it is, m.
+    /// The nearest of all points, and its distance, m.
     pub fn nearest(&self, position: &[f64]) -> (usize, f64) {
         let x = spatial(position);
         let distances = self.points.iter().map(|point| distance(point, &x));
         distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
     }
 
-    /// How far the point is from a position, and whether that is within the tolerance.
+    /// The distance of the point from a position, and whether it is within the tolerance.
     pub fn distance(&self, point: usize, position: &[f64]) -> (f64, bool) {
         let away = distance(&self.points[point], &spatial(position));
         (away, away <= self.tolerance)
     }
 
     fn bin(&self, x: &[f64; 3], shift: f64) -> [i64; 3] {
-        // a cast keeps to the range of i64, and makes 0 of what is no number
+        // The cast stays in the range of i64, and turns NaN into 0.
         std::array::from_fn(|k| ((x[k] - self.corner[k] + shift) / (4.0 * self.tolerance)).floor() as i64)
     }
 }
@@ -76,6 +77,6 @@ fn spatial(x: &[f64]) -> [f64; 3] {
 }
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    // no square, which might overflow
+    // No square, which might overflow.
     a.iter().zip(b).fold(0.0_f64, |sum, (a, b)| sum.hypot(a - b))
 }

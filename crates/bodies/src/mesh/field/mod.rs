@@ -1,4 +1,4 @@
-//! Displacements of a mesh's points from the files of measurements and of other programs.
+//! Displacements of the points of a mesh, read from files of measurements and of other programs.
 
 mod displacements;
 mod grid;

@@ -1,14 +1,14 @@
-//! What has been read of the displacements so far, and the points that they belong to.
+//! The displacements that have been read so far, and the points to which they belong.
 
 use super::locator::Locator;
 use crate::error::{Error, Result};
 use crate::mesh::mesh::Mesh;
 use crate::range;
 
-/// Names of the directions in columns.
+/// The names of the directions in columns.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What has been read of a field so far.
+/// A field while it is read.
 pub(super) struct Reading<'a> {
     pub mesh: &'a Mesh,
     scale: f64,
@@ -24,7 +24,7 @@ impl Reading<'_> {
         Reading { mesh, scale, locator: Locator::new(mesh), displacements: vec![None; mesh.points.len()], places }
     }
 
-    /// A length of the file in m; `None` for what is not measured.
+    /// A length of the file in m; `None` if it is not measured.
     pub fn length(&self, value: f64) -> Result<Option<f64>> {
         let length = value * self.scale;
         if length.abs() > range::LARGEST {
@@ -34,10 +34,10 @@ impl Reading<'_> {
         Ok((!length.is_nan()).then_some(length))
     }
 
-    /// The point of the mesh at a position in m; where several are, the one of them whose number is `preferred`.
+    /// The point of the mesh at a position in m; of several points at one position the one with the number `preferred`.
     ///
     /// # Errors
-    /// No point is at the position, or several are and none of them is the preferred one.
+    /// There is no point at the position, or there are several and none of them is the preferred one.
     pub fn point_at(&self, position: &[f64], preferred: Option<usize>) -> Result<usize> {
         let found = self.locator.at(position);
         match (&found[..], preferred) {
@@ -57,17 +57,17 @@ impl Reading<'_> {
         }
     }
 
-    /// Notes that this place of the file names the point, and returns the place that did so before.
+    /// Records that this place of the file names the point, and returns the place that named it before.
     pub fn claim(&mut self, point: usize, place: usize) -> Option<usize> {
         let before = self.places[point];
         self.places[point] = before.or(Some(place));
         before
     }
 
-    /// `[points · dimension]`, m.
+    /// The displacements, `[points · dimension]`, m.
     ///
     /// # Errors
-    /// No displacement is given, or all are so small that their squares vanish.
+    /// No displacement is given, or all are so small that their squares underflow.
     pub fn displacements(self) -> Result<Vec<Option<f64>>> {
         if self.displacements.iter().all(Option::is_none) {
             return Err(Error::new("the file measures no displacement of any point"));
@@ -77,7 +77,7 @@ impl Reading<'_> {
     }
 }
 
-/// Coordinates in parentheses.
+/// Coordinates in parentheses, for messages.
 pub(super) fn listed(position: &[f64]) -> String {
     let numbers: Vec<_> = position.iter().map(|x| format!("{x:?}")).collect();
     format!("({})", numbers.join(", "))

@@ -1,16 +1,16 @@
-//! Tables of displacements: a header with the names of the columns, then a row for each point.
+//! Tables of displacements: a header with the names of the columns, then one row per point.
 
 use super::reading::{AXES, Reading, listed};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::reader::quoted;
 use csv::{ReaderBuilder, StringRecord};
 
-/// Where a table has what is known of a point.
+/// The columns that are used.
 struct Columns {
-    /// In small letters.
+    /// The names in lower case.
     names: Vec<String>,
     point: Option<usize>,
-    /// Of each direction, or none.
+    /// The column of each direction, or none.
     position: Vec<usize>,
     moved: Vec<Moved>,
 }
@@ -19,15 +19,15 @@ struct Columns {
 struct Moved {
     axis: usize,
     column: usize,
-    /// Whether it has the positions after deformation instead.
+    /// Whether it holds positions after deformation instead of displacements.
     deformed: bool,
 }
 
 /// Reads a table; `array` begins the names of the columns of displacements.
 ///
 /// # Errors
-/// Columns are missing or stand twice, or a row has too few or many cells, no finite numbers, or a point that is not in
-/// the mesh or had a row before.
+/// Columns are missing or repeated; or a row has too few or too many cells, a value that is not a finite number, or a
+/// point that is not in the mesh or that had a row before.
 pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Result<()> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rows = ReaderBuilder::new()
@@ -67,7 +67,7 @@ pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Re
     }
 }
 
-/// What stands between the names of the header.
+/// The separator between the names of the header.
 fn separator(text: &str) -> u8 {
     let header = text.lines().find(|line| !is_passed_over(line)).unwrap_or_default();
     [b';', b'\t'].into_iter().find(|&mark| header.as_bytes().contains(&mark)).unwrap_or(b',')
@@ -80,7 +80,7 @@ fn is_passed_over(line: &str) -> bool {
 /// The line, from 1, of the first row at or after this byte.
 fn line_from(text: &str, byte: usize) -> usize {
     let (before, rest) = text.split_at_checked(byte).unwrap_or((text, ""));
-    // the end of the row before may still be there
+    // The end of the previous row may still follow.
     let passed = rest.split_inclusive('\n').take_while(|line| is_passed_over(line)).count();
     1 + before.matches('\n').count() + passed
 }
@@ -131,7 +131,7 @@ impl Columns {
         Ok(Columns { names, point, position, moved })
     }
 
-    /// The point of the mesh that a row is about.
+    /// The point of the mesh to which a row belongs.
     fn point(&self, row: &StringRecord, reading: &Reading) -> Result<usize> {
         if row.len() != self.names.len() {
             let expected = format!("{} cells as in the header", self.names.len());

@@ -1,4 +1,4 @@
-//! Gmsh's MSH format, versions 4.1 and 2.2, in text and in binary.
+//! The MSH format of Gmsh, versions 4.1 and 2.2, in text and in binary.
 
 mod nodes;
 mod sections;

@@ -1,4 +1,4 @@
-//! The nodes of a Gmsh mesh and the places of their tags.
+//! The nodes of a Gmsh mesh, and their indices by tag.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::reader::Reader;
@@ -6,13 +6,13 @@ use std::collections::HashMap;
 
 pub(super) struct Nodes {
     pub points: Vec<[f64; 3]>,
-    /// Of the points.
+    /// The tags of the points.
     pub tags: Vec<u64>,
     places: Places,
 }
 
 enum Places {
-    /// The place of tag `first + i` at `i`, `ABSENT` for a tag without a node.
+    /// The index of the node with tag `first + i` is at `i`; `ABSENT` for a tag without a node.
     Dense {
         first: u64,
         places: Vec<usize>,
@@ -23,7 +23,7 @@ enum Places {
 const ABSENT: usize = usize::MAX;
 
 impl Nodes {
-    /// The node with `tags[i]` is at `points[i]`.
+    /// Nodes in which the one with `tags[i]` is at `points[i]`.
     ///
     /// # Errors
     /// A tag occurs twice.
@@ -53,7 +53,7 @@ impl Nodes {
         Ok(Nodes { points, tags, places })
     }
 
-    /// The index into `points` of the node with this tag, which the element that `reader` has just read names.
+    /// The index into `points` of the node with this tag; `reader` has just read the element that names it.
     ///
     /// # Errors
     /// There is no such node.

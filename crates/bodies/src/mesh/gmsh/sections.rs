@@ -8,13 +8,13 @@ use crate::mesh::reader::{Encoding, Reader, quoted};
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
 use std::collections::{HashMap, HashSet};
 
-/// Reads a Gmsh mesh. Points keep the file's order; cells of one type in the same physical groups form one block.
+/// Reads a Gmsh mesh. Points keep the order of the file; cells of one type in the same physical groups form one block.
 ///
 /// A physical group without a name is called `dimension:tag`.
 ///
 /// # Errors
-/// The file is not an MSH file of version 4.1 or 2.2, is damaged, cut short or partitioned, or has an element type that
-/// Gmsh does not document.
+/// The file is not an MSH file of version 4.1 or 2.2; it is damaged, cut short or partitioned; or it has an element
+/// type that Gmsh does not document.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut reader = Reader::new(bytes);
     let mut file = File::default();
@@ -39,7 +39,7 @@ enum Version {
     V41,
 }
 
-/// The sections read so far.
+/// The sections that have been read so far.
 #[derive(Default)]
 struct File {
     version: Option<Version>,
@@ -124,7 +124,7 @@ impl File {
     }
 }
 
-/// Reads the version and finds out the encoding of the sections to come.
+/// Reads the version and determines the encoding of the following sections.
 fn format(reader: &mut Reader) -> Result<Version> {
     let version = match reader.peek() {
         b"4.1" => Version::V41,
@@ -185,7 +185,7 @@ fn physical_names(reader: &mut Reader) -> Result<HashMap<(usize, u32), String>> 
     Ok(names)
 }
 
-/// Moves past the end of a section whose content does not matter here.
+/// Skips a section whose content is not used.
 fn skip(reader: &mut Reader, name: &str) -> Result<()> {
     let end = format!("$End{name}");
     loop {

@@ -1,9 +1,9 @@
-//! Gmsh's element types.
+//! The element types of Gmsh.
 
 use crate::error::{ErrorKind, Result};
 use crate::mesh::reader::Reader;
 
-/// Number, dimension and nodes of each type with a fixed number of nodes.
+/// Number, dimension and number of nodes of each type with a fixed number of nodes.
 #[rustfmt::skip]
 const TYPES: &[(u32, usize, usize)] = &[
     (15, 0, 1),
@@ -33,12 +33,12 @@ const TYPES: &[(u32, usize, usize)] = &[
     (131, 3, 69),
 ];
 
-/// Dimension and nodes of the type with this number.
+/// Dimension and number of nodes of the type with this number.
 pub(super) fn find(number: u32) -> Option<(usize, usize)> {
     TYPES.iter().find(|t| t.0 == number).map(|&(_, dimension, nodes)| (dimension, nodes))
 }
 
-/// Dimension and nodes of the type whose number `reader` has just read.
+/// Dimension and number of nodes of the type whose number `reader` has just read.
 pub(super) fn shape(reader: &Reader, number: u32) -> Result<(usize, usize)> {
     let unknown = || reader.fault(format!("element type {number} is unknown")).of_kind(ErrorKind::Unsupported);
     find(number).ok_or_else(unknown)

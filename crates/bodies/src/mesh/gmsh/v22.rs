@@ -1,4 +1,4 @@
-//! The sections whose layout is peculiar to MSH 2.2.
+//! The sections with a layout of MSH 2.2.
 
 use super::nodes::Nodes;
 use super::types::shape;
@@ -6,13 +6,13 @@ use crate::error::{ErrorKind, Result};
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::{Encoding, Reader};
 
-/// A cell is compared with each group it is in already.
+/// The largest number of groups of a cell, because each new group is compared with all previous ones.
 const MOST_GROUPS: usize = 1000;
 
-/// Cell type and physical tags, ascending.
+/// Cell type, and physical tags in ascending order.
 pub(super) type Key = (u32, Vec<u32>);
 
-/// `parametric` for a section that adds entity and parameters to each node.
+/// Reads the nodes; `parametric` for a section that adds an entity and parameters to each node.
 pub(super) fn nodes(reader: &mut Reader, parametric: bool) -> Result<Nodes> {
     let total: u64 = reader.text_number()?;
     reader.start_data()?;
@@ -69,7 +69,7 @@ pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>
     Ok(cells.gather)
 }
 
-/// What precedes the tags of an element.
+/// The numbers before the tags of an element.
 struct Header {
     element: u64,
     cell_type: u32,
@@ -77,9 +77,9 @@ struct Header {
     node_count: usize,
 }
 
-/// The cells read so far.
+/// The cells that have been read so far.
 ///
-/// The format repeats a cell for each of its physical groups, so the last cell is held back until the next one differs.
+/// The format repeats a cell for each of its physical groups, so that the last cell is kept until the next one differs.
 struct Cells {
     gather: Gather<Key>,
     key: Key,
@@ -99,7 +99,7 @@ impl Cells {
         for i in 0..tags {
             let tag: i32 = reader.number()?;
             match i {
-                // a minus sign stands for the opposite orientation
+                // A minus sign stands for the opposite orientation.
                 0 => physical = tag.unsigned_abs(),
                 1 => entity = tag,
                 _ => {}
@@ -129,7 +129,7 @@ impl Cells {
         Ok(())
     }
 
-    /// Files the cell held back.
+    /// Stores the cell that was kept.
     fn close(&mut self) {
         self.key.1.sort_unstable();
         self.gather.list(&self.key).append(&mut self.nodes);

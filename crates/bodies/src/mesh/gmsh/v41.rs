@@ -1,4 +1,4 @@
-//! The sections whose layout is peculiar to MSH 4.1. Text and binary files hold the same numbers in the same order.
+//! The sections with a layout of MSH 4.1. Text and binary files have the same numbers in the same order.
 
 use super::nodes::Nodes;
 use super::types::shape;
@@ -7,7 +7,7 @@ use crate::mesh::grouping::Gather;
 use crate::mesh::reader::Reader;
 use std::collections::HashMap;
 
-/// Physical tags, ascending, of each entity: dimension and tag.
+/// The physical tags, in ascending order, of each entity, which is known by dimension and tag.
 pub(super) type Entities = HashMap<(i32, i32), Vec<u32>>;
 
 /// Cell type, and dimension and tag of the entity.
@@ -30,7 +30,7 @@ pub(super) fn entities(reader: &mut Reader) -> Result<Entities> {
             }
             let mut physical = Vec::new();
             for _ in 0..reader.number::<u64>()? {
-                // a minus sign stands for the opposite orientation
+                // A minus sign stands for the opposite orientation.
                 physical.push(reader.number::<i32>()?.unsigned_abs());
             }
             physical.sort_unstable();

@@ -3,25 +3,26 @@
 use super::super::affine::Affine;
 use crate::element::Cell;
 
-/// One part of a reference cell: the kind of cell that it is, and the map of that cell's reference to it.
+/// One part of a reference cell: its kind of cell, and the map of that reference cell to it.
 pub struct Child {
     pub cell: Cell,
     pub map: Affine,
 }
 
-/// The three ways from the middle of an edge of a tetrahedron to that of the opposite edge, each edge by its corners.
+/// The three diagonals of the inner octahedron of a tetrahedron, each from the midpoint of an edge to that of the
+/// opposite edge; edges are given by their corners.
 pub const DIAGONALS: [[[usize; 2]; 2]; 3] = [[[0, 2], [1, 3]], [[0, 3], [1, 2]], [[0, 1], [2, 3]]];
 
-/// Middles of the other four edges around each of the [`DIAGONALS`], neighbours next to each other.
+/// The midpoints of the other four edges around each of the [`DIAGONALS`], neighbours next to each other.
 const RINGS: [[[usize; 2]; 4]; 3] =
     [[[0, 1], [1, 2], [2, 3], [0, 3]], [[0, 1], [1, 3], [2, 3], [0, 2]], [[0, 2], [1, 2], [1, 3], [0, 3]]];
 
 /// Halves all edges of a reference cell; none for a cell that such a division does not fill with known cells.
 ///
-/// Intervals, squares, cubes, triangles and wedges are divided into cells of their own kind. A tetrahedron is divided into one
-/// at each corner and four around a diagonal of the octahedron that remains (Bey 1995, Computing 55, 355–378), here that of
-/// [`DIAGONALS`]`[diagonal]`. A pyramid is divided into five pyramids at its corners, one upside down under the apex, and four
-/// tetrahedra at its triangles.
+/// Intervals, squares, cubes, triangles and wedges are divided into cells of their own kind. A tetrahedron is divided
+/// into one at each corner and four around a diagonal of the remaining octahedron (Bey 1995, Computing 55, 355–378),
+/// here that of [`DIAGONALS`]`[diagonal]`. A pyramid is divided into five pyramids at its corners, an inverted one
+/// under the apex, and four tetrahedra at its triangles.
 pub fn children(cell: Cell, diagonal: usize) -> Vec<Child> {
     let own = |map| Child { cell, map };
     match cell {
@@ -49,7 +50,7 @@ fn corners_of_box(d: usize) -> impl Iterator<Item = Affine> {
     (0..1 << d).map(move |corner| halved((0..d).map(|k| side(corner, k)).collect()))
 }
 
-/// The middle of two corners, or a corner where both are the same.
+/// The midpoint of two corners, or a corner if both are equal.
 fn middle(cell: Cell, [a, b]: [usize; 2]) -> Vec<f64> {
     let corners = cell.corners();
     corners[a].iter().zip(corners[b]).map(|(a, b)| (a + b) / 2.0).collect()
@@ -61,7 +62,7 @@ fn triangles() -> impl Iterator<Item = Affine> {
     parts.into_iter().map(|part| Affine::onto_simplex(&part.map(|pair| middle(Cell::Triangle, pair))))
 }
 
-/// A part of the triangle as the upper or lower half of a wedge.
+/// A part of the triangle as the lower or upper half of a wedge.
 fn raised(triangle: &Affine, at: f64) -> Affine {
     let with = |x: &[f64], z: f64| [x, &[z]].concat();
     let mut edges: Vec<Vec<f64>> = triangle.edges.iter().map(|edge| with(edge, 0.0)).collect();
@@ -91,7 +92,7 @@ fn pyramids() -> Vec<Affine> {
     ]
 }
 
-/// From the middles of a triangle's edges to the middle of the base.
+/// From the midpoints of the edges of a triangle to the centre of the base.
 fn pyramid_tetrahedra() -> impl Iterator<Item = Affine> {
     let part = |a: usize| {
         let b = (a + 1) % 4;
@@ -100,7 +101,7 @@ fn pyramid_tetrahedra() -> impl Iterator<Item = Affine> {
     (0..4).map(move |a| oriented(part(a)))
 }
 
-/// The tetrahedron with these corners in the order, of the first two possible ones, that gives it a positive volume.
+/// The tetrahedron with these corners, with two of them exchanged if its volume would be negative.
 fn oriented(mut corners: [Vec<f64>; 4]) -> Affine {
     let map = Affine::onto_simplex(&corners);
     let [u, v, w] = [&map.edges[0], &map.edges[1], &map.edges[2]];

@@ -4,10 +4,11 @@ use crate::element::{Cell, Element, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
 use std::sync::Arc;
 
-/// The element of that cell whose triangles have the same nodes as those of `element`: one of `known`, or else a shipped one.
+/// The element with this cell whose triangles have the same nodes as those of `element`: one of `known`, or else a
+/// shipped one.
 ///
 /// # Errors
-/// No element of this cell type has these triangles.
+/// No element with this cell has these triangles.
 pub fn filling(element: &Element, cell: Cell, known: &[Arc<Element>]) -> Result<Arc<Element>> {
     let wanted = triangle(element);
     let fits = |other: &Element| other.cell == cell && triangle(other) == wanted;
@@ -21,7 +22,7 @@ pub fn filling(element: &Element, cell: Cell, known: &[Arc<Element>]) -> Result<
     })
 }
 
-/// Where the nodes of the first triangular side stand in the triangle, in 2⁻²⁰ of its legs, sorted.
+/// The positions of the nodes of the first triangular side, in units of 2⁻²⁰ of its legs, sorted.
 fn triangle(element: &Element) -> Option<Vec<[i64; 2]>> {
     let side = element.cell.sides().iter().position(|side| side.cell == Cell::Triangle)?;
     let (origin, tangents) = element.cell.sides()[side].embedding(element.cell);

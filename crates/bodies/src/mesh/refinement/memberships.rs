@@ -1,10 +1,10 @@
-//! Which groups the cells, sides and edges of a mesh belong to.
+//! The groups to which the cells, sides and edges of a mesh belong.
 
 use super::super::mesh::{CellIndex, Group, Mesh};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, HashMap};
 
-/// The groups of a mesh by what they hold, and those of the divided mesh as they grow.
+/// The groups of a mesh by their members, and the growing groups of the divided mesh.
 pub struct Memberships<'a> {
     names: Vec<&'a String>,
     cells: HashMap<CellIndex, Vec<usize>>,
@@ -34,7 +34,7 @@ impl<'a> Memberships<'a> {
         all
     }
 
-    /// The cells into which a cell is divided, with their points.
+    /// Adds the parts of a cell, with their points, to its groups.
     pub fn divide_cell(&mut self, cell: CellIndex, parts: &[CellIndex], points: &[usize]) {
         for &group in self.cells.get(&cell).into_iter().flatten() {
             self.groups[group].cells.extend(parts);
@@ -42,7 +42,7 @@ impl<'a> Memberships<'a> {
         }
     }
 
-    /// The sides into which the side with these points is divided.
+    /// Adds the parts of the side with these points to its groups.
     pub fn divide_side(&mut self, side: Vec<usize>, parts: impl Iterator<Item = Vec<usize>> + Clone) {
         for &group in self.sides.get(&side).into_iter().flatten() {
             self.groups[group].points.extend(parts.clone().flatten());
@@ -53,7 +53,7 @@ impl<'a> Memberships<'a> {
         }
     }
 
-    /// The edges into which the edge with these points is divided.
+    /// Adds the parts of the edge with these points to its groups.
     pub fn divide_edge(&mut self, edge: Vec<usize>, parts: impl Iterator<Item = Vec<usize>> + Clone) {
         for &group in self.edges.get(&edge).into_iter().flatten() {
             self.groups[group].points.extend(parts.clone().flatten());
@@ -77,7 +77,7 @@ impl<'a> Memberships<'a> {
     /// The groups of the divided mesh.
     ///
     /// # Errors
-    /// A group has a side or an edge that no cell has: it has no parts.
+    /// A group has a side or an edge that no cell has, so that it has no parts.
     pub fn into_groups(self) -> Result<BTreeMap<String, Group>> {
         for (what, listed, met) in [("sides", &self.sides, &self.met[0]), ("edges", &self.edges, &self.met[1])] {
             let lost: Vec<_> = listed.iter().filter(|(points, _)| !met.contains(*points)).collect();

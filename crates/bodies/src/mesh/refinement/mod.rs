@@ -18,20 +18,21 @@ use pattern::Pattern;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Lengths that differ by less than this share are equal.
+/// Lengths that differ by less than this share are equal, so that rounding does not choose the diagonal.
 const TIE: f64 = 1e-9;
 
 impl Mesh {
-    /// The same body with cells of half the size: an interval is divided into two, a triangle or quadrilateral into four, a
-    /// tetrahedron, hexahedron or wedge into eight, a pyramid into six pyramids and four tetrahedra.
+    /// The same body with cells of half the size: an interval is divided into two, a triangle or quadrilateral into
+    /// four, a tetrahedron, hexahedron or wedge into eight, a pyramid into six pyramids and four tetrahedra.
     ///
-    /// New points are where the shape functions of the cell put them, `x = Σ_a N_a x_a`. The geometry is kept: curved cells stay
-    /// curved where the shape functions of the parts can follow, and polygons stay polygons. A tetrahedron is divided along the
-    /// shortest diagonal. The sides, edges and cells of a group are divided with the cells, and their new points belong to the
-    /// group. Points of a group that are on none of them stay in it as they are. Old points keep their numbers.
+    /// New points are at the positions that the shape functions of the cell give, `x = Σ_a N_a x_a`. The geometry is
+    /// kept: curved cells stay curved if the shape functions of the parts can represent this, and polygons stay
+    /// polygons. A tetrahedron is divided along its shortest diagonal. The sides, edges and cells of a group are
+    /// divided with the cells, and their new points belong to the group. Points of a group that are on none of them
+    /// stay in it. Old points keep their numbers.
     ///
     /// # Errors
-    /// A cell cannot be divided, a group has sides that no cell has, or a part of a curved cell has no volume.
+    /// A cell cannot be divided; a group has sides that no cell has; or a part of a curved cell has no volume.
     pub fn refined(&self) -> Result<Mesh> {
         let mut fine = Mesh { blocks: Vec::new(), numbering: None, ..self.clone() };
         let mut elements: Vec<Arc<Element>> = self.blocks.iter().map(|block| block.element.clone()).collect();
@@ -74,7 +75,7 @@ impl Mesh {
         if self.quality.coincident.is_some() {
             fine.quality.coincident = Places::of(&fine).map(|places| places.coincident());
         }
-        // Of the coarse mesh; the cells of the fine one were not asked.
+        // The quality is that of the coarse mesh; the fine cells are not measured.
         fine.quality.hanging = None;
         fine.quality.pieces = self.quality.pieces;
         if self.quality.worst.is_some() {
@@ -86,16 +87,16 @@ impl Mesh {
 
 /// The ways to divide the cells of one element.
 struct Division {
-    /// One, or one for each diagonal of a tetrahedron.
+    /// One pattern, or one for each diagonal of a tetrahedron.
     patterns: Vec<Pattern>,
-    /// For each diagonal, its ends as points of the first pattern's middles.
+    /// For each diagonal its ends, as points of the midpoints of the first pattern.
     diagonals: Vec<[Vec<(usize, f64)>; 2]>,
     /// The block of the parts that are of another kind.
     filling: usize,
 }
 
 impl Division {
-    /// `elements` are those of the blocks; one that is needed besides is added.
+    /// `elements` are those of the blocks; a further one that is required is added.
     fn of(element: &Arc<Element>, elements: &mut Vec<Arc<Element>>) -> Result<Division> {
         let other = children::children(element.cell, 0).iter().map(|part| part.cell).find(|cell| *cell != element.cell);
         let mut filling_block = 0;
@@ -121,7 +122,7 @@ impl Division {
         Ok(Division { patterns, diagonals, filling: filling_block })
     }
 
-    /// The way to divide the cell with these nodes: along its shortest diagonal, the first of equal ones.
+    /// The division of the cell with these nodes: along its shortest diagonal, the first of equal ones.
     fn pattern(&self, mesh: &Mesh, nodes: &[usize]) -> &Pattern {
         let mut shortest = (0, f64::INFINITY);
         for (way, ends) in self.diagonals.iter().enumerate() {
@@ -140,8 +141,9 @@ fn place(mesh: &Mesh, nodes: &[usize], values: &[(usize, f64)]) -> Vec<f64> {
     (0..mesh.dimension).map(|k| values.iter().map(|&(a, n)| n * mesh.point(nodes[a])[k]).sum()).collect()
 }
 
-/// The new points. Neighbours share the shape functions on the side between them, and all others vanish there. So the nodes whose
-/// functions do not vanish, with the values in 2⁻³⁰, identify a point, also where points of two bodies coincide.
+/// The new points. Neighbours share the shape functions of the side between them, and all others vanish there. The
+/// nodes with nonzero functions, with their values in units of 2⁻³⁰, therefore identify a point, even if points of two
+/// bodies coincide.
 #[derive(Default)]
 struct Glue {
     known: HashMap<Vec<(usize, i64)>, usize>,

@@ -1,4 +1,4 @@
-//! How one element is divided into smaller ones.
+//! The division of one element into smaller ones.
 
 use super::children::children;
 use crate::element::{Cell, Element};
@@ -8,9 +8,10 @@ use std::collections::HashMap;
 /// Shape functions below this at a point are zero there.
 const ZERO: f64 = 1e-12;
 
-/// The division of an element: its points, its cells, and what becomes of its sides and edges.
+/// The division of an element: its points, its cells, and the parts of its sides and edges.
 pub struct Pattern {
-    /// At each point, the nodes whose shape functions are not zero, and their values; the nodes themselves come first.
+    /// For each point, the nodes whose shape functions are not zero there, with their values; the nodes themselves come
+    /// first.
     pub points: Vec<Vec<(usize, f64)>>,
     /// The kind of each cell, and its nodes as points of the pattern.
     pub cells: Vec<(Cell, Vec<usize>)>,
@@ -24,8 +25,8 @@ impl Pattern {
     /// `element_of` gives the element of each kind of cell in the division.
     ///
     /// # Errors
-    /// The cell is divided into no known cells, or the element shares no points with its neighbours: shape functions of nodes that
-    /// are not on a side do not vanish there.
+    /// The cell has no division into known cells, or the element shares no points with its neighbours: shape functions
+    /// of nodes that are not on a side do not vanish there.
     pub fn of<'a>(
         element: &'a Element,
         diagonal: usize,
@@ -53,7 +54,7 @@ impl Pattern {
     }
 }
 
-/// The index of the place among those that are known, to which it is added if it is new.
+/// The index of the position among the known ones, to which it is added if it is new.
 fn point_at(places: &mut Vec<Vec<f64>>, at: Vec<f64>) -> usize {
     let near = |known: &Vec<f64>| known.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
     places.iter().position(near).unwrap_or_else(|| {
@@ -62,7 +63,7 @@ fn point_at(places: &mut Vec<Vec<f64>>, at: Vec<f64>) -> usize {
     })
 }
 
-/// The shape functions that are not zero at a point; `None` where one is not finite.
+/// The shape functions that are not zero at a point; `None` if one is not finite.
 fn support(element: &Element, point: usize, at: &[f64]) -> Option<Vec<(usize, f64)>> {
     if point < element.nodes() {
         return Some(vec![(point, 1.0)]);
@@ -77,7 +78,7 @@ fn apart(element: &Element) -> Error {
     Error::expected("mesh", expected, &element.name).of_kind(ErrorKind::Unsupported)
 }
 
-/// The outer sides of the cells, under the side of the element whose shape functions alone are not zero there.
+/// The outer sides of the cells, listed under the side of the element whose shape functions alone are not zero there.
 fn sides(
     element: &Element,
     points: &[Vec<(usize, f64)>],
@@ -123,7 +124,7 @@ fn edges(
     edge_nodes(element).into_iter().map(parts_of).collect()
 }
 
-/// The nodes of each edge of a solid element: those on both of the sides that meet in it.
+/// The nodes of each edge of a solid element: those on both of the sides that meet there.
 fn edge_nodes(element: &Element) -> Vec<Vec<usize>> {
     let nodes_of = |[a, b]: [usize; 2]| {
         let meets = |(side, _): &(&crate::element::Side, _)| side.corners.contains(&a) && side.corners.contains(&b);

@@ -1,6 +1,6 @@
-//! VTK's cell types.
+//! The cell types of VTK.
 
-/// Dimension of a cell type, and its number of nodes where the type fixes it.
+/// The dimension of a cell type, and its number of nodes if the type determines it.
 pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
     let (dimension, nodes) = match cell_type {
         1 => (0, 1),
@@ -34,13 +34,13 @@ pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
     Some((dimension, Some(nodes)))
 }
 
-/// Whether VTK has a cell type of this number.
+/// Whether VTK has a cell type with this number.
 pub(super) fn is_known(cell_type: u8) -> bool {
     matches!(cell_type, 1..=16 | 21..=37 | 41 | 42 | 51..=56 | 60..=81)
 }
 
-/// Turns a pixel or a voxel, whose nodes run along the axes, into the quadrangle or hexahedron they are, and a polygon of
-/// three or four nodes into the triangle or quadrangle it is.
+/// Reorders a pixel or a voxel, whose nodes run along the axes, into a quadrangle or hexahedron, and turns a polygon of
+/// three or four nodes into a triangle or quadrangle.
 pub(super) fn without_raster(cell_type: u8, nodes: &mut [usize]) -> u8 {
     match cell_type {
         8 => {

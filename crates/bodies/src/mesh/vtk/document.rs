@@ -6,9 +6,9 @@ use super::xml_tag::{Tag, next_tag, text_after};
 use crate::error::{Error, Result};
 use std::ops::Range;
 
-/// A grid has six tags inside one another.
+/// The deepest nesting of tags; a grid has six.
 const DEEPEST_TAGS: usize = 32;
-/// A piece takes up more memory than its tag does.
+/// The largest number of pieces, because a piece takes up more memory than its tag does.
 const MOST_PIECES: usize = 4096;
 const ARRAY_PATH: [&[u8]; 3] = [b"VTKFile", b"UnstructuredGrid", b"Piece"];
 const APPENDED_END: &[u8] = b"</AppendedData";
@@ -27,7 +27,7 @@ pub(super) struct PieceTag {
     pub arrays: Vec<ArrayTag>,
 }
 
-/// The part of a piece that an array belongs to.
+/// The part of a piece to which an array belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Section {
     Points,
@@ -42,22 +42,22 @@ pub(super) struct ArrayTag {
     pub scalar: ScalarType,
     pub components: u64,
     place: Place,
-    /// Where its tag starts in the file.
+    /// The position of its tag in the file.
     start: usize,
 }
 
 enum Place {
     Text(Range<usize>),
     Base64(Range<usize>),
-    /// So many bytes after the first of the appended data.
+    /// The number of bytes after the first one of the appended data.
     Appended(usize),
 }
 
 /// The values of an array in the file.
 pub(super) enum Content<'a> {
-    /// The file up to the end of the text, and where this starts.
+    /// The file up to the end of the text, and where the text begins.
     Text(&'a [u8], usize),
-    /// `alone` if the bytes are those of this array and no others.
+    /// `alone` if the bytes belong to this array only.
     Binary { stored: Stored<'a>, alone: bool },
 }
 
@@ -131,7 +131,7 @@ impl<'a> Document<'a> {
                     piece.arrays.push(array(section, tag, self.bytes)?);
                 }
             }
-            // field data, and what other programs may add
+            // Field data, and what other programs may add.
             _ => {}
         }
         Ok(tag.end)
@@ -160,7 +160,7 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
-    /// The data begin after an underscore. Raw data may look like tags; they end where the last end tag is.
+    /// The data begin after an underscore. Raw data may look like tags; they end at the last end tag.
     fn appended_data(&mut self, tag: &Tag) -> Result<usize> {
         let encoding = tag.attribute("encoding");
         let in_base64 = match encoding.as_deref() {
@@ -196,7 +196,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Where the values of an array are.
+    /// The stored values of an array.
     ///
     /// # Errors
     /// They are not in the file.
@@ -221,7 +221,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Bytes of the file.
+    /// The number of bytes of the file.
     pub fn size(&self) -> usize {
         self.bytes.len()
     }
@@ -292,7 +292,7 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at].iter().filter(|&&b| b == b'\n').count()
 }
 
-/// The value of an attribute in an error.
+/// The value of an attribute, for an error.
 fn shown_value(value: Option<String>) -> String {
     value.map_or("none".into(), |value| quoted(&value))
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::mesh::reader::{Encoding, Reader, quoted};
 use crate::mesh::source::MeshSource;
 
-/// What the arrays being read belong to.
+/// To what the arrays that follow belong.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
     File,
@@ -22,11 +22,11 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     piece::mesh(vec![piece(bytes)?])
 }
 
-/// The grid as it is in the file: cells unchecked, points perhaps not finite.
+/// The grid as it is in the file: cells are not checked, and points may not be finite.
 ///
 /// # Errors
-/// The file is of another kind, damaged or cut short. The format has no end mark: a file cut just before a section of
-/// cell or point data is a whole file without that data.
+/// The file is of another kind, damaged or cut short. The format has no end mark: a file that is cut just before a
+/// section of cell or point data is read as a file without that data.
 pub(in crate::mesh) fn piece(bytes: &[u8]) -> Result<Piece> {
     let mut reader = Reader::new(bytes);
     header(&mut reader)?;
@@ -113,7 +113,7 @@ impl File<'_> {
         }
     }
 
-    /// Moves past the keyword of a section.
+    /// Skips the keyword of a section.
     fn after(&mut self, section: &str) -> &mut Self {
         self.reader.enter(section);
         self.reader.word();
@@ -174,7 +174,7 @@ impl File<'_> {
         indices.ok_or_else(|| self.reader.expected("a type of whole numbers", "another"))
     }
 
-    /// Reads the name of a type that the numbers follow.
+    /// Reads the name of the type of the numbers that follow.
     fn scalar_type(&mut self) -> Result<ScalarType> {
         let scalar = ScalarType::read(&mut self.reader)?;
         self.reader.start_data()?;
@@ -196,7 +196,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Skips the notes on an array, which a blank line ends.
+    /// Skips the metadata of an array, which a blank line ends.
     fn metadata(&mut self) -> Result<()> {
         self.reader.line();
         loop {
@@ -274,7 +274,7 @@ impl File<'_> {
         self.values(scalar, name, components, tuples)
     }
 
-    /// Reads the values of an array, and keeps them if they can name groups of cells or displace points.
+    /// Reads the values of an array, and keeps them if they can name groups of cells or are displacements of points.
     fn values(&mut self, scalar: ScalarType, name: String, components: u64, tuples: u64) -> Result<()> {
         let count = components.saturating_mul(tuples);
         if scalar == ScalarType::Text {

@@ -1,4 +1,4 @@
-//! VTK's unstructured grids: reads `.vtu` and legacy `.vtk`, writes `.vtu`.
+//! The unstructured grids of VTK: reads `.vtu` and legacy `.vtk`, writes `.vtu`.
 
 mod cells;
 mod document;

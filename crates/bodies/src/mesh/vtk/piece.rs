@@ -1,4 +1,4 @@
-//! Pieces of an unstructured grid, and the mesh they make up.
+//! Pieces of an unstructured grid, and the mesh that they form.
 
 use super::cells::{shape, without_raster};
 use crate::error::{Error, Result};
@@ -6,49 +6,49 @@ use crate::mesh::grouping::Gather;
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// An array with more values than this does not name groups.
+/// The largest number of different values of an array that names groups.
 const MOST_GROUPS: usize = 1000;
 
-/// Points and cells as both file kinds hold them.
+/// Points and cells, as both kinds of file hold them.
 #[derive(Default)]
 pub(in crate::mesh) struct Piece {
     pub points: Vec<[f64; 3]>,
     pub types: Vec<u8>,
-    /// Where each cell ends in `connectivity`.
+    /// The index in `connectivity` at which each cell ends.
     pub ends: Vec<u64>,
     pub connectivity: Vec<u64>,
     pub labels: Vec<Labels>,
     pub point_arrays: Vec<PointArray>,
 }
 
-/// A whole number for each cell.
+/// An array with one whole number per cell.
 pub(in crate::mesh) struct Labels {
     pub name: String,
     pub values: Vec<i128>,
 }
 
-/// An array with as many components for each point.
+/// An array with the same number of components for each point.
 pub(in crate::mesh) struct PointArray {
     pub name: String,
     pub components: u64,
-    /// All components of the first point, then of the next; `None` for what is no vector of real numbers.
+    /// All components of the first point, then of the next; `None` if the array is not one of real vectors.
     pub vectors: Option<Vec<f64>>,
 }
 
 impl PointArray {
-    /// Whether points of the plane or of space can have such vectors.
+    /// Whether this is the number of components of vectors in the plane or in space.
     pub fn is_vector(components: u64) -> bool {
         components == 2 || components == 3
     }
 }
 
-/// Cell type, nodes per cell, and place and value of each grouping array that the cell's piece has.
+/// Cell type, nodes per cell, and index and value of each grouping array that the piece of the cell has.
 type Key = (u8, usize, Vec<(usize, i128)>);
 
 /// The mesh of all pieces, one after the other.
 ///
 /// # Errors
-/// A cell is of a type without a fixed shape, has the wrong number of nodes or names a point that its piece lacks.
+/// A cell is of a type without a fixed shape, has the wrong number of nodes, or names a point that its piece lacks.
 pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
     let arrays = grouping_arrays(&pieces);
     let places: HashMap<&str, usize> = arrays.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();

@@ -1,4 +1,4 @@
-//! The types of VTK's numbers, and lists of such numbers.
+//! The number types of VTK, and lists of such numbers.
 
 use crate::error::Result;
 use crate::mesh::reader::{Encoding, Number, Reader};
@@ -20,7 +20,7 @@ pub(super) enum ScalarType {
 }
 
 impl ScalarType {
-    /// The type that an XML file calls by this name.
+    /// The type with this name in an XML file.
     pub fn of_xml(name: &str) -> Option<ScalarType> {
         Some(match name {
             "Bit" => ScalarType::Bit,
@@ -48,7 +48,7 @@ impl ScalarType {
             b"unsigned_char" | b"vtktypeuint8" => ScalarType::UInt8,
             b"short" | b"vtktypeint16" => ScalarType::Int16,
             b"unsigned_short" | b"vtktypeuint16" => ScalarType::UInt16,
-            // legacy files hold the ids of VTK in 32 bits, whatever their size in memory
+            // Legacy files store the ids of VTK in 32 bits, whatever their size in memory is.
             b"int" | b"vtkidtype" | b"vtktypeint32" => ScalarType::Int32,
             b"unsigned_int" | b"vtktypeuint32" => ScalarType::UInt32,
             b"long" | b"long_long" | b"vtktypeint64" => ScalarType::Int64,
@@ -66,7 +66,7 @@ impl ScalarType {
         matches!(self, ScalarType::Float32 | ScalarType::Float64)
     }
 
-    /// Bytes of one number in binary; none for what does not come in whole bytes.
+    /// The bytes of one number in binary; none for types that are not stored in whole bytes.
     pub fn size(self) -> Option<u64> {
         match self {
             ScalarType::Bit | ScalarType::Text => None,
@@ -94,7 +94,8 @@ impl ScalarType {
         }
     }
 
-    /// Reads `count` whole numbers, each in the range of `U` which `expected` names. Other numbers are passed over: `None`.
+    /// Reads `count` whole numbers, each in the range of `U`, which `expected` names. `None` for other types, which are
+    /// skipped.
     pub fn whole_numbers<U: TryFrom<i128>>(
         self,
         reader: &mut Reader,
@@ -122,7 +123,7 @@ impl ScalarType {
         }
     }
 
-    /// Moves past `count` values.
+    /// Skips `count` values.
     pub fn skip(self, reader: &mut Reader, count: u64) -> Result<()> {
         if self == ScalarType::Text {
             return skip_texts(reader, count);
@@ -151,7 +152,7 @@ fn list<T: Number, U>(reader: &mut Reader, count: u64, convert: impl Fn(T, &Read
     Ok(values)
 }
 
-/// Moves past texts, each on a line of its own or, in binary, after its length in 1, 2, 4 or 8 bytes.
+/// Skips texts, each on a line of its own or, in binary, after its length in 1, 2, 4 or 8 bytes.
 fn skip_texts(reader: &mut Reader, count: u64) -> Result<()> {
     reader.announce("texts", count);
     for _ in 0..count {
@@ -161,7 +162,7 @@ fn skip_texts(reader: &mut Reader, count: u64) -> Result<()> {
             }
             reader.line();
         } else {
-            // the two highest bits tell how many bytes follow, the others begin the length
+            // The two highest bits give the number of bytes that follow, the others begin the length.
             let first = reader.number::<u8>()?;
             let more = reader.take([7, 3, 1, 0][usize::from(first >> 6)])?;
             let length = more.iter().fold(u64::from(first & 63), |length, &byte| length << 8 | u64::from(byte));

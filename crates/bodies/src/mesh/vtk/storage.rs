@@ -1,4 +1,4 @@
-//! Arrays as a `.vtu` stores them: in base64 or raw, as bytes after their number or as blocks of zlib after a header.
+//! The storage of arrays in a `.vtu`: in base64 or raw, as bytes after their number or as zlib blocks after a header.
 
 use crate::error::{Error, Result};
 use base64::alphabet::STANDARD;
@@ -9,37 +9,37 @@ use std::borrow::Cow;
 
 const BASE64: GeneralPurpose = GeneralPurpose::new(&STANDARD, PAD.with_decode_allow_trailing_bits(true));
 
-/// No data compress by zlib to less than this part.
+/// The largest ratio by which zlib compresses.
 const MOST_COMPRESSION: usize = 1100;
 
 /// How all arrays of a file are stored.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Storage {
     pub compressed: bool,
-    /// Whether the numbers of a header have eight bytes each, not four.
+    /// Whether the numbers of a header have eight bytes instead of four.
     pub wide: bool,
     pub big_endian: bool,
 }
 
-/// The bytes of a file from the first of one array on.
+/// The bytes of a file from the first byte of one array.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stored<'a> {
     pub bytes: &'a [u8],
     pub in_base64: bool,
 }
 
-/// A stored array whose header fits it.
+/// A stored array whose header has been checked.
 pub(super) struct Data<'a> {
     stored: Stored<'a>,
-    /// Bytes of the array once decoded.
+    /// The number of bytes of the decoded array.
     pub size: usize,
-    /// Bytes that the stored array has.
+    /// The number of bytes of the stored array.
     pub stored_size: usize,
     layout: Layout,
 }
 
 enum Layout {
-    /// The data follow their number, which takes up so many bytes, in the same run of base64.
+    /// The data follow their number, which has so many bytes, in the same run of base64.
     Plain {
         header: usize,
     },
@@ -51,12 +51,12 @@ enum Layout {
 }
 
 impl<'a> Stored<'a> {
-    /// How many bytes hold so many once decoded.
+    /// The number of stored bytes for so many decoded bytes.
     fn length(self, count: usize) -> usize {
         if self.in_base64 { count.div_ceil(3).saturating_mul(4) } else { count }
     }
 
-    /// The `count` bytes that are stored from `start` on as one run.
+    /// The `count` bytes that are stored from `start` as one run.
     fn run(self, start: usize, count: usize) -> Result<Cow<'a, [u8]>> {
         let rest = self.bytes.get(start..).unwrap_or_default();
         let length = self.length(count);
@@ -110,8 +110,8 @@ impl Storage {
         Ok(Data { stored, size: first, stored_size, layout: Layout::Plain { header: width } })
     }
 
-    /// A header has the number of blocks, their size, the size of the last one, or 0 if it is as large as the others,
-    /// and the sizes of all once compressed.
+    /// A header has the number of blocks, their size, the size of the last one (0 if it is as large as the others), and
+    /// the compressed sizes of all blocks.
     fn open_blocks(self, stored: Stored<'_>, count: usize) -> Result<Data<'_>> {
         let length = count.saturating_add(3).saturating_mul(self.width());
         if stored.length(length) > stored.bytes.len() {
@@ -147,7 +147,7 @@ impl<'a> Data<'a> {
     /// Decodes the array: `size` bytes.
     ///
     /// # Errors
-    /// The data are not in base64, a block is not in zlib's format or of another size.
+    /// The data are not in base64, or a block is not in zlib's format or has another size.
     pub fn decode(self) -> Result<Cow<'a, [u8]>> {
         let Data { stored, size, layout, .. } = self;
         match layout {
@@ -166,7 +166,7 @@ impl<'a> Data<'a> {
     }
 }
 
-/// What stands in the place of base64.
+/// The error for data that are not base64.
 fn not_base64(error: &DecodeError, run: &[u8]) -> Error {
     let found = match error {
         DecodeError::InvalidByte(place, byte) | DecodeError::InvalidLastSymbol(place, byte) => {
@@ -180,7 +180,7 @@ fn not_base64(error: &DecodeError, run: &[u8]) -> Error {
     Error::new(format!("expected base64, found {found}"))
 }
 
-/// Bytes as one run of base64.
+/// Encodes bytes as one run of base64.
 pub(super) fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
 }

@@ -1,4 +1,4 @@
-//! Writes pictures for ParaView.
+//! Writes unstructured grids that ParaView shows.
 
 use super::cells::{is_known, shape};
 use super::storage::base64;
@@ -8,26 +8,29 @@ use crate::file::write_with;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Points, cells and arrays of a picture in ParaView.
+/// The points, cells and arrays of an unstructured grid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Grid {
-    /// Coordinates in mesh units.
+    /// The coordinates.
     pub points: Vec<[f64; 3]>,
     /// VTK's number of the type of each cell.
     pub cell_types: Vec<u8>,
-    /// Where each cell ends in `connectivity`.
+    /// The index in `connectivity` at which each cell ends.
     pub ends: Vec<usize>,
     /// Indices into `points`, cell after cell, in VTK's node order.
     pub connectivity: Vec<usize>,
+    /// The arrays with a value for each point.
     pub point_data: Vec<Array>,
+    /// The arrays with a value for each cell.
     pub cell_data: Vec<Array>,
 }
 
 /// A scalar or a vector for each point or each cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
+    /// The name of the array.
     pub name: String,
-    /// 1 or 3.
+    /// The number of components, 1 or 3.
     pub components: usize,
     /// All components of the first point or cell, then of the next.
     pub values: Vec<f64>,
@@ -132,7 +135,7 @@ fn encode(grid: &Grid, file: &mut Text) -> io::Result<()> {
     Ok(())
 }
 
-/// Where the file goes.
+/// The file that is written.
 struct Text<'a>(&'a mut dyn Write);
 
 impl Text<'_> {
@@ -153,7 +156,7 @@ impl Text<'_> {
         bytes.extend((size as u64).to_le_bytes());
         bytes.extend(values.flatten());
         let name = escaped(name);
-        // meshio makes a matrix of an array that says that it has one component
+        // meshio makes a matrix of an array whose attribute says that it has one component.
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"))?;
         self.line(&base64(&bytes))?;

@@ -8,30 +8,30 @@ use crate::mesh::reader::{Encoding, Reader};
 use crate::mesh::source::MeshSource;
 use std::borrow::Cow;
 
-/// All arrays in binary together, stored and decoded, may have at most so many bytes for each byte of the file. An array of
+/// The largest number of bytes, stored and decoded, of all binary arrays together per byte of the file. An array of
 /// equal numbers may have a thousand, but few files consist of such arrays.
 const MOST_GROWTH: u64 = 100;
-/// So many bytes are allowed in any file.
+/// The number of bytes that is allowed in any file.
 const ALWAYS_ALLOWED: u64 = 1 << 24;
 
 /// Reads the unstructured grid of a `.vtu`: its arrays as text, in base64 or appended in base64 or raw, in either byte
-/// order, plain or compressed by zlib.
+/// order, uncompressed or compressed by zlib.
 ///
-/// Cells of one type form one block where they agree in every array of whole numbers that has one number per cell and
-/// at most 1000 different numbers; each such array gives the group `array=number`. Pixels and voxels become the
-/// quadrangles and hexahedra they are.
+/// Cells of one type form one block if they agree in every array of whole numbers that has one number per cell and at
+/// most 1000 different numbers; each such array gives the group `array=number`. Pixels and voxels become quadrangles
+/// and hexahedra.
 ///
 /// # Errors
-/// The file is of another kind, damaged, cut short or compressed otherwise than by zlib, or has cells without a fixed
-/// shape such as polygons.
+/// The file is of another kind, damaged, cut short or compressed by another method than zlib, or has cells without a
+/// fixed shape such as polygons.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     piece::mesh(pieces(bytes)?)
 }
 
-/// The pieces as they are in the file: cells unchecked, points perhaps not finite.
+/// The pieces as they are in the file: cells are not checked, and points may not be finite.
 ///
 /// # Errors
-/// The file is of another kind, damaged, cut short or compressed otherwise than by zlib.
+/// The file is of another kind, damaged, cut short or compressed by another method than zlib.
 pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
     let document = Document::read(bytes)?;
     if document.pieces.is_empty() {
@@ -44,7 +44,7 @@ pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
 /// The arrays of a file, decoded one after the other.
 struct Arrays<'a> {
     document: &'a Document<'a>,
-    /// Bytes of those in binary so far, stored and decoded.
+    /// The number of bytes of the binary arrays so far, stored and decoded.
     size: u64,
 }
 
@@ -139,7 +139,7 @@ impl Arrays<'_> {
         read(&mut reader).map_err(placed)
     }
 
-    /// The bytes of an array in binary.
+    /// The bytes of a binary array.
     fn decoded<'s>(&mut self, array: &ArrayTag, count: u64, stored: Stored<'s>, alone: bool) -> Result<Cow<'s, [u8]>> {
         if alone && stored.bytes.is_empty() && count == 0 {
             return Ok(Cow::Borrowed(&[]));

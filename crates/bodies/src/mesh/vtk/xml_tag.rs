@@ -2,21 +2,21 @@
 
 use std::ops::Range;
 
-/// The longest entity that is replaced, `&#x10FFFF;`, without its ampersand.
+/// The length of the longest entity that is replaced, `&#x10FFFF;`, without its ampersand.
 const LONGEST_ENTITY: usize = 9;
 
-/// A tag, its place in the file and its content.
+/// A tag, its position in the file and its content.
 pub(super) struct Tag<'a> {
     pub start: usize,
     pub end: usize,
-    /// With a slash before it for an end tag.
+    /// The name, with a slash before it for an end tag.
     pub name: &'a [u8],
     attributes: &'a [u8],
     /// Whether the element ends with its start tag.
     pub empty: bool,
 }
 
-/// The first tag from `at` on; comments and declarations are passed over.
+/// The first tag from `at`; comments and declarations are skipped.
 pub(super) fn next_tag(bytes: &[u8], mut at: usize) -> Option<Tag<'_>> {
     loop {
         let start = text_after(bytes, at).end;
@@ -115,7 +115,7 @@ fn character(entity: &str) -> Option<char> {
     }
 }
 
-/// A text as the value of an attribute. XML has no way to write most control characters: they become U+FFFD.
+/// A text as the value of an attribute. XML cannot represent most control characters: they become U+FFFD.
 pub(super) fn escaped(text: &str) -> String {
     let mut value = String::with_capacity(text.len());
     for character in text.chars() {

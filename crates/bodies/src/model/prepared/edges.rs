@@ -1,11 +1,11 @@
-//! Springs between two points, those without a rest length apart: they need no root.
+//! Springs between two points; those with rest length zero are separate because they need no square root.
 
 use crate::model::network::{MeasureSpring, Network};
 use crate::scalar::Coordinates;
 use crate::springs::Measure;
 
-/// Length springs without a rest length, `f_i = Σ_j k_ij (x_i − x_j)`, each in the rows of both of its points: a row needs no
-/// other row's force.
+/// Length springs of rest length zero, `f_i = Σ_j k_ij (x_i − x_j)`, each in the rows of both of its points, so that a
+/// row does not depend on the forces of other rows.
 #[derive(Debug)]
 pub struct Edges {
     /// `[rows + 1]`.
@@ -33,7 +33,7 @@ impl Edges {
         Edges { starts, columns, constants }
     }
 
-    /// Writes the forces, as [`unpack`](super::unpack) reads them.
+    /// Writes the forces in the order that [`unpack`](super::unpack) reads.
     #[inline(always)]
     pub fn pull<C: Coordinates>(&self, zero: C, x: &[[f64; 4]], force: &mut [[f64; 4]]) {
         for (i, force) in force.iter_mut().enumerate() {
@@ -56,11 +56,11 @@ pub struct Bars {
     lawful: Vec<([u32; 2], usize)>,
 }
 
-/// Bars whose roots and quotients are taken together.
+/// The number of bars whose square roots and quotients are computed together.
 const BLOCK: usize = 32;
 
 impl Bars {
-    /// `lawful` are the springs on lengths among the others of the network.
+    /// `lawful` are the indices of the springs with a law on a length among the other springs of the network.
     pub fn new(network: &Network, lawful: &[usize], place: &[usize]) -> Bars {
         let rows = |points: &[usize]| [place[points[0]] as u32, place[points[1]] as u32];
         let mut springs: Vec<_> = network.lengths.iter().filter(|s| s.rest != 0.0).collect();
@@ -73,12 +73,12 @@ impl Bars {
         }
     }
 
-    /// Whether a spring is one on the distance of two points.
+    /// Whether a spring is on the distance of two points.
     pub fn has(spring: &MeasureSpring) -> bool {
         matches!(spring.measure, Measure::Length) && spring.points.len() == 2
     }
 
-    /// Adds `T n` at j and `−T n` at i; false where a bar has no direction or a law no force.
+    /// Adds `T n` at j and `−T n` at i; false if a bar has no direction or a law no force.
     #[inline(always)]
     pub fn pull<C: Coordinates>(
         &self,

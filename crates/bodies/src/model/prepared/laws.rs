@@ -1,18 +1,19 @@
-//! Springs with laws on the content of single cells, many at a time: what a law is made of is read once for all of them.
+//! Springs with laws on the content of single cells, many at a time, so that each step of a law is read once for all of
+//! them.
 
 use crate::model::network::{MeasureSpring, Network};
 use crate::springs::{Law, LawRoom};
 use std::sync::Arc;
 
-/// Springs that are worked out together.
+/// The number of springs that are evaluated together.
 const BLOCK: usize = 16;
 
-/// A spring with a law on `V = scale · det` of a cell.
+/// A spring with a law on the content `V = scale · det` of a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Lawful {
     pub cell: usize,
     pub scale: f64,
-    /// Among the others of the network.
+    /// Its index among the other springs of the network.
     pub spring: usize,
 }
 
@@ -22,7 +23,7 @@ struct Block {
     law: Arc<Law>,
     cells: Vec<usize>,
     scales: [f64; BLOCK],
-    /// A place for the contents, those at rest, and the parameters.
+    /// The contents, the contents at rest, and the parameters.
     at: Vec<[f64; BLOCK]>,
 }
 
@@ -31,7 +32,7 @@ pub struct Laws {
     blocks: Vec<Block>,
 }
 
-/// Memory of [`Laws::pull`].
+/// Working memory of [`Laws::pull`].
 #[derive(Debug, Default)]
 pub struct LawsRoom {
     at: Vec<[f64; BLOCK]>,
@@ -39,7 +40,7 @@ pub struct LawsRoom {
 }
 
 impl Laws {
-    /// In their order, but for laws that take turns.
+    /// The springs in their order, grouped by law.
     pub fn new(network: &Network, springs: &[Lawful]) -> Laws {
         let law = |lawful: &Lawful| network.others[lawful.spring].law.as_ref();
         let mut kinds: Vec<(&Arc<Law>, Vec<Lawful>)> = Vec::new();
@@ -60,7 +61,8 @@ impl Laws {
         self.blocks.is_empty()
     }
 
-    /// Adds the springs' tensions along `∇det` of their cells, with `determinant(cell)`; false where a law has no force.
+    /// Adds the tensions of the springs along `∇det` of their cells, with `determinant(cell)`; false if a law has no
+    /// force.
     #[inline(always)]
     pub fn pull(&self, determinant: impl Fn(usize) -> f64, room: &mut LawsRoom, tensions: &mut [f64]) -> bool {
         let mut sound = true;
@@ -81,7 +83,7 @@ impl Laws {
 }
 
 impl Block {
-    /// Places without a spring have the numbers of the first.
+    /// Unused entries have the numbers of the first spring.
     fn new(others: &[MeasureSpring], law: &Arc<Law>, springs: &[Lawful]) -> Block {
         let own = |i: usize| springs.get(i).unwrap_or(&springs[0]);
         let of = |i: usize| &others[own(i).spring];

@@ -1,5 +1,5 @@
-//! A network made ready to pull many times, as a simulation asks for at every step: its points in an order that keeps neighbours
-//! together, its springs sorted by what they cost.
+//! A network prepared for many evaluations of its forces, as a simulation requires: its points are in an order that
+//! keeps neighbours together, and its springs are sorted by kind.
 
 mod edges;
 mod laws;
@@ -13,32 +13,32 @@ use edges::{Bars, Edges};
 use simplices::{Simplices, Tensions};
 use std::sync::{Mutex, PoisonError};
 
-/// The network with other loops and the same answers, but for rounding: in a fraction of the time where springs are on lengths, on
-/// the contents of lines, triangles and tetrahedra in a space of their dimension, or on patches of these. It has the memory
-/// that a step needs, so that threads wait for each other.
+/// The network with faster loops and the same results up to rounding. Springs on lengths, on the contents of lines,
+/// triangles and tetrahedra in a space of their dimension, and on patches of these are evaluated in a fraction of the
+/// time. It owns the memory that an evaluation needs, so that threads wait for each other.
 #[derive(Debug)]
 pub struct PreparedNetwork<'a> {
     network: &'a Network,
-    /// Points of the network in the order of their rows.
+    /// The points of the network in the order of their rows.
     order: Vec<usize>,
     edges: Edges,
     bars: Bars,
     simplices: Simplices,
-    /// Those of the network's others that pull as they do without preparation.
+    /// The indices of the other springs that are evaluated without preparation.
     rest: Vec<usize>,
     room: Mutex<Room>,
 }
 
 #[derive(Debug, Default)]
 struct Room {
-    /// Of the rows, one number to spare.
+    /// The positions of the rows, with one unused number each.
     x: Vec<[f64; 4]>,
     force: Vec<[f64; 4]>,
     tensions: Tensions,
 }
 
 impl Network {
-    /// Sorts the springs for [`Elastic::forces`], which costs as much as about a hundred evaluations.
+    /// Sorts the springs for [`Elastic::forces`]; this costs about as much as a hundred evaluations.
     pub fn prepared(&self) -> PreparedNetwork<'_> {
         PreparedNetwork::new(self)
     }
@@ -71,10 +71,11 @@ impl<'a> PreparedNetwork<'a> {
     }
 }
 
-/// The points of the network: as they are numbered, or from the outside in where neighbours are nearer to each other so.
+/// The order of the points: as they are numbered, or the order from the outside in if it brings neighbours nearer to
+/// each other.
 fn order(network: &Network) -> Vec<usize> {
     let lengths = network.lengths.iter().map(|s| (s.points[0], s.points[1]));
-    // A patch hangs together by its cells, which other springs join.
+    // The points of a patch are connected through its cells, which other springs join.
     let others = network.others.iter().flat_map(|s| s.points.iter().map(move |&p| (s.points[0], p)));
     let pairs: Vec<(usize, usize)> = lengths.chain(others).collect();
     let count = pairs.iter().map(|(i, j)| i.max(j) + 1).max().unwrap_or(0);
@@ -157,7 +158,7 @@ fn pack<const D: usize>(order: &[usize], x: &[f64], rows: &mut [[f64; 4]]) {
     }
 }
 
-/// Forces of the rows are (z, x, y), as cross products without a last turn are.
+/// The forces of the rows are (z, x, y), which is the order of cross products without a last permutation.
 #[inline(always)]
 fn unpack<const D: usize>(order: &[usize], sums: &[[f64; 4]], force: &mut [f64]) {
     force.fill(0.0);

@@ -1,7 +1,8 @@
 //! Springs on the content of lines, triangles and tetrahedra that fill their space, and of patches of them.
 //!
-//! With the edges `e_a = x_a − x_0` from the first node, filled up to three with the axes beyond the dimension, the content is
-//! `V = c det [e_1 e_2 e_3]` and `∂det/∂x_1 = e_2 × e_3`, and so on round; what the first node feels is minus the sum.
+//! With the edges `e_a = x_a − x_0` from the first node, completed to three by the remaining axes, the content is
+//! `V = c det [e_1 e_2 e_3]`, and `∂det/∂x_1 = e_2 × e_3`, and cyclically. The gradient at the first node is minus the
+//! sum of the others.
 
 use super::laws::{Lawful, Laws, LawsRoom};
 use crate::model::network::{MeasureSpring, Network};
@@ -9,7 +10,7 @@ use crate::scalar::Coordinates;
 use crate::springs::Measure;
 use std::collections::HashMap;
 
-/// The nodes of a cell, filled up with zeros, and its linear springs: they pull with `slope · det − pull` along `∇det`.
+/// The nodes of a cell, completed by zeros, and its linear springs, which pull with `slope · det − pull` along `∇det`.
 #[derive(Debug, Clone, Copy)]
 struct Simplex {
     nodes: [u32; 4],
@@ -17,10 +18,10 @@ struct Simplex {
     pull: f64,
 }
 
-/// Of a cell of which patches have a share.
+/// The patches that share a cell.
 #[derive(Debug, Clone, Copy)]
 struct Membership {
-    /// Patches; where they are fewer the rest name one that never pulls.
+    /// The patches; unused entries name one that never pulls.
     patches: [u32; 4],
     /// `share · c`.
     share: f64,
@@ -31,24 +32,24 @@ struct Membership {
 pub struct Simplices {
     cells: Vec<Simplex>,
     laws: Laws,
-    /// `[cells]`, or none where there are no patches.
+    /// `[cells]`, or empty if there are no patches.
     memberships: Vec<Membership>,
-    /// The springs on patches, among the others of the network.
+    /// The indices of the springs on patches among the other springs of the network.
     patches: Vec<usize>,
 }
 
-/// What is worked out before the forces, in memory that stays.
+/// What is computed before the forces, in memory that is kept.
 #[derive(Debug, Default)]
 pub struct Tensions {
-    /// `[cells]`, along `∇det`, of laws and patches.
+    /// The tensions of laws and patches along `∇det`, `[cells]`.
     cells: Vec<f64>,
-    /// `[patches + 1]`: contents, then tensions.
+    /// First the contents and then the tensions of the patches, `[patches + 1]`.
     patches: Vec<f64>,
     laws: LawsRoom,
 }
 
 impl Simplices {
-    /// The cells that these springs among the others of the network measure, those between neighbouring rows after each other.
+    /// The cells that these springs measure, in an order in which neighbouring rows follow each other.
     pub fn new(network: &Network, springs: &[usize], place: &[usize]) -> Simplices {
         let mut all = Builder {
             nodes: network.dimension + 1,
@@ -90,7 +91,8 @@ impl Simplices {
         all.finish(network)
     }
 
-    /// Whether a spring measures the content of a simplex in a space of its own dimension, or of a patch of such.
+    /// Whether a spring measures the content of a simplex in a space of its own dimension, or of a patch of such
+    /// simplices.
     pub fn have(spring: &MeasureSpring, dimension: usize) -> bool {
         match &spring.measure {
             Measure::Content(element) | Measure::PointContent(element, _) => {
@@ -104,7 +106,7 @@ impl Simplices {
         }
     }
 
-    /// Adds the forces, as [`unpack`](super::unpack) reads them; false where a spring has none.
+    /// Adds the forces in the order that [`unpack`](super::unpack) reads; false if a spring has none.
     #[inline(always)]
     pub fn pull<C: Coordinates, const D: usize>(
         &self,
@@ -127,7 +129,8 @@ impl Simplices {
         sound & pull::<C, D>(zero, &self.cells, |cell| cells[cell], x, force)
     }
 
-    /// The tensions that patches lay on their cells: first the content of every patch, then what its spring pulls.
+    /// The tensions of the patches along `∇det` of their cells: first the content of every patch is computed, then its
+    /// tension.
     #[inline(always)]
     fn pull_patches<C: Coordinates, const D: usize>(
         &self,
@@ -162,7 +165,7 @@ impl Simplices {
     }
 }
 
-/// c, for the content is linear in each edge: that of the cell whose edges are the axes.
+/// The factor c. Because the content is linear in each edge, it is the content of the cell whose edges are the axes.
 fn scale(measure: &Measure, dimension: usize) -> f64 {
     let mut x = vec![0.0; (dimension + 1) * dimension];
     (0..dimension).for_each(|k| x[(k + 1) * dimension + k] = 1.0);
@@ -172,7 +175,7 @@ fn scale(measure: &Measure, dimension: usize) -> f64 {
 const AXES: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
 impl Simplex {
-    /// The three edges and the same turned.
+    /// The three edges, and the same edges with permuted coordinates.
     #[inline(always)]
     fn edges<C: Coordinates, const D: usize>(&self, zero: C, x: &[[f64; 4]]) -> ([C; 3], [C; 3]) {
         let first = zero.load(&x[self.nodes[0] as usize]);
@@ -191,7 +194,7 @@ impl Simplex {
     }
 }
 
-/// `a × b` as (z, x, y), of vectors and the same turned.
+/// `a × b` as (z, x, y), from vectors and their permutations.
 #[inline(always)]
 fn cross<C: Coordinates>((a, turned_a): (C, C), (b, turned_b): (C, C)) -> C {
     a.difference_of_products(turned_b, turned_a, b)
@@ -230,13 +233,13 @@ fn pull<C: Coordinates, const D: usize>(
     sound
 }
 
-/// Cells by their nodes.
+/// Collects cells by their nodes.
 struct Builder {
-    /// Of a cell.
+    /// The number of nodes of a cell.
     nodes: usize,
     simplices: Simplices,
     known: HashMap<[u32; 4], usize>,
-    /// Of each cell its patches and their common share, times c.
+    /// For each cell its patches and their common share, times c.
     shares: Vec<(Vec<u32>, f64)>,
     lawful: Vec<Lawful>,
 }
@@ -257,7 +260,7 @@ impl Builder {
         cell
     }
 
-    /// A cell of which more patches have shares than it has nodes, or not equal ones, is there twice.
+    /// A cell that is shared by more patches than it has nodes, or by unequal shares, is stored twice.
     fn share(&mut self, nodes: [u32; 4], patch: u32, share: f64) {
         let mut cell = self.cell(nodes);
         let (patches, own) = &self.shares[cell];

@@ -1,6 +1,8 @@
-//! Greatest common divisors of polynomials: Brown's algorithm. Images modulo primes and at random values of all
-//! variables but one have their divisors by Euclid's algorithm; interpolation and the Chinese remainder theorem lead
-//! back, and a result counts once it divides and what it leaves has no common divisor.
+//! Greatest common divisors of polynomials by Brown's modular algorithm (J. ACM 18, 1971).
+//!
+//! The polynomials are reduced modulo primes and evaluated at random values of all variables but one; the divisors of
+//! these images follow from Euclid's algorithm. Interpolation and the Chinese remainder theorem recover the divisor. A
+//! result is accepted once it divides both polynomials and their quotients have no common divisor.
 
 use super::Polynomial;
 use super::field::Field;
@@ -14,14 +16,14 @@ use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
 impl Polynomial {
-    /// The polynomial of largest degree that divides both, with integer coefficients without a common divisor, of which
-    /// the first of [`Polynomial::sorted`] is positive. Zero if both are zero.
+    /// The common divisor of largest degree. Its integer coefficients have no common divisor, and the first one in the
+    /// order of [`Polynomial::sorted`] is positive. It is zero if both polynomials are zero.
     pub fn greatest_common_divisor(&self, other: &Polynomial) -> Polynomial {
         let [divisor, _, _] = self.with_cofactors(other);
         divisor
     }
 
-    /// The greatest common divisor, `self` over it and `other` over it.
+    /// The greatest common divisor, `self` divided by it, and `other` divided by it.
     pub fn with_cofactors(&self, other: &Polynomial) -> [Polynomial; 3] {
         let (a, b) = (self, other);
         if a.is_zero() || b.is_zero() {
@@ -48,7 +50,7 @@ impl Polynomial {
     }
 }
 
-/// The greatest common divisor of primitive polynomials and what it leaves of each.
+/// The greatest common divisor of two primitive polynomials, and the quotient of each by it.
 fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3] {
     let one = || vec![(0, BigInt::one())];
     if let Some(quotient) = layout.quotient(a, b) {
@@ -89,7 +91,8 @@ fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3]
     unreachable!("there is always another prime")
 }
 
-/// Makes `lifted`, of least magnitude modulo `modulus`, agree with `scale · image` too.
+/// Changes `lifted`, which holds residues of least magnitude modulo `modulus`, so that it also agrees with
+/// `scale · image`.
 fn lift(lifted: &mut BTreeMap<u128, BigInt>, modulus: &BigInt, image: &[(u128, u64)], scale: u64, field: &Field) {
     let inverse = field.inverse(field.residue(modulus));
     let mut image: BTreeMap<u128, u64> = image.iter().map(|(key, c)| (*key, field.product(*c, scale))).collect();
@@ -101,11 +104,11 @@ fn lift(lifted: &mut BTreeMap<u128, BigInt>, modulus: &BigInt, image: &[(u128, u
     }
 }
 
-/// A polynomial as powers of all variables but the last, with polynomials in the last as coefficients.
+/// A polynomial as powers of all variables but the last, with polynomials in the last variable as coefficients.
 type Grouped = Vec<(u128, Vec<u64>)>;
 
-/// The greatest common divisor of polynomials over a field, its last coefficient one. It can be wrong, but not about
-/// being one.
+/// The greatest common divisor of polynomials over a field; its last coefficient is one. Unlucky random values can give
+/// a wrong divisor, but a result of one is always right.
 fn image_divisor(a: &[(u128, u64)], b: &[(u128, u64)], widths: &[u32], field: &mut Field) -> Vec<(u128, u64)> {
     let (&width, others) = widths.split_last().expect("there are variables");
     let (mut a, mut b) = (grouped(a, width), grouped(b, width));
@@ -143,7 +146,7 @@ fn image_divisor(a: &[(u128, u64)], b: &[(u128, u64)], widths: &[u32], field: &m
     }
 }
 
-/// Makes `found`, which is known modulo `modulus`, have the values `scale · image` at one more place.
+/// Changes `found`, which is known modulo `modulus`, so that it takes the values `scale · image` at one more point.
 fn interpolate(
     found: &mut BTreeMap<u128, Vec<u64>>,
     modulus: &[u64],
@@ -183,12 +186,12 @@ fn flat(groups: impl IntoIterator<Item = (u128, Vec<u64>)>, width: u32) -> Vec<(
     terms.filter(|(_, c)| *c != 0).collect()
 }
 
-/// The values at one value of the last variable.
+/// The polynomials evaluated at one value of the last variable.
 fn image(p: &Grouped, at: u64, field: &Field) -> Vec<(u128, u64)> {
     p.iter().map(|(key, c)| (*key, field.value(c, at))).filter(|(_, c)| *c != 0).collect()
 }
 
-/// Divides by the greatest common divisor of the coefficients and returns it.
+/// Divides the polynomial by the greatest common divisor of its coefficients and returns this divisor.
 fn take_content(p: &mut Grouped, field: &Field) -> Vec<u64> {
     let mut content = Vec::new();
     for (_, c) in p.iter() {

@@ -1,4 +1,5 @@
-//! Numbers modulo a prime just below 2⁶¹, and polynomials of them: coefficients from the constant on, the last not 0.
+//! Integers modulo a prime just below 2⁶¹, and polynomials over them. A polynomial is its list of coefficients from the
+//! constant on; the last coefficient is not zero.
 
 use num_bigint::BigInt;
 use num_traits::ToPrimitive;
@@ -9,10 +10,11 @@ pub struct Field {
     state: u64,
 }
 
+/// The bits of the primes. A sum of two numbers fits into `u64`, and a product into `u128`.
 const BITS: u32 = 61;
 
 impl Field {
-    /// The fields of the primes from the largest down.
+    /// The fields whose primes are below 2⁶¹, from the largest prime down.
     pub fn all() -> impl Iterator<Item = Field> {
         (1..1 << 20).step_by(2).map(|below| Field { below, state: below }).filter(Field::is_field)
     }
@@ -21,7 +23,7 @@ impl Field {
         (1 << BITS) - self.below
     }
 
-    /// Miller's and Rabin's test, which with these bases is a proof for numbers of 64 bits.
+    /// The Miller–Rabin test, which with these bases is a proof for numbers of 64 bits.
     fn is_field(&self) -> bool {
         let even = self.prime() - 1;
         let twos = even.trailing_zeros();
@@ -74,12 +76,12 @@ impl Field {
         remainder.rem_euclid(prime) as u64
     }
 
-    /// The integer of least magnitude with that residue.
+    /// The integer of least magnitude with the residue `a`.
     pub fn least(&self, a: u64) -> i64 {
         if a > self.prime() / 2 { a as i64 - self.prime() as i64 } else { a as i64 }
     }
 
-    /// The same sequence each time.
+    /// The next number of a random sequence, which is the same in every run.
     pub fn random(&mut self) -> u64 {
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.state >> 4) % self.prime()
@@ -89,7 +91,7 @@ impl Field {
         p.iter().rev().fold(0, |value, c| self.reduce(u128::from(value) * u128::from(at) + u128::from(*c)))
     }
 
-    /// The greatest common divisor, its last coefficient one.
+    /// The greatest common divisor of two polynomials; its last coefficient is one.
     pub fn divisor(&self, mut a: Vec<u64>, mut b: Vec<u64>) -> Vec<u64> {
         while !b.is_empty() {
             if b.len() == 1 {
@@ -103,7 +105,7 @@ impl Field {
         a
     }
 
-    /// A multiple of the remainder of `a` over `b`: inverses take longer than products.
+    /// A multiple of the remainder of `a` divided by `b`. It needs no inverse, which takes longer than the products.
     fn pseudo_remainder(&self, a: &mut Vec<u64>, b: &[u64]) {
         let lead = b[b.len() - 1];
         while a.len() >= b.len() {
@@ -115,7 +117,7 @@ impl Field {
         }
     }
 
-    /// `p/divisor` without remainder; the last coefficient of the divisor is one.
+    /// The quotient `p/divisor`, for a divisor that divides `p` and whose last coefficient is one.
     pub fn quotient(&self, p: &[u64], divisor: &[u64]) -> Vec<u64> {
         let (mut rest, last) = (p.to_vec(), divisor.len() - 1);
         for shift in (0..rest.len() - last).rev() {

@@ -1,21 +1,21 @@
-//! Fewer variables for the same polynomials: products of powers that all exponents are counted in.
+//! Polynomials rewritten in fewer variables: in products of powers that generate all of their terms.
 
 use super::Polynomial;
 use super::packed::{Layout, Packed};
 use super::polynomial::multiple;
 use num_rational::BigRational;
 
-/// A basis of what the exponents of terms differ by, in echelon form. Its products of powers are variables that suffice
-/// for both polynomials up to one power product each: a homogeneous polynomial needs one less, an even one half the
-/// degree.
+/// A basis, in echelon form, of the differences between the exponents of terms. The products of powers that it stands
+/// for are variables that suffice for both polynomials, up to one power product each. A homogeneous polynomial needs
+/// one variable less; an even polynomial has half the degree.
 pub(super) struct Lattice {
-    /// With the variable in which all later rows are zero, and this one positive.
+    /// Each row with the variable that is zero in all later rows and positive in this one.
     rows: Vec<(usize, Vec<i64>)>,
 }
 
 impl Lattice {
     pub fn of_differences(a: &Polynomial, b: &Polynomial) -> Lattice {
-        // Of variables that depend on others the one of largest degree is saved.
+        // Of several dependent variables, the one of largest degree is eliminated.
         let mut order: Vec<usize> = (0..a.variables()).collect();
         order.sort_by_key(|v| a.degree_in(*v).min(b.degree_in(*v)));
         let mut rows = vec![Vec::new(); order.len()];
@@ -39,7 +39,7 @@ impl Lattice {
         Lattice { rows }
     }
 
-    /// Both polynomials, over their contents and monomials, in the new variables.
+    /// Both polynomials, divided by their contents and monomials, in the new variables.
     pub fn packed(&self, polynomials: [(&Polynomial, &BigRational); 2]) -> (Layout, [Packed; 2]) {
         let places = polynomials.map(|(p, _)| self.places(p));
         let largest = |v: usize| places.iter().map(|p| p.iter().map(|place| place[v]).max().unwrap_or(0)).sum();
@@ -54,7 +54,8 @@ impl Lattice {
         (layout, packed)
     }
 
-    /// The exponents of the new variables, of each term of `p`; the smallest of each variable is zero.
+    /// The exponents of the new variables for each term of `p`, moved so that the smallest exponent of each variable is
+    /// zero.
     fn places(&self, p: &Polynomial) -> Vec<Vec<u32>> {
         let first = p.terms.keys().next().expect("the polynomial has terms");
         let place = |e: &Vec<u32>| {
@@ -64,7 +65,7 @@ impl Lattice {
                 subtract(&mut rest, times, row);
                 times
             };
-            // The variables of large degree come last in the rows and first in the order of terms.
+            // The variables of large degree are last in the rows and first in the order of terms.
             let mut place: Vec<i64> = self.rows.iter().map(coordinate).collect();
             place.reverse();
             place
@@ -72,7 +73,7 @@ impl Lattice {
         lifted(p.terms.keys().map(place).collect(), &vec![0; self.rows.len()])
     }
 
-    /// The polynomial with `content` in the old variables, with `least` for its monomial content.
+    /// The polynomial in the old variables, multiplied by `content`, with `least` as its monomial content.
     pub fn polynomial(&self, packed: &Packed, layout: &Layout, least: &[u32], content: &BigRational) -> Polynomial {
         let exponents = |key: u128| {
             let mut exponents = vec![0; least.len()];
@@ -86,7 +87,8 @@ impl Lattice {
     }
 }
 
-/// Adds a vector to a basis in echelon form, of which the row of a variable is empty or the first in `order` with it.
+/// Adds a vector to a basis in echelon form, in which the row of a variable is empty or has this variable as the first
+/// in `order`.
 fn insert(mut vector: Vec<i64>, rows: &mut [Vec<i64>], order: &[usize]) {
     for &v in order {
         if vector[v] == 0 {
@@ -112,7 +114,7 @@ fn subtract(vector: &mut [i64], times: i64, row: &[i64]) {
     vector.iter_mut().zip(row).for_each(|(v, r)| *v -= times * r);
 }
 
-/// The vectors, moved together so that `least` are their smallest entries.
+/// The vectors, all moved by the same amount so that their smallest entries are `least`.
 fn lifted(vectors: Vec<Vec<i64>>, least: &[u32]) -> Vec<Vec<u32>> {
     let smallest = |i: usize| vectors.iter().map(|v| v[i]).min().unwrap_or(0);
     let smallest: Vec<i64> = (0..least.len()).map(smallest).collect();

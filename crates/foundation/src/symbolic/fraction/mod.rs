@@ -1,4 +1,6 @@
-//! Exact rational functions of several variables, in lowest terms: numbers in which a kernel's result is a formula.
+//! Exact rational functions of several variables, in lowest terms. A kernel that computes with them returns a formula.
+//!
+//! Theory: page *Stiffness* of the book (closed forms).
 
 mod divisor;
 mod field;
@@ -17,12 +19,13 @@ use num_traits::{One, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
-/// A number times a numerator over a denominator without a common divisor. Both have integer coefficients without a
-/// common divisor, of which the first of [`Polynomial::sorted`] is positive; so equal functions are equal fractions.
+/// A number times a numerator divided by a denominator; numerator and denominator have no common divisor. Both have
+/// integer coefficients without a common divisor, of which the first one in the order of [`Polynomial::sorted`] is
+/// positive. Equal functions are therefore equal fractions.
 ///
-/// Fractions that meet in an operation have the same number of variables.
+/// All fractions of one operation must have the same number of variables.
 ///
-/// Copies share their terms: kernels copy often.
+/// Copies share their terms, because kernels copy often.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fraction(Arc<Terms>);
 
@@ -34,6 +37,8 @@ struct Terms {
 }
 
 impl Fraction {
+    /// The quotient of two polynomials.
+    ///
     /// # Panics
     /// If the denominator is zero.
     pub fn new(numerator: Polynomial, denominator: Polynomial) -> Fraction {
@@ -49,14 +54,14 @@ impl Fraction {
         }))
     }
 
-    /// `c`, as a function of `variables` variables.
+    /// The number `c`, as a function of `variables` variables.
     pub fn number(c: BigRational, variables: usize) -> Fraction {
         let one = Polynomial::constant(BigRational::one(), variables);
         let numerator = if c.is_zero() { Polynomial::default() } else { one.clone() };
         Fraction(Arc::new(Terms { content: c, numerator, denominator: one }))
     }
 
-    /// The variable of that index among `variables`.
+    /// The variable with this index, of `variables` variables.
     pub fn variable(index: usize, variables: usize) -> Fraction {
         Fraction(Arc::new(Terms {
             content: BigRational::one(),
@@ -65,29 +70,32 @@ impl Fraction {
         }))
     }
 
-    /// The number in front, with the sign.
+    /// The number in front, with its sign.
     pub fn content(&self) -> &BigRational {
         &self.0.content
     }
 
-    /// What the content multiplies; zero if the fraction is.
+    /// The numerator, without the content; zero if the fraction is zero.
     pub fn numerator(&self) -> &Polynomial {
         &self.0.numerator
     }
 
+    /// The denominator.
     pub fn denominator(&self) -> &Polynomial {
         &self.0.denominator
     }
 
+    /// The number of variables.
     pub fn variables(&self) -> usize {
         self.0.denominator.variables()
     }
 
+    /// Whether the function is zero everywhere.
     pub fn is_zero(&self) -> bool {
         self.0.content.is_zero()
     }
 
-    /// The value where the variables have the values `at`, or `None` at a pole.
+    /// The value at the point `at`, or `None` at a pole.
     pub fn evaluate(&self, at: &[BigRational]) -> Option<BigRational> {
         let below = self.0.denominator.evaluate(at);
         (!below.is_zero()).then(|| &self.0.content * self.0.numerator.evaluate(at) / below)
@@ -106,13 +114,14 @@ impl Fraction {
         }))
     }
 
-    /// The same polynomials with another number, not zero, in front.
+    /// The same polynomials with another number in front, which is not zero.
     fn of_content(&self, content: BigRational) -> Fraction {
         let (numerator, denominator) = (self.0.numerator.clone(), self.0.denominator.clone());
         Fraction(Arc::new(Terms { content, numerator, denominator }))
     }
 
-    /// Henrici's sum of `self` and `c` times the other's polynomials: only what the denominators share can cancel.
+    /// The sum of `self` and `c` times the polynomials of the other (Henrici): only common factors of the denominators
+    /// can cancel.
     fn plus(&self, c: &BigRational, other: &Fraction) -> Fraction {
         let [shared, below, other_below] = self.0.denominator.with_cofactors(&other.0.denominator);
         let unit = BigRational::new_raw(BigInt::one(), self.0.content.denom().lcm(c.denom()));
@@ -129,7 +138,7 @@ impl Fraction {
         }))
     }
 
-    /// The product: only a numerator and the other's denominator can cancel.
+    /// The product: only a numerator and the denominator of the other can cancel.
     fn times(&self, other: &Fraction) -> Fraction {
         if self.is_zero() || other.is_zero() {
             return Fraction::number(BigRational::zero(), self.variables());

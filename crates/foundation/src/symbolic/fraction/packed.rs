@@ -1,23 +1,24 @@
-//! Polynomials with integer coefficients in one variable that stands for several: the exponents of a term are bits of
-//! one number, so that terms multiply by adding numbers.
+//! Polynomials with integer coefficients whose exponents are packed into the bits of one number, so that terms are
+//! multiplied by adding these numbers.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 
-/// Terms in ascending order of their exponents, none of them zero.
+/// Nonzero terms in ascending order of their packed exponents.
 pub(super) type Packed = Vec<(u128, BigInt)>;
 
-/// How many bits each exponent has, the last variable lowest: terms are ordered as by their lists of exponents.
+/// The number of bits of each exponent, with the last variable in the lowest bits. Packed terms are ordered like their
+/// lists of exponents.
 #[derive(Debug, Clone)]
 pub(super) struct Layout(Vec<u32>);
 
 impl Layout {
-    /// Room for exponents up to `largest`.
+    /// A layout for exponents up to `largest`.
     ///
     /// # Panics
-    /// If they need more than 128 bits together: five variables may have degrees up to 2²⁵.
+    /// If they need more than 128 bits together. Five variables may have degrees up to 2²⁵.
     pub fn new(largest: impl Iterator<Item = u32>) -> Layout {
         let widths: Vec<u32> = largest.map(|degree| u32::BITS - degree.leading_zeros()).collect();
         assert!(widths.iter().sum::<u32>() <= u128::BITS, "the degrees of a polynomial are too large");
@@ -58,8 +59,8 @@ impl Layout {
         if a.first().is_some_and(|(key, c)| key < first || !c.is_multiple_of(start)) {
             return None;
         }
-        // Exponents that stay within the room do not run over into the bits of others, so that a quotient in the one
-        // variable is a quotient in all.
+        // Exponents that do not exceed their bits do not carry into the bits of others, so that a quotient in the one
+        // packed variable is a quotient in all variables.
         let room = self.degrees(a).into_iter().zip(self.degrees(b)).map(|(a, b)| a.checked_sub(b));
         let room: Vec<u32> = room.collect::<Option<_>>()?;
         let mut rest: BTreeMap<u128, BigInt> = a.iter().cloned().collect();
@@ -83,7 +84,7 @@ impl Layout {
     }
 }
 
-/// `a b`, for a layout with room for it.
+/// `a b`, for a layout whose exponents have enough bits for it.
 pub(super) fn product(a: &Packed, b: &Packed) -> Packed {
     let mut product = BTreeMap::<u128, BigInt>::new();
     for (e, c) in a {

@@ -1,4 +1,5 @@
-//! Polynomials with rational coefficients: where an expression is one, its identities are decided, not sampled.
+//! Polynomials with rational coefficients. An identity between expressions that are polynomials is decided exactly
+//! instead of being tested at sample points.
 
 use super::packed::{self, Layout, Packed};
 use num_bigint::BigInt;
@@ -9,9 +10,9 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// `Σ c · x₀^e₀ x₁^e₁ …` with the exponents as keys and no zero coefficients.
+/// `Σ c · x₀^e₀ x₁^e₁ …`, with the exponents as keys and without zero coefficients.
 ///
-/// Polynomials that meet in an operation have the same number of variables.
+/// All polynomials of one operation must have the same number of variables.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Polynomial {
     pub(super) terms: BTreeMap<Vec<u32>, BigRational>,
@@ -30,7 +31,7 @@ impl Polynomial {
         Polynomial::monomial(vec![0; variables], c)
     }
 
-    /// The variable of that index among `variables`.
+    /// The variable with this index, of `variables` variables.
     pub fn variable(index: usize, variables: usize) -> Polynomial {
         let mut exponents = vec![0; variables];
         exponents[index] = 1;
@@ -52,6 +53,7 @@ impl Polynomial {
         }
     }
 
+    /// Whether it is the zero polynomial.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty()
     }
@@ -61,25 +63,27 @@ impl Polynomial {
         self.terms.keys().flatten().all(|e| *e == 0)
     }
 
+    /// Whether it is the number one.
     pub fn is_one(&self) -> bool {
         self.is_constant() && self.terms.values().any(BigRational::is_one)
     }
 
-    /// The number of variables; of the zero polynomial it is not known, and 0.
+    /// The number of variables. For the zero polynomial it is not known and returned as 0.
     pub fn variables(&self) -> usize {
         self.terms.keys().next().map_or(0, Vec::len)
     }
 
+    /// The number of terms.
     pub fn term_count(&self) -> usize {
         self.terms.len()
     }
 
-    /// Binary digits of the largest numerator or denominator of a coefficient.
+    /// The number of binary digits of the largest numerator or denominator of a coefficient.
     pub fn largest_bits(&self) -> u64 {
         self.terms.values().map(|c| c.numer().bits().max(c.denom().bits())).max().unwrap_or(0)
     }
 
-    /// The largest sum of exponents of a term.
+    /// The total degree: the largest sum of the exponents of a term.
     pub fn degree(&self) -> u32 {
         self.terms.keys().map(|e| e.iter().sum()).max().unwrap_or(0)
     }
@@ -89,14 +93,15 @@ impl Polynomial {
         self.terms.keys().map(|e| e[variable]).max().unwrap_or(0)
     }
 
-    /// The terms from the highest degree to the lowest; among those of one degree the first variable's powers first.
+    /// The terms from the highest total degree to the lowest; within a degree, larger powers of earlier variables come
+    /// first.
     pub fn sorted(&self) -> Vec<(&[u32], &BigRational)> {
         let mut terms: Vec<(&[u32], &BigRational)> = self.terms.iter().map(|(e, c)| (&e[..], c)).collect();
         terms.sort_by_key(|(e, _)| std::cmp::Reverse((e.iter().sum::<u32>(), *e)));
         terms
     }
 
-    /// The value where the variables have the values `at`.
+    /// The value at the point `at`.
     pub fn evaluate(&self, at: &[BigRational]) -> BigRational {
         let power = |value: BigRational, (x, e): (&BigRational, &u32)| match e {
             _ if x.is_one() => value,
@@ -107,7 +112,7 @@ impl Polynomial {
         self.terms.iter().map(value).fold(BigRational::zero(), |a, b| sum(&a, &b))
     }
 
-    /// `∂self/∂variable`.
+    /// The derivative `∂self/∂variable`.
     pub fn derivative(&self, variable: usize) -> Polynomial {
         let mut derivative = Polynomial::default();
         for (e, c) in self.terms.iter().filter(|(e, _)| e[variable] > 0) {
@@ -118,7 +123,7 @@ impl Polynomial {
         derivative
     }
 
-    /// `c self`.
+    /// `c · self`.
     pub fn scaled(&self, c: &BigRational) -> Polynomial {
         match c {
             _ if c.is_zero() => Polynomial::default(),
@@ -127,8 +132,8 @@ impl Polynomial {
         }
     }
 
-    /// The number that leaves integer coefficients without a common divisor, of which the first of [`Self::sorted`] is
-    /// positive.
+    /// The number by which `self` has to be divided so that its coefficients are integers without a common divisor, the
+    /// first one in the order of [`Self::sorted`] being positive.
     pub fn content(&self) -> BigRational {
         let (mut above, mut below) = (BigInt::zero(), BigInt::one());
         for c in self.terms.values() {
@@ -146,31 +151,31 @@ impl Polynomial {
         BigRational::new_raw(above, below)
     }
 
-    /// `self` over its content.
+    /// `self` divided by its content.
     pub fn primitive(&self) -> Polynomial {
         let content = self.content();
         let integers = self.integers(&content).map(BigRational::from_integer);
         Polynomial { terms: self.terms.keys().cloned().zip(integers).collect() }
     }
 
-    /// The largest powers of the variables that divide every term.
+    /// For each variable, the largest power that divides every term.
     pub fn monomial_content(&self) -> Vec<u32> {
         let least = |a: Vec<u32>, b: &Vec<u32>| a.iter().zip(b).map(|(a, b)| *a.min(b)).collect();
         let mut exponents = self.terms.keys();
         exponents.next().map_or(Vec::new(), |first| exponents.fold(first.clone(), least))
     }
 
-    /// `self` over its monomial content.
+    /// `self` divided by its monomial content.
     pub fn without_monomial(&self) -> Polynomial {
         self.lowered(&self.monomial_content())
     }
 
-    /// `self` over a product of powers that divides every term.
+    /// `self` divided by a product of powers that divides every term.
     pub(super) fn lowered(&self, by: &[u32]) -> Polynomial {
         Polynomial { terms: self.terms.iter().map(|(e, c)| (difference(e, by), c.clone())).collect() }
     }
 
-    /// The greatest common divisor of the coefficients of the powers of one variable.
+    /// The greatest common divisor of the coefficients, where `self` is read as a polynomial in one variable.
     pub fn content_in(&self, variable: usize) -> Polynomial {
         let mut coefficients = BTreeMap::<u32, Polynomial>::new();
         for (e, c) in &self.terms {
@@ -181,7 +186,7 @@ impl Polynomial {
         coefficients.values().fold(Polynomial::default(), |g, c| g.greatest_common_divisor(c))
     }
 
-    /// `self/divisor`, if that is a polynomial.
+    /// The quotient `self/divisor`, or `None` if it is not a polynomial.
     ///
     /// # Panics
     /// If the divisor is zero.
@@ -195,8 +200,9 @@ impl Polynomial {
         Some(Polynomial::unpacked(&layout.quotient(&a, &b)?, &(c / d), &layout))
     }
 
-    /// Factors, none of them constant, and their powers, whose product is `self` over its content: the variables, and
-    /// what the powers and the variables of the others tell apart. A factor need not be irreducible.
+    /// Factors that are not constant, with their powers; their product is `self` divided by its content. They are the
+    /// variables, and the factors that multiplicities and the sets of variables that occur can separate. A factor need
+    /// not be irreducible.
     pub fn factors(&self) -> Vec<(Polynomial, u32)> {
         if self.is_zero() {
             return Vec::new();
@@ -205,7 +211,7 @@ impl Polynomial {
         let variables = self.monomial_content().into_iter().enumerate().filter(|(_, e)| *e > 0);
         let mut factors: Vec<_> = variables.map(|(v, e)| (Polynomial::variable(v, n), e)).collect();
         let rest = self.without_monomial().primitive();
-        // A factor to the power of e divides every derivative e − 1 times.
+        // A factor of multiplicity e divides every derivative e − 1 times.
         let mut repeated = (0..n).fold(rest.clone(), |g, v| g.greatest_common_divisor(&rest.derivative(v)));
         let mut left = rest.divided_by(&repeated).expect("a divisor divides");
         for power in 1.. {
@@ -219,7 +225,7 @@ impl Polynomial {
         factors
     }
 
-    /// Factors that not all variables occur in, and what remains; from few terms to many.
+    /// Splits off factors in which not all variables occur; ordered from few terms to many.
     fn split(self) -> Vec<Polynomial> {
         let contents = (0..self.variables()).filter(|v| self.degree_in(*v) > 0).map(|v| self.content_in(v));
         let Some(content) = { contents }.find(|c| !c.is_constant()) else {
@@ -232,7 +238,7 @@ impl Polynomial {
         factors
     }
 
-    /// The content and the integer polynomial that it leaves.
+    /// The content, and the polynomial with integer coefficients that remains.
     fn packed(&self, layout: &Layout) -> (BigRational, Packed) {
         let content = self.content();
         let key = |e: &Vec<u32>| layout.pack(e.iter().copied());
@@ -241,7 +247,7 @@ impl Polynomial {
         (content, packed)
     }
 
-    /// The coefficients over the content.
+    /// The coefficients divided by the content.
     pub(super) fn integers<'a>(&'a self, content: &'a BigRational) -> impl Iterator<Item = BigInt> {
         self.terms.values().map(|c| match content.is_one() {
             true => c.numer().clone(),
@@ -263,12 +269,12 @@ pub(super) fn difference(a: &[u32], b: &[u32]) -> Vec<u32> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// `a + b`: integers need no common divisor.
+/// `a + b`, with a fast path for integers, which need no common divisor.
 fn sum(a: &BigRational, b: &BigRational) -> BigRational {
     if a.is_integer() && b.is_integer() { BigRational::from_integer(a.numer() + b.numer()) } else { a + b }
 }
 
-/// `a b`: integers need no common divisor.
+/// `a b`, with a fast path for integers, which need no common divisor.
 fn product(a: &BigRational, b: &BigRational) -> BigRational {
     if a.is_integer() && b.is_integer() { BigRational::from_integer(a.numer() * b.numer()) } else { a * b }
 }

@@ -1,4 +1,4 @@
-//! Polynomials and fractions as text that parses back and as LaTeX.
+//! Polynomials and fractions printed as text that can be parsed again, and as LaTeX.
 
 use super::{Fraction, Polynomial};
 use num_bigint::BigInt;
@@ -22,7 +22,7 @@ impl Notation {
         }
     }
 
-    /// The product of the operands that are not 1.
+    /// The product of all operands other than 1.
     fn product(self, operands: impl IntoIterator<Item = String>) -> String {
         let operands: Vec<String> = operands.into_iter().filter(|operand| operand != "1").collect();
         match self {
@@ -63,7 +63,7 @@ impl Notation {
         if terms.is_empty() { "0".to_string() } else { terms.concat() }
     }
 
-    /// The factors and a number in front of them, as the operands of a product.
+    /// The factors and the number in front of them, as the operands of a product.
     fn operands(self, number: &BigInt, factors: &[(Polynomial, u32)], names: &[&str]) -> Vec<String> {
         let factor = |(p, e): &(Polynomial, u32)| match p.sorted().len() {
             1 => self.power(&self.sum(p, names), *e),
@@ -80,7 +80,7 @@ impl Notation {
         if below.is_empty() {
             let product = self.operands(&BigInt::one(), &above, names);
             return match (&above[..], content.abs().is_one()) {
-                // A sum that is all there is needs no parentheses.
+                // A sum that is the whole numerator or denominator needs no parentheses.
                 ([(p, 1)], true) if sign.is_empty() => self.sum(p, names),
                 _ => sign.to_string() + &self.product([self.number(&content.abs())].into_iter().chain(product)),
             };
@@ -99,7 +99,7 @@ impl Notation {
         }
     }
 
-    /// A sum that is all of a numerator or denominator needs no parentheses between braces.
+    /// The text of a numerator or denominator between braces. A sum that is all of it needs no parentheses there.
     fn unwrapped(self, number: &BigInt, factors: &[(Polynomial, u32)], text: String, names: &[&str]) -> String {
         match factors {
             [(p, 1)] if number.is_one() => self.sum(p, names),
@@ -109,24 +109,24 @@ impl Notation {
 }
 
 impl Polynomial {
-    /// The expanded sum, as text that parses back.
+    /// The expanded sum as text, with the variables called `names`, that can be parsed again.
     pub fn text(&self, names: &[&str]) -> String {
         Text.sum(self, names)
     }
 
-    /// The expanded sum.
+    /// The expanded sum as LaTeX, with the variables called `names`.
     pub fn latex(&self, names: &[&str]) -> String {
         Latex.sum(self, names)
     }
 }
 
 impl Fraction {
-    /// Numerator and denominator in factors, as text that parses back: `(5*a^2 + 3*b^2)/(8*a*b)`.
+    /// Numerator and denominator in factors, as text that can be parsed again: `(5*a^2 + 3*b^2)/(8*a*b)`.
     pub fn text(&self, names: &[&str]) -> String {
         Text.fraction(self, names)
     }
 
-    /// Numerator and denominator in factors: `\frac{5 a^{2} + 3 b^{2}}{8 a b}`.
+    /// Numerator and denominator in factors, as LaTeX: `\frac{5 a^{2} + 3 b^{2}}{8 a b}`.
     pub fn latex(&self, names: &[&str]) -> String {
         Latex.fraction(self, names)
     }

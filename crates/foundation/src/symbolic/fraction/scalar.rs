@@ -1,4 +1,4 @@
-//! Fractions as the numbers of a kernel.
+//! [`Fraction`] as a number of the kernels.
 
 use super::Fraction;
 use crate::scalar::Scalar;
@@ -34,8 +34,9 @@ impl Scalar for Fraction {
         if a.is_zero() || b.is_zero() { self } else { self - &(a * b) }
     }
 
-    /// Where the variables are 1, 9/8, 10/9, …, and false at a pole. Functions have no order of their own; but side lengths
-    /// are positive, and only whether a pivot is zero hangs on the answer, which at equal lengths might be an accident.
+    /// Compares the values at the point 1, 9/8, 10/9, …; false at a pole. Functions have no natural order. But side
+    /// lengths are positive, and the answer only decides whether a pivot is zero, which at equal lengths might be a
+    /// coincidence.
     fn exceeds(&self, other: &Fraction) -> bool {
         let place = |v: usize| {
             if v == 0 { BigRational::from_integer(1.into()) } else { BigRational::new((v + 8).into(), (v + 7).into()) }

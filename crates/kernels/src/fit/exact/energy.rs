@@ -1,24 +1,26 @@
-//! The energies whose bodies are networks, and the forces of their springs on content.
+//! The energies whose finite elements are networks of springs, and the force laws of their springs on content.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, Material, Moduli, State};
 use crate::springs::Law;
 use std::sync::Arc;
 
-/// An energy `μ/2 (|F|² − d) + U(J)` with `U'(1) = −μ`, and one with `|cof F|²` besides.
+/// An energy `μ/2 (|F|² − d) + U(J)` with `U'(1) = −μ`, or one that also contains `|cof F|²`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ExactEnergy {
-    /// `U = −μ (J − 1) + (λ + μ)/2 (J − 1)²`: springs on content are linear. Smith, De Goes, Kim (2018), Stable
-    /// neo-Hookean flesh simulation, (14), with their Lamé constants in place of the material's.
+    /// `U = −μ (J − 1) + (λ + μ)/2 (J − 1)²`: the springs on content are linear. Smith, De Goes, Kim (2018), Stable
+    /// neo-Hookean flesh simulation, (14), with their Lamé constants instead of those of the material.
     #[default]
     StableNeoHookean,
     /// `U = −μ ln J + λ/2 ln² J`. Bonet, Wood (2008), 6.4.3.
     NeoHookean,
-    /// `μ/2 ((1 − s) (|F|² − 3) + s (|cof F|² − 3)) + U(J)`, `U = −μ (1 + s) (J − 1) + (λ + μ (1 − s))/2 (J − 1)²`, after
-    /// Ciarlet, Geymonat (1982): springs on areas besides, all linear. In the plane without strain across it, it is the stable
-    /// neo-Hookean one.
+    /// `μ/2 ((1 − s) (|F|² − 3) + s (|cof F|² − 3)) + U(J)`, `U = −μ (1 + s) (J − 1) + (λ + μ (1 − s))/2 (J − 1)²`,
+    /// after Ciarlet and Geymonat (1982). It also has springs on areas; all springs are linear. In plane strain it is
+    /// equal to the stable neo-Hookean energy.
     StableMooneyRivlin {
-        /// The share s of the shear modulus, from 0 to 1, that goes to the second invariant.
+        /// The share s of the shear modulus, from 0 to 1, that belongs to the second invariant.
         share: f64,
     },
 }
@@ -29,13 +31,13 @@ crate::named!(ExactEnergy {
     "stable-mooney-rivlin" => StableMooneyRivlin { share: 0.25 },
 });
 
-/// Deformations at which energies are compared: `I1`, `I2`, `J` of some that are no rotation.
+/// The deformations at which two energies are compared: `I1`, `I2` and `J` of some deformations that are not rotations.
 const DEFORMATIONS: [[f64; 3]; 4] = [[3.4, 3.7, 1.1], [2.8, 2.7, 0.9], [4.1, 5.0, 1.3], [3.3, 3.2, 0.7]];
-/// What rounding may leave of their difference, relative to the moduli.
+/// The difference that rounding may leave, relative to the moduli.
 const SAME: f64 = 1e-10;
 
 impl ExactEnergy {
-    /// The one that a law is, apart from its fibres.
+    /// The exact energy that is equal to a law apart from its fibres, if there is one.
     pub fn of_law(law: &Energy) -> Option<ExactEnergy> {
         let mu = law.moduli().mu;
         let [a, b] = [[3.0, 3.0, 1.0], [3.0, 4.0, 1.0]].map(|at| law.of_invariants(at));
@@ -44,7 +46,7 @@ impl ExactEnergy {
         candidates.into_iter().find(|energy| energy.is_that_of(law))
     }
 
-    /// Whether a law is this energy, apart from its fibres.
+    /// Whether a law is equal to this energy apart from its fibres.
     pub fn is_that_of(&self, law: &Energy) -> bool {
         let Moduli { lambda, mu } = law.moduli();
         let size = SAME * (lambda.abs() + mu);
@@ -52,7 +54,7 @@ impl ExactEnergy {
         DEFORMATIONS.iter().all(|at| value(*at).is_some_and(|difference| difference.abs() <= size))
     }
 
-    /// W of the invariants `I1`, `I2`, `J`, with λ and μ.
+    /// The energy W at the invariants `I1`, `I2`, `J`, with λ and μ.
     fn value(&self, [i1, i2, j]: [f64; 3], [lambda, mu]: [f64; 2]) -> f64 {
         let square = (j - 1.0) * (j - 1.0);
         match self {
@@ -65,7 +67,7 @@ impl ExactEnergy {
         }
     }
 
-    /// With this share of the second invariant.
+    /// The same energy with another share of the second invariant.
     ///
     /// # Errors
     /// The energy has no second invariant, or the share is not from 0 to 1.
@@ -83,42 +85,45 @@ impl ExactEnergy {
     }
 }
 
-/// The numbers of an exact network per volume of the cell, thickness included.
+/// The coefficients of an exact network, per volume of the cell, thickness included.
 #[derive(Debug, Clone)]
 pub(super) struct Coefficients {
-    /// Of `½ |F|²`, which is in the springs between nodes.
+    /// The coefficient of `½ |F|²`, which the springs between nodes represent.
     pub lengths: f64,
-    /// Of `½ |cof F|²`, in the springs on areas.
+    /// The coefficient of `½ |cof F|²`, which the springs on areas represent.
     pub areas: f64,
-    /// `−U'(1)`: what springs on content pull at rest.
+    /// `−U'(1)`: the force with which springs on content pull at rest.
     pub tension: f64,
-    /// `U''(1)` is the sum of both: what stays in the cells where others have λ, and λ.
+    /// `slope + lambda = U''(1)`. `slope` remains in the cells if λ is given to patches of cells.
     pub slope: f64,
     pub lambda: f64,
-    /// Of springs on content, where it is not linear. Its parameters are `a`, what μ is per content of the spring, and `b`, λ.
+    /// The force law of springs on content, if it is not linear. Its parameters are `a` (μ per content of the spring)
+    /// and `b` (λ).
     pub law: Option<Arc<Law>>,
-    /// The λ of the law.
+    /// The λ in the law.
     pub law_lambda: f64,
-    /// Whether stretches across a plane or rod are in the law, which must have both terms then.
+    /// Whether the law contains the stretches across a plane or rod; then it must contain both terms.
     pub is_condensed: bool,
 }
 
 /// `T = U'(J)/c₀` of the compressible neo-Hookean energy.
 const NEO_HOOKEAN: &str = "(-a + b*ln(c/c0))*c0/c";
 
-/// The stable neo-Hookean energy with the stretch g across the plane that leaves no stress there,
-/// `g = (λ + 2 μ) J/(μ + (λ + μ) J²)`: the rest is a function of J alone, with the slope `g (−μ + (λ + μ) (J g − 1))`.
+/// The stable neo-Hookean energy with the stretch g through the thickness that leaves no stress there,
+/// `g = (λ + 2 μ) J/(μ + (λ + μ) J²)`. What remains is a function of J alone with the slope
+/// `g (−μ + (λ + μ) (J g − 1))`.
 const STABLE_IN_PLANE_STRESS: &str = "-(a - (a + b)*(c/c0*g - 1))*g";
+/// The stretch g through the thickness.
 const ACROSS_PLANE: &str = "((b + 2*a)*c/c0/(a + (a + b)*(c/c0)^2))";
 
-/// The same with both stretches across a rod, `g² = ((λ + 2 μ) J − μ)/((λ + μ) J²)`, and the slope `−μ g²/J`.
+/// The same energy with both stretches across a rod, `g² = ((λ + 2 μ) J − μ)/((λ + μ) J²)`, and the slope `−μ g²/J`.
 const STABLE_IN_ROD: &str = "-a*((b + 2*a)*c/c0 - a)/((a + b)*(c/c0)^3)";
 
 impl Coefficients {
-    /// Of a body at rest or at small deformation; with `is_large` at any.
+    /// The coefficients for small deformations or, with `is_large`, for any deformation.
     ///
     /// # Errors
-    /// The energy has no form of springs in this state; kind `Unsupported`.
+    /// The energy has no form with springs in this state; the kind is `Unsupported`.
     pub fn of(energy: ExactEnergy, material: Material, is_large: bool) -> Result<Coefficients> {
         let Moduli { lambda, mu } = material.moduli();
         let (nu, t) = (material.poisson(), material.thickness());
@@ -166,7 +171,7 @@ impl Coefficients {
             let expected = "a ratio below 0.5 for exact networks at large deformation";
             return Err(Error::expected("poisson", expected, nu));
         }
-        // Of the linear body λ + 2 μ is what counts in a rod, where μ may be any.
+        // In the linear theory a rod has only λ + 2 μ, so that μ is arbitrary.
         let lambda = if let State::Rod { .. } = material.state() { 2.0 * mu - 2.0 * solid_mu } else { lambda };
         let (lengths, tension, slope) = (solid_mu, solid_mu, solid_mu);
         let (law, law_lambda) = (law(&text), solid_lambda);

@@ -1,4 +1,6 @@
-//! The springs of exact networks, one cell per lane of the machine's registers.
+//! The springs of exact networks, computed with one cell per SIMD lane.
+//!
+//! Theory: page *Exact networks* of the book.
 
 use super::energy::Coefficients;
 use super::volume::Shares;
@@ -11,28 +13,30 @@ use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 use nalgebra::Matrix3;
 
-/// A product of gradients below this share of that of their lengths is rounding.
+/// A product of gradients below this share of the product of their lengths is a rounding error.
 const ROUNDING: f64 = 1e-13;
 
-/// The cells of one block and where their numbers go.
+/// The cells of one block, and the memory for their numbers.
 pub struct ExactBatch<'a> {
     pub element: &'a Element,
     pub springs: &'a Springs,
-    /// `[points × space]`, m.
+    /// The positions of all points, `[points × space]`, m.
     pub points: &'a [f64],
-    /// `[cells × nodes]`.
+    /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
     pub coefficients: &'a Coefficients,
     pub shares: Shares,
-    /// `[cells × springs]`.
+    /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
-    /// `[cells × parameters]`: of each content spring `k L₀`, or `a` and `b` of its law.
+    /// The parameters, `[cells × parameters]`: for each spring on content `k L₀`, or `a` and `b` of its law.
     pub parameters: &'a mut [f64],
 }
 
 impl ExactBatch<'_> {
+    /// Computes every cell.
+    ///
     /// # Errors
-    /// The first cell that has no stiffness, from 0.
+    /// A cell has no stiffness. The error gives the first such cell, counted from 0.
     pub fn run(self) -> Result<(), (usize, Fault)> {
         widest(self)
     }
@@ -48,7 +52,7 @@ impl PackedWork for ExactBatch<'_> {
         let table = &self.element.tabulation;
         let mut packing = Packing::new(&zero, self.element, self.points);
         let mut geometry = Geometry::like(&zero, table);
-        // Constants and parameters of a cell, those of areas left out.
+        // The number of constants and parameters of a cell, without the springs on areas.
         let mut numbers = vec![zero.clone(); m + p];
         let mut own = vec![zero.clone(); n];
         let (mut plain, mut plain_own, mut plain_numbers) = (Geometry::new(table), vec![0.0; n], vec![0.0; m + p]);
@@ -70,7 +74,8 @@ impl PackedWork for ExactBatch<'_> {
                     }
                 }
             } else {
-                // One by one: what is wrong with a cell, or how many digits it takes, or nothing but the range of numbers.
+                // One by one, to find the fault of a cell, or whether it needs more digits, or whether only a number
+                // has overflowed.
                 for at in cell..cell + count {
                     let nodes = &self.connectivity[at * n..(at + 1) * n];
                     packing.place(nodes, &mut x).map_err(|fault| (at, fault))?;
@@ -89,7 +94,7 @@ impl PackedWork for ExactBatch<'_> {
             }
             cell += count;
         }
-        // All of them, without leaving early: several at once.
+        // All of them, without leaving the loop early, so that several are tested at once.
         if self.constants.iter().fold(true, |sound, k| sound & k.is_finite()) {
             return Ok(());
         }
@@ -99,12 +104,13 @@ impl PackedWork for ExactBatch<'_> {
 }
 
 impl ExactBatch<'_> {
-    /// The geometry of a needle or a sliver, worked out in twice the digits and rounded; `x` are the positions in its own plane or line.
+    /// The geometry of a needle or a sliver, computed in double-double numbers and rounded; `x` are the positions in
+    /// its own plane or line.
     fn precise(&self, nodes: &[usize], x: &[f64]) -> Option<Geometry> {
         let (table, d) = (&self.element.tabulation, self.element.dimension());
         let mut given = x.to_vec();
         if self.element.space() == d {
-            // As they are, for their differences are exact in more digits.
+            // Absolute positions, because their differences are exact in numbers of more digits.
             gather(self.points, d, nodes, &mut given);
         }
         let any = DoubleDouble::from(0.0);
@@ -119,8 +125,8 @@ impl ExactBatch<'_> {
         })
     }
 
-    /// Fills in the geometry of the cells with their nodes at `x`, and their constants and parameters, areas left out; `own` has room
-    /// for a number for each node. False if a Jacobian is not safely positive.
+    /// Fills in the geometry of the cells with nodes at `x`, and their constants and parameters without the springs on
+    /// areas. `own` is memory for one number per node. False if a Jacobian is not safely positive.
     fn solve<T: Real>(
         &self,
         x: &[T],
@@ -136,7 +142,7 @@ impl ExactBatch<'_> {
         })
     }
 
-    /// The constants and parameters of a cell with this geometry, as [`ExactBatch::solve`] has them.
+    /// The constants and parameters of a cell with this geometry, as [`ExactBatch::solve`] computes them.
     fn constants_of<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T], own: &mut [T]) {
         of_size!(T, geometry.volumes[0], (geometry.dimension, geometry.nodes), |D, n| {
             self.constants_in::<T, D>(n, geometry, constants, parameters, own)
@@ -157,7 +163,8 @@ impl ExactBatch<'_> {
         self.contents(geometry, &mut rest[self.springs.areas.len()..], parameters);
     }
 
-    /// The constants and parameters of the springs on content: at the quadrature points and then of the cell.
+    /// The constants and parameters of the springs on content: first those at the quadrature points, then that of the
+    /// cell.
     #[inline(always)]
     fn contents<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T]) {
         let (volumes, count) = (&geometry.volumes, if self.coefficients.law.is_some() { 2 } else { 1 });
@@ -180,7 +187,8 @@ impl ExactBatch<'_> {
         }
     }
 
-    /// A spring that measures this content, with the volumes of the two terms: its constant, and `k L₀` or `a` and `b` of its law.
+    /// The spring on this content, with the volumes of the two terms: its constant, and `k L₀` or `a` and `b` of its
+    /// law.
     #[inline(always)]
     fn content<T: Real>(
         &self,
@@ -206,9 +214,10 @@ impl ExactBatch<'_> {
 }
 
 impl ExactBatch<'_> {
-    /// Writes the springs on areas of one cell with its nodes at `x`. With `N = [n₁ n₂ n₃]`, the cofactor matrix of the Jacobian J,
-    /// `cof F = N J₀ᵀ/det J₀`, so that `|cof F|² = Σ_kl M_kl n_k·n_l`, `M = J₀ᵀ J₀/det² J₀`, which is a sum of squares of `|n_k|` and
-    /// `|n_k + n_l|`.
+    /// Writes the springs on areas of one cell with its nodes at `x`.
+    ///
+    /// With `N = [n₁ n₂ n₃]` the cofactor matrix of the Jacobian J, `cof F = N J₀ᵀ/det J₀`, so that
+    /// `|cof F|² = Σ_kl M_kl n_k·n_l` with `M = J₀ᵀ J₀/det² J₀`. This is a sum of squares of `|n_k|` and `|n_k + n_l|`.
     fn areas(&mut self, cell: usize, x: &[f64], volume: impl Fn(usize) -> f64) {
         let (m, table) = (self.springs.len(), &self.element.tabulation);
         let size = table.nodes * table.dimension;
@@ -235,7 +244,8 @@ impl ExactBatch<'_> {
     }
 }
 
-/// Springs on areas at each quadrature point: of three columns of the cofactor matrix and of three sums of two.
+/// The number of springs on areas at each quadrature point: three columns of the cofactor matrix and three sums of two
+/// columns.
 const AREAS: usize = 6;
 
 /// The springs between all pairs of nodes, see [`stiffen_in`].
@@ -248,7 +258,8 @@ pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
     pairs
 }
 
-/// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; what is rounding is zero. `own` has room for the same of each node with itself.
+/// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; rounding errors are set to zero. `own` is memory for the same product of
+/// each node with itself.
 #[inline(always)]
 fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64, pairs: &mut [T], own: &mut [T]) {
     let zero = geometry.volumes[0].zero();
@@ -268,7 +279,7 @@ fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64
             }
         }
     }
-    // Gradients at right angles: their product against that of their lengths, by squares.
+    // Gradients at right angles: their product is compared with that of their lengths, by squares.
     let mut s = 0;
     for a in 0..n {
         for b in a + 1..n {

@@ -1,4 +1,5 @@
-//! Networks that are the finite element: springs of rest length zero between all pairs of nodes, and springs on the content.
+//! Networks that are equal to the finite element: springs of rest length zero between all pairs of nodes, and springs
+//! on the content.
 //!
 //! With `L_ab = Σ_q w_q ∇N_a·∇N_b` and `Σ_a ∇N_a = 0`, for any element and any quadrature,
 //!
@@ -6,9 +7,11 @@
 //! Σ_q w_q |F_q|² = −Σ_{a<b} L_ab |x_a − x_b|²
 //! ```
 //!
-//! so an energy `μ/2 (|F|² − d) + U(J)` is that of springs `½ k_ab |x_a − x_b|²`, `k_ab = −μ L_ab`, and of one spring on
-//! `J_q` at each quadrature point. Where `U'(1) = −μ` the nodes at rest feel no force, and the tangent is R with
-//! `λ = U''(1) − μ`.
+//! The energy `μ/2 (|F|² − d) + U(J)` is therefore that of springs `½ k_ab |x_a − x_b|²`, `k_ab = −μ L_ab`, and of one
+//! spring on `J_q` at each quadrature point. If `U'(1) = −μ`, the forces on the nodes vanish at rest, and the tangent
+//! there is R with `λ = U''(1) − μ`.
+//!
+//! Theory: page *Exact networks* of the book.
 
 mod energy;
 mod kernel;
@@ -31,24 +34,26 @@ use energy::Coefficients;
 use kernel::ExactBatch;
 use rayon::prelude::*;
 
-/// How an exact network is made.
+/// The choices of an exact network.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ExactFit {
+    /// The energy that the network has.
     pub energy: ExactEnergy,
+    /// The contents that the springs for λ measure.
     pub volume: VolumeSprings,
-    /// Whether planes and rods without stress have the energy at any deformation, with the stretch across them. At small
-    /// deformation they need not: their content springs are simpler then.
+    /// Whether planes and rods without stress have the energy at any deformation, with the stretch across them. If only
+    /// small deformations matter, their springs on content are simpler.
     pub large: bool,
 }
 
-/// The springs of every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The result has
-/// [`Force::Exact`]; constants that are rounding, as at right angles, are zero.
+/// The springs of every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The result has
+/// [`Force::Exact`]. Constants that are only rounding errors, as at right angles, are set to zero.
 ///
-/// `progress` receives the number of finished cells from time to time.
+/// `progress` is called from time to time with the number of finished cells.
 ///
 /// # Errors
-/// An array has a wrong length or a number is not finite; a cell is reversed, tangled, flat or bent in space; or the energy has no
-/// form of springs in this state (kind `Unsupported`).
+/// An array has a wrong length; a number is not finite; a cell is reversed, tangled, flat or curved in space; or the
+/// energy has no form with springs in this state (kind `Unsupported`).
 pub fn fit_exact(
     element: &Element,
     points: &[f64],
@@ -66,7 +71,7 @@ pub fn fit_exact(
             Error::expected("volume", expected, format!("\"{}\"", fit.volume.name())).of_kind(ErrorKind::Unsupported)
         );
     }
-    // A line has no volume apart from its length.
+    // The only content of a line is its length.
     let volume = if element.dimension() == 1 { VolumeSprings::Points } else { fit.volume };
     let springs = Springs::exact(element, coefficients.areas > 0.0, volume == VolumeSprings::Cells);
     let shares = volume.shares(springs.points.is_empty());
@@ -93,10 +98,11 @@ pub fn fit_exact(
     Ok(CellFits { constants, parameters, force, ..CellFits::new(springs) })
 }
 
-/// Heights above its plane, as a share of the size of a cell, that are not told from rounding of coordinates.
+/// Heights above the mean plane, as a share of the size of a cell, that may be rounding errors of the coordinates.
 const FLAT: f64 = 1e-9;
 
-/// That cells of surfaces and curves are flat: the springs measure lengths in space, the finite elements in the mean plane.
+/// Checks that cells of surfaces and curves are flat: the springs measure lengths in space, the finite elements in the
+/// mean plane.
 fn check_flat(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
     let (d, space, n) = (element.dimension(), element.space(), element.nodes());
     if d == space || n <= d + 1 {

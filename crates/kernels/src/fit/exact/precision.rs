@@ -1,4 +1,4 @@
-//! The springs of exact networks in other kinds of numbers.
+//! The springs of exact networks in other kinds of numbers, for studies of rounding.
 
 use super::kernel::edges;
 use crate::element::Element;
@@ -8,8 +8,8 @@ use crate::fit::precision::{differences, no_answer};
 use crate::scalar::Real;
 use crate::stiffness::Geometry;
 
-/// The springs between nodes of the exact network of one element in numbers of the kind of `any`, `[pairs]`, N/m, with this shear
-/// modulus (times the thickness); nodes at `x`, `[nodes × dimension]`, m.
+/// The springs between nodes of the exact network of one element, in numbers of the kind of `any`, `[pairs]`, N/m. `mu`
+/// is the shear modulus times the thickness; the nodes are at `x`, `[nodes × dimension]`, m.
 ///
 /// # Errors
 /// An array has a wrong length, a number is not finite, or the Jacobian is not positive everywhere.

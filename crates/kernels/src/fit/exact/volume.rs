@@ -1,14 +1,15 @@
-//! Where the content is measured.
+//! The choice of the contents that springs measure.
 
 /// The content that the springs for λ measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VolumeSprings {
-    /// That of each quadrature point: the network is the finite element with this quadrature.
+    /// The content of each quadrature point: the network is equal to the finite element with this quadrature.
     #[default]
     Points,
-    /// That of each cell: selective reduced integration, the mean dilatation of each cell (Nagtegaal, Parks, Rice 1974).
+    /// The content of each cell: selective reduced integration with the mean dilatation of each cell (Nagtegaal, Parks,
+    /// Rice 1974).
     Cells,
-    /// That of a patch of cells around each node, whose springs a mesh adds.
+    /// The content of a patch of cells around each node. A mesh adds these springs.
     Patches,
 }
 
@@ -18,7 +19,7 @@ crate::named!(VolumeSprings {
     "patches" => Patches,
 });
 
-/// Where content springs get their numbers from: of the first term a share of μ, of the second one of λ.
+/// Which springs on content receive the two terms: the first number is a share of μ, the second a share of λ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
     pub points: [f64; 2],
@@ -26,7 +27,7 @@ pub struct Shares {
 }
 
 impl VolumeSprings {
-    /// A cell with a single spring on its content has it for both terms, but where patches have that for λ.
+    /// A cell with a single spring on its content gives both terms to it, unless patches receive λ.
     pub(super) fn shares(self, is_single: bool) -> Shares {
         match (self, is_single) {
             (VolumeSprings::Points, _) => Shares { points: [1.0, 1.0], cell: [1.0, 1.0] },

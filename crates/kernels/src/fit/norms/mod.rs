@@ -1,37 +1,41 @@
-//! `min ‖b − A x‖`, with or without `x ≥ 0`, for many equations and few unknowns, where the norm need not be the
-//! Euclidean one: the sum of the absolute residuals, the largest of them, or Huber's compromise. No formula gives `x`;
-//! these are linear and quadratic programs, solved by Clarabel's interior-point method.
+//! `min ‖b − A x‖`, with or without `x ≥ 0`, for many equations and few unknowns, in norms other than the Euclidean
+//! one: the sum of the absolute residuals, the largest of them, or Huber's function. These are linear and quadratic
+//! programmes, which Clarabel's interior-point method solves.
 //!
-//! The 1-norm and Huber's function are solved in their dual, `y` bounded and orthogonal to the columns of `A`: it has
-//! each entry of `A` once, where the primal with its `± (b − A x) ≤ u` has it twice and takes three times as long. The
-//! maximum is set by hardly more equations than there are unknowns, so that a few of them are solved and those that
-//! exceed their maximum are added until none does.
+//! The 1-norm and Huber's function are solved in their dual form, with `y` bounded and orthogonal to the columns of
+//! `A`. It contains each entry of `A` once, whereas the primal form `± (b − A x) ≤ u` contains it twice and takes three
+//! times as long. The maximum norm is determined by few more equations than there are unknowns, so that only some of
+//! them are solved, and those that exceed their maximum are added until none does.
+//!
+//! Theory: page *Sampled fits* of the book.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{self, NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 use nalgebra::{DMatrix, DVector};
 
-/// Asked of the conic solver, relative to a right-hand side and columns of unit root mean square.
+/// The accuracy asked of the conic solver, relative to a right-hand side and columns of unit root mean square.
 const TOLERANCE: f64 = 1e-12;
 
-/// What passes where rounding stops the solver short of that. Its own default, 5e-5, would pass as a solution.
+/// The accuracy that is accepted if rounding stops the solver earlier. The solver's own default, 5e-5, would be far too
+/// coarse.
 const REDUCED_TOLERANCE: f64 = 1e-8;
 
-/// Added to the diagonal of the solver's equations. By its own 1e-8, residuals that much smaller than the largest are
-/// lost and the 1-norm with a gross outlier does not finish; from 1e-10 down, rounding stops the maximum norm.
+/// Added to the diagonal of the solver's equations. With its default, 1e-8, residuals that much smaller than the
+/// largest are lost and the 1-norm with a gross outlier does not converge; from 1e-10 down, rounding stops the maximum
+/// norm.
 const REGULARIZATION: f64 = 1e-9;
 
-/// The fraction by which an equation left out may exceed the maximum over those taken.
+/// The fraction by which an omitted equation may exceed the maximum of those that are used.
 const EXCESS: f64 = 1e-9;
 
 /// Columns whose pivot is below this fraction of the largest count as combinations of the others.
 const DEPENDENT: f64 = 1e-8;
 
-/// Columns whose pivots all exceed this fraction of the largest are solved as they are.
+/// Columns whose pivots all exceed this fraction of the largest are solved without a change of basis.
 const INDEPENDENT: f64 = 1e-2;
 
-/// How the residuals of a fit are measured.
+/// The norm of the residuals that a fit minimises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Norm {
     /// `Σ r²`.
@@ -40,20 +44,22 @@ pub enum Norm {
     One,
     /// `max |r|`.
     Max,
-    /// `Σ` of `r²/2` up to `|r| = δ` and of `δ (|r| − δ/2)` beyond, where `δ` is this share of the root mean square of
-    /// the right-hand side. A share of zero stands for the limit, the 1-norm.
-    Huber { share: f64 },
+    /// `Σ` of `r²/2` up to `|r| = δ` and of `δ (|r| − δ/2)` beyond (Huber 1964).
+    Huber {
+        /// `δ` relative to the root mean square of the right-hand side. Zero stands for the limit, the 1-norm.
+        share: f64,
+    },
 }
 
 crate::named!(Norm { "2" => Two, "1" => One, "max" => Max, "huber" => Huber { share: 0.5 } });
 
-/// The `x` that minimises the norm of `rhs − rows x`, `rows` being row-major `[rhs.len() × unknowns]`; of many optima,
-/// one. `None` for numbers that are not finite, a negative share, or where the conic solver does not finish.
+/// The `x` that minimises the norm of `rhs − rows x`, with `rows` row-major, `[rhs.len() × unknowns]`; one of them if
+/// there are several. `None` if a number is not finite, the share is negative, or the conic solver does not converge.
 ///
-/// `Norm::Two` is here for completeness: normal equations take a fraction of the time.
+/// `Norm::Two` is included for completeness; normal equations solve it in a fraction of the time.
 ///
 /// # Panics
-/// If `rows` has any other length.
+/// If `rows` has another length.
 pub fn solve_norm(rows: &[f64], rhs: &[f64], unknowns: usize, norm: Norm, nonnegative: bool) -> Option<Vec<f64>> {
     assert_eq!(rows.len(), rhs.len() * unknowns, "entries of the matrix");
     let valid = !matches!(norm, Norm::Huber { share } if !(share >= 0.0));
@@ -85,7 +91,7 @@ fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
     largest * (values.map(|value| ratio(value, largest).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// `b − A x`, scaled to a unit root mean square of `b` and of the columns of `A`.
+/// The residual `b − A x`, scaled to a unit root mean square of `b` and of the columns of `A`.
 struct Residual {
     rows: Vec<f64>,
     rhs: Vec<f64>,
@@ -103,9 +109,9 @@ impl Residual {
         }
     }
 
-    /// The same in a basis of the columns where these are nearly or wholly dependent: the solver's tolerances are
-    /// relative to its largest variable, and it would call solved what is not, by their share of a large `x`. With
-    /// `x ≥ 0` there is no large `x`.
+    /// Minimises in a basis of the columns if these are nearly or exactly dependent. The tolerances of the solver are
+    /// relative to its largest variable, so that a large `x` would spoil the accuracy. With `x ≥ 0` there is no large
+    /// `x`.
     fn minimize_in_basis(&self, norm: Norm) -> Option<Vec<f64>> {
         let a = DMatrix::from_row_slice(self.rhs.len(), self.unknowns, &self.rows);
         let Some(basis) = basis(&a) else { return self.minimize(norm) };
@@ -123,11 +129,11 @@ impl Residual {
         self.rhs[i] - self.row(i).iter().zip(x).map(|(a, x)| a * x).sum::<f64>()
     }
 
-    /// `min δ/2 yᵀy − bᵀy` over `−1 ≤ y ≤ 1`, `Aᵀy = 0` (`Aᵀy ≤ 0` for `x ≥ 0`): the dual of Huber's function over `δ`
-    /// and, for `δ = 0`, of the 1-norm. The multiplier of the equations is `x`.
+    /// `min δ/2 yᵀy − bᵀy` under `−1 ≤ y ≤ 1`, `Aᵀy = 0` (`Aᵀy ≤ 0` for `x ≥ 0`): the dual of Huber's function divided
+    /// by `δ` and, for `δ = 0`, of the 1-norm. The multiplier of the equations is `x`.
     fn smallest_huber(&self, share: f64) -> Option<Vec<f64>> {
         let (m, n) = (self.rhs.len(), self.unknowns);
-        // No residual of the optimum exceeds the Euclidean norm of b: from there on, these are least squares.
+        // No residual of the optimum exceeds the Euclidean norm of b: for a larger δ the problem is least squares.
         let delta = share.min((m as f64).sqrt());
         let quadratic = sparse(m, (0..m).map(|i| [(i, delta)]));
         let linear: Vec<f64> = self.rhs.iter().map(|b| -b).collect();
@@ -141,7 +147,8 @@ impl Residual {
         Some(self.unknowns_of(x))
     }
 
-    /// Chebyshev's problem by exchange: every round adds the worst equations to those taken, at most doubling them.
+    /// Chebyshev's problem by exchange: each round adds the equations with the largest residuals, at most doubling
+    /// their number.
     fn smallest_maximum(&self) -> Option<Vec<f64>> {
         let mut taken = vec![false; self.rhs.len()];
         self.sample().into_iter().for_each(|i| taken[i] = true);
@@ -160,8 +167,8 @@ impl Residual {
         }
     }
 
-    /// Equations to begin with: the one with the largest entry of each column, and others spread by the golden ratio,
-    /// which falls in step with no pattern of the rows.
+    /// The initial equations: the one with the largest entry of each column, and others spread by the golden ratio,
+    /// which does not align with any pattern of the rows.
     fn sample(&self) -> Vec<usize> {
         let (m, n) = (self.rhs.len(), self.unknowns);
         let entry = |i: usize, j: usize| self.row(i)[j].abs();
@@ -190,7 +197,7 @@ impl Residual {
         Some(self.unknowns_of(x))
     }
 
-    /// The unknowns among the solver's variables, without what an interior point leaves of a bound.
+    /// The unknowns among the variables of the solver, with the small remainders at bounds set to zero.
     fn unknowns_of(&self, mut variables: Vec<f64>) -> Vec<f64> {
         variables.truncate(self.unknowns);
         if self.nonnegative {
@@ -200,8 +207,8 @@ impl Residual {
     }
 }
 
-/// `B` for which the columns of `A B` span those of `A`, orthogonal and of unit root mean square; `x = B z` then has the
-/// least norm of all with the same residuals. `None` if the columns of `A` will do as they are.
+/// A matrix `B` such that the columns of `A B` span those of `A`, are orthogonal and have a unit root mean square;
+/// `x = B z` then has the least norm of all with the same residuals. `None` if the columns of `A` can be used directly.
 fn basis(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let (m, n) = a.shape();
     let pivoted = a.clone().qr().unpack_r().col_piv_qr();
@@ -217,7 +224,7 @@ fn basis(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(s * l.transpose().try_inverse()? * (m as f64).sqrt())
 }
 
-/// The matrix of these columns, the entries of each in the order of its rows.
+/// The matrix with these columns, the entries of each in the order of its rows.
 fn sparse<C: IntoIterator<Item = (usize, f64)>>(height: usize, columns: impl Iterator<Item = C>) -> CscMatrix {
     let (mut starts, mut rows, mut values) = (vec![0], vec![], vec![]);
     for column in columns {
@@ -230,7 +237,7 @@ fn sparse<C: IntoIterator<Item = (usize, f64)>>(height: usize, columns: impl Ite
     CscMatrix::new(height, starts.len() - 1, starts, rows, values)
 }
 
-/// `min ½ vᵀ P v + qᵀ v` over `G v + s = h`, `s` in the cones: `v` and the multipliers of the constraints.
+/// `min ½ vᵀ P v + qᵀ v` under `G v + s = h`, with `s` in the cones: `v` and the multipliers of the constraints.
 fn interior_point(
     p: &CscMatrix,
     q: &[f64],

@@ -1,16 +1,17 @@
 //! Baudet, Beuve, Jaillet, Shariat and Zara (2007, 2009): rectangles and cubes with springs along edges and diagonals.
 //!
-//! Stretched by ε along one axis and by −ν ε across, the springs answer with the stress E ε along the axis and with
-//! `E ε (1 − (d + 1) ν)/2` across it, which should be zero: the correction has to cancel that. Alone, with nothing holding
-//! them across, the springs of a lattice have in the plane `E (3 + 9ν)/(4 + 6ν)` and `1/(2 + 3ν)` for E and ν, and below
-//! ν = −1/(d + 1) they do not stand. A body of cubes that nothing holds has three motions besides the rigid ones that no
-//! spring resists, and none if a side is held.
+//! If the cell is stretched by ε along one axis and by −ν ε across it, the springs answer with the stress E ε along the
+//! axis and with `E ε (1 − (d + 1) ν)/2` across it, which should be zero: the correction cancels this. Without the
+//! correction and without lateral constraint, the springs of a lattice in the plane have Young's modulus
+//! `E (3 + 9ν)/(4 + 6ν)` and Poisson's ratio `1/(2 + 3ν)`; below ν = −1/(d + 1) they are indefinite. A free body of
+//! cubes has three motions besides the rigid ones that no spring resists, and none if one side is held.
 
 use super::cell_shape::{CellShape, Elasticity};
 use super::corners::Joint;
 
-/// Of a rectangle with sides l and h: `k_d = E (l² + h²)/(4 l h (1 + ν))` of the diagonals and
-/// `k_l = E (h² (3ν + 2) − l²)/(4 l h (1 + ν))` of the sides l, N/m. Sides beyond `l = h √(3ν + 2)` are below zero.
+/// Rectangle with sides l and h: `k_d = E (l² + h²)/(4 l h (1 + ν))` for the diagonals and
+/// `k_l = E (h² (3ν + 2) − l²)/(4 l h (1 + ν))` for the sides l, in N/m. Sides longer than `l = h √(3ν + 2)` have
+/// negative constants.
 pub fn rectangle(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     let (e, nu) = (bulk.young, bulk.poisson);
     let sides = cell.extents();
@@ -25,8 +26,8 @@ pub fn rectangle(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     }
 }
 
-/// Of a cube, a the side of the one of the same volume: `E a (4ν + 1)/(8 (1 + ν))` of the edges and
-/// `3 E a/(8 (1 + ν))` of the diagonals through the inside, N/m.
+/// Cube, with a the side of the cube of the same volume: `E a (4ν + 1)/(8 (1 + ν))` for the edges and
+/// `3 E a/(8 (1 + ν))` for the space diagonals, in N/m.
 pub fn cube(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     let unit = bulk.young * cell.content.cbrt() / (8.0 * (1.0 + bulk.poisson));
     for (k, &pair) in k.iter_mut().zip(cell.pairs) {
@@ -35,13 +36,13 @@ pub fn cube(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     }
 }
 
-/// The correction: constants of the springs on the distance between opposite sides, in the order of the directions, and
-/// last of that on the content; N/m, and N/m³ or N/m⁵.
+/// The correction: the constants of the springs on the distances between opposite sides, in the order of the
+/// directions, in N/m; and last that of the spring on the content, in N/m³ or N/m⁵.
 ///
-/// A symmetric force linear in the strains ε_i along the axes has the energy density `½ (a − b) Σ ε_i² + ½ b (Σ ε_i)²`.
-/// It adds no stress along the axis of a tension and cancels the rest across it where `a = (d − 1) ν b` and
-/// `b = E ((d + 1) ν − 1)/(2 (1 + ν) (1 − (d − 1) ν))`. The papers state a force orthogonal to a known tension; its
-/// direction and purpose are theirs, its size is derived here, and no load has to be known.
+/// A symmetric force that is linear in the strains ε_i along the axes has the energy density
+/// `½ (a − b) Σ ε_i² + ½ b (Σ ε_i)²`. It adds no stress along the axis of a tension and cancels the stress across it if
+/// `a = (d − 1) ν b` and `b = E ((d + 1) ν − 1)/(2 (1 + ν) (1 − (d − 1) ν))`. The papers state a force orthogonal to a
+/// known tension. Its direction and purpose are theirs; its size is derived here, and no load has to be known.
 pub fn correction(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     let (d, nu) = (cell.dimension as f64, bulk.poisson);
     let difference = -bulk.young * ((d + 1.0) * nu - 1.0) / (2.0 * (1.0 + nu));

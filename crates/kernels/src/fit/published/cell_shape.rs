@@ -1,32 +1,32 @@
-//! What the formulas know of a cell and of its material.
+//! The quantities of a cell and its material on which the formulas depend.
 
 use super::corners::Corners;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::material::{Material, Moduli, State};
 
-/// What a formula knows of a cell.
+/// The quantities of a cell on which a formula depends.
 pub struct CellShape<'a> {
     pub dimension: usize,
     pub corners: &'a Corners,
-    /// Nodes that the formula joins, and their distances, m.
+    /// The nodes that the formula joins, and their distances, m.
     pub pairs: &'a [[usize; 2]],
     pub lengths: Vec<f64>,
-    /// Area or volume, m² or m³.
+    /// The area or volume, m² or m³.
     pub content: f64,
 }
 
 impl CellShape<'_> {
-    /// The mean length of the edges in each direction, m; zero where the formula joins no edges.
+    /// The mean length of the edges in each direction, m; zero if the formula joins no edges.
     pub fn extents(&self) -> Vec<f64> {
         let place = |[a, b]: [usize; 2]| self.pairs.iter().position(|p| *p == [a, b] || *p == [b, a]);
         self.corners.extents(|pair| place(pair).map_or(0.0, |s| self.lengths[s]))
     }
 }
 
-/// The material in the dimensions of the cell.
+/// The elastic constants in the dimensions of the cell.
 pub struct Elasticity {
-    /// Pa; in the plane N/m.
+    /// Young's modulus in Pa; in the plane in N/m.
     pub young: f64,
     pub poisson: f64,
     pub moduli: Moduli,

@@ -1,30 +1,34 @@
-//! What joins the corners of a cell: edges, diagonals, opposite sides; from the cell's geometry alone.
+//! The edges, diagonals and opposite sides of a cell, found from its geometry.
 
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
 
-/// Two corners of a cell, by what of the cell lies between them.
+/// How two corners of a cell are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Joint {
+    /// Along an edge of the cell.
     Edge,
-    /// A side of a solid.
+    /// Across a side of a solid cell.
     FaceDiagonal,
-    /// The inside.
+    /// Through the inside of the cell.
     Diagonal,
 }
 
-/// The corners of a cell as nodes of an element that has no others.
+/// The corners of a cell, as nodes of an element without other nodes.
 #[derive(Debug)]
 pub struct Corners {
-    /// Every two nodes.
+    /// Every pair of nodes, and how it is joined.
     pub joints: Vec<([usize; 2], Joint)>,
-    /// Of each two opposite sides of a quadrilateral or hexahedron the nodes, first those of the one.
+    /// For each pair of opposite sides of a quadrilateral or hexahedron their nodes, first those of the one, then those
+    /// of the other.
     pub facing: Vec<Vec<usize>>,
 }
 
 impl Corners {
+    /// The corners of this element.
+    ///
     /// # Errors
-    /// The nodes are not just the corners of the cell.
+    /// The nodes of the element are not exactly the corners of the cell.
     pub fn of(element: &Element) -> Result<Corners> {
         let cell = element.cell;
         let corners = cell.corners();
@@ -54,23 +58,23 @@ impl Corners {
         Ok(Corners { joints, facing })
     }
 
-    /// What lies between two nodes.
+    /// How two nodes are joined.
     pub fn joint(&self, [a, b]: [usize; 2]) -> Option<Joint> {
         self.joints.iter().find(|(pair, _)| *pair == [a, b] || *pair == [b, a]).map(|(_, joint)| *joint)
     }
 
-    /// The pairs of that kind.
+    /// The pairs that are joined in this way.
     pub fn joined(&self, by: Joint) -> impl Iterator<Item = [usize; 2]> {
         self.joints.iter().filter(move |(_, joint)| *joint == by).map(|(pair, _)| *pair)
     }
 
-    /// Which two of the opposite sides an edge goes between.
+    /// The index of the pair of opposite sides between which an edge runs.
     pub fn direction(&self, edge: [usize; 2]) -> Option<usize> {
         let first = |nodes: &[usize], a: usize| nodes[..nodes.len() / 2].contains(&a);
         self.facing.iter().position(|nodes| first(nodes, edge[0]) != first(nodes, edge[1]))
     }
 
-    /// The mean length of the edges in each direction of a quadrilateral or hexahedron with nodes at `x`, m.
+    /// The mean length of the edges in each direction of a quadrilateral or hexahedron, m.
     pub fn extents(&self, length: impl Fn([usize; 2]) -> f64) -> Vec<f64> {
         let mean = |direction: usize| {
             let along = self.joined(Joint::Edge).filter(|&edge| self.direction(edge) == Some(direction));

@@ -1,35 +1,35 @@
-//! Delingette (2008): triangles whose edges are coupled by their angles, exact for linear membranes.
+//! Delingette (2008): triangles whose edges are coupled through their angles; exact for linear membranes.
 //!
-//! With A the area at rest, `c_i` the cotangent of the angle opposite edge i, and μ twice the shear modulus, the tensile
-//! stiffness of edge i is `k_i = (2 c_i² (λ + μ) + μ)/(16 A)` and the angular one of the edges i and j
-//! `k_ij = (2 c_i c_j (λ + μ) − μ)/(16 A)`, J/m⁴.
+//! With A the area at rest, `c_i` the cotangent of the angle opposite edge i, and μ twice the shear modulus, the
+//! tensile stiffness of edge i is `k_i = (2 c_i² (λ + μ) + μ)/(16 A)`, and the angular stiffness of the edges i and j
+//! is `k_ij = (2 c_i c_j (λ + μ) − μ)/(16 A)`, both in J/m⁴.
 //!
-//! A product of two elongations is `x y = ½ ((x + y)² − x² − y²)`, so that couplings are springs on sums of two
-//! measures, and each takes its constant from the springs of its two edges.
+//! The product of two elongations is `x y = ½ ((x + y)² − x² − y²)`. Couplings are therefore springs on sums of two
+//! measures, whose constants are subtracted from those of the two edges.
 
 use super::cell_shape::{CellShape, Elasticity};
 
-/// Of the edges and then of [`couples`] of them: triangular quadratic springs,
-/// `W = Σ_i l_i² k_i (Δl_i)² + Σ_ij 2 l_i l_j k_ij Δl_i Δl_j`, N/m. Their stiffness at rest is that of the finite
-/// element.
+/// Triangular quadratic springs: the edges, and then their [`couples`]. The energy is
+/// `W = Σ_i l_i² k_i (Δl_i)² + Σ_ij 2 l_i l_j k_ij Δl_i Δl_j`; constants in N/m. Their stiffness at rest is that of the
+/// finite element.
 pub fn quadratic(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     let l = &cell.lengths;
     coupled(cell, bulk, k, |i, j| 2.0 * l[i] * l[j]);
 }
 
-/// Of the squared edges and then of the sums of two: triangular biquadratic springs,
-/// `W = Σ_i k_i/4 (Δl_i²)² + Σ_ij k_ij/2 Δl_i² Δl_j²`, J/m⁴: the energy `A (λ/2 (tr E)² + G tr E²)` of Saint-Venant and
-/// Kirchhoff with Green's strain E, however large it is.
+/// Triangular biquadratic springs: the squared edges, and then the sums of two of them. The energy is
+/// `W = Σ_i k_i/4 (Δl_i²)² + Σ_ij k_ij/2 Δl_i² Δl_j²`, constants in J/m⁴. It is equal to the Saint-Venant–Kirchhoff
+/// energy `A (λ/2 (tr E)² + G tr E²)` with Green's strain E, however large the strain is.
 pub fn biquadratic(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     coupled(cell, bulk, k, |_, _| 0.5);
 }
 
-/// The two edges of each coupling of so many edges.
+/// The two edges of each coupling between so many edges.
 pub fn couples(edges: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..edges).flat_map(move |i| (i + 1..edges).map(move |j| [i, j]))
 }
 
-/// Springs of the energy `½ Σ_i s_ii k_i x_i² + Σ_ij s_ij k_ij x_i x_j`.
+/// Writes springs with the energy `½ Σ_i s_ii k_i x_i² + Σ_ij s_ij k_ij x_i x_j`.
 fn coupled(cell: &CellShape, bulk: &Elasticity, k: &mut [f64], scale: impl Fn(usize, usize) -> f64) {
     let (lambda, mu, area) = (bulk.moduli.lambda, 2.0 * bulk.moduli.mu, cell.content);
     let total: f64 = cell.lengths.iter().map(|l| l * l).sum();

@@ -4,13 +4,13 @@ use super::cell_shape::Elasticity;
 use crate::springs::{Springs, distance};
 use std::collections::HashMap;
 
-/// `k = d (d + 1)/2 · E V/Σ_s l_s²`, N/m: springs of all directions that follow the motion of the body have
-/// `λ = μ = k Σ l²/(d (d + 2) V)`, and so Young's modulus E. V is the content of the cells, the sum goes over their
-/// springs, each counted once; of the n cells that share a spring each gets k/n. Writes `[cells × springs]`.
+/// `k = d (d + 1)/2 · E V/Σ_s l_s²`, in N/m. Springs of all directions that follow the motion of the body have
+/// `λ = μ = k Σ l²/(d (d + 2) V)`, and therefore Young's modulus E. V is the content of the cells, and the sum is over
+/// their springs, each counted once; a spring that n cells share gets k/n from each. Writes `[cells × springs]`.
 ///
-/// The authors set constants by the modulus in experiments with simulated samples; this closed form of the scale is derived
-/// here, and is not printed there. It is Lloyd's constant of equilateral triangles and Van Gelder's of regular
-/// tetrahedra.
+/// The authors adjust the constants by experiments with simulated samples. This closed form of the scale is derived
+/// here and is not printed there. It is equal to Lloyd's constant for equilateral triangles and to Van Gelder's for
+/// regular tetrahedra.
 pub fn constants(
     springs: &Springs,
     points: &[f64],

@@ -1,4 +1,4 @@
-//! The methods by name, with what each covers and takes for granted.
+//! The published methods by name, with the cells that each covers and what it assumes.
 
 use super::corners::Joint;
 use super::shape::Shape;
@@ -6,46 +6,61 @@ use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
 use crate::named::unknown;
 
-/// A published way to choose spring constants.
+/// A published way to choose spring constants; [`Method::reference`] cites the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
+    /// Van Gelder (1998), with Poisson's ratio.
     VanGelder,
+    /// Van Gelder (1998) without Poisson's ratio, for triangles and tetrahedra.
     VanGelderSimple,
+    /// Lloyd, Székely and Harders (2007).
     Lloyd,
+    /// Lloyd, Székely and Harders (2007), with forces that preserve the content.
     LloydPreserving,
+    /// Baudet et al. (2007, 2009).
     Baudet,
+    /// Baudet et al. (2007, 2009), with forces that correct Poisson's ratio.
     BaudetCorrected,
+    /// Delingette (2008), triangular quadratic springs.
     DelingetteQuadratic,
+    /// Delingette (2008), triangular biquadratic springs.
     DelingetteBiquadratic,
+    /// Maciel, Boulic and Thalmann (2003), one constant for all springs.
     MacielUniform,
 }
 
-/// What a method does on one kind of cell.
+/// What a method requires and assumes for one kind of cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cover {
+    /// The cell.
     pub cell: Cell,
-    /// The corners between which it needs springs.
+    /// The pairs of corners between which it requires springs.
     pub joints: &'static [Joint],
+    /// The Poisson's ratios for which the formula holds.
     pub poisson: Ratio,
-    /// The shape that the formula is made for; any other is taken for one like it, see [`unmet`](super::unmet).
+    /// The shape for which the formula is made. Another shape is treated like the nearest one of this kind, see
+    /// [`unmet`](super::unmet).
     pub shape: Option<Shape>,
 }
 
-/// The Poisson's ratios for which a method keeps what it promises.
+/// The Poisson's ratios for which a method has the properties that it claims.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ratio {
-    /// The formula takes that of the material.
+    /// The formula contains Poisson's ratio.
     Any,
-    /// Any other of the material is no fault, but not met either.
+    /// The formula is made for this ratio. Another ratio of the material is reported, and is not an error.
     Only(f64),
-    /// Below it there are no such springs.
+    /// Below this ratio the springs do not exist.
     AtLeast(f64),
 }
 
+/// The springs along the edges.
 const EDGES: &[Joint] = &[Joint::Edge];
+/// The springs along the edges and through the inside.
 const CROSSED: &[Joint] = &[Joint::Edge, Joint::Diagonal];
-/// What springs with a centre of symmetry have: Cauchy's relation λ = μ.
+/// Poisson's ratio of springs with a centre of symmetry (Cauchy's relation λ = μ), in the plane.
 const PLANE: f64 = 1.0 / 3.0;
+/// The same ratio in space.
 const SOLID: f64 = 1.0 / 4.0;
 
 const fn cover(cell: Cell, joints: &'static [Joint], poisson: Ratio, shape: Option<Shape>) -> Cover {
@@ -53,6 +68,7 @@ const fn cover(cell: Cell, joints: &'static [Joint], poisson: Ratio, shape: Opti
 }
 
 impl Method {
+    /// All methods.
     pub const ALL: [Method; 9] = [
         Method::VanGelder,
         Method::VanGelderSimple,
@@ -65,6 +81,7 @@ impl Method {
         Method::MacielUniform,
     ];
 
+    /// The name in files and options.
     pub fn name(self) -> &'static str {
         match self {
             Method::VanGelder => "van-gelder",
@@ -90,7 +107,7 @@ impl Method {
         })
     }
 
-    /// Where it is published.
+    /// The paper in which the method is published.
     pub fn reference(self) -> &'static str {
         match self {
             Method::VanGelder | Method::VanGelderSimple => {
@@ -117,7 +134,7 @@ impl Method {
         }
     }
 
-    /// The cells it has a formula for.
+    /// The cells for which the method has a formula.
     pub fn covers(self) -> &'static [Cover] {
         use Cell::{Hexahedron, Pentagon, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
         use Ratio::{Any, AtLeast, Only};
@@ -180,10 +197,10 @@ impl Method {
         }
     }
 
-    /// What it does on this element's cell.
+    /// What the method requires and assumes for the cell of this element.
     ///
     /// # Errors
-    /// It has no formula for such a cell.
+    /// It has no formula for this cell.
     pub fn cover(self, element: &Element) -> Result<&'static Cover> {
         self.covers().iter().find(|cover| cover.cell == element.cell).ok_or_else(|| {
             let cells: Vec<String> = self.covers().iter().map(|cover| word(cover.cell)).collect();

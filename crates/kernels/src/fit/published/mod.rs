@@ -1,7 +1,10 @@
-//! Spring constants by published formulas, to compare fits with: of the shape of a cell and the material, without R.
+//! Spring constants by published formulas, with which fits are compared. They follow from the shape of a cell and the
+//! material, without R.
 //!
-//! In the plane, E and ν are those of the plane and E holds the thickness h: `E h` and ν in plane stress,
+//! In the plane, E and ν are those of the plane, and E contains the thickness h: `E h` and ν in plane stress,
 //! `E h/(1 − ν²)` and `ν/(1 − ν)` in plane strain.
+//!
+//! Theory: page *Least squares* of the book; each formula cites its paper.
 
 mod baudet;
 mod cell_shape;
@@ -31,18 +34,18 @@ use cell_shape::{CellShape, Elasticity};
 use corners::Corners;
 use pattern::Pattern;
 
-/// The constants of all cells by a published method: `connectivity` is `[cells × nodes]` into `points`,
+/// The constants of all cells by a published method. `connectivity` is `[cells × nodes]` into `points`,
 /// `[points × space]`, m.
 ///
-/// Of the length springs in `springs` those that the method needs are taken; what it measures besides, sums of two
-/// lengths, distances of sides, the content, is added. No spring pulls at rest.
+/// The method uses those length springs in `springs` that it needs, and adds springs on its other measures: sums of two
+/// lengths, distances of sides, the content. No spring pulls at rest.
 ///
 /// # Errors
-/// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the method has no
-/// formula for the element's cell, the element has nodes beside the corners, a length spring is
-/// missing, Poisson's ratio is out of the method's range, the material is of another dimension, or a cell is reversed,
-/// tangled or flat. A cell of another [`Shape`] than the method's and another Poisson's ratio than it assumes are no
-/// errors: [`unmet`] tells them.
+/// An array has a wrong length; a coordinate is not finite; the springs belong to another element; the method has no
+/// formula for the cell of the element; the element has nodes other than corners; a length spring is missing; Poisson's
+/// ratio is out of the method's range; the material has another dimension; or a cell is reversed, tangled or flat. A
+/// cell of another [`Shape`] than the method assumes, or another Poisson's ratio, is not an error: [`unmet`] reports
+/// it.
 pub fn fit(
     method: Method,
     element: &Element,
@@ -85,7 +88,7 @@ pub fn fit(
     Ok(fits)
 }
 
-/// Writes the constants of one cell, `[springs]`; nothing where they are not a cell's own affair.
+/// Writes the constants of one cell, `[springs]`; nothing if they depend on other cells.
 fn constants(method: Method, cell: Cell, shape: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
     let (own, more) = k.split_at_mut(shape.pairs.len());
     match (method, cell) {

@@ -1,4 +1,4 @@
-//! The springs of a method, from those that an element offers.
+//! The springs of a method, chosen from those that an element has.
 
 use super::corners::{Corners, Joint};
 use super::delingette::couples;
@@ -9,7 +9,7 @@ use crate::springs::{FunctionSpring, Measure, Springs};
 use crate::symbolic::Expr;
 use std::sync::Arc;
 
-/// The springs of a method on an element, and the pairs that its formula is about.
+/// The springs of a method on an element, and the pairs of nodes in its formula.
 #[derive(Debug)]
 pub struct Pattern {
     pub pairs: Vec<[usize; 2]>,
@@ -17,10 +17,11 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Takes what the method needs of the length springs `offered`, in their order, and adds what it measures besides.
+    /// Selects the springs that the method needs from the length springs `offered`, in their order, and adds springs on
+    /// its other measures.
     ///
     /// # Errors
-    /// A length spring is missing, or those are not of this element.
+    /// A length spring is missing, or the springs are not those of this element.
     pub fn new(
         method: Method,
         cover: &Cover,
@@ -82,7 +83,7 @@ impl Pattern {
     }
 }
 
-/// Springs on one function of several lists of nodes; `function` states it in so many dimensions.
+/// Springs on one function of several lists of nodes; `function` gives it for a number of dimensions.
 fn measured<'a>(
     springs: &Springs,
     group: &'a str,

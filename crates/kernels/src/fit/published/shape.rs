@@ -1,17 +1,18 @@
-//! The shapes that formulas are made for.
+//! The shapes of cells for which formulas are made.
 
 use super::corners::{Corners, Joint};
 
-/// A shape that a formula is made for.
+/// A shape for which a formula is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// All edges alike, and all diagonals: the equilateral triangle, the square, the regular tetrahedron, the cube.
+    /// All edges are equal, and all diagonals: the equilateral triangle, the square, the regular tetrahedron, the cube.
     Regular,
-    /// Opposite edges alike, and the diagonals.
+    /// Opposite edges are equal, and the diagonals.
     Rectangle,
 }
 
 impl Shape {
+    /// The name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Shape::Regular => "regular",
@@ -19,6 +20,8 @@ impl Shape {
         }
     }
 
+    /// The largest relative deviation from their mean of two lengths that are equal in this shape; `length` measures a
+    /// pair of corners.
     pub fn deviation(self, corners: &Corners, length: impl Fn([usize; 2]) -> f64) -> f64 {
         let spread = |pairs: &[[usize; 2]]| {
             let lengths = || pairs.iter().map(|pair| length(*pair));

@@ -1,4 +1,4 @@
-//! How far cells and material are from what a method assumes.
+//! How far cells and material are from the assumptions of a method.
 
 use super::cell_shape::Elasticity;
 use super::corners::Corners;
@@ -9,19 +9,20 @@ use crate::fit::visit::each_cell;
 use crate::material::Material;
 use crate::springs::distance;
 
-/// What cells and material lack of what a method takes for granted; nothing if it equals `Unmet::default()`.
+/// The assumptions of a method that cells and material do not meet; none if it equals `Unmet::default()`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Unmet {
-    /// The Poisson's ratio that the constants are made for, where the material's (in the plane, of the plane) is another.
+    /// The Poisson's ratio for which the constants are made, if that of the material (in the plane, of the plane) is
+    /// different.
     pub poisson: Option<f64>,
-    /// Cells of another shape.
+    /// The number of cells of another shape.
     pub cells: usize,
-    /// By how much two lengths differ that the shape makes equal, as a part of their mean; the largest over all cells.
+    /// The largest relative difference of two lengths that are equal in the assumed shape, over all cells.
     pub deviation: f64,
 }
 
 impl Unmet {
-    /// Of cells of both kinds.
+    /// The sum of what two sets of cells do not meet.
     pub fn and(self, other: Unmet) -> Unmet {
         Unmet {
             poisson: self.poisson.or(other.poisson),
@@ -31,10 +32,10 @@ impl Unmet {
     }
 }
 
-/// Below this a deviation is rounding of a mesh file's digits.
+/// Deviations below this are rounding in the digits of a mesh file.
 const ROUNDING: f64 = 1e-6;
 
-/// Compares cells, `[cells × nodes]` into `points`, and material with what the method takes for granted.
+/// Compares cells, `[cells × nodes]` into `points`, and material with the assumptions of the method.
 ///
 /// # Errors
 /// The method has no formula for the element, or a cell is reversed, tangled or flat.

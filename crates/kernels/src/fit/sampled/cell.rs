@@ -1,4 +1,4 @@
-//! One cell of the sampled fit: its forces and those of its springs at every shape, added up to normal equations.
+//! One cell of a sampled fit: its forces and those of its springs at every shape, summed to normal equations.
 
 use super::settings::{SampledFit, Weights};
 use super::shapes::{Part, Shapes};
@@ -16,26 +16,27 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A shape that leaves less than this share of the volume somewhere is taken at half its deformation.
+/// A shape that leaves less than this share of the volume at some point is replaced by one with half of its
+/// deformation.
 const FLAT: f64 = 0.2;
-/// And again, so often.
+/// The largest number of such halvings.
 const HALVINGS: i32 = 8;
-/// Shapes that one thread adds up, and blocks of them before they are added to the rest.
+/// The number of shapes that one thread sums,
 const BLOCK: usize = 256;
 const BLOCKS: usize = 16;
-/// Numbers of equations that are held before they are added up: a few hundred kilobytes.
+/// Numbers of equations that are stored before they are summed: a few hundred kilobytes.
 const HELD: usize = 1 << 15;
-/// Parameters of a spring for which there is always room.
+/// The number of parameters of a spring for which no memory is allocated.
 const FEW: usize = 8;
-/// A strain that is next to none.
+/// A strain that is nearly zero.
 const SLIGHT: f64 = 1e-3;
-/// Numbers of the samples that a cell may hold: 64 megabytes.
+/// The largest number of values of the samples that a cell may store: 64 megabytes.
 const MOST_HELD: usize = 1 << 23;
-/// Rest measures of springs that choose their own, as shares of what is measured at rest: a nonnegative sum of one spring of
-/// each is a spring with a rest measure between.
+/// The rest measures of springs that have their own, relative to the measure at rest. A nonnegative sum of two springs,
+/// one with each of these, is a spring with a rest measure in between.
 pub const REST_RANGE: [f64; 2] = [0.5, 2.0];
 
-/// One cell with what its fit needs.
+/// One cell with the data of its fit.
 pub struct Cell<'a> {
     springs: Vec<Spring>,
     /// The unknowns of each spring.
@@ -43,19 +44,19 @@ pub struct Cell<'a> {
     count: usize,
     /// The group of each spring.
     groups: &'a [usize],
-    /// The most unknowns that a spring has.
+    /// The largest number of unknowns of a spring.
     widest: usize,
-    /// `‖f‖²` of a strain below which forces count as those of no deformation.
+    /// The `‖f‖²` of a strain below which forces count as those of no deformation.
     least_square: f64,
-    /// The samples of the fit, where it goes through them again and again.
+    /// The samples of the fit, if it uses them repeatedly.
     held: Vec<Sample>,
     geometry: &'a Geometry,
     energy: &'a Energy,
     state: State,
     shapes: Shapes<'a>,
     pub(super) fit: &'a SampledFit,
-    /// Orthonormal coordinates of the nodes, `[dimension × nodes]`: what a force does on homogeneous deformations. Empty where
-    /// all forces count alike.
+    /// Orthonormal coordinates of the nodes, `[dimension × nodes]`, which give the work of a force on homogeneous
+    /// deformations. Empty if all forces count equally.
     affine: Vec<f64>,
 }
 
@@ -65,8 +66,8 @@ struct Spring {
     rest: f64,
 }
 
-/// `Σ_q w_q Jᵀ J`, `Σ_q w_q Jᵀ r` and `Σ_q w_q ‖r‖²` so far, J the derivative of the springs' forces in the unknowns, and r what
-/// the forces lack.
+/// The sums `Σ_q w_q Jᵀ J`, `Σ_q w_q Jᵀ r` and `Σ_q w_q ‖r‖²` so far, with J the derivative of the springs' forces in
+/// the unknowns and r the missing force.
 pub struct Sums {
     pub normal: Normal,
     pub square: f64,
@@ -74,11 +75,11 @@ pub struct Sums {
     pub size: f64,
 }
 
-/// What a cell does at one shape, as it is seen: see [`SampledFit::higher`].
+/// The forces of a cell at one shape, weighted as by [`SampledFit::higher`].
 #[derive(Debug, Clone, Default)]
 pub struct Sample {
     pub weight: f64,
-    /// Of the material, `[seen]`.
+    /// The force of the material, `[seen]`.
     pub force: Vec<f64>,
     /// `∇c` of each spring, `[springs × seen]`.
     pub gradients: Vec<f64>,
@@ -127,12 +128,12 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Whether there are shapes that the fit does not see.
+    /// Whether there are shapes that the fit does not use.
     pub fn has_others(&self) -> bool {
         self.shapes.has_others()
     }
 
-    /// How many unknowns the fit has.
+    /// The number of unknowns of the fit.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -141,7 +142,7 @@ impl<'a> Cell<'a> {
         self.springs.len()
     }
 
-    /// Of spring s at rest.
+    /// The measure of spring s at rest.
     pub fn rest(&self, s: usize) -> f64 {
         self.springs[s].rest
     }
@@ -151,12 +152,12 @@ impl<'a> Cell<'a> {
         &unknowns[self.unknowns[s].clone()]
     }
 
-    /// The law of spring s, where it has one.
+    /// The law of spring s, if it has one.
     pub fn law(&self, s: usize) -> Option<&Law> {
         if let Force::Laws(laws) = &self.fit.force { Some(&laws[self.groups[s]]) } else { None }
     }
 
-    /// What `of` says of every parameter of every law, unknown by unknown.
+    /// `of(law, parameter)` for every parameter of every law, unknown by unknown.
     pub fn each_parameter<T: Clone + Default>(&self, of: impl Fn(&Law, usize) -> T) -> Vec<T> {
         let mut all = vec![T::default(); self.count];
         for (s, own) in self.unknowns.iter().enumerate() {
@@ -203,7 +204,7 @@ impl<'a> Cell<'a> {
         Ok(sums)
     }
 
-    /// Keeps the samples of the fit for the sums to come, as far as there is room.
+    /// Stores the samples of the fit for later sums, as far as there is memory.
     ///
     /// # Errors
     /// Those of [`Cell::sample`].
@@ -217,10 +218,10 @@ impl<'a> Cell<'a> {
         Ok(())
     }
 
-    /// Shape `i`, at less of its deformation where it would turn the cell inside out.
+    /// Shape `i`, with less of its deformation if it would invert the cell.
     ///
     /// # Errors
-    /// The shape is turned inside out however small it is made, or a spring has no gradient there.
+    /// The shape is inverted however small the deformation is made, or a spring has no gradient there.
     pub fn sample(&self, part: Part, i: usize, sample: &mut Sample) -> Result<()> {
         let size = self.shapes.rest.len();
         let seen = self.seen();
@@ -250,13 +251,14 @@ impl<'a> Cell<'a> {
         Err(Error::new(problem).of_kind(ErrorKind::Infeasible))
     }
 
-    /// Numbers in which forces are seen.
+    /// The number of values of a weighted force.
     fn seen(&self) -> usize {
         let d = self.shapes.dimension;
         self.shapes.rest.len() + if self.affine.is_empty() { 0 } else { d * d }
     }
 
-    /// `f ↦ (h f, √(1 − h²) Cᵀ f)`, in which `‖·‖² = ‖(C Cᵀ + h H Hᵀ) f‖²`, C the homogeneous deformations and H the others.
+    /// `f ↦ (h f, √(1 − h²) Cᵀ f)`, for which `‖·‖² = ‖(C Cᵀ + h H Hᵀ) f‖²`, with C the homogeneous deformations and H
+    /// the others.
     fn see(&self, row: &mut [f64]) {
         if self.affine.is_empty() {
             return;
@@ -295,7 +297,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// The force of spring s where it measures c, at `unknowns`, and its derivatives in its parameters.
+    /// The force of spring s with the measure c, at `unknowns`, and its derivatives in its parameters.
     fn pull(&self, s: usize, c: f64, unknowns: &[f64], slopes: &mut [f64]) -> f64 {
         let rest = self.springs[s].rest;
         let own = self.of_spring(s, unknowns);
@@ -315,8 +317,8 @@ impl<'a> Cell<'a> {
         slopes.iter().zip(own).map(|(slope, p)| slope * p).sum()
     }
 
-    /// The equations of one shape, `√w (f − Σ_s T_s ∇c_s)` and its derivatives in the unknowns, with its sign turned: rows
-    /// `[seen × unknowns]` and `[seen]`, after those so far.
+    /// The equations of one shape: `√w (f − Σ_s T_s ∇c_s)`, `[seen]`, and its negative derivatives in the unknowns,
+    /// `[seen × unknowns]`; appended to the previous ones.
     pub fn equations(&self, sample: &Sample, unknowns: &[f64], rows: &mut Vec<f64>, lacking: &mut Vec<f64>) {
         let (seen, first, before) = (self.seen(), rows.len(), lacking.len());
         let scale = sample.weight.sqrt();
@@ -343,7 +345,7 @@ impl Sums {
         Sums { normal: Normal::new(vec![0.0; count * count], vec![0.0; count]), square: 0.0, size: 0.0 }
     }
 
-    /// `M += AᵀA`, `b += Aᵀ r` and `‖r‖²` of some equations, which are taken away.
+    /// Adds `AᵀA` to M, `Aᵀ r` to b and `‖r‖²` for some equations, which are then removed.
     fn add(&mut self, rows: &mut Vec<f64>, lacking: &mut Vec<f64>) {
         let (equations, count) = (lacking.len(), self.normal.rhs.len());
         if equations == 0 {
@@ -369,15 +371,15 @@ impl Sums {
         self.size += other.size;
     }
 
-    /// `√(Σ w ‖r‖²/Σ w ‖f‖²)` after a step of the unknowns in which the forces are linear.
+    /// `√(Σ w ‖r‖²/Σ w ‖f‖²)` after a step of the unknowns, for forces that are linear in them.
     pub fn error(&self, step: &[f64]) -> f64 {
         let left = self.square - self.normal.fall(step);
-        // Below zero by rounding; what is not finite stays so.
+        // Rounding can make this negative; NaN stays NaN.
         if left < 0.0 { 0.0 } else { (left / self.size).sqrt() }
     }
 }
 
-/// The mean of the nodes taken away, the d columns of the coordinates made orthonormal; `[dimension × nodes]`.
+/// The coordinates of the nodes relative to their mean, with the d columns made orthonormal; `[dimension × nodes]`.
 fn coordinates(rest: &[f64], d: usize) -> Vec<f64> {
     let nodes = rest.len() / d;
     let x = DMatrix::from_fn(nodes, d, |a, k| rest[a * d + k]);

@@ -1,7 +1,10 @@
-//! Laws that are not linear in their parameters: Levenberg's damped Gauss-Newton steps within bounds, from several starts.
+//! Laws that are not linear in their parameters: Levenberg's damped Gauss–Newton steps within bounds, from several
+//! starts.
 //!
-//! It works on normal equations that are added up shape by shape, as there may be more shapes than room; known crates of least
-//! squares hold all residuals.
+//! The method works on normal equations that are summed shape by shape, because there may be more shapes than memory.
+//! The known crates for least squares store all residuals.
+//!
+//! Theory: page *Sampled fits* of the book.
 
 use super::cell::{Cell, Sums};
 use super::shapes::{Numbers, Part};
@@ -9,25 +12,25 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::Normal;
 
-/// Steps of one start.
+/// The largest number of steps from one start.
 const STEPS: usize = 200;
-/// A start has ended when no unknown alone can lower the sum of squares by more than this share of it.
+/// The iteration has converged when no single unknown can lower the sum of squares by more than this share.
 const PROMISE: f64 = 1e-12;
-/// Damping from which no step is expected to help any more.
+/// The damping beyond which no step is expected to help.
 const STIFFEST: f64 = 1e12;
-/// Starts within this share of the best error have found the same.
+/// Starts whose errors differ by less than this share of the best error have found the same optimum.
 const SAME: f64 = 1e-3;
-/// Inner parameters without bounds start between these, evenly in their logarithm, the first at one.
+/// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one.
 const STARTS: [f64; 2] = [0.1, 10.0];
 
 /// The best of several starts.
 pub struct Search {
     pub unknowns: Vec<f64>,
-    /// At them.
+    /// The sums at these unknowns.
     pub sums: Sums,
-    /// Whether the best start ended within its steps.
+    /// Whether the best start converged within the allowed steps.
     pub converged: bool,
-    /// Share of the starts that ended at the same error.
+    /// The share of the starts that ended at the same error.
     pub agreeing: f64,
 }
 
@@ -39,7 +42,7 @@ pub fn search(cell: &Cell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search>
         let first = outer_solved(cell, &outer, start_of(cell, &outer, start, bounds), bounds)?;
         found.push(descend(cell, first, bounds)?);
     }
-    // A start may lie where the law has no value.
+    // The law may have no value at a start.
     found.retain(|(_, sums, _)| sums.square.is_finite());
     if found.is_empty() {
         let expected = "a law with finite values at the sampled shapes";
@@ -53,7 +56,8 @@ pub fn search(cell: &Cell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search>
     Ok(Search { unknowns, sums, converged, agreeing })
 }
 
-/// Inner parameters as the start says, the same for all springs; outer ones zero, or as near as their bounds allow.
+/// Inner parameters as the start prescribes, the same for all springs; outer ones are zero, or as near to it as their
+/// bounds allow.
 fn start_of(cell: &Cell, outer: &[bool], start: usize, bounds: &[[f64; 2]]) -> Vec<f64> {
     let places = cell.each_parameter(|_, i| i);
     let numbers = Numbers { index: start, seed: cell.fit.sampling.seed };
@@ -71,7 +75,7 @@ fn start_of(cell: &Cell, outer: &[bool], start: usize, bounds: &[[f64; 2]]) -> V
     bounds.iter().enumerate().map(value).collect()
 }
 
-/// The outer parameters of least squares for the inner ones given.
+/// The outer parameters of least squares for given inner ones.
 fn outer_solved(cell: &Cell, outer: &[bool], mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<Vec<f64>> {
     let outer: Vec<usize> = (0..unknowns.len()).filter(|&i| outer[i]).collect();
     if outer.is_empty() {
@@ -102,7 +106,7 @@ fn descend(cell: &Cell, mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<(
         let (step, promise) = damped(&sums.normal, &unknowns, bounds, damping);
         let tried: Vec<f64> =
             unknowns.iter().zip(&step).zip(bounds).map(|((p, d), b)| (p + d).clamp(b[0], b[1])).collect();
-        // A law may have no value far out.
+        // A law may have no value far from the start.
         let after = cell.sums(Part::Trained, &tried)?;
         let gain = (sums.square - after.square) / promise;
         if gain > 1e-4 {
@@ -118,14 +122,14 @@ fn descend(cell: &Cell, mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<(
     Ok((unknowns, sums, false))
 }
 
-/// Whether an unknown is at a bound and would go beyond: the right-hand side points downhill.
+/// Whether an unknown is at a bound and would cross it: the right-hand side points downhill.
 fn is_pushed(normal: &Normal, unknowns: &[f64], bounds: &[[f64; 2]], i: usize) -> bool {
     let [lower, upper] = bounds[i];
     (unknowns[i] <= lower && normal.rhs[i] < 0.0) || (unknowns[i] >= upper && normal.rhs[i] > 0.0)
 }
 
-/// The step `(M + μ diag M) d = b`, those that would cross a bound going to it and the others following, and the fall of the
-/// squares that it promises.
+/// The step `(M + μ diag M) d = b`. Unknowns that would cross a bound go to it, and the others follow. Also the
+/// decrease of the sum of squares that the step predicts.
 fn damped(normal: &Normal, unknowns: &[f64], bounds: &[[f64; 2]], damping: f64) -> (Vec<f64>, f64) {
     let count = unknowns.len();
     let mut step = vec![0.0; count];

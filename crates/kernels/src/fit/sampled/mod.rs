@@ -1,9 +1,12 @@
 //! Spring constants from the nodal forces of a hyperelastic element at many deformed shapes.
 //!
-//! A spring that measures c pulls with `T(c; p) ∇c`; the fit is `min_p Σ_q w_q ‖f(x_q) − Σ_s T_s(c_s(x_q); p_s) ∇c_s(x_q)‖²`.
-//! Where T is linear in its parameters, as of `k (c − c₀)`, that is linear least squares. The equations are added up shape by
-//! shape, whatever their number. Only laws that are not linear keep the shapes, as far as there is room, and norms other than the
-//! Euclidean one keep the equations.
+//! A spring that measures c pulls with `T(c; p) ∇c`. The fit is
+//! `min_p Σ_q w_q ‖f(x_q) − Σ_s T_s(c_s(x_q); p_s) ∇c_s(x_q)‖²`. If T is linear in its parameters, such as
+//! `k (c − c₀)`, this is linear least squares. The equations are summed shape by shape, whatever their number. Only
+//! nonlinear laws keep the shapes, as far as memory allows, and only norms other than the Euclidean one keep the
+//! equations.
+//!
+//! Theory: page *Sampled fits* of the book.
 
 mod cell;
 mod inner;
@@ -30,31 +33,34 @@ use rayon::prelude::*;
 use shapes::{Part, Shapes};
 use std::sync::Arc;
 
-/// Cells in a row that one thread fits.
+/// The number of consecutive cells that one thread fits.
 const CHUNK: usize = 8;
-/// Numbers that a norm other than the Euclidean one may hold of a cell: half a gigabyte.
+/// The largest number of values that a norm other than the Euclidean one may store for a cell: half a gigabyte.
 const MOST_NUMBERS: usize = 1 << 26;
 
-/// The constants of all cells and the errors at the shapes.
+/// The constants of all cells, and the errors at the shapes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledFits {
+    /// The constants and parameters.
     pub fits: CellFits,
-    /// `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` on the shapes of the fit, `[cells]`.
+    /// `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` on the shapes of the fit, `[cells]`, with f the forces of the element and K those of
+    /// its springs.
     pub trained: Vec<f64>,
-    /// The same on the shapes that were held out; NaN without any.
+    /// The same error on the shapes that were held out, `[cells]`; NaN if there are none.
     pub held_out: Vec<f64>,
-    /// Where the law is not linear in its parameters: the share of the starts that ended at the best error, least over the
-    /// cells.
+    /// For laws that are not linear in their parameters: the share of the starts that ended at the best error, the
+    /// least over the cells.
     pub agreeing: Option<f64>,
 }
 
-/// Fits every cell: `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+/// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
-/// `progress` receives the number of finished cells from time to time.
+/// `progress` is called from time to time with the number of finished cells.
 ///
 /// # Errors
-/// An array has a wrong length, a coordinate is not finite, the springs are those of another element, the state is not one
-/// of its dimension, a cell is tangled, the numbers of the sampling are out of range, or the cells are those of a surface or curve in space.
+/// An array has a wrong length; a coordinate is not finite; the springs belong to another element; the state is not one
+/// of its dimension; a cell is tangled; the numbers of the sampling are out of range; or the cells are those of a
+/// surface or curve in space.
 #[allow(clippy::too_many_arguments)]
 pub fn fit_sampled(
     element: &Arc<Element>,
@@ -137,7 +143,7 @@ pub fn fit_sampled(
     Ok(all)
 }
 
-/// What one cell got.
+/// The outcome of one cell.
 #[derive(Default)]
 struct CellFit {
     constants: Vec<f64>,
@@ -150,7 +156,7 @@ struct CellFit {
 }
 
 impl SampledFit {
-    /// Unknowns of a spring of the group.
+    /// The number of unknowns of a spring of the group.
     fn columns(&self, group: usize) -> usize {
         match &self.force {
             Force::Linear => 1,
@@ -239,7 +245,8 @@ impl Cell<'_> {
         Ok((unknowns, CellFit { rank, converged, trained, ..CellFit::default() }))
     }
 
-    /// The unknowns of least residual forces in a norm that normal equations do not know: all shapes are held.
+    /// The unknowns with the least residual forces in a norm that normal equations cannot express. All shapes are
+    /// stored.
     fn in_norm(&self, bounded: bool) -> Result<Option<Vec<f64>>> {
         let (shapes, count) = (self.fit.sampling.shapes, self.count());
         let (mut rows, mut rhs) = (Vec::new(), Vec::new());
@@ -261,7 +268,7 @@ impl Cell<'_> {
             let given = self.fit.bounds.iter().find(|(bounded, _)| *bounded == law.parameters[i]);
             given.map_or([lowest, f64::INFINITY], |(_, [lower, upper])| [lower.max(lowest), *upper])
         });
-        // What is linear in its parameters has one optimum.
+        // Laws that are linear in their parameters have one optimum.
         let starts = if self.fit.is_direct() { 1 } else { self.fit.starts };
         self.hold()?;
         let found = inner::search(self, starts, &bounds)?;
@@ -271,7 +278,7 @@ impl Cell<'_> {
         Ok((found.unknowns, rest))
     }
 
-    /// The constants and parameters of all springs, as [`CellFits`] has them.
+    /// The constants and parameters of all springs, in the order of [`CellFits`].
     fn written(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut constants, mut parameters) = (Vec::new(), Vec::new());
         for s in 0..self.len() {

@@ -1,37 +1,42 @@
-//! What a fit to forces is asked for.
+//! The settings of a fit to forces.
 
 use super::shapes::Sampling;
 use crate::fit::norms::Norm;
 use crate::springs::Force;
 
-/// How much each shape counts.
+/// The weight of each shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Weights {
+    /// All shapes have the same weight.
     #[default]
     Alike,
-    /// `1/‖f‖²`: each for the error relative to its own force.
+    /// `1/‖f‖²`: the error of each shape is relative to its own force.
     Relative,
 }
 
 crate::named!(Weights { "none" => Alike, "relative" => Relative });
 
-/// A fit to forces.
+/// The settings of a fit to forces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledFit {
+    /// The deformed shapes.
     pub sampling: Sampling,
+    /// The force law of the springs.
     pub force: Force,
+    /// The weights of the shapes.
     pub weights: Weights,
-    /// Scale of the forces that do no work on homogeneous deformations of the cell, from 0 to 1; the others have 1.
+    /// The scale, from 0 to 1, of the forces that do no work on homogeneous deformations of the cell. The others have
+    /// the scale 1.
     pub higher: f64,
-    /// The same parameters for all springs of a group.
+    /// Whether all springs of a group have the same parameters.
     pub tied: bool,
-    /// No parameter below zero. Springs with rest measures of their own never have one.
+    /// Whether no parameter may be negative. Springs with rest measures of their own never have negative constants.
     pub nonnegative: bool,
-    /// Of the residual forces. Of a law that is not linear in its parameters only `Norm::Two` is known.
+    /// The norm of the residual forces. Laws that are not linear in their parameters allow only `Norm::Two`.
     pub norm: Norm,
-    /// Bounds of parameters of the laws, by name.
+    /// Lower and upper bounds of parameters of the laws, by name.
     pub bounds: Vec<(String, [f64; 2])>,
-    /// Starts of the search, where the law is not linear in its parameters.
+    /// The number of starts of the search, for laws that are not linear in their parameters.
     pub starts: usize,
 }
 

@@ -1,4 +1,7 @@
-//! Deformed shapes of a cell: families of homogeneous and bent ones at random amplitudes and directions, or shapes of a list.
+//! Deformed shapes of a cell: families of homogeneous and bent deformations with random amplitudes and directions, or
+//! shapes of a list.
+//!
+//! Theory: page *Sampled fits* of the book.
 
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
@@ -7,31 +10,31 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A sequence of Sobol points has so many; the next one has another seed.
+/// The length of a sequence of Sobol points; the next shapes use another seed.
 const LONGEST: usize = 1 << 16;
-/// And so many coordinates.
+/// The number of coordinates of a Sobol point.
 const WIDEST: usize = 256;
-/// A prime that scatters the states of the cells.
+/// A prime by which the states of different cells are spread.
 const STRIDE: usize = 1_000_003;
-/// Of the shapes of a list each fifth is held out.
+/// Every fifth shape of a list is held out.
 const APART: usize = 5;
 
-/// Kinds of deformation. Their axes are turned at random in every shape, their amplitudes fill the range evenly.
+/// Kinds of deformation. Their axes are random in every shape, and their amplitudes fill the range evenly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
-    /// `λ = 1 + a` along one axis (`1/(1 − a)` where a < 0), `λ^(−ν)` across it.
+    /// `λ = 1 + a` along one axis (`1/(1 − a)` if a < 0), and `λ^(−ν)` across it.
     Uniaxial,
     /// λ in a plane, `λ^(−2ν/(1 − ν))` across it.
     Equibiaxial,
-    /// `I + a e fᵀ`, e ⟂ f.
+    /// `I + a e fᵀ`, with e ⟂ f.
     SimpleShear,
     /// `λ I`.
     Volumetric,
-    /// Sections turned about an axis by `2a` over the cell's size; of solids.
+    /// Sections rotated about an axis by `2a` over the size of the cell; for solids.
     Torsion,
     /// Circular bending with a strain of about a at the outer fibres.
     Bending,
-    /// `I + A`, every entry of A an amplitude of its own.
+    /// `I + A`, with an independent amplitude for every entry of A.
     Gradients,
 }
 
@@ -45,30 +48,33 @@ crate::named!(Family {
     "gradients" => Gradients,
 });
 
-/// Where the shapes come from.
+/// The source of the shapes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
-    /// In turn from each.
+    /// Families of deformations, which take turns.
     Families(Vec<Family>),
     /// Deformation gradients, `[shapes × dimension × dimension]`.
     Gradients(Arc<Vec<f64>>),
-    /// Positions of all points of the mesh, `[states][points × dimension]`, m: those of the nodes of each cell and of the cells
-    /// of its shape.
+    /// Positions of all points of the mesh, `[states][points × dimension]`, m. A cell uses those of its own nodes and
+    /// of the cells that have its shape.
     States(Arc<Vec<Vec<f64>>>),
 }
 
-/// The deformed shapes that a fit is made from.
+/// The deformed shapes of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampling {
+    /// The source of the shapes.
     pub source: Source,
-    /// How many shapes to fit. Those of a list are gone through again and again, with other moves of the nodes.
+    /// The number of shapes of the fit. A shorter list is used repeatedly, with different displacements of the nodes.
     pub shapes: usize,
-    /// How many others to measure the error on. Of a list of at least five, each fifth is kept for them.
+    /// The number of other shapes on which the error is measured. Of a list of at least five shapes, every fifth is
+    /// kept for them.
     pub held_out: usize,
-    /// Least and largest amplitude of the families.
+    /// The least and the largest amplitude of the families.
     pub stretch: [f64; 2],
-    /// How far each node is moved besides, as a share of the cell's size.
+    /// How far each node is moved in addition, as a share of the size of the cell.
     pub perturbation: f64,
+    /// The seed of the random numbers.
     pub seed: u64,
 }
 
@@ -85,7 +91,7 @@ impl Default for Sampling {
     }
 }
 
-/// Whether a shape is for the fit or for its test.
+/// Whether a shape belongs to the fit or to its test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     Trained,
@@ -93,8 +99,10 @@ pub enum Part {
 }
 
 impl Sampling {
+    /// Checks the settings for cells of this dimension.
+    ///
     /// # Errors
-    /// A number is out of range, a list is empty or of the wrong length, or a family needs a solid.
+    /// A number is out of range; a list is empty or has a wrong length; or a family requires a solid.
     pub fn check(&self, dimension: usize) -> Result<()> {
         check_count("shapes", self.shapes as u64, 1, bound::SHAPES)?;
         check_count("held_out", self.held_out as u64, 0, bound::SHAPES)?;
@@ -128,10 +136,10 @@ impl Sampling {
         Ok(())
     }
 
-    /// That the states have so many numbers, all finite.
+    /// Checks that every state has this many numbers, all finite.
     ///
     /// # Errors
-    /// One has not.
+    /// A state does not.
     pub(super) fn check_states(&self, numbers: usize) -> Result<()> {
         match &self.source {
             Source::States(states) => states.iter().try_for_each(|state| {
@@ -146,21 +154,21 @@ impl Sampling {
 /// The shapes of one cell.
 pub struct Shapes<'a> {
     pub sampling: &'a Sampling,
-    /// At rest, `[nodes × dimension]`, m.
+    /// The positions at rest, `[nodes × dimension]`, m.
     pub rest: &'a [f64],
     /// The nodes of all cells of this shape.
     pub cells: Vec<&'a [usize]>,
-    /// Of the mesh at rest.
+    /// The points of the mesh at rest.
     pub points: &'a [f64],
     pub dimension: usize,
-    /// Content to the power of one by the dimension, m.
+    /// The content to the power of one over the dimension, m.
     pub extent: f64,
-    /// ν of the lateral contraction.
+    /// The ν of the lateral contraction.
     pub poisson: f64,
 }
 
 impl Shapes<'_> {
-    /// Whether there are shapes that the fit does not see.
+    /// Whether there are shapes that the fit does not use.
     pub fn has_others(&self) -> bool {
         let d = self.dimension;
         let listed = match &self.sampling.source {
@@ -171,7 +179,7 @@ impl Shapes<'_> {
         self.sampling.held_out > 0 && (listed >= APART || self.sampling.perturbation > 0.0)
     }
 
-    /// Positions of the nodes in shape `i`, deformed by the share `scale` of what its numbers say; `[nodes × dimension]`.
+    /// The positions of the nodes in shape `i`, with the share `scale` of its deformation; `[nodes × dimension]`.
     pub fn place(&self, part: Part, i: usize, scale: f64) -> Vec<f64> {
         let d = self.dimension;
         let numbers = Numbers { index: i, seed: 2 * self.sampling.seed + u64::from(part == Part::HeldOut) };
@@ -205,7 +213,7 @@ impl Shapes<'_> {
         self.moved(|x| gradient * x)
     }
 
-    /// The nodes where `map` takes them, from the mean of the nodes.
+    /// The nodes moved by `map`, relative to the mean of the nodes.
     fn moved(&self, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<f64> {
         let d = self.dimension;
         let nodes = self.rest.len() / d;
@@ -237,7 +245,7 @@ impl Shapes<'_> {
         let nu = self.poisson;
         match family {
             Family::Uniaxial => self.homogeneous(&across(e, ratio, ratio.powf(-nu))),
-            // In the plane both axes.
+            // In the plane both axes are in the plane.
             Family::Equibiaxial if d == 3 => self.homogeneous(&across(e, ratio.powf(-2.0 * nu / (1.0 - nu)), ratio)),
             Family::Equibiaxial | Family::Volumetric => self.homogeneous(&(Matrix3::identity() * ratio)),
             Family::SimpleShear => self.homogeneous(&(Matrix3::identity() + a * e * f.transpose())),
@@ -247,7 +255,7 @@ impl Shapes<'_> {
                 self.moved(|x| {
                     let (along, over) = (e.dot(&x), f.dot(&x));
                     let (sine, cosine) = (curvature * along).sin_cos();
-                    // sin(κs)/κ and (cos(κs) − 1)/κ at κ = 0 as well
+                    // sin(κs)/κ and (cos(κs) − 1)/κ, also at κ = 0.
                     let half = (curvature * along / 2.0).sin();
                     let (arc, sag) = if curvature == 0.0 {
                         (along, 0.0)
@@ -262,7 +270,7 @@ impl Shapes<'_> {
     }
 }
 
-/// The shape of a list that serves as number `i` of its part.
+/// The index of the shape of a list that is number `i` of its part.
 fn chosen(count: usize, part: Part, i: usize) -> usize {
     let apart = count / APART;
     match part {
@@ -270,7 +278,7 @@ fn chosen(count: usize, part: Part, i: usize) -> usize {
         Part::HeldOut => (i % apart) * APART + APART - 1,
         Part::Trained => {
             let i = i % (count - apart);
-            // Past each run of four comes one that is held out.
+            // Each run of four shapes is followed by one that is held out.
             if i / (APART - 1) < apart { i + i / (APART - 1) } else { i + apart }
         }
     }
@@ -290,20 +298,21 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// In [0, 1).
+    /// A number in [0, 1).
     pub fn number(&self, coordinate: usize) -> f64 {
         let block = (self.index / LONGEST + 7919 * (coordinate / WIDEST)) as u64;
-        // Neighbouring seeds must not look alike.
+        // Sequences of neighbouring seeds must not be similar.
         let seed = (self.seed.wrapping_add(block << 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         f64::from(sobol_burley::sample((self.index % LONGEST) as u32, (coordinate % WIDEST) as u32, seed as u32))
     }
 
-    /// In [-1, 1).
+    /// A number in [−1, 1).
     fn symmetric(&self, coordinate: usize) -> f64 {
         2.0 * self.number(coordinate) - 1.0
     }
 
-    /// From the coordinates 1 to 3, evenly over all rotations (Shoemake 1992); in the plane about its normal.
+    /// A rotation from the coordinates 1 to 3, evenly distributed over all rotations (Shoemake 1992); in the plane
+    /// about its normal.
     fn rotation(&self, d: usize) -> Rotation3<f64> {
         let [u, v, w] = [1, 2, 3].map(|k| self.number(k));
         if d < 3 {

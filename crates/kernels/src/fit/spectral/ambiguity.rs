@@ -1,23 +1,26 @@
-//! Where the spectral optimum is not unique: the constants of least Frobenius error among the optima.
+//! Spectral optima that are not unique: the constants with the least Frobenius error among the optima.
 //!
-//! With u the eigenvectors of `E = R̂ − K(κ)` at ±t, the optima differ from κ by the directions d with `K(d) u = 0`: such a d
-//! leaves the active eigenvalues, and has room until another eigenvalue reaches ±t.
+//! With u the eigenvectors of `E = R̂ − K(κ)` at ±t, the optima differ from κ by directions d with `K(d) u = 0`. Such a
+//! d does not change the active eigenvalues, and it can be followed until another eigenvalue reaches ±t.
+//!
+//! Theory: page *The barrier* of the book.
 
 use super::problem::{Optimum, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// Eigenvalues within this fraction of ±t are active; the solver leaves them there to about 1e-9.
 const ACTIVE: f64 = 1e-6;
-/// Singular values of `d ↦ K(d) u` below this fraction of the largest vanish.
+/// Singular values of `d ↦ K(d) u` below this fraction of the largest count as zero.
 const FREE: f64 = 1e-5;
-/// Newton steps per weight of the barrier that keeps the other eigenvalues inside, and the weights.
+/// Newton steps for each weight of the barrier that keeps the other eigenvalues inside.
 const STEPS: usize = 30;
-/// What the move may add to the value, of the 1e-8 that the gap may have.
+/// How much the move may add to the value; the gap may be 1e-8.
 const KEPT: f64 = 2e-9;
+/// The weights of that barrier, one after the other.
 const WEIGHTS: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
-/// Moves κ, an optimum of value t, to the one of least `‖E‖_F`, to about 1e-6 of the way. Returns false, κ unchanged, if the optimum
-/// is unique after all.
+/// Moves κ, an optimum of value t, to the one with the least `‖E‖_F`, to about 1e-6 of the distance. Returns false,
+/// with κ unchanged, if the optimum is unique.
 pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let Optimum { kappa, value: t, .. } = optimum;
     let (p, t, springs) = (problem.order(), *t, problem.matrices());
@@ -25,7 +28,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let eigen = e.symmetric_eigen();
     let (active, rest): (Vec<usize>, Vec<usize>) =
         (0..p).partition(|&i| eigen.eigenvalues[i].abs() > t * (1.0 - ACTIVE));
-    // All of them are, or none where t is only the rounding of an exact fit.
+    // All eigenvalues are active, or none if t is only the rounding of an exact fit.
     if active.is_empty() || rest.is_empty() {
         return false;
     }
@@ -38,7 +41,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     if rank == kappa.len() {
         return false;
     }
-    // The right singular vectors beyond the rank, also those that a thin decomposition leaves out.
+    // The right singular vectors beyond the rank, including those that a thin decomposition omits.
     let range = v.rows(0, rank).transpose();
     let projection = DMatrix::identity(kappa.len(), kappa.len()) - &range * range.transpose();
     let free = projection.symmetric_eigen();
@@ -46,7 +49,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
         .filter(|&i| free.eigenvalues[i] > 0.5)
         .map(|i| free.eigenvectors.column(i).into_owned())
         .collect();
-    // On the other eigenvectors alone: E_c(w) = Λ − Σ w_i D_i, ‖E_c‖_F least with −t < E_c < t.
+    // On the other eigenvectors alone: E_c(w) = Λ − Σ w_i D_i, with ‖E_c‖_F least under −t < E_c < t.
     let others = eigen.eigenvectors.select_columns(&rest);
     let start = DMatrix::from_diagonal(&DVector::from_fn(rest.len(), |i, _| eigen.eigenvalues[rest[i]]));
     let changes: Vec<DMatrix<f64>> = directions
@@ -60,7 +63,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let w = inner_optimum(&start, &changes, t);
     let mut step = DVector::zeros(kappa.len());
     directions.iter().zip(w.iter()).for_each(|(direction, w)| step += direction * *w);
-    // The directions are exact to rounding over `FREE`: as far as the value stays.
+    // The directions are accurate to rounding over `FREE`: the move goes as far as the value does not increase.
     for length in [1.0, 0.99, 0.9, 0.5] {
         let moved: Vec<f64> = kappa.iter().zip(step.iter()).map(|(k, d)| k + length * d).collect();
         let value = problem.error(&moved).symmetric_eigenvalues().amax() + problem.rounding(&moved);

@@ -1,4 +1,6 @@
-//! What the barrier proves: no constants do better.
+//! The lower bound that the barrier method proves: no constants reach a smaller value.
+//!
+//! Theory: page *The barrier* of the book.
 
 use super::Spectral;
 use crate::fit::dense::{add_outers, factorize, inner, mirror, row_products, solve, trace};
@@ -6,8 +8,8 @@ use crate::fit::reduction::Reduced;
 use crate::scalar::Real;
 
 impl<T: Real> Spectral<T> {
-    /// The bound of the pair (X, Y) that the last Newton step gives, with every condition checked here: X and Y are
-    /// factorised, and what is left of `⟨h_s h_sᵀ, X − Y⟩` is moved into them.
+    /// The bound of the pair (X, Y) that the last Newton step gives. Every condition is checked here: X and Y are
+    /// factorised, and the remainder of `⟨h_s h_sᵀ, X − Y⟩` is corrected by changing them.
     #[inline(always)]
     pub(super) fn bound(&mut self, reduced: &Reduced<T>, mu: &T) -> T {
         let (p, c) = (reduced.order, self.kappa.len());
@@ -31,7 +33,7 @@ impl<T: Real> Spectral<T> {
             self.e[i * p + i] = self.e[i * p + i].clone() + &self.newton[c].clone().scaled(&2.0);
         }
         self.b.dual(&self.e, mu, p, &mut self.room);
-        // Z = X − Y, both triangles
+        // Z = X − Y, both triangles.
         for i in 0..p {
             for j in 0..=i {
                 self.e[i * p + j] = self.a.matrix[i * p + j].clone() - &self.b.matrix[i * p + j];

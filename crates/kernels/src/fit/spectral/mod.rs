@@ -1,12 +1,15 @@
-//! `min_κ ‖E(κ)‖₂`, `E = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`: the least t with `A = tI − E ⪰ 0` and `B = tI + E ⪰ 0`.
+//! The spectral objective `min_κ ‖E(κ)‖₂`, `E = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`: the least t with `A = tI − E ⪰ 0` and
+//! `B = tI + E ⪰ 0`.
 //!
-//! A barrier method that follows the minimisers of `t/μ − log det A − log det B − Σ log κ` (the last only for
-//! `κ ≥ 0`) to μ → 0 (Nesterov and Nemirovskii 1994). The springs are of rank one, so the Hessian needs no product of
-//! matrices: it is `(h_sᵀ A⁻¹ h_t)² + (h_sᵀ B⁻¹ h_t)²`, entry by entry.
+//! A barrier method follows the minimisers of `t/μ − log det A − log det B − Σ log κ` (the last term only for `κ ≥ 0`)
+//! to μ → 0 (Nesterov and Nemirovskii 1994). The matrices of the springs have rank one, so that the Hessian needs no
+//! product of matrices: its entries are `(h_sᵀ A⁻¹ h_t)² + (h_sᵀ B⁻¹ h_t)²`.
 //!
-//! Any positive semidefinite X, Y with `⟨h_s h_sᵀ, X − Y⟩ = 0` bound the optimum from below by
-//! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair,
-//! `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, Y alike; [`Spectral::bound`] checks it from scratch.
+//! Any positive semidefinite X and Y with `⟨h_s h_sᵀ, X − Y⟩ = 0` bound the optimum from below by
+//! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair, `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`
+//! and Y correspondingly; [`Spectral::bound`] checks it independently.
+//!
+//! Theory: page *The barrier* of the book.
 
 mod ambiguity;
 mod dual;
@@ -26,47 +29,49 @@ use super::reduction::Reduced;
 use crate::scalar::Real;
 use side::Side;
 
-/// The duality gap that is asked for, relative to t; relative to `EXACT ‖R‖` where t is smaller still. Of `f64`; in numbers of other
-/// precision as much of their digits.
+/// The requested duality gap, relative to t, or relative to `EXACT ‖R‖` if t is smaller. It is half of the digits of
+/// `f64`; numbers of another precision use half of theirs.
 pub const GAP: f64 = 1e-8;
-/// Below this fraction of ‖R‖ rounding in R itself hides t.
+/// Below this fraction of ‖R‖, rounding in R itself hides t.
 pub const EXACT: f64 = 1e-6;
+/// The largest number of steps.
 const STEPS: usize = 120;
-/// How often a step is halved at once.
+/// How often a step is halved within one iteration.
 const SHORTER: usize = 4;
-/// Relative pivots below this floor are rounding.
+/// Relative pivots below this are rounding errors.
 const FLOOR: f64 = 1e-14;
 /// A step keeps at least this share of the distance to the boundary that the path would keep.
 const KEPT: f64 = 0.3;
-/// Newton steps at one μ crawl if the square of the decrement stays above the first, and above this share of the last.
+/// Newton steps at a fixed μ have stalled if the squared decrement stays above the first number, and above the second
+/// number times the previous one.
 const STALLED: [f64; 2] = [1.5, 0.9];
 
-/// Room for the solver, and its result.
+/// The working memory of the solver, and its result.
 #[derive(Debug, Clone)]
 pub struct Spectral<T> {
-    /// κ, `[unknowns]`.
+    /// The unknowns κ, `[unknowns]`.
     pub kappa: Vec<T>,
     /// `‖E‖₂ < t`.
     pub value: T,
-    /// No κ does better than this.
+    /// No κ reaches a value below this.
     pub bound: T,
-    /// Least curvature of the barrier over the unknowns, in units where an unknown that t does not depend on has about
-    /// one, and one that it depends on has more than a million.
+    /// The least curvature of the barrier over the unknowns, in units in which an unknown that does not affect t has
+    /// about one, and an unknown that does has more than a million.
     pub curvature: T,
     nonnegative: bool,
     e: Vec<T>,
     a: Side<T>,
     b: Side<T>,
-    /// Hessian of the barrier in (κ, t), and gradient without `1/μ`.
+    /// The Hessian of the barrier in (κ, t), and its gradient without `1/μ`.
     hessian: Vec<T>,
     gradient: Vec<T>,
     pivots: Vec<T>,
     newton: Vec<T>,
     tangent: Vec<T>,
-    /// Eigenvalues of E at the end, on the diagonal, and its eigenvectors, row by row.
+    /// The eigenvalues of E at the end, on the diagonal, and its eigenvectors, row by row.
     eigenvalues: Vec<T>,
     eigenvectors: Vec<T>,
-    /// Factors of the Gram matrix of the springs' matrices.
+    /// The factors of the Gram matrix of the matrices of the unknowns.
     gram: Vec<T>,
     gram_pivots: Vec<T>,
     room: Vec<T>,
@@ -99,7 +104,7 @@ impl<T: Real> Spectral<T> {
         }
     }
 
-    /// The least pivot of the Gram matrix of the unknowns' matrices in one lane, relative to its diagonal entry.
+    /// The least pivot of that Gram matrix in one lane, relative to its diagonal entry.
     pub fn least_pivot(&self, lane: impl Fn(&T) -> f64) -> f64 {
         least_pivot(&self.gram, self.kappa.len(), &self.gram_pivots, lane)
     }
@@ -126,17 +131,17 @@ impl<T: Real> Spectral<T> {
         let complexity = (2 * p + if self.nonnegative { c } else { 0 }) as f64;
         let mut mu = zero.clone();
         let mut kappa = self.kappa.clone();
-        // The step under trial: z + α d, and μ (1 − α (1 − θ)).
+        // The trial step: z + α d, and μ (1 − α (1 − θ)).
         let mut step: Vec<T> = self.newton.clone();
         for entry in &mut step {
             *entry = zero.clone();
         }
         let (mut alpha, mut reduction, mut theta) = (zero.clone(), zero.clone(), one.constant(&0.2));
-        // Least distance of a trial from the boundary, and the decrement where μ was the same.
+        // The least distance of a trial from the boundary, and the decrement at the same μ.
         let (mut kept, mut previous) = (zero.clone(), one.constant(&f64::MAX));
         let mut first = true;
         for _ in 0..STEPS {
-            // Shorten the step where it leaves the domain; what is still outside after that waits for the next turn.
+            // Shorten the step if it leaves the domain; lanes that are still outside continue in the next iteration.
             let (mut inside, mut distance) = (zero.clone(), zero.clone());
             for trial in 0..=SHORTER {
                 if trial > 0 {
@@ -168,7 +173,7 @@ impl<T: Real> Spectral<T> {
             }
             let decrement = self.directions(&mut mu, &previous);
             let end = self.value.greatest(&floor).scaled(&(0.4 * at_half::<T>(GAP) / complexity));
-            // Centred and at the end: stay.
+            // Centred and at the end of the path: no further change.
             let centred = one.constant(&0.2) - &decrement;
             let done = (end.clone().scaled(&1.001) - &mu).choose(&centred, &zero.clone().scaled(&-1.0));
             let done = inside.choose(&done, &(zero.clone() - &one));
@@ -177,14 +182,14 @@ impl<T: Real> Spectral<T> {
             }
             // Follow the path if close to it, otherwise step back to it.
             let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
-            // Next to the boundary each side adds at most one to the decrement, and a whole step doubles the distance: only
-            // beyond that many can it be too long.
+            // Next to the boundary each of the two matrices adds at most one to the decrement, and a full step doubles
+            // the distance. Only beyond this number can the step be too long.
             let length = (one.constant(&complexity) - &decrement).choose(&one, &length);
             let faster = theta.clone().squared().greatest(&one.constant(&1e-3));
             let slower = theta.clone().sqrt().least(&one.constant(&0.8));
             let next = (one.constant(&0.3) - &decrement).choose(&faster, &theta);
             let next = (decrement.clone() - &one).choose(&slower, &next);
-            // Twice halved: the path is followed too fast. (No step was tried yet where α is zero.)
+            // Halved twice: the path is followed too fast. (If α is zero no step has been tried.)
             let halved = (one.constant(&0.3) - &alpha).choose(&alpha, &zero);
             theta = inside.choose(&halved.choose(&slower, &next), &slower);
             let least = (end / &mu).least(&one);
@@ -214,7 +219,8 @@ impl<T: Real> Spectral<T> {
         }
     }
 
-    /// Both sides at the trial point, which goes into `kappa`; positive where it is inside the domain.
+    /// Evaluates both matrices at the trial point, which is written to `kappa`; positive if the point is inside the
+    /// domain.
     #[inline(always)]
     fn enter(&mut self, reduced: &Reduced<T>, kappa: &mut [T], alpha: &T, step: &[T]) -> T {
         let (p, c) = (reduced.order, kappa.len());
@@ -231,7 +237,7 @@ impl<T: Real> Spectral<T> {
         inside.least(&self.b.set(&self.e, p, &t, 1.0))
     }
 
-    /// κ of the least-squares fit, and a t above its error.
+    /// The κ of the least-squares fit, and a t above its error.
     #[inline(always)]
     fn start(&mut self, reduced: &Reduced<T>) {
         let (p, c) = (reduced.order, self.kappa.len());
@@ -247,7 +253,7 @@ impl<T: Real> Spectral<T> {
             let row = s * p..(s + 1) * p;
             self.kappa[unknown] = self.kappa[unknown].clone() + &inner(&h[row.clone()], &self.room[row]);
         }
-        // Kept for the repair of the bound: the Gram matrix of the springs' matrices.
+        // Kept for the correction of the bound: the Gram matrix of the matrices of the unknowns.
         self.gram[..c * c].clone_from_slice(&self.hessian[..c * c]);
         factorize(&mut self.gram[..c * c], c, at_rounding::<T>(FLOOR), &mut self.gram_pivots);
         solve(&self.gram[..c * c], c, &self.gram_pivots, &mut self.kappa);
@@ -272,7 +278,7 @@ impl<T: Real> Spectral<T> {
         self.value = square.sqrt().scaled(&1.05) + &zero.constant(&at_half::<T>(EXACT));
     }
 
-    /// Gradient and Hessian of the barrier at the trial point, whose sides are factorised.
+    /// Gradient and Hessian of the barrier at the trial point, whose matrices are factorised.
     #[inline(always)]
     fn derivatives(&mut self, reduced: &Reduced<T>, kappa: &[T]) {
         let (p, c) = (reduced.order, self.kappa.len());
@@ -316,10 +322,10 @@ impl<T: Real> Spectral<T> {
         }
     }
 
-    /// The Newton step for this μ, and the tangent of the path, `H⁻¹ e_t`; returns the square of the Newton decrement.
+    /// The Newton step for this μ, and the tangent of the path, `H⁻¹ e_t`; returns the squared Newton decrement.
     ///
-    /// Where the steps crawl, the decrement being hardly less than the `previous` one, μ first rises to that of the nearest
-    /// point of the path: the square of the decrement, `|H^-½ (g + e_t/μ)|²`, is quadratic in 1/μ.
+    /// If the steps have stalled, with a decrement hardly below the `previous` one, μ is first raised to that of the
+    /// nearest point of the path: the squared decrement, `|H^-½ (g + e_t/μ)|²`, is quadratic in 1/μ.
     #[inline(always)]
     fn directions(&mut self, mu: &mut T, previous: &T) -> T {
         let c = self.kappa.len();
@@ -346,7 +352,7 @@ impl<T: Real> Spectral<T> {
         quadratic(&square, &mixed, &bend, &pull)
     }
 
-    /// The least ratio of the Hessian's pivots to those of the Gram matrix, in units of `1/t²`.
+    /// The least ratio of the pivots of the Hessian to those of the Gram matrix, in units of `1/t²`.
     #[inline(always)]
     fn measure_curvature(&mut self) {
         let mut least = self.value.constant(&f64::MAX);

@@ -1,4 +1,4 @@
-//! The spectral problem of one element in plain numbers, for what is done once its optimum is nearly known.
+//! The spectral problem of one element in `f64`, for the refinement of an optimum that is nearly known.
 
 use super::Spectral;
 use crate::fit::dense::{factorize, solve};
@@ -7,27 +7,27 @@ use crate::fit::reduction::Reduced;
 use crate::scalar::Real;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-/// Rounding of sums of so many terms.
+/// The rounding error of sums of this many terms.
 const ROUNDINGS: f64 = 4.0;
 
-/// `E(κ) = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`.
+/// The matrix function `E(κ) = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`.
 pub struct Problem<'a> {
     pub r: DMatrix<f64>,
-    /// A column for each spring, `[order × springs]`.
+    /// The h_s, one column per spring, `[order × springs]`.
     pub h: DMatrix<f64>,
     /// The unknown of each spring.
     pub unknowns: &'a [usize],
     pub nonnegative: bool,
-    /// Factors of the Gram matrix of the unknowns' matrices.
+    /// The factors of the Gram matrix of the matrices of the unknowns.
     gram: Vec<f64>,
     pivots: Vec<f64>,
-    /// Of E where the barrier ended, in numbers of no more digits than it needs.
+    /// The spectrum of E where the barrier method ended, in `f64`.
     pub spectrum: Spectrum,
-    /// The relative rounding of R̂.
+    /// The relative rounding error of R̂.
     rounding: f64,
 }
 
-/// Eigenvalues in falling order, and the eigenvectors, column by column.
+/// Eigenvalues in decreasing order, and the eigenvectors, column by column.
 #[derive(Clone)]
 pub struct Spectrum {
     pub values: DVector<f64>,
@@ -43,20 +43,21 @@ impl Spectrum {
     }
 }
 
-/// What is known of the optimum.
+/// The best known point, its value and a lower bound.
 #[derive(Debug, Clone)]
 pub struct Optimum {
     /// `[unknowns]`.
     pub kappa: Vec<f64>,
-    /// `‖E(κ)‖₂` is at most this,
+    /// `‖E(κ)‖₂` is at most this.
     pub value: f64,
-    /// and for no κ less than this.
+    /// No κ reaches less than this.
     pub bound: f64,
 }
 
 impl<'a> Problem<'a> {
-    /// That of the lane that `lane` reads, for which `solver` has been run. Rounding of R̂ is as many times larger as its Jacobian
-    /// is smaller than its columns' product, the `quality`, or as a motion is softer that the weight divides by.
+    /// The problem in the lane that `lane` reads, for which `solver` has been run. The rounding error of R̂ grows by
+    /// the inverse `quality`, the ratio of its Jacobian determinant to the product of the lengths of its columns, and
+    /// by the inverse softness of the softest motion if the weight divides by R.
     pub fn of<T: Real>(
         reduced: &'a Reduced<T>,
         solver: &Spectral<T>,
@@ -124,14 +125,14 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// What rounding may make of the eigenvalues of `E(κ)`.
+    /// The rounding error of the eigenvalues of `E(κ)`.
     pub fn rounding(&self, kappa: &[f64]) -> f64 {
         let springs = self.h.column_iter().zip(self.unknowns).map(|(h, &i)| kappa[i].abs() * h.norm_squared());
         self.rounding * (self.r.trace() + springs.sum::<f64>())
     }
 
-    /// What no κ does better than by the pair of positive semidefinite X and Y, with `Z = X − Y`: `⟨R̂, Z⟩/(tr X + tr Y)`, once what is
-    /// left of `⟨h_s h_sᵀ, Z⟩` is moved into them.
+    /// The lower bound `⟨R̂, Z⟩/(tr X + tr Y)` of the pair of positive semidefinite X and Y, with `Z = X − Y`, after
+    /// they are corrected for the remainder of `⟨h_s h_sᵀ, Z⟩`.
     pub fn bound(&self, x: &DMatrix<f64>, y: &DMatrix<f64>) -> f64 {
         let z = x - y;
         let form = |a: &DMatrix<f64>, h: &DVectorView<f64>| h.dot(&(a * h));

@@ -1,31 +1,35 @@
-//! The last digits of the optimum: Newton's method on the eigenvalues at ±t.
+//! The last digits of the spectral optimum: Newton's method on the eigenvalues at ±t.
 //!
-//! Rounding leaves a barrier method half of the digits. Once it tells which eigenvalues of E are at t and which at −t, with eigenvectors
-//! `Q₊` and `Q₋`, these are equations, `Q₊ᵀ E(κ) Q₊ = tI` and `Q₋ᵀ E(κ) Q₋ = −tI`. The least t under them, with the eigenvalues expanded
-//! to second order, has steps that converge quadratically (Overton and Womersley, SIAM J. Matrix Anal. Appl. 16, 697, 1995);
-//! its multipliers U and V are the dual pair `X = Q₊ U Q₊ᵀ`, `Y = Q₋ V Q₋ᵀ` that proves the bound.
+//! Rounding limits a barrier method to half of the digits. Once it has identified which eigenvalues of E are at t and
+//! which at −t, with eigenvectors `Q₊` and `Q₋`, these conditions are equations: `Q₊ᵀ E(κ) Q₊ = tI` and
+//! `Q₋ᵀ E(κ) Q₋ = −tI`. Minimising t under them, with the eigenvalues expanded to second order, gives steps that
+//! converge quadratically (Overton and Womersley, SIAM J. Matrix Anal. Appl. 16, 697, 1995). The multipliers U and V
+//! are the dual pair `X = Q₊ U Q₊ᵀ`, `Y = Q₋ V Q₋ᵀ` that proves the bound.
+//!
+//! Theory: page *The barrier* of the book.
 
 use super::EXACT;
 use super::problem::{Optimum, Problem, Spectrum};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Newton steps at most; one is enough from where the barrier ends, if no other eigenvalue is near.
+/// The largest number of Newton steps; one is enough after the barrier method if no other eigenvalue is near.
 const STEPS: usize = 8;
-/// A first step above this, relative to t, does not begin at the optimum.
+/// A first step above this, relative to t, does not start near the optimum.
 const LARGEST: f64 = 0.1;
-/// What a step below this leaves, of the order of its square, is nothing, if the gap says the same,
+/// A step below this leaves an error of the order of its square, which is negligible if the gap confirms it,
 const CONVERGED: f64 = 1e-6;
-/// which is then below this, relative to t.
+/// that is, if the gap is below this, relative to t.
 const CLOSED: f64 = 1e-12;
-/// Steps that end below this went as far as rounding lets them.
+/// Steps that end below this are as accurate as rounding allows.
 const SETTLED: f64 = 1e-10;
-/// Eigenvalues of the equations below this are zero: the motions of degenerate shapes repeat each other.
+/// Eigenvalues of the equations below this count as zero: on degenerate shapes motions are linearly dependent.
 const SINGULAR: f64 = 1e-9;
-/// How far beyond what the barrier tells an eigenvalue counts as active: the first, and what is tried where the steps do not converge.
+/// Factors of the width within which an eigenvalue counts as active: first the one from the barrier method, then those
+/// that are tried if the steps do not converge.
 const WIDTHS: [f64; 5] = [1.0, 1e1, 1e-1, 1e2, 1e-2];
 
-/// Improves κ, value and bound as far as rounding lets them, or leaves them as they are: each is checked from scratch. An optimum of less
-/// than `EXACT` has nothing to find.
+/// Improves κ, value and bound as far as rounding allows, or leaves them unchanged; each is verified independently. An
+/// optimum of less than `EXACT` is not refined.
 pub fn refine(problem: &Problem, optimum: &mut Optimum) {
     if !(optimum.value > EXACT) {
         return;
@@ -46,13 +50,13 @@ pub fn refine(problem: &Problem, optimum: &mut Optimum) {
     }
 }
 
-/// Newton steps from κ; false where they do not converge.
+/// Newton steps from κ; false if they do not converge.
 fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum: &mut Optimum) -> bool {
     let mut last = 2.0 * LARGEST;
     for _ in 0..STEPS {
         let Some((step, t)) = active.step(problem) else { break };
         let size = step.amax();
-        // Half of the last where they only rock in rounding.
+        // Half of the last step if the steps only oscillate by rounding.
         if !(size < 0.5 * last) {
             break;
         }
@@ -62,11 +66,11 @@ fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum:
         }
         let is_inside = !problem.nonnegative || kappa.iter().all(|k| *k >= 0.0);
         let rounding = problem.rounding(&kappa);
-        // Mostly the value is the one that the step foresees.
+        // Usually the value is the one that the step predicts.
         let foreseen = t * (1.0 + size * size) + rounding;
         let is_near = size < CONVERGED && is_inside && problem.reaches(&kappa, foreseen);
         let value = if is_near { foreseen } else { active.set(problem.spectrum(&kappa)) + rounding };
-        // Not by how much it is less: of a flat optimum κ has digits to win where t has none.
+        // Not by the decrease of the value: at a flat optimum κ can still gain digits when t cannot.
         if is_inside && value <= optimum.value + rounding {
             let bound = problem.bound(&active.x, &active.y);
             *optimum = Optimum { kappa: kappa.clone(), value, bound: optimum.bound.max(bound) };
@@ -81,24 +85,25 @@ fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum:
     last < SETTLED
 }
 
-/// Which eigenvalues are at ±t, and which constants above zero.
+/// Which eigenvalues are at ±t, and which constants are above zero.
 struct Active {
     t: f64,
-    /// Of E.
+    /// The spectrum of E.
     spectrum: Spectrum,
-    /// How many are at t, and how many at −t.
+    /// The numbers of eigenvalues at t and at −t.
     above: usize,
     below: usize,
-    /// Unknowns that are not held at zero.
+    /// The unknowns that are not held at zero.
     free: Vec<usize>,
-    /// The dual pair, of `tr X + tr Y = 1`.
+    /// The dual pair, with `tr X + tr Y = 1`.
     x: DMatrix<f64>,
     y: DMatrix<f64>,
 }
 
 impl Active {
-    /// As the barrier tells: with `X = μ (tI − E)⁻¹` and `Y = μ (tI + E)⁻¹` an eigenvalue is active if its multiplier is larger than its
-    /// distance from t over `width`, and so is the bound of a constant, which is set to zero here.
+    /// The active set that the barrier method implies. With `X = μ (tI − E)⁻¹` and `Y = μ (tI + E)⁻¹` an eigenvalue is
+    /// active if its multiplier exceeds its distance from t divided by `width`; a constant is set to zero by the same
+    /// rule.
     fn at(problem: &Problem, kappa: &mut [f64], t: f64, width: f64) -> Option<Active> {
         let p = problem.order();
         let empty = || DMatrix::zeros(p, p);
@@ -129,16 +134,17 @@ impl Active {
         Some(active)
     }
 
-    /// Takes over the eigenvalues, and t, the largest.
+    /// Stores the eigenvalues and returns t, the largest absolute value.
     fn set(&mut self, spectrum: Spectrum) -> f64 {
         self.spectrum = spectrum;
         self.t = self.spectrum.values.amax();
         self.t
     }
 
-    /// The step of the free unknowns, in units of t, and the t that it foresees; takes over the new dual pair.
+    /// The step of the free unknowns, in units of t, and the t that it predicts; stores the new dual pair.
     ///
-    /// The second derivatives need the multipliers, of which the barrier knows a digit: they are solved for twice.
+    /// The second derivatives depend on the multipliers, which the barrier method gives to about one digit, so that
+    /// they are solved for twice.
     fn step(&mut self, problem: &Problem) -> Option<(DVector<f64>, f64)> {
         let (p, f) = (problem.order(), self.free.len());
         let values = &self.spectrum.values / self.t;
@@ -152,7 +158,7 @@ impl Active {
         };
         let mut sides = [side(1.0, 0, self.above, &self.x), side(-1.0, p - self.below, self.below, &self.y)];
         let equations = sides[0].pairs.len() + sides[1].pairs.len();
-        // As many equations as unknowns: no second derivative matters.
+        // As many equations as unknowns: the second derivatives do not matter.
         let turns = if equations > f { 1 } else { 2 };
         let mut solution = DVector::zeros(0);
         for _ in 0..turns {
@@ -171,7 +177,7 @@ impl Active {
         let mut steps = DVector::zeros(problem.unknown_count());
         self.free.iter().zip(solution.iter()).for_each(|(&unknown, step)| steps[unknown] = *step);
         [self.x, self.y] = sides.map(|side| {
-            // The eigenvectors turn with the step, to first order.
+            // The eigenvectors rotate with the step, to first order.
             let count = side.multipliers.nrows();
             let mut changes = w.rows(side.first, count).transpose();
             for (mut row, &unknown) in changes.row_iter_mut().zip(problem.unknowns) {
@@ -184,7 +190,7 @@ impl Active {
         Some((solution.rows(0, f).into_owned(), self.t * solution[f]))
     }
 
-    /// The equations of a step: unknowns that are free, t, and the changes of the multipliers.
+    /// The equations of a step, with the unknowns: free constants, t, and the changes of the multipliers.
     fn system(
         &self,
         problem: &Problem,
@@ -235,14 +241,14 @@ impl Active {
 /// The eigenvalues at t, or those at −t.
 struct Side {
     sign: f64,
-    /// Their place among all.
+    /// The index of the first of them among all.
     first: usize,
     /// The upper triangle of the multipliers.
     pairs: Vec<(usize, usize)>,
     multipliers: DMatrix<f64>,
-    /// `D w_s` over the other eigenvectors, D the reciprocals of the distances of their eigenvalues,
+    /// `D w_s` over the other eigenvectors, with D the reciprocal distances of their eigenvalues.
     others: DMatrix<f64>,
-    /// and `w_sᵀ D w_t`: what bends the eigenvalues at ±t.
+    /// `w_sᵀ D w_t`: the curvature of the eigenvalues at ±t.
     bends: DMatrix<f64>,
 }
 
@@ -259,7 +265,7 @@ fn pairs(order: usize) -> Vec<(usize, usize)> {
     (0..order).flat_map(|b| (0..=b).map(move |a| (a, b))).collect()
 }
 
-/// With which entries of the upper triangle have the norm of the matrix.
+/// The weight with which the entries of the upper triangle have the norm of the matrix.
 fn weight(a: usize, b: usize) -> f64 {
     if a == b { 1.0 } else { std::f64::consts::SQRT_2 }
 }
@@ -273,7 +279,7 @@ fn combination(q: &DMatrix<f64>, u: &DMatrix<f64>) -> DMatrix<f64> {
     q * u * q.transpose()
 }
 
-/// Takes what is negative out of a symmetric matrix.
+/// Removes the negative part of a symmetric matrix.
 fn make_positive(a: &mut DMatrix<f64>) {
     if a.is_empty() || Cholesky::new(a.clone()).is_some() {
         return;
@@ -282,7 +288,7 @@ fn make_positive(a: &mut DMatrix<f64>) {
     *a = combination(&eigen.eigenvectors, &DMatrix::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0))));
 }
 
-/// The solution, or of many the least; none where a distance of eigenvalues was zero.
+/// The solution, of least norm if there are several; None if a distance of eigenvalues was zero.
 fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
     if !system.iter().all(|entry| entry.is_finite()) {
         return None;

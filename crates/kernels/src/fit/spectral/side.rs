@@ -1,9 +1,9 @@
-//! One of the two matrices of the spectral problem.
+//! One of the two matrices `tI ± E` of the spectral problem.
 
 use crate::fit::dense::{factorize, invert, row_products};
 use crate::scalar::Real;
 
-/// One of the two matrices that stay positive.
+/// One of the two matrices that stay positive definite, with its inverse.
 #[derive(Debug, Clone)]
 pub struct Side<T> {
     pub matrix: Vec<T>,
@@ -21,7 +21,7 @@ impl<T: Real> Side<T> {
         Side { matrix: room(p * p), pivots: room(p), inverse: room(p * p), images: room(m * p), products: room(m * m) }
     }
 
-    /// `tI ± E`, factorised; the least relative pivot.
+    /// Factorises `tI ± E` and returns the least relative pivot.
     #[inline(always)]
     pub fn set(&mut self, e: &[T], p: usize, t: &T, sign: f64) -> T {
         let sign = t.constant(&sign);
@@ -41,7 +41,7 @@ impl<T: Real> Side<T> {
         row_products(h, &self.images, p, true, &mut self.products);
     }
 
-    /// `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, lower triangle, into `matrix`; ΔA with both triangles.
+    /// Writes `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`, lower triangle, into `matrix`; ΔA has both triangles.
     #[inline(always)]
     pub fn dual(&mut self, change: &[T], mu: &T, p: usize, room: &mut [T]) {
         let room = &mut room[..p * p];

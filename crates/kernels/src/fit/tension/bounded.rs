@@ -1,19 +1,20 @@
-//! Least squares under equilibrium with constants that are not below zero.
+//! Least squares under equilibrium with nonnegative constants.
 
 use super::problem::{Optimum, Problem};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::{DMatrix, DVector};
 
-/// Asked of the conic solver, relative to a right-hand side and columns of norm one.
+/// The accuracy asked of the conic solver, relative to a right-hand side and columns of norm one.
 const TOLERANCE: f64 = 1e-12;
-/// What the optimum over the constants that are not zero may be above that of the conic solver, as a share of `‖b‖²`.
+/// How much the optimum over the nonzero constants may exceed that of the conic solver, as a share of `‖b‖²`.
 const EXCESS: f64 = 1e-9;
-/// Below this share of the largest unknown a constant is zero.
+/// A constant below this share of the largest unknown is zero.
 const ROUNDING: f64 = 1e-13;
 
-/// `min ‖b − A u‖` under `C u = 0` and `u_j ≥ 0` for j in `bounded`; `free` is the optimum without bounds. The conic solver says which constants are zero, and the optimum
-/// over the others follows to rounding. False if the conic solver found less.
+/// `min ‖b − A u‖` under `C u = 0` and `u_j ≥ 0` for j in `bounded`; `free` is the optimum without bounds. The conic
+/// solver determines which constants are zero, and the optimum over the others is computed to rounding. False if the
+/// conic solver found a smaller value.
 pub fn solve_bounded(problem: &Problem, bounded: &[usize], free: Optimum) -> (Optimum, bool) {
     let all: Vec<usize> = (0..problem.a.ncols()).collect();
     let below = |u: &DVector<f64>| -> Vec<usize> {
@@ -43,8 +44,8 @@ pub fn solve_bounded(problem: &Problem, bounded: &[usize], free: Optimum) -> (Op
     }
 }
 
-/// The optimum to the digits of Clarabel's interior-point method, and which of the bounded unknowns are zero there, by the size of
-/// their multipliers; None if it reports no solution.
+/// The optimum to the accuracy of Clarabel's interior-point method, and which of the bounded unknowns are zero there,
+/// by the size of their multipliers; None if it reports no solution.
 fn interior_point(problem: &Problem, bounded: &[usize]) -> Option<(DVector<f64>, Vec<usize>)> {
     let all: Vec<usize> = (0..problem.a.ncols()).collect();
     let basis = problem.basis(&all);
@@ -74,7 +75,7 @@ fn interior_point(problem: &Problem, bounded: &[usize]) -> Option<(DVector<f64>,
     Some((basis * w, zero))
 }
 
-/// The matrix without its zeros.
+/// The sparse form of the matrix.
 fn sparse(matrix: &DMatrix<f64>) -> CscMatrix {
     let (rows, columns) = matrix.shape();
     let entries: Vec<(usize, usize)> =

@@ -15,9 +15,10 @@ use crate::stiffness::{Fault, Geometry};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// An unknown below this share of the largest of its sort is rounding.
+/// An unknown below this share of the largest of its kind is a rounding error.
 const ROUNDING: f64 = 1e-13;
-/// Tensions below this share of `k c` are: they are stored as `k c − T`, and what that leaves of them does not balance.
+/// Tensions below this share of `k c` are rounding errors: tensions are stored as `k c − T`, and what remains of them
+/// is not in equilibrium.
 const UNSTORED: f64 = 1e-12;
 
 /// What the cells of a block have in common.
@@ -32,7 +33,7 @@ pub struct Cells<'a> {
 /// The springs of one cell.
 pub struct CellTension {
     pub constants: Vec<f64>,
-    /// `k c₀`.
+    /// `k c₀` of each spring.
     pub parameters: Vec<f64>,
     pub deficient: bool,
     pub reached: bool,
@@ -40,7 +41,7 @@ pub struct CellTension {
 
 /// A spring at rest.
 struct Spring {
-    /// Of its nodes' coordinates among those of the cell.
+    /// The indices of the coordinates of its nodes among those of the cell.
     dofs: Vec<usize>,
     measure: f64,
     hessian: DMatrix<f64>,
@@ -51,7 +52,7 @@ struct Spring {
 }
 
 impl<'a> Cells<'a> {
-    /// The objective of the fit is a Frobenius norm.
+    /// The objective of the fit must be a Frobenius norm.
     pub fn new(element: &Arc<Element>, springs: &'a Springs, moduli: Moduli, fit: &Fit) -> Cells<'a> {
         let weight = match fit.objective {
             Objective::Frobenius(weight) => weight,
@@ -64,8 +65,8 @@ impl<'a> Cells<'a> {
     /// The springs of the cell with nodes at `x`, `[nodes × dimension]`, m.
     ///
     /// # Errors
-    /// What a spring measures has no gradient, R is singular where the weight divides by it, or only springs of no force are in
-    /// equilibrium.
+    /// The measure of a spring has no gradient; R is singular and the weight divides by it; or the only springs in
+    /// equilibrium are those without a force.
     pub fn fit(&self, x: &[f64], geometry: &Geometry) -> Result<CellTension, String> {
         let springs = self.springs_at(x, geometry)?;
         let r = geometry.stiffness(self.moduli);
@@ -136,8 +137,8 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// The columns of the unknowns, `‖g‖²/size · k g gᵀ/‖g‖² + ‖g‖/(size L) · T L ∇∇c/‖g‖`, and their forces `T g/(size L)`; and what
-/// each unknown is in the scaling in which its column has norm one.
+/// The columns of the unknowns, `‖g‖²/size · k g gᵀ/‖g‖² + ‖g‖/(size L) · T L ∇∇c/‖g‖`, and their forces
+/// `T g/(size L)`; and the value of each unknown in the scaling in which its column has norm one.
 fn equations(
     springs: &[Spring],
     unknowns: &[Unknown],
@@ -174,14 +175,14 @@ fn equations(
 }
 
 impl Spring {
-    /// Of a cell with nodes at `x`; g is that of [`Springs::gradients`].
+    /// The spring of a cell with nodes at `x`; g is that of [`Springs::gradients`].
     fn of((nodes, measure): &(Vec<usize>, Measure), g: &[f64], x: &[f64], dimension: usize) -> Spring {
         let dofs: Vec<usize> = nodes.iter().flat_map(|&a| a * dimension..(a + 1) * dimension).collect();
         let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
         let hessian = DMatrix::from_vec(dofs.len(), dofs.len(), measure.jet(&at, dimension).hessian);
         let gradient = norm(g);
         let direction = DVector::from_column_slice(g) / gradient;
-        // As where the residual is measured, whose rounding must be the same.
+        // Computed as for the residual, so that the rounding is the same.
         Spring { measure: measure.value(&at, dimension), hessian, gradient, direction, dofs }
     }
 

@@ -2,13 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A pivot below this fraction of the first counts as zero in a constraint: what is left of the constraint is below it. On regular
-/// shapes rounding leaves pivots of some 1e-13 that stand for zero.
+/// A pivot of a constraint below this fraction of the first counts as zero. On regular shapes rounding leaves pivots of
+/// some 1e-13 in the place of zeros.
 const BALANCED: f64 = 1e-12;
-/// And in equations: the root of what counts as zero among pivots of normal equations.
+/// The same limit for equations: the square root of the limit for pivots of normal equations.
 const DEPENDENT: f64 = 5e-7;
 
-/// Orthonormal columns that span the `u` with `C u = 0`: the last columns of Q of `Cᵀ P = Q R`, where R has no rows.
+/// Orthonormal columns that span the `u` with `C u = 0`: the last columns of Q in `Cᵀ P = Q R`, where R has no rows.
 pub fn null_space(c: &DMatrix<f64>) -> DMatrix<f64> {
     let (p, n) = c.shape();
     if n == 0 {
@@ -22,18 +22,18 @@ pub fn null_space(c: &DMatrix<f64>) -> DMatrix<f64> {
     pivoted.q().columns(rank, n - rank).into_owned()
 }
 
-/// The same span as that of these independent columns, orthonormal.
+/// An orthonormal basis of the span of these independent columns.
 pub fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
     if columns.ncols() == 0 { columns } else { columns.qr().q() }
 }
 
-/// The `u` of least `‖b − A u‖`, and of least norm among those; and whether there are several.
+/// The `u` of least `‖b − A u‖`, of least norm if there are several; and whether there are.
 pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) {
     let n = a.ncols();
     if n == 0 || a.nrows() == 0 {
         return (DVector::zeros(n), n > 0);
     }
-    // A P = Q R, R = [R₁ R₂] of full rank.
+    // A P = Q R, with R = [R₁ R₂] of full rank.
     let pivoted = a.col_piv_qr();
     let r = pivoted.r();
     let rank = rank(&r, DEPENDENT);
@@ -44,7 +44,7 @@ pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) 
     let solved = if rank == n {
         r.view((0, 0), (n, n)).solve_upper_triangular(&seen)
     } else {
-        // Rᵀ = S L, so that u = S L⁻ᵀ Qᵀ b has least norm.
+        // Rᵀ = S L, so that u = S L⁻ᵀ Qᵀ b has the least norm.
         let (s, l) = r.rows(0, rank).transpose().qr().unpack();
         l.tr_solve_upper_triangular(&seen).map(|y| s * y)
     };
@@ -55,7 +55,7 @@ pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) 
     (u, rank < n)
 }
 
-/// How many pivots come before the first that counts as zero.
+/// The number of pivots before the first that counts as zero.
 fn rank(r: &DMatrix<f64>, least: f64) -> usize {
     let pivots = || (0..r.nrows().min(r.ncols())).map(|i| r[(i, i)].abs());
     let first = pivots().next().unwrap_or(0.0);

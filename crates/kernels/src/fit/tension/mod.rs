@@ -1,7 +1,10 @@
-//! Constants and tensions of each cell: `min ‖W (R − K) W‖_F`, `K = Σ_s k_s g_s g_sᵀ + T_s ∇∇c_s`, under `Σ_s T_s g_s = 0`.
+//! Constants and rest tensions of each cell: `min ‖W (R − K) W‖_F`, `K = Σ_s k_s g_s g_sᵀ + T_s ∇∇c_s`, under
+//! `Σ_s T_s g_s = 0`.
 //!
-//! Equilibrium makes K vanish on the rigid motions, so that the norm may be taken on the deformations alone. The equations are
-//! solved by orthogonal transformations, which do not square their condition.
+//! In equilibrium K vanishes on the rigid motions, so that the norm can be taken on the deformations alone. The
+//! equations are solved by orthogonal transformations, which do not square their condition number.
+//!
+//! Theory: page *Exact networks* of the book.
 
 mod bounded;
 mod cell;
@@ -21,30 +24,31 @@ use cell::{CellTension, Cells};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Cells that one thread fits in one go.
+/// The number of cells that one thread fits at a time.
 const CHUNK: usize = 16;
 
 /// The springs of all cells.
 #[derive(Debug, Default)]
 pub struct Tensions {
-    /// k, `[cells × springs]`.
+    /// The constants k, `[cells × springs]`.
     pub constants: Vec<f64>,
     /// `k c₀`, `[cells × springs]`.
     pub parameters: Vec<f64>,
-    /// Cells whose unknowns are linearly dependent: of all optima they have that of least norm, in the scaling in which each unknown
-    /// alone has a matrix of norm one.
+    /// The number of cells whose unknowns are linearly dependent. They have the optimum of least norm, in the scaling
+    /// in which each unknown alone has a matrix of norm one.
     pub deficient: usize,
-    /// Cells whose quadratic programme did not end at its optimum.
+    /// The number of cells whose quadratic programme did not reach its optimum.
     pub unreached: usize,
-    /// Cells that have the shape of another and took its springs over.
+    /// The number of cells that received the springs of a congruent cell.
     pub reused: usize,
 }
 
-/// Fits every cell. `progress` receives the number of finished cells from time to time. The caller has checked the arguments.
+/// Fits every cell. `progress` is called from time to time with the number of finished cells. The caller has checked
+/// the arguments.
 ///
 /// # Errors
-/// The cells are those of a surface or curve in space, a cell is reversed, tangled or flat, what a spring measures has no gradient,
-/// or no springs but those of no force are in equilibrium.
+/// The cells are those of a surface or curve in space; a cell is reversed, tangled or flat; the measure of a spring has
+/// no gradient; or the only springs in equilibrium are those without a force.
 pub fn fit_tensions(
     element: &Element,
     springs: &Springs,

@@ -1,33 +1,34 @@
-//! Least squares under equilibrium, over some of the unknowns.
+//! Least squares under equilibrium, over a subset of the unknowns.
 
 use super::linear::{least_squares, null_space, orthonormal};
 use nalgebra::{DMatrix, DVector};
 
 /// `min ‖b − A u‖` under `C u = 0`.
 pub struct Problem {
-    /// Columns of norm one, or of zeros.
+    /// Columns of norm one, or zero.
     pub a: DMatrix<f64>,
     pub b: DVector<f64>,
-    /// Forces on the deformations. A column of zeros belongs to an unknown that does not pull.
+    /// The forces on the deformations. A zero column belongs to an unknown without a force.
     pub c: DMatrix<f64>,
 }
 
 /// An optimum over all unknowns.
 pub struct Optimum {
     pub unknowns: DVector<f64>,
-    /// The dimension of the space in equilibrium.
+    /// The dimension of the space of unknowns in equilibrium.
     pub freedom: usize,
-    /// Whether others do as well.
+    /// Whether there are other optima.
     pub deficient: bool,
 }
 
 impl Problem {
-    /// `B` with orthonormal columns that span the `u` in equilibrium which are zero outside `set`.
+    /// A matrix `B` whose orthonormal columns span the `u` in equilibrium that are zero outside `set`.
     pub fn basis(&self, set: &[usize]) -> DMatrix<f64> {
         let n = self.a.ncols();
         let size = |j: usize| self.c.column(j).norm();
         let (pulling, free): (Vec<usize>, Vec<usize>) = set.iter().partition(|&&j| size(j) > 0.0);
-        // In terms of the forces, f_j = ‖C_j‖ u_j, so that what the null space leaves is relative to the largest of them.
+        // In terms of the forces f_j = ‖C_j‖ u_j, so that the remainder of the null space is relative to the largest
+        // force.
         let mut forces = self.c.select_columns(&pulling);
         forces.column_iter_mut().for_each(|mut column| column /= column.norm());
         let mut balanced = null_space(&forces);
@@ -41,7 +42,7 @@ impl Problem {
         basis
     }
 
-    /// The optimum over the unknowns of `set`, the others being zero.
+    /// The optimum over the unknowns of `set`; the others are zero.
     pub fn solve(&self, set: &[usize]) -> Optimum {
         let basis = self.basis(set);
         let (w, deficient) = least_squares(&self.a * &basis, &self.b);

@@ -1,12 +1,12 @@
-//! What is unknown of the springs of a cell.
+//! The unknowns of the springs of a cell.
 
 use crate::fit::rest::Rest;
 use crate::springs::{Springs, norm};
 
-/// An unknown u without a unit, and what it adds to the springs.
+/// A dimensionless unknown u, and what it adds to the springs.
 pub struct Unknown {
     pub terms: Vec<Term>,
-    /// Whether it is a constant, not a tension alone.
+    /// Whether it is a constant; otherwise it is a tension alone.
     pub is_constant: bool,
 }
 
@@ -17,20 +17,21 @@ pub struct Term {
     pub tension: f64,
 }
 
-/// What gives a cell's unknowns their size.
+/// The sizes by which the unknowns of a cell are made dimensionless.
 pub struct Sizes {
-    /// Of R, N/m.
+    /// The size of R, N/m.
     pub stiffness: f64,
-    /// Of the cell, m.
+    /// The size of the cell, m.
     pub extent: f64,
     /// `‖g_s‖`.
     pub gradients: Vec<f64>,
-    /// `c_s` at rest.
+    /// The measures `c_s` at rest.
     pub measures: Vec<f64>,
 }
 
-/// The unknowns of all springs: of each a constant, and of those whose rest measure is unknown a tension. Tied springs have one of
-/// both for each group. Their tensions are `T_s = q c_s`: then they also share the ratio of rest, `c₀/c = 1 − q/k`.
+/// The unknowns of all springs: a constant for each, and a tension for those whose rest measure is unknown. Tied
+/// springs have one of each per group. Their tensions are `T_s = q c_s`, so that they also share the ratio
+/// `c₀/c = 1 − q/k`.
 pub fn unknowns(springs: &Springs, rest: Rest, tied: bool, sizes: &Sizes) -> Vec<Unknown> {
     let members: Vec<Vec<usize>> = match tied {
         true => {
@@ -42,7 +43,7 @@ pub fn unknowns(springs: &Springs, rest: Rest, tied: bool, sizes: &Sizes) -> Vec
     members.iter().flat_map(|members| of_members(members, members[0] < springs.pairs.len(), rest, sizes)).collect()
 }
 
-/// Of springs that share their unknowns.
+/// The unknowns of springs that share them.
 fn of_members(members: &[usize], on_lengths: bool, rest: Rest, sizes: &Sizes) -> Vec<Unknown> {
     let Sizes { stiffness, extent, gradients, measures } = sizes;
     let mean = |values: &[f64]| {
@@ -64,7 +65,7 @@ fn of_members(members: &[usize], on_lengths: bool, rest: Rest, sizes: &Sizes) ->
         Rest::Free | Rest::Zero => {
             let tension = stiffness * extent / g;
             let share = |s: usize| match members {
-                // A spring alone may pull where it measures zero.
+                // A single spring may pull even if it measures zero.
                 [_] => 1.0,
                 _ if c == 0.0 => 0.0,
                 _ => measures[s] / c,

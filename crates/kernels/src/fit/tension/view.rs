@@ -1,20 +1,20 @@
-//! Symmetric matrices of a cell as a weight sees them, in rows whose Euclidean norm is that of the fit.
+//! Symmetric matrices of a cell seen through a weight, as vectors whose Euclidean norm is the norm of the fit.
 
 use crate::fit::weight::Weight;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::SQRT_2;
 
-/// `A ↦ W A W` on the deformations, or the blocks of A of different nodes.
+/// `A ↦ W A W` on the deformations, or the blocks of A that belong to different nodes.
 pub enum View {
-    /// `P A Pᵀ`, P of `[deformations × nodes·dimension]`.
+    /// `P A Pᵀ`, with P of shape `[deformations × nodes·dimension]`.
     Motions(DMatrix<f64>),
-    /// Of nodes with so many coordinates, `nodes·dimension` in all.
+    /// The blocks of nodes with so many coordinates, `nodes·dimension` in all.
     Blocks { dimension: usize, size: usize },
 }
 
 impl View {
-    /// Of the cell with nodes at `x`, `[nodes × dimension]`, and the stiffness `r`; `deformations` has an orthonormal basis in its
-    /// columns. None if R is needed and not positive definite.
+    /// The view of the cell with nodes at `x`, `[nodes × dimension]`, and the stiffness `r`; `deformations` has an
+    /// orthonormal basis as its columns. None if R is needed and is not positive definite.
     pub fn of(
         weight: Weight,
         x: &[f64],
@@ -26,14 +26,14 @@ impl View {
         Some(match weight {
             Weight::OffDiagonal => View::Blocks { dimension, size: x.len() },
             Weight::None => View::Motions(plain()),
-            // W = h + (1 − h) C Cᵀ, C an orthonormal basis of the linear motions.
+            // W = h + (1 − h) C Cᵀ, with C an orthonormal basis of the linear motions.
             Weight::Modal(higher) => {
                 let linear = linear_motions(x, dimension).qr().q();
                 let h = higher.value();
                 let seen = deformations.tr_mul(&linear) * linear.transpose();
                 View::Motions(h * plain() + (1.0 - h) * seen)
             }
-            // With R = L Lᵀ on the deformations, L⁻¹ and R^(−1/2) differ by a rotation, which no norm sees.
+            // With R = L Lᵀ on the deformations, L⁻¹ and R^(−1/2) differ by a rotation, which does not change the norm.
             Weight::Relative => {
                 let factor = (deformations.tr_mul(r) * deformations).cholesky()?;
                 View::Motions(factor.l_dirty().solve_lower_triangular(&plain())?)
@@ -41,7 +41,7 @@ impl View {
         })
     }
 
-    /// How many numbers it sees.
+    /// The number of entries of a vector.
     pub fn rows(&self) -> usize {
         match self {
             View::Motions(p) => p.nrows() * (p.nrows() + 1) / 2,
@@ -49,7 +49,7 @@ impl View {
         }
     }
 
-    /// `g gᵀ`.
+    /// The vector of `g gᵀ`.
     pub fn of_vector(&self, g: &DVector<f64>) -> DVector<f64> {
         match self {
             View::Motions(p) => {
@@ -60,7 +60,8 @@ impl View {
         }
     }
 
-    /// The matrix with these entries in the rows and columns `dofs`, which may be repeated, and zeros elsewhere.
+    /// The vector of the matrix with these entries in the rows and columns `dofs`, which may be repeated, and zeros
+    /// elsewhere.
     pub fn of_matrix(&self, dofs: &[usize], entries: &DMatrix<f64>) -> DVector<f64> {
         match self {
             View::Motions(p) => {
@@ -80,7 +81,7 @@ impl View {
         }
     }
 
-    /// The entries of a symmetric matrix that are seen, those off the diagonal for both triangles.
+    /// The entries of a symmetric matrix; off-diagonal entries count for both triangles.
     fn gathered(&self, entry: impl Fn(usize, usize) -> f64) -> DVector<f64> {
         let mut rows = Vec::with_capacity(self.rows());
         match self {
@@ -100,13 +101,13 @@ impl View {
     }
 }
 
-/// An orthonormal basis of the motions that are not rigid, of a cell with nodes at `x`, in columns.
+/// An orthonormal basis, in columns, of the motions that are not rigid, of a cell with nodes at `x`.
 pub fn deformations(x: &[f64], dimension: usize) -> DMatrix<f64> {
     let (d, size) = (dimension, x.len());
     let linear = linear_motions(x, d);
     let planes: Vec<(usize, usize)> = (0..d).flat_map(|l| (0..l).map(move |k| (k, l))).collect();
     let rigid = d + planes.len();
-    // Translations and rotations first; what follows them in Q of a square matrix is orthogonal to them.
+    // Translations and rotations first; the following columns of Q of a square matrix are orthogonal to them.
     let mut motions = DMatrix::zeros(size, size);
     for k in 0..d {
         motions.set_column(k, &linear.column(d * d + k));
@@ -117,7 +118,8 @@ pub fn deformations(x: &[f64], dimension: usize) -> DMatrix<f64> {
     motions.qr().q().columns(rigid, size - rigid).into_owned()
 }
 
-/// The motions `u_a = e_k r_al`, r_a from the mean of the nodes, in column `k·d + l`, then the translations.
+/// The motions `u_a = e_k r_al`, with r_a relative to the mean of the nodes, in column `k·d + l`, and then the
+/// translations.
 fn linear_motions(x: &[f64], dimension: usize) -> DMatrix<f64> {
     let (d, n) = (dimension, x.len() / dimension);
     let mean: Vec<f64> = (0..d).map(|l| x.chunks_exact(d).map(|x| x[l]).sum::<f64>() / n as f64).collect();

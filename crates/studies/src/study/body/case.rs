@@ -1,37 +1,38 @@
-//! A load on a mesh.
+//! One load case on a mesh.
 
 use crate::mesh::Field;
 use crate::model::Support;
 use crate::study::metrics::{DisplacementError, displacement_error, product};
 use crate::study::outcome::Measured;
 
-/// A load on this mesh: what is held, and the nodal forces.
+/// A load case on a mesh: its support and nodal forces.
 pub struct Case {
     pub name: String,
     pub support: Support,
     pub forces: Vec<f64>,
-    /// Whether it is given displacements: its work is that of the forces which hold them.
+    /// Whether the load prescribes displacements; its work is then that of the forces that hold them.
     pub is_prescribed: bool,
-    /// Displacements that were measured under it, `[points · dimension]`, m, where known.
+    /// Displacements that were measured under the load, `[points · dimension]`, m, if there are any.
     pub measured: Option<Field>,
 }
 
 impl Case {
-    /// The work of the final forces along the final displacements, J, twice the energy of a linear model: `f·u`, or `gᵀu` under given
-    /// displacements, which `held` works out; `None` where it is not finite.
+    /// The work of the final forces along the final displacements, J, which is twice the energy of a linear model:
+    /// `f·u`, or `gᵀu` under prescribed displacements, which `held` computes. `None` if it is not finite.
     pub fn work(&self, u: &[f64], held: impl FnOnce() -> Option<f64>) -> Option<f64> {
         let work = if self.is_prescribed { held()? } else { product(&self.forces, u) };
         Some(work).filter(|work| work.is_finite())
     }
 
-    /// By how many percent the work of a network is larger than that of the finite elements. Measured displacements have none.
+    /// By how many percent the work of a network exceeds that of the finite elements; `None` for measured
+    /// displacements.
     pub fn work_error(&self, fem: Option<f64>, found: Option<f64>) -> Option<f64> {
         let error = 100.0 * (found? / fem? - 1.0);
         Some(error).filter(|error| self.measured.is_none() && error.is_finite())
     }
 
-    /// How far displacements are from those measured under the load, at the points that were measured, or else from those of the
-    /// finite elements.
+    /// The error of displacements: at the measured points if the load was measured, otherwise relative to the finite
+    /// elements.
     pub fn error(&self, fem: &[f64], found: &[f64], dimension: usize) -> Option<DisplacementError> {
         let Some(field) = &self.measured else { return displacement_error(fem, found, dimension) };
         let (mut wanted, mut own) = (Vec::new(), Vec::new());
@@ -44,7 +45,7 @@ impl Case {
         displacement_error(&wanted, &own, dimension)
     }
 
-    /// The number of measured points, and how far the finite elements, with displacements `fem`, are from them.
+    /// The number of measured points, and the error there of the finite elements, whose displacements are `fem`.
     pub fn measured(&self, fem: &[f64], dimension: usize) -> Option<Measured> {
         let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
         let points = self.measured.as_ref()?.displacements.chunks_exact(dimension).filter(known).count();

@@ -1,4 +1,4 @@
-//! The loads of a scene on its mesh.
+//! The load cases of a scene on its mesh.
 
 use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
@@ -13,7 +13,7 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
     Field::read_named(&folder.join(&entry.file), mesh, entry.scale, entry.array.as_deref())
 }
 
-/// What `[[fix]]` holds.
+/// The support of the `[[fix]]` entries.
 fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
@@ -33,7 +33,7 @@ fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     Ok(fixed)
 }
 
-/// What `[[fix]]` holds, and the loads.
+/// The support of the `[[fix]]` entries, and the load cases.
 ///
 /// # Errors
 /// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
@@ -59,7 +59,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         }
         let selection: Selection = load.part.selection(d).map_err(at)?;
         let points = selection.points(mesh).map_err(at)?;
-        // The part is known: any other error is about the load.
+        // The part has been checked: any other error is about the load.
         let forces = nodal_forces(mesh, &selection, &load.action, material.thickness());
         let forces = forces.map_err(|e| at(Error::new(e.problem())))?;
         let mut support = fixed.clone();

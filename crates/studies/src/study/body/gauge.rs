@@ -1,4 +1,5 @@
-//! Young's modulus and Poisson's ratio as a tension test gives them: from the strain of the straight part of a specimen.
+//! Young's modulus and Poisson's ratio as a tension test measures them: from the strain of the straight part of a
+//! specimen.
 
 use super::case::Case;
 use crate::error::{Error, Result};
@@ -9,18 +10,20 @@ use crate::study::outcome::{Followed, GaugeResult, LoadOutcome, Reading};
 use crate::study::scene::{Gauge, LoadCase, Part, Scene};
 use nalgebra::{DMatrix, DVector};
 
-/// The points of a scene's gauge, and the force in it under each load.
+/// The points of the gauge of a scene, and the force in it under each load.
 pub struct Gauged {
     points: Vec<usize>,
     axis: usize,
     area: f64,
-    /// N; `None` under a load that is not the same force in the whole gauge.
+    /// The force, N; `None` under a load that does not cause the same force in the whole gauge.
     forces: Vec<Option<f64>>,
 }
 
 impl Gauged {
+    /// The gauge of a scene on its mesh.
+    ///
     /// # Errors
-    /// The part is unknown, has no extent, or the axis is none of the mesh.
+    /// The part is unknown or has no extent, or the mesh does not have the axis.
     pub fn new(scene: &Scene, gauge: &Gauge, mesh: &Mesh, cases: &[Case]) -> Result<Gauged> {
         let at = |e: Error| scene.at("gauge", e);
         let d = mesh.dimension;
@@ -42,7 +45,7 @@ impl Gauged {
             .points
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &p| (low.min(along(p)), high.max(along(p))));
-        // Forces at one side of the gauge alone are the same in all its sections.
+        // The force is the same in all sections if all loads are at one end of the gauge.
         let aside = |case: &Case| {
             let acts = |p: &usize| case.forces[p * d..(p + 1) * d].iter().any(|f| *f != 0.0);
             let loaded = || (0..mesh.point_count()).filter(acts);
@@ -57,21 +60,22 @@ impl Gauged {
         Ok(Gauged { forces: cases.iter().zip(scene.loads()).map(force).collect(), ..gauged })
     }
 
-    /// The reading of the finite elements with displacements `u` under the load of this number.
+    /// The reading of the finite elements with displacements `u` under the load with this index.
     pub fn body(&self, mesh: &Mesh, load: usize, u: &[f64], followed: Option<&Followed>) -> GaugeResult {
         let reached = followed.is_none_or(|followed| followed.ending == Ending::Converged);
         let reading = self.read(mesh, load, u).filter(|_| reached);
         reading.map_or(GaugeResult::NoReading, GaugeResult::Reading)
     }
 
-    /// Writes the readings of a network into the answers to its loads.
+    /// Writes the readings of a network into its results under the loads.
     pub fn measure(&self, mesh: &Mesh, loads: &mut [LoadOutcome]) {
         for (i, load) in loads.iter_mut().enumerate() {
             load.gauge = load.displacement.as_ref().and_then(|u| self.read(mesh, i, u));
         }
     }
 
-    /// The reading for displacements `u` under the load of this number; `None` where the load does not pull along the axis.
+    /// The reading for displacements `u` under the load with this index; `None` if the load does not pull along the
+    /// axis.
     fn read(&self, mesh: &Mesh, load: usize, u: &[f64]) -> Option<Reading> {
         let force = self.forces[load]?;
         let strain = self.strain(mesh, u)?;
@@ -82,7 +86,7 @@ impl Gauged {
         Some(reading).filter(|r| r.young.is_finite() && r.poisson.is_finite())
     }
 
-    /// The diagonal of the gradient of the affine displacement `u ≈ a + G x` nearest to that of the points.
+    /// The diagonal of the gradient of the affine displacement `u ≈ a + G x` that fits those of the points best.
     fn strain(&self, mesh: &Mesh, u: &[f64]) -> Option<Vec<f64>> {
         let d = mesh.dimension;
         let n = self.points.len() as f64;

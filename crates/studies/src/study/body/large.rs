@@ -14,16 +14,18 @@ use std::time::Instant;
 
 /// The finite element solutions of a scene whose material has a law.
 pub struct LargeBody {
+    /// The energy of the law.
     pub energy: Energy,
     state: State,
     newton: Newton,
-    /// One per load, that at the last load reached; `[points · dimension]`, m.
+    /// The displacements, one list per load, at the last load that was reached; `[points · dimension]`, m.
     pub displacements: Vec<Vec<f64>>,
+    /// How each load was applied.
     pub followed: Vec<Followed>,
     seconds: Vec<f64>,
-    /// J; see [`Case::work`].
+    /// The work of each load, J; see [`Case::work`].
     works: Vec<Option<f64>>,
-    /// Name of each load and the displacements on the way to it.
+    /// The name of each load, and the displacements on the way to it.
     paths: Vec<(String, Vec<Vec<f64>>)>,
 }
 
@@ -34,8 +36,11 @@ impl LargeBody {
         LargeBody { energy, state, newton, displacements, followed, seconds, works, paths }
     }
 
+    /// Solves every load.
+    ///
     /// # Errors
-    /// The cells do not fill their space, or the equations do not fit into memory. A load that is not reached is no error.
+    /// The cells do not fill their space, or the equations do not fit into memory. A load that is not reached is not an
+    /// error.
     pub fn solve(
         mesh: &Mesh,
         state: State,
@@ -67,16 +72,16 @@ impl LargeBody {
         Ok(body)
     }
 
-    /// The displacements of each load, where it was reached.
+    /// The displacements of each load, or `None` if it was not reached.
     pub fn complete(&self) -> impl Iterator<Item = Option<&Vec<f64>>> {
         let reached = |(u, f): (_, &Followed)| (f.ending == Ending::Converged).then_some(u);
         self.displacements.iter().zip(&self.followed).map(reached)
     }
 
-    /// Positions of all points on the way to these loads.
+    /// The positions of all points on the way to these loads.
     ///
     /// # Errors
-    /// None of them was reached in any part.
+    /// No part of any of them was reached.
     pub fn states(&self, mesh: &Mesh, loads: &[String]) -> Result<Vec<Vec<f64>>> {
         let named = self.paths.iter().filter(|(name, _)| loads.contains(name));
         let states: Vec<Vec<f64>> = named.flat_map(|(_, path)| path).map(|u| displaced(&mesh.points, u)).collect();
@@ -130,7 +135,7 @@ fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f
 }
 
 impl Followed {
-    /// `body` has the cells that may be turned inside out.
+    /// `body` has the cells that may be inverted.
     fn of(found: &Equilibrium, body: &Body) -> Followed {
         Followed {
             ending: found.ending,

@@ -1,4 +1,4 @@
-//! The loads of a scene at small deformation: one linear system for each model and support.
+//! The loads of a scene at small deformation: one linear system per model and support.
 
 use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
@@ -12,35 +12,37 @@ use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
-/// The finite element solutions, and what the comparison with a network reuses.
+/// The finite element solutions, and the parts of them that the comparison with a network reuses.
 pub struct LinearBody {
     pub displacements: Vec<Vec<f64>>,
-    /// J; see [`Case::work`].
+    /// The work of each load, J; see [`Case::work`].
     works: Vec<Option<f64>>,
     moduli: Moduli,
     seconds: Vec<f64>,
-    /// The equations and factor of each load, as an index into these: loads of equal support share them.
+    /// Equations and factors. Each load has an index into them; loads with the same support share them.
     systems: Vec<(System, Factor)>,
     system_of: Vec<usize>,
 }
 
-/// The answers of a network to all loads.
+/// The results of a network under all loads.
 #[derive(Default)]
 pub struct NetworkAnswers {
     pub loads: Vec<LoadOutcome>,
-    /// With the support of the first load; `None` without loads.
+    /// The stability with the support of the first load; `None` without loads.
     pub stability: Option<Stability>,
-    /// Points that move in the softest motion, at least half as far as the one that moves most.
+    /// The points whose displacement in the softest motion is at least half of the largest.
     pub loose_points: Vec<usize>,
 }
 
-/// Loads with the same support have the same equations: for each load, the first load it agrees with.
+/// For each load the first load with the same support, whose equations it shares.
 fn shared(cases: &[Case]) -> Vec<usize> {
     let first = |case: &Case| cases.iter().position(|c| c.support == case.support).unwrap_or(0);
     cases.iter().map(first).collect()
 }
 
 impl LinearBody {
+    /// Solves every load.
+    ///
     /// # Errors
     /// Some motion has no stiffness, or the equations do not fit into memory.
     pub fn solve(mesh: &Mesh, moduli: Moduli, cases: &[Case], progress: &mut Progress) -> Result<LinearBody> {
@@ -85,13 +87,14 @@ impl LinearBody {
         Ok(body)
     }
 
-    /// The equations and factor of the loads with that support, if there are any.
+    /// The equations and factor of the loads with this support, if there are any.
     pub fn held_by(&self, support: &Support, cases: &[Case]) -> Option<&(System, Factor)> {
         let load = cases.iter().position(|case| case.support == *support)?;
         Some(&self.systems[self.system_of[load]])
     }
 
-    /// Solves every load with the network, whose energies are compared with those of finite elements of the moduli `compared`.
+    /// Solves every load with the network. Its energies are compared with those of finite elements with the moduli
+    /// `compared`.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -147,7 +150,7 @@ impl LinearBody {
     }
 }
 
-/// Cholesky's factor of the equations of the finite elements.
+/// The Cholesky factor of the equations of the finite elements.
 ///
 /// # Errors
 /// Some motion has no stiffness, or the factor does not fit into memory.

@@ -1,4 +1,4 @@
-//! The body of a scene under its loads: cases, gauges, and the finite element solutions.
+//! The body of a scene under its loads: load cases, gauges, and the finite element solutions.
 
 mod case;
 mod cases;

@@ -1,4 +1,4 @@
-//! The properties of an element file together.
+//! All properties of an element file.
 
 use super::property::{Mark, Property};
 use super::{integrals, shape, space, springs};
@@ -9,19 +9,22 @@ use std::sync::Arc;
 /// The properties of one file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inspection {
-    /// The file, or the name of a shipped element.
+    /// The path of the file, or the name of a shipped element.
     pub file: String,
+    /// The title of the element.
     pub title: String,
+    /// The properties.
     pub properties: Vec<Property>,
 }
 
 impl Inspection {
+    /// Whether no property fails.
     pub fn passes(&self) -> bool {
         self.properties.iter().all(|p| p.mark != Mark::Fails)
     }
 }
 
-/// Checks what `Element::load` made of the file: the element, or why it is none.
+/// Checks the result of `Element::load` on a file: the properties of the element, or the error.
 pub fn inspect(file: &str, loaded: Result<Element, Error>) -> Inspection {
     let element = match loaded {
         Ok(element) => Arc::new(element),

@@ -1,21 +1,23 @@
-//! What the rules of an element integrate: its own the linear functions, and those of loads and masses all that these need.
+//! What the quadrature rules of an element integrate: its own rule the linear functions, and those of loads and masses
+//! all that these need.
 
 use super::property::Property;
 use super::space::{exponents, monomial, places};
 use crate::element::{Element, Integrand, Quadrature, Tabulation};
 
-/// Integrals of numbers of size one over the reference cell hold to a few roundings.
+/// The tolerance of integrals of numbers of size one over the reference cell: some ten thousand rounding errors.
 const ROUNDING: f64 = 1e-11;
-/// The degree of loads that the rules are tried with.
+/// The degree of the loads with which the rules are tested.
 const LOAD: usize = 2;
-/// The degree of the rule that they are measured by, by the dimension.
+/// The degree of the reference rule, by dimension.
 const FINE: [usize; 3] = [60, 60, 30];
 
 pub fn properties(element: &Element) -> Vec<Property> {
     vec![linear(element), loads(element)]
 }
 
-/// `∫ ξ_k` by the rule of the stiffness and by that of its volumetric term: a rule without that is no mean over the cell.
+/// `∫ ξ_k` by the rule of the stiffness and by that of its volumetric term. A rule that misses it gives no mean over
+/// the cell.
 fn linear(element: &Element) -> Property {
     let d = element.dimension();
     let fine = Quadrature::of_degree(element.cell, 1);
@@ -33,7 +35,8 @@ fn linear(element: &Element) -> Property {
     Property::new("rule of linear functions", worst < ROUNDING, finding).with(worst)
 }
 
-/// `∫ N_a ξ^e`, of degree 2 at most, and `∫ N_a N_b` by the rules of loads and masses, against a rule far beyond them.
+/// `∫ N_a ξ^e`, of degree at most 2, and `∫ N_a N_b` by the rules of loads and masses, compared with a rule of much
+/// higher degree.
 fn loads(element: &Element) -> Property {
     let d = element.dimension();
     let fine = Quadrature::of_degree(element.cell, FINE[d - 1]);

@@ -1,4 +1,4 @@
-//! The proof of an element file: every property that its use relies on, with the figure found.
+//! The proof of an element file: every property on which its use relies, with the number that was found.
 
 mod inspection;
 mod integrals;

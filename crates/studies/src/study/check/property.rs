@@ -1,22 +1,26 @@
 //! A property of an element file.
 
-/// The result of one property.
+/// The result of testing one property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
+    /// The property holds.
     Holds,
+    /// The property does not hold: the file is wrong.
     Fails,
-    /// It cannot be told, or is for the reader to judge.
+    /// The property cannot be decided, or is for information.
     Noted,
 }
 
 /// One property of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Property {
+    /// The name of the property.
     pub name: &'static str,
+    /// The result.
     pub mark: Mark,
-    /// The figure found, or what is wrong.
+    /// The number that was found, or what is wrong, in words.
     pub finding: String,
-    /// The figure as a number, where there is one.
+    /// The number that was found, if there is one.
     pub value: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The element at distorted shapes with straight edges: stiffness, patch test, moduli, and its place in mesh files.
+//! The element at distorted shapes with straight edges: stiffness, patch test, moduli, and its form in mesh files.
 
 use super::property::Property;
 use crate::element::{Element, FormatEntry, permutations};
@@ -12,10 +12,11 @@ use crate::study::shapes::straight_shapes;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// How many shapes are tried.
+/// The number of shapes that are tested.
 const SHAPES: usize = 5;
+/// The seed of the shapes, so that every run tests the same ones.
 const SEED: u64 = 7;
-/// The material that is asked for.
+/// Young's modulus, Pa, and Poisson's ratio of the material that is tested.
 pub const ASKED: (f64, f64) = (1.0, 0.3);
 
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {
@@ -26,7 +27,7 @@ pub fn properties(element: &Arc<Element>) -> Vec<Property> {
     properties
 }
 
-/// The shapes that properties are tried at.
+/// The shapes at which properties are tested.
 pub fn shapes(element: &Element) -> Vec<Vec<f64>> {
     straight_shapes(element, SHAPES, SEED)
 }
@@ -60,7 +61,7 @@ fn stiffness(element: &Element) -> Property {
     Property::new("rank of R", spurious == 0, finding).with(spurious as f64)
 }
 
-/// Uniform stress must be carried by tractions on the sides alone: `∫ ∇N_a dV = ∮ N_a n dA` for every node.
+/// A uniform stress must be carried by tractions on the sides alone: `∫ ∇N_a dV = ∮ N_a n dA` for every node.
 fn patch(element: &Element) -> Property {
     let worst = shapes(element).iter().map(|x| patch_defect(element, x)).fold(0.0, f64::max);
     // A product of rational functions has no exact rule.
@@ -120,7 +121,7 @@ fn moduli(element: &Arc<Element>) -> Property {
     Property::new(name, error < 1e-8, finding).with(error)
 }
 
-/// One cell written in the format's order and read again; its corners must come first, as both formats have them.
+/// One cell, written in the order of the format and read again. Both formats require its corners first.
 fn round_trip(element: &Arc<Element>, entry: &FormatEntry, in_gmsh: bool) -> Property {
     let name = if in_gmsh { "Gmsh order" } else { "VTK order" };
     let (n, d) = (element.nodes(), element.dimension());

@@ -1,4 +1,4 @@
-//! What the shape functions span, their gradients, and the quadrature.
+//! The space that the shape functions span, their gradients, and the quadrature.
 
 use super::property::Property;
 use crate::element::{Element, Quadrature, Tabulation};
@@ -6,16 +6,16 @@ use crate::material::Moduli;
 use crate::stiffness::Geometry;
 use nalgebra::DMatrix;
 
-/// Identities of functions of size one hold to a few roundings.
+/// The tolerance of identities of functions of size one: some ten thousand rounding errors.
 const ROUNDING: f64 = 1e-11;
-/// Central differences of this step err by its square.
+/// The step of central differences, whose error is its square.
 const STEP: f64 = 1e-5;
 
 pub fn properties(element: &Element) -> Vec<Property> {
     vec![kronecker(element), unity(element), completeness(element), gradients(element), rule(element), degree(element)]
 }
 
-/// Points inside the cell where identities are sampled.
+/// Points inside the cell at which identities are sampled.
 fn samples(element: &Element) -> Vec<f64> {
     Quadrature::of_degree(element.cell, 7).points
 }
@@ -27,7 +27,7 @@ fn kronecker(element: &Element) -> Property {
     for (a, n) in element.functions.values.iter().enumerate() {
         for (b, at) in element.positions.chunks_exact(d).enumerate() {
             let value = n.evaluate(at);
-            // Where a function has no value its limit was proved on loading.
+            // If a function has no value at a node, its limit was tested when the file was loaded.
             if value.is_finite() {
                 worst = worst.max((value - f64::from(u8::from(a == b))).abs());
             } else {
@@ -66,7 +66,7 @@ pub fn monomial(x: &[f64], e: &[i32]) -> f64 {
     x.iter().zip(e).map(|(x, e)| x.powi(*e)).product()
 }
 
-/// All exponents that sum to `degree`.
+/// All exponents with the sum `degree`.
 pub fn exponents(d: usize, degree: i32) -> Vec<Vec<i32>> {
     if d == 1 {
         return vec![vec![degree]];
@@ -106,7 +106,7 @@ fn rule(element: &Element) -> Property {
     Property::new("quadrature rule", outside + negative == 0, finding)
 }
 
-/// The rule against one far beyond it, on the reference cell itself.
+/// The rule compared with one of much higher degree, on the reference cell.
 fn degree(element: &Element) -> Property {
     let name = "quadrature degree";
     let stiffness = |table: &Tabulation| {
@@ -131,7 +131,7 @@ fn degree(element: &Element) -> Property {
     property.with(error(&own))
 }
 
-/// Where the quadrature points are: what the linear functions reproduce there.
+/// The positions of the quadrature points, as the linear functions reproduce them.
 pub fn places(element: &Element) -> Vec<Vec<f64>> {
     let d = element.dimension();
     let coordinate = |values: &[f64], k: usize| -> f64 {

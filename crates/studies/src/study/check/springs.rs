@@ -1,4 +1,5 @@
-//! The springs of an element: its exact network, mechanisms, the condition of their equations, the moduli they give.
+//! The springs of an element: its exact network, mechanisms, the condition number of their equations, and the resulting
+//! moduli.
 
 use super::property::Property;
 use super::shape::{ASKED, geometry, shapes};
@@ -10,7 +11,7 @@ use crate::study::moduli::Lattice;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// `‖R − K‖/‖R‖` that rounding may leave of an exact network.
+/// The `‖R − K‖/‖R‖` of an exact network that rounding may cause.
 const EXACT: f64 = 1e-10;
 
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {
@@ -19,7 +20,7 @@ pub fn properties(element: &Arc<Element>) -> Vec<Property> {
     properties
 }
 
-/// The network that is the finite element: its tangent at rest against R, over all shapes.
+/// The network that is equal to the finite element: its tangent at rest compared with R, over all shapes.
 fn exact(element: &Element) -> Property {
     let (young, poisson) = ASKED;
     let cell: Vec<usize> = (0..element.nodes()).collect();
@@ -44,7 +45,7 @@ fn exact(element: &Element) -> Property {
     Property::new("exact network", worst <= EXACT, finding).with(worst)
 }
 
-/// Of the groups that are not optional.
+/// The properties of the groups that are not optional.
 fn selected(element: &Arc<Element>) -> Vec<Property> {
     let springs = match Springs::select(element, None) {
         Ok(springs) if springs.is_empty() => return vec![Property::noted("springs", "none that are not optional")],
@@ -63,7 +64,7 @@ fn selected(element: &Arc<Element>) -> Vec<Property> {
     properties
 }
 
-/// The rank of the g_s, and the condition of `M_st = (g_s·g_t)²` scaled to a unit diagonal, over all shapes.
+/// The rank of the g_s, and the condition number of `M_st = (g_s·g_t)²` scaled to a unit diagonal, over all shapes.
 fn rank_and_condition(element: &Element, springs: &Springs) -> (Property, Property) {
     let (n, d) = (element.nodes(), element.dimension());
     let expected = n * d - d * (d + 1) / 2;

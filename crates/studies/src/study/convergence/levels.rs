@@ -1,22 +1,25 @@
-//! How many levels of refinement a scene has room for.
+//! The number of levels of refinement that fit into memory and time.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::study::scene::Scene;
 
-/// Unknowns of the finest level at most: where cells fill space, factors grow as their power 4/3, and 200 000 take some gigabytes.
+/// The largest number of unknowns of the finest level if cells fill space. Factors then grow with the power 4/3, and
+/// 200 000 unknowns take some gigabytes.
 const MOST_UNKNOWNS_SOLID: usize = 200_000;
+/// The largest number of unknowns for surfaces and curves, whose factors are much smaller.
 const MOST_UNKNOWNS: usize = 1_000_000;
 
-/// Of these, the share that is used where no number of levels is asked for: some minutes of work, not an hour.
+/// The largest level has at most this fraction (one fourth) of the unknowns if no number of levels is requested:
+/// minutes of work instead of an hour.
 const UNASKED: usize = 4;
 
-/// The most unknowns that a level may have if its cells are of this dimension.
+/// The largest number of unknowns of a level with cells of this dimension.
 pub fn most_unknowns(cell_dimension: usize) -> usize {
     if cell_dimension == 3 { MOST_UNKNOWNS_SOLID } else { MOST_UNKNOWNS }
 }
 
-/// The number of levels: as many as asked for, or else up to `usual`, as many as stay below a quarter of [`most_unknowns`].
+/// The number of levels: the requested one, or up to `usual`, as many as have less than a quarter of [`most_unknowns`].
 ///
 /// # Errors
 /// The mesh cannot be built or divided, or a level would have more unknowns than [`most_unknowns`].
@@ -25,7 +28,8 @@ pub fn plan(scene: &Scene, asked: Option<usize>, usual: usize) -> Result<usize> 
     let most = most_unknowns(coarse.cell_dimension());
     let unknowns = |mesh: &Mesh| mesh.points.len();
     let growth = 1 << coarse.cell_dimension();
-    // The second level is counted, for a mesh file grows otherwise than a box at first; the others have about the same growth.
+    // The second level is counted, because the first refinement of a file has another growth than that of a box; later
+    // levels grow about alike.
     let first = unknowns(&coarse);
     let second = if first > most { first } else { unknowns(&scene.clone().halved(1).build_mesh()?) };
     let at_level = |level: usize| (2..level).fold(second, |n, _| n.saturating_mul(growth));

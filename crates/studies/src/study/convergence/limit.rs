@@ -1,37 +1,40 @@
-//! The limit of a sequence of values on meshes whose cells are halved from one to the next.
+//! The limit of a sequence of values on meshes whose cells are halved from level to level.
 
 /// Values that differ by less than this share are equal: solutions are not more accurate.
 const EQUAL: f64 = 1e-9;
-/// The slowest order from which a limit is extrapolated. At ½ the extrapolation adds 2.4 times the last difference.
+/// The lowest order from which a limit is extrapolated. At order ½ the extrapolation adds 2.4 times the last
+/// difference.
 const SLOWEST: f64 = 0.5;
 
-/// What a sequence tends to.
+/// The limit of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
+    /// The limit.
     pub value: f64,
-    /// How far the value may be off: what one level more has changed in it, or else what extrapolation has added to the finest
-    /// value; for the value of the finest level, its distance from the level before.
+    /// An estimate of the error of the value: its change by the last level, or else what extrapolation has added to the
+    /// finest value; for the value of the finest level its distance from the level before.
     pub uncertainty: f64,
+    /// How the limit was found.
     pub kind: LimitKind,
 }
 
-/// How a limit was found; if it was not extrapolated, it is the value of the finest level.
+/// How a limit was found. If it was not extrapolated, it is the value of the finest level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimitKind {
-    /// From the three finest levels, with this order in the size of the cells.
+    /// Extrapolated from the three finest levels, with this order in the size of the cells.
     Extrapolated(f64),
-    /// The two finest levels agree to rounding.
+    /// The two finest levels agree up to rounding.
     Constant,
     /// There are fewer than three levels.
     TooFew,
-    /// The differences from level to level change their sign or grow.
+    /// The differences between levels change their sign or grow.
     NotMonotonic,
-    /// The order is below ½: extrapolation would add more than is known.
+    /// The order, given here, is below ½: the extrapolation would add more than is known.
     TooSlow(f64),
 }
 
 impl Limit {
-    /// The order of convergence, where the limit was extrapolated.
+    /// The order of convergence, if the limit was extrapolated.
     pub fn order(&self) -> Option<f64> {
         match self.kind {
             LimitKind::Extrapolated(order) => Some(order),
@@ -43,8 +46,8 @@ impl Limit {
 /// The limit of values on levels of cell size `h, h/2, h/4, …`; `None` without values.
 ///
 /// For `v(h) = v₀ + c hᵖ` the differences `d₁`, `d₂` of the three finest values give `q = d₂/d₁ = 2⁻ᵖ` and
-/// `v₀ = v₃ + d₂ q/(1 − q)` (Aitken 1926; Richardson 1911 with the observed order). All differences must have one sign and the
-/// last two must decrease; otherwise the finest value is taken for the limit.
+/// `v₀ = v₃ + d₂ q/(1 − q)` (Aitken 1926; Richardson 1911 with the observed order). All differences must have the same
+/// sign and the last two must decrease; otherwise the finest value is used.
 pub fn limit_of(values: &[f64]) -> Option<Limit> {
     let finest = *values.last()?;
     let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();

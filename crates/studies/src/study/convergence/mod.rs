@@ -1,4 +1,4 @@
-//! How finite elements and networks converge as the mesh of a scene is refined.
+//! The convergence of finite elements and networks as the mesh of a scene is refined.
 
 mod levels;
 mod limit;

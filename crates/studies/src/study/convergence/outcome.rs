@@ -2,44 +2,50 @@
 
 use super::limit::{Limit, limit_of};
 
-/// Errors that are this share of the truth or less are rounding.
+/// Relative errors up to this share are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A scene on a sequence of meshes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Convergence {
+    /// The title of the scene.
     pub scene: String,
-    /// Of the box around the body, m.
+    /// The size of the box around the body, m.
     pub extent: Vec<f64>,
     /// The title of the material's law; `None` at small deformation.
     pub law: Option<String>,
-    /// The scene whose finite elements give the truth, where they are not those of the scene itself.
+    /// The scene whose finite elements give the reference, if it is another one.
     pub reference: Option<String>,
-    /// From the mesh of the scene on.
+    /// The meshes, from that of the scene to the finest.
     pub levels: Vec<Level>,
+    /// The results under each load.
     pub loads: Vec<LoadConvergence>,
 }
 
 /// One mesh of the sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
-    /// `h`, m: that of a cell of mean content on the first level, `(V / cells)^(1/d)`, halved from level to level.
+    /// The cell size `h`, m. On the first level it is that of a cell of mean content, `(V/cells)^(1/d)`; it is halved
+    /// from level to level.
     pub size: f64,
+    /// The number of cells.
     pub cells: usize,
+    /// The number of points.
     pub points: usize,
-    /// Directions of all points, held ones among them.
+    /// The number of degrees of freedom, including held ones.
     pub unknowns: usize,
-    /// To fit and to solve all models.
+    /// The time to fit and solve all models, s.
     pub seconds: f64,
 }
 
-/// What the models answer to one load on all levels.
+/// The results of the models under one load on all levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadConvergence {
+    /// The name of the load.
     pub name: String,
-    /// The limit of the finite elements' compliance, J; `None` where they do not reach the load on some level.
+    /// The limit of the compliance of the finite elements, J; `None` if they do not reach the load on some level.
     pub truth: Option<Limit>,
-    /// The same of the mean displacement of the loaded part, m; `None` as well where it is prescribed.
+    /// The limit of the mean displacement of the loaded part, m; `None` also if it is prescribed.
     pub mean_truth: Option<Limit>,
     /// The finite elements, then each fit.
     pub models: Vec<ModelConvergence>,
@@ -48,27 +54,28 @@ pub struct LoadConvergence {
 /// One model under one load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelConvergence {
+    /// The name of the fit, or `finite elements`.
     pub name: String,
-    /// `[levels]`.
+    /// The results on the levels, `[levels]`.
     pub steps: Vec<Step>,
 }
 
 /// One model under one load on one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Work of the load, `f·u`, or `u·r` with the reactions `r` to prescribed displacements, J; `None` where the model has no
-    /// answer.
+    /// The work of the load, `f·u`, or `u·r` with the reactions `r` to prescribed displacements, J; `None` if the model
+    /// has no solution.
     pub compliance: Option<f64>,
-    /// Of the loaded part, m.
+    /// The mean displacement of the loaded part, m.
     pub mean_displacement: Option<f64>,
-    /// Of a network from the finite elements of the level, in percent, over all points.
+    /// The error of a network relative to the finite elements of the level, in percent, over all points.
     pub rms: Option<f64>,
     /// One word for the state of the model.
     pub status: &'static str,
 }
 
 impl LoadConvergence {
-    /// With the truth that follows from the first of the models.
+    /// The results of these models; the limits are those of the first one.
     pub fn new(name: String, models: Vec<ModelConvergence>) -> LoadConvergence {
         let body = models.first();
         let truth = body.and_then(ModelConvergence::limit);
@@ -78,38 +85,38 @@ impl LoadConvergence {
         LoadConvergence { name, truth, mean_truth, models }
     }
 
-    /// The model's compliance against that of the finite elements of each level, in percent.
+    /// The error of the model's compliance relative to that of the finite elements of each level, in percent.
     pub fn of_body(&self, model: &ModelConvergence) -> Vec<Option<f64>> {
         let against = |(own, body): (&Step, &Step)| percent(own.compliance?, body.compliance?);
         model.steps.iter().zip(&self.models[0].steps).map(against).collect()
     }
 
-    /// The model's compliance against the truth, in percent.
+    /// The error of the model's compliance relative to the limit, in percent.
     pub fn of_truth(&self, model: &ModelConvergence) -> Vec<Option<f64>> {
         model.steps.iter().map(|step| percent(step.compliance?, self.truth?.value)).collect()
     }
 
-    /// The model's mean displacement against the truth, in percent.
+    /// The error of the model's mean displacement relative to the limit, in percent.
     pub fn mean_of_truth(&self, model: &ModelConvergence) -> Vec<Option<f64>> {
         model.steps.iter().map(|step| percent(step.mean_displacement?, self.mean_truth?.value)).collect()
     }
 }
 
 impl ModelConvergence {
-    /// What the model's own compliance tends to; `None` where a level has no answer.
+    /// The limit of the model's own compliance; `None` if a level has no solution.
     pub fn limit(&self) -> Option<Limit> {
         let values: Option<Vec<f64>> = self.steps.iter().map(|step| step.compliance).collect();
         limit_of(&values?)
     }
 }
 
-/// `100 (value/of − 1)`; `None` where nothing is to be divided by, 0 where only rounding differs.
+/// `100 (value/of − 1)`; `None` if `of` is zero, 0 if the values differ only by rounding.
 pub fn percent(value: f64, of: f64) -> Option<f64> {
     let share = (value - of) / of;
     share.is_finite().then_some(if share.abs() <= ROUNDING { 0.0 } else { 100.0 * share })
 }
 
-/// `log₂ |e_l / e_{l+1}|` from each level to the next, `[levels]`: none for the first, nor where an error is zero.
+/// The observed orders `log₂ |e_l/e_{l+1}|`, `[levels]`: none for the first level, nor if an error is zero.
 pub fn rates(errors: &[Option<f64>]) -> Vec<Option<f64>> {
     let rate = |pair: &[Option<f64>]| Some((pair[0]? / pair[1]?).abs().log2()).filter(|rate| rate.is_finite());
     std::iter::once(None).chain(errors.windows(2).map(rate)).collect()

@@ -1,4 +1,5 @@
-//! What of a solution is followed from mesh to mesh: the work of the load, and the mean displacement of the loaded part.
+//! The quantities that are compared from mesh to mesh: the work of the load, and the mean displacement of the loaded
+//! part.
 
 use crate::error::Result;
 use crate::material::Material;
@@ -9,11 +10,12 @@ use crate::study::body::load_cases;
 use crate::study::metrics::product;
 use crate::study::scene::{LoadCase, Scene};
 
-/// A load on a mesh, as what measures displacements.
+/// A load on a mesh, which weights displacements.
 pub struct Quantities {
-    /// Nodal forces, `[points · dimension]`, N.
+    /// The nodal forces, `[points · dimension]`, N.
     forces: Vec<f64>,
-    /// `∫ N_a dA` of the loaded part, or dV, or 1 for each of its points; `[points]`. None where displacements are prescribed.
+    /// `∫ N_a dA` of the loaded part, or `∫ N_a dV`, or 1 for each of its points; `[points]`. None if displacements are
+    /// prescribed.
     weights: Option<Vec<f64>>,
     dimension: usize,
 }
@@ -43,17 +45,17 @@ impl Quantities {
         quantities.collect()
     }
 
-    /// Whether the load prescribes displacements: its work is that of the forces which hold them.
+    /// Whether the load prescribes displacements; its work is then that of the forces that hold them.
     pub fn is_prescribed(&self) -> bool {
         self.weights.is_none()
     }
 
-    /// `f·u`, J: the work of the final nodal forces along the final displacements.
+    /// The work `f·u` of the final nodal forces along the final displacements, J.
     pub fn work(&self, u: &[f64]) -> f64 {
         product(&self.forces, u)
     }
 
-    /// `|∫ u dA| / A`, m; `None` where displacements are prescribed.
+    /// The mean displacement `|∫ u dA|/A`, m; `None` if displacements are prescribed.
     pub fn mean_displacement(&self, u: &[f64]) -> Option<f64> {
         let weights = self.weights.as_ref()?;
         let total = weights.iter().copied().collect::<Sum>().value();

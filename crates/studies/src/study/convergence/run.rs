@@ -15,20 +15,23 @@ use crate::study::run::run;
 use crate::study::scene::{Output, Scene};
 use std::time::Instant;
 
-/// The most levels that may be asked for.
+/// The largest number of levels. Each level has up to eight times as many cells as the previous one.
 pub const MOST_LEVELS: usize = 8;
-/// The levels where no number is asked for, if there is room for them.
+/// The number of levels if none is requested and memory suffices.
 const USUAL_LEVELS: usize = 4;
 /// The name of the first model.
 const BODY: &str = "finite elements";
 
-/// Runs the scene on its mesh and on meshes with cells of half the size each, and follows the compliance of every load.
+/// Runs the scene on its mesh and on meshes with cells of half the size each, and compares the compliance under every
+/// load.
 ///
-/// A box has twice as many cells in each direction from level to level; the cells of any other mesh are divided as in
-/// [`Mesh::refined`], so that its body stays the one of the first mesh. Only fits and loads are run: no motion, gauge or output.
+/// A box has twice as many cells in each direction on the next level. The cells of any other mesh are divided as by
+/// [`Mesh::refined`], so that the body remains that of the first mesh. Only fits and loads are run: no motion, gauge or
+/// output.
 ///
 /// # Errors
-/// `levels` is not from 2 to [`MOST_LEVELS`] or the finest mesh is too large; the scene has no loads; those of a run on any level.
+/// `levels` is not from 2 to [`MOST_LEVELS`]; the finest mesh is too large; the scene has no loads; or a run on some
+/// level fails.
 pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -> Result<Convergence> {
     if let Some(levels) = levels.filter(|levels| !(2..=MOST_LEVELS).contains(levels)) {
         return Err(Error::expected("levels", format!("a number from 2 to {MOST_LEVELS}"), levels));
@@ -82,11 +85,11 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     Ok(convergence)
 }
 
-/// As [`converge`], with the truth from the finite elements of another scene of the same body and loads, such as one of quadratic
-/// cells: where those of the scene lock, their limit is far off.
+/// As [`converge`], with the limit from the finite elements of another scene of the same body and loads, for example
+/// one of quadratic cells. If those of the scene lock, their limit is far from the solution.
 ///
 /// # Errors
-/// Those of [`converge`] for each scene; a load has no namesake in the reference.
+/// Those of [`converge`] for each scene; or the reference has no load with the same name.
 pub fn converge_to(
     scene: &Scene,
     reference: &Scene,
@@ -113,18 +116,18 @@ pub fn converge_to(
     Ok(convergence)
 }
 
-/// The edge of a cube, square or interval of the mean content of the cells, m.
+/// The edge of a cube, square or interval with the mean content of the cells, m.
 fn cell_size(mesh: &Mesh) -> f64 {
     let content: f64 = masses(mesh, 1.0, 1.0).iter().sum();
     (content / mesh.cell_count().max(1) as f64).powf(1.0 / mesh.cell_dimension() as f64)
 }
 
-/// For each load, the finite elements and each fit.
+/// The results of the finite elements and of each fit, for each load.
 fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
     let (mesh, material) = (&outcome.mesh, outcome.material);
     let quantities = Quantities::of(scene, mesh, material)?;
     let prescribed = quantities.iter().any(Quantities::is_prescribed);
-    // Forces at the points under given displacements, only where they do work.
+    // Forces at points with prescribed displacements do work only there.
     let energy = scene.energy(material)?;
     let stiffness =
         |linear: &dyn Fn() -> Entries| if prescribed && energy.is_none() { linear() } else { Entries::new() };

@@ -1,4 +1,4 @@
-//! A `[[fit]]` as it is written.
+//! A `[[fit]]` of a scene file.
 
 use super::exact::ExactEntry;
 use super::keys::keys;
@@ -19,10 +19,12 @@ use std::fmt;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A `[[fit]]`: what all fits have, and the keys of its kind, which its objective tells.
+/// A `[[fit]]`: the keys that all fits have, and those of its kind, which its objective determines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitEntry {
+    /// The name in reports; derived from the settings if absent.
     pub name: Option<String>,
+    /// The objective.
     pub objective: String,
     /// The spring groups; all that are not optional, if absent.
     pub springs: Option<Vec<String>>,
@@ -51,6 +53,8 @@ crate::named!(Kind {
 });
 
 impl Kind {
+    /// The kind of this objective.
+    ///
     /// # Errors
     /// There is no such objective.
     fn of(objective: &str) -> Result<Kind> {
@@ -91,12 +95,13 @@ impl Kind {
 }
 
 impl FitEntry {
+    /// An entry with this objective and no other keys.
     pub fn new(objective: impl Into<String>) -> FitEntry {
         let (name, springs, keys) = Default::default();
         FitEntry { name, objective: objective.into(), springs, keys }
     }
 
-    /// With this value of a key, if there is one.
+    /// The same entry with this value of a key, if there is one.
     pub fn with(mut self, key: &str, value: Option<impl Into<Value>>) -> FitEntry {
         if let Some(value) = value {
             self.keys.insert(key.into(), value.into());
@@ -104,16 +109,17 @@ impl FitEntry {
         self
     }
 
+    /// The same entry with these spring groups.
     pub fn with_springs(self, springs: Option<Vec<String>>) -> FitEntry {
         FitEntry { springs, ..self }
     }
 
-    /// That each key is known and of the right type.
+    /// Checks that each key is known and has a value of the right type.
     ///
     /// # Errors
-    /// Names the key.
+    /// A key is wrong; the error names it.
     pub fn check(&self) -> Result<()> {
-        // An unknown objective is reported where its kind is needed.
+        // An unknown objective is reported when its kind is needed.
         let Ok(kind) = Kind::of(&self.objective) else { return Ok(()) };
         let known = match self.keys.keys().find(|key| owners(key).next().is_none()) {
             Some(key) => Err(kind.unknown(key)),
@@ -128,7 +134,7 @@ impl FitEntry {
         })
     }
 
-    /// The fits that it describes, one for each start of a whole-object fit; files are relative to `folder`.
+    /// The fits that the entry describes, one for each start of a whole-object fit; files are relative to `folder`.
     ///
     /// # Errors
     /// A key has a wrong value, or belongs to another objective.
@@ -159,13 +165,13 @@ impl FitEntry {
         NamedFit::named(name, recipe, self.springs.clone())
     }
 
-    /// The keys that `T` has.
+    /// The keys of the entry as a `T`.
     fn typed<T: DeserializeOwned>(&self) -> Result<T> {
         let own = self.keys.iter().filter(|(key, _)| keys::<T>().contains(&key.as_str()));
         file::parse_table(own.map(|(key, value)| (key.clone(), value.clone())).collect())
     }
 
-    /// The keys of a whole-object fit, and those of the sampled fit that it may start from.
+    /// The keys of a whole-object fit, and those of the sampled fit from which it may start.
     fn whole(&self) -> Result<(WholeEntry, SampledEntry)> {
         let sampled = if self.starts_from_sampled() { self.typed()? } else { SampledEntry::default() };
         Ok((self.typed()?, sampled))
@@ -175,7 +181,7 @@ impl FitEntry {
         starts(self.keys.get("start")).is_ok_and(|starts| starts.contains(&"sampled".into()))
     }
 
-    /// That no key belongs to another objective.
+    /// Checks that no key belongs to another objective.
     fn check_owners(&self, kind: Kind) -> Result<()> {
         let objective = &self.objective;
         let own = |key: &str| {
@@ -193,7 +199,7 @@ impl FitEntry {
     }
 }
 
-/// The kinds that have the key.
+/// The kinds of fits that have the key.
 fn owners(key: &str) -> impl Iterator<Item = Kind> {
     Kind::all().filter(move |kind| kind.keys().contains(&key))
 }

@@ -1,23 +1,24 @@
-//! What a fit may need of its scene.
+//! The facts of a scene that a fit may require.
 
 use crate::error::Result;
 use crate::named::unknown;
 
-/// The parts of a scene that a fit may need.
+/// The facts of a scene that a fit may require.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneFacts<'a> {
     /// Whether the material has a law, so that deformations are large.
     pub law: bool,
+    /// Whether the material has a density.
     pub density: bool,
-    /// Names.
+    /// The names of the loads.
     pub loads: &'a [&'a str],
 }
 
 impl SceneFacts<'_> {
-    /// That these loads are in the scene.
+    /// Checks that these loads are in the scene.
     ///
     /// # Errors
-    /// One is not; the key is `key`.
+    /// A load is not; the error has the key `key`.
     pub fn expect_loads(&self, key: &str, names: &[String]) -> Result<()> {
         match names.iter().find(|name| !self.loads.contains(&name.as_str())) {
             Some(name) => {

@@ -1,4 +1,4 @@
-//! The springs of a fit, and what only its kind knows of them.
+//! The springs of a fit, and the results that only its kind has.
 
 use super::exact::ExactOutcome;
 use super::published::PublishedOutcome;
@@ -13,27 +13,35 @@ use std::time::Instant;
 
 /// The springs of a fit.
 pub struct Fitted {
-    /// Of each block of cells; empty if springs belong to no cell.
+    /// The springs of each block of cells; empty if springs belong to no cell.
     pub cells: Vec<CellFits>,
+    /// The assembled network.
     pub network: Network,
-    /// For the constants, without assembly.
+    /// The time for the constants without assembly, s.
     pub seconds: f64,
+    /// The time of the assembly, s.
     pub seconds_assembly: f64,
+    /// The results that only the kind of the fit has.
     pub kind: FittedKind,
 }
 
-/// What only the kind of a fit knows of its springs.
+/// The results that only one kind of fit has.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FittedKind {
+    /// Of a fit to the stiffness at rest.
     Stiffness(StiffnessOutcome),
+    /// Of a fit to the forces at sampled shapes.
     Sampled(SampledOutcome),
+    /// Of a fit to the displacements of the whole object.
     Whole(WholeOutcome),
+    /// Of a published formula.
     Published(PublishedOutcome),
+    /// Of an exact network.
     Exact(ExactOutcome),
 }
 
 impl Fitted {
-    /// The network of the cells' springs, which took `seconds` to fit.
+    /// The assembled network of the springs of the cells, which took `seconds` to fit.
     pub fn assembled(mesh: &Mesh, cells: Vec<CellFits>, seconds: f64, kind: FittedKind) -> Fitted {
         let start = Instant::now();
         let network = Network::assemble(mesh, &cells);
@@ -42,7 +50,7 @@ impl Fitted {
 }
 
 impl FittedKind {
-    /// What a reader must know of the fit, one sentence each. The body has `cells` cells of `material`.
+    /// Notes for the reader, one sentence each. The body has `cells` cells of `material`.
     pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
         match self {
             FittedKind::Stiffness(outcome) => outcome.notes(),
@@ -53,12 +61,13 @@ impl FittedKind {
         }
     }
 
-    /// Whether the springs of each cell are its whole stiffness; those on the content of patches belong to several cells.
+    /// Whether the springs of each cell are its whole stiffness. Springs on the content of patches belong to several
+    /// cells.
     pub fn is_of_cells(&self) -> bool {
         self.exact().is_none_or(|outcome| outcome.volume != VolumeSprings::Patches)
     }
 
-    /// The moduli of the finite elements by whose energies the network's are measured.
+    /// The moduli of the finite elements with whose energies those of the network are compared.
     pub fn compared(&self, moduli: Moduli) -> Moduli {
         match self {
             FittedKind::Exact(outcome) => outcome.compared(moduli),
@@ -68,22 +77,27 @@ impl FittedKind {
         }
     }
 
+    /// The results of an exact network.
     pub fn exact(&self) -> Option<&ExactOutcome> {
         if let FittedKind::Exact(outcome) = self { Some(outcome) } else { None }
     }
 
+    /// The results of a fit to the stiffness at rest.
     pub fn stiffness(&self) -> Option<&StiffnessOutcome> {
         if let FittedKind::Stiffness(outcome) = self { Some(outcome) } else { None }
     }
 
+    /// The results of a sampled fit.
     pub fn sampled(&self) -> Option<&SampledOutcome> {
         if let FittedKind::Sampled(outcome) = self { Some(outcome) } else { None }
     }
 
+    /// The results of a whole-object fit.
     pub fn whole(&self) -> Option<&WholeOutcome> {
         if let FittedKind::Whole(outcome) = self { Some(outcome) } else { None }
     }
 
+    /// The results of a published formula.
     pub fn published(&self) -> Option<&PublishedOutcome> {
         if let FittedKind::Published(outcome) = self { Some(outcome) } else { None }
     }

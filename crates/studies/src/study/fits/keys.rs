@@ -1,4 +1,4 @@
-//! The keys that a type is read from.
+//! The names of the keys from which a type is read.
 
 use serde::de::value::Error;
 use serde::de::{Deserialize, Deserializer, Error as _, Visitor};
@@ -7,12 +7,12 @@ use serde::forward_to_deserialize_any;
 /// The names of the fields of a struct, as serde reads them.
 pub fn keys<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
-    // The error ends the reading: the names are what is wanted.
+    // The error ends the reading; only the names are needed.
     let _ = T::deserialize(FieldNames(&mut names));
     names
 }
 
-/// Notes the names of the fields that are asked for.
+/// Records the names of the requested fields.
 struct FieldNames<'a>(&'a mut &'static [&'static str]);
 
 impl<'de> Deserializer<'de> for FieldNames<'_> {

@@ -1,4 +1,4 @@
-//! What every kind of fit can do.
+//! The operations that every kind of fit has.
 
 use super::facts::SceneFacts;
 use super::fitted::Fitted;
@@ -16,13 +16,13 @@ use crate::study::progress::{Event, Progress};
 
 /// A kind of fit, with its settings.
 pub trait FitKind {
-    /// A name that tells the settings; `groups` are the spring groups, such as ` +bulk`.
+    /// A name that states the settings; `groups` are the spring groups, such as ` +bulk`.
     fn title(&self, groups: &str) -> String;
 
-    /// That the scene has what the fit needs.
+    /// Checks that the scene has what the fit requires.
     ///
     /// # Errors
-    /// Names the key of the `[[fit]]`.
+    /// It has not; the error names the key of the `[[fit]]`.
     fn check(&self, _scene: &SceneFacts) -> Result<()> {
         Ok(())
     }
@@ -30,15 +30,15 @@ pub trait FitKind {
     /// Fits the springs of all cells and assembles their network.
     ///
     /// # Errors
-    /// A spring group is no group of the elements, or the body lacks what the fit needs.
+    /// The elements have no such spring group, or the body lacks what the fit requires.
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted>;
 
-    /// The sampled fit that it is or starts from.
+    /// The sampled fit that it is, or from which it starts.
     fn sampled(&self) -> Option<&SampledRecipe> {
         None
     }
 
-    /// The method, if it looks at one cell at a time and needs nothing but the cell and its material.
+    /// The method, if it uses one cell at a time and needs only the cell and its material.
     fn cell_method(&self) -> Option<&dyn CellMethod> {
         None
     }
@@ -53,8 +53,9 @@ pub trait FitKind {
     fn record(&self) -> KindRecord;
 }
 
-/// A fit of single cells.
+/// A method that fits single cells.
 pub trait CellMethod: Sync {
+    /// The name of the method.
     fn name(&self) -> String;
 
     /// How the constants are found, such as `native` or `formula`.
@@ -63,7 +64,7 @@ pub trait CellMethod: Sync {
     /// The constants of each of `cells`, `[cells · nodes]`.
     ///
     /// # Errors
-    /// The springs do not go with the element, or there is no formula for it.
+    /// The springs do not belong to the element, or there is no formula for it.
     fn fit_cells(
         &self,
         element: &Element,
@@ -74,32 +75,36 @@ pub trait CellMethod: Sync {
     ) -> Result<CellFits>;
 }
 
-/// What is known of the body that springs are fitted to, beyond its stiffness.
+/// What is known, besides its stiffness, of the body to which springs are fitted.
 #[derive(Clone, Copy, Default)]
 pub struct Reference<'a> {
-    /// For sampled fits.
+    /// The body at large deformation, for sampled fits.
     pub large: Option<&'a LargeBody>,
-    /// For whole-object fits.
+    /// The body under loads, for whole-object fits.
     pub whole: Option<&'a WholeBody<'a>>,
-    /// Which points are held in all directions under every load, `[points]`; empty where nothing is known of that.
+    /// Whether each point is held in all directions under every load, `[points]`; empty if this is not known.
     pub held: &'a [bool],
 }
 
-/// A body to be fitted.
+/// A fit to be made: the body, its material, and the spring groups.
 pub struct Task<'a> {
+    /// The name of the fit, for progress reports.
     pub name: &'a str,
     /// The spring groups; all that are not optional, if absent.
     pub springs: Option<&'a [String]>,
+    /// The mesh of the body.
     pub mesh: &'a Mesh,
+    /// The material of the body.
     pub material: Material,
+    /// What else is known of the body.
     pub reference: &'a Reference<'a>,
 }
 
 impl Task<'_> {
-    /// `fit` of every block of cells with its springs; the progress is that of all cells.
+    /// Runs `fit` on every block of cells with its springs; the progress is that of all cells.
     ///
     /// # Errors
-    /// Those of `fit`, and a spring group is no group of the elements.
+    /// Those of `fit`; or the elements have no such spring group.
     pub fn each_block<T>(
         &self,
         progress: &mut Progress,

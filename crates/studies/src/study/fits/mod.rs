@@ -1,4 +1,4 @@
-//! Kinds of fits, one folder each.
+//! The kinds of fits, one folder for each: what a scene file says of it, how it is computed, and what is reported.
 
 mod entry;
 mod exact;

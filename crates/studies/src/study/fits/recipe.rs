@@ -1,4 +1,4 @@
-//! How the springs of a fit are found. The only file that tells kinds of fits apart.
+//! How the springs of a fit are found. This is the only file that distinguishes the kinds of fits.
 
 use super::exact::ExactRecipe;
 use super::kind::FitKind;
@@ -18,11 +18,12 @@ pub enum Recipe {
     Whole(Box<WholeRecipe>),
     /// By a published formula.
     Published(Method),
-    /// The finite element itself.
+    /// The network that is equal to the finite element.
     Exact(ExactRecipe),
 }
 
 impl Recipe {
+    /// The operations of its kind.
     pub fn kind(&self) -> &dyn FitKind {
         match self {
             Recipe::Stiffness(fit) => fit,
@@ -33,24 +34,27 @@ impl Recipe {
         }
     }
 
-    /// The sampled fit that it is or starts from.
+    /// The sampled fit that it is, or from which it starts.
     pub fn sampled(&self) -> Option<&SampledRecipe> {
         self.kind().sampled()
     }
 
+    /// The fit to the stiffness at rest, if it is one.
     pub fn stiffness(&self) -> Option<Fit> {
         if let Recipe::Stiffness(fit) = self { Some(*fit) } else { None }
     }
 
+    /// The whole-object fit, if it is one.
     pub fn whole(&self) -> Option<&WholeRecipe> {
         if let Recipe::Whole(recipe) = self { Some(recipe) } else { None }
     }
 
+    /// The published method, if it is one.
     pub fn published(&self) -> Option<Method> {
         if let Recipe::Published(method) = self { Some(*method) } else { None }
     }
 
-    /// A name that tells how it is made, such as `modal 0.1 +bulk k>=0`.
+    /// A name that states the settings, such as `modal 0.1 +bulk k>=0`.
     pub fn name(&self, springs: Option<&[String]>) -> String {
         let groups: String = springs.unwrap_or_default().iter().map(|group| format!(" +{group}")).collect();
         self.kind().title(&groups)

@@ -1,4 +1,4 @@
-//! The settings of a fit, as a report has them.
+//! The settings of a fit in a report.
 
 use super::exact::ExactRecord;
 use super::published::PublishedRecord;
@@ -7,13 +7,18 @@ use super::stiffness::StiffnessRecord;
 use super::whole::WholeRecord;
 use serde::{Deserialize, Serialize};
 
-/// The settings of a fit by its kind; the key `objective` tells which.
+/// The settings of a fit by its kind, which the key `objective` determines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum KindRecord {
+    /// A sampled fit.
     Sampled(Box<SampledRecord>),
+    /// A whole-object fit.
     Whole(Box<WholeRecord>),
+    /// A published method.
     Published(PublishedRecord),
+    /// An exact network.
     Exact(ExactRecord),
+    /// A fit to the stiffness at rest.
     Stiffness(StiffnessRecord),
 }

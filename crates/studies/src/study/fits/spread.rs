@@ -1,12 +1,14 @@
-//! Means and maxima over elements, as a report has them.
+//! Means and maxima over elements in a report.
 
 use crate::fit::Spread;
 use serde::{Deserialize, Serialize};
 
-/// The mean and the largest of a figure; null if there is none.
+/// The mean and the maximum of a number over the elements; null if there is none.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpreadRecord {
+    /// The mean.
     pub mean: Option<f64>,
+    /// The maximum.
     pub max: Option<f64>,
 }
 

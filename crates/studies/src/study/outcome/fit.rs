@@ -1,4 +1,4 @@
-//! A fit: its springs, their errors, and how the network answers to loads.
+//! The results of a fit: its springs, their errors, and the response of the network to loads.
 
 use super::load::LoadOutcome;
 use crate::fit::Spread;
@@ -8,33 +8,39 @@ use crate::study::fits::{FittedKind, NamedFit};
 use crate::study::moduli::EffectiveModuli;
 use crate::study::tensor::NetworkMaterial;
 
-/// A fit with its network.
+/// A fit with its network and its errors.
 #[derive(Debug)]
 pub struct FitOutcome {
+    /// The fit.
     pub fit: NamedFit,
+    /// The network.
     pub network: Network,
-    /// For the constants of all cells, without assembly.
+    /// The time for the constants of all cells without assembly, s.
     pub seconds: f64,
+    /// The time of the assembly, s.
     pub seconds_assembly: f64,
-    /// Cells whose springs the objective does not determine.
+    /// The number of cells whose springs the objective does not determine.
     pub deficient: usize,
-    /// Cells whose iteration did not reach its end.
+    /// The number of cells whose iteration did not converge.
     pub unreached: usize,
-    /// Cells that took over the constants of one of the same shape.
+    /// The number of cells that received the constants of a congruent cell.
     pub reused: usize,
-    /// Of the elements' matrices; `None` for whole-object fits, whose springs belong to no element.
+    /// The relative errors of the elements' matrices in the Frobenius norm; `None` for whole-object fits, whose springs
+    /// belong to no element.
     pub frobenius: Option<Spread>,
+    /// The same errors in the induced 2-norm.
     pub spectral: Option<Spread>,
-    /// What the network is as a material, from samples of its cells.
+    /// The network as a material, from samples of its cells.
     pub as_material: NetworkMaterial,
-    /// The moduli of the whole network, where the scene asks for them: under linear displacements of its boundary.
+    /// The moduli of the whole network under linear displacements of its boundary, if the scene requests them.
     pub moduli: Option<EffectiveModuli>,
-    /// What only the kind of the fit knows.
+    /// The results that only the kind of the fit has.
     pub kind: FittedKind,
-    /// With the support of the first load; `None` without loads.
+    /// The stability with the support of the first load; `None` without loads.
     pub stability: Option<Stability>,
-    /// Points that move in the softest motion, at least half as far as the one that moves most.
+    /// The points whose displacement in the softest motion is at least half of the largest.
     pub loose_points: Vec<usize>,
+    /// The results under the loads, in their order.
     pub loads: Vec<LoadOutcome>,
 }
 

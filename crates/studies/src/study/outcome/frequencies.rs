@@ -1,12 +1,12 @@
-//! Natural frequencies.
+//! Natural frequencies of a model.
 
 /// The lowest natural frequencies of one model, with masses lumped at its points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrequencyOutcome {
-    /// Of the fit, or "finite elements".
+    /// The name of the fit, or "finite elements".
     pub name: String,
-    /// Motions without stiffness that are left out: those of rigid bodies that `[[fix]]` leaves free.
+    /// The number of motions without stiffness that are left out: the rigid motions that `[[fix]]` leaves free.
     pub rigid: usize,
-    /// Hz, ascending; or why there are none.
+    /// The frequencies, Hz, ascending; or the reason why there are none.
     pub found: std::result::Result<Vec<f64>, String>,
 }

@@ -1,23 +1,26 @@
-//! What a gauge measures.
+//! The readings of a gauge.
 
 /// Young's modulus and Poisson's ratio of a specimen under a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// `F/(A ε)`: the load's resultant along the axis, the cross-section, the strain along the axis; Pa.
+    /// `F/(A ε)`, Pa, with F the resultant of the load along the axis, A the cross-section and ε the strain along the
+    /// axis.
     pub young: f64,
-    /// `−ε_across/ε`, the mean of the directions across.
+    /// `−ε_across/ε`, the mean over the directions across.
     pub poisson: f64,
 }
 
 /// The result of a gauge under a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GaugeResult {
+    /// The reading.
     Reading(Reading),
-    /// The load is not the same force in the whole gauge, or it was not reached.
+    /// There is none: the load does not cause the same force in the whole gauge, or it was not reached.
     NoReading,
 }
 
 impl GaugeResult {
+    /// The reading, if there is one.
     pub fn reading(self) -> Option<Reading> {
         match self {
             GaugeResult::Reading(reading) => Some(reading),

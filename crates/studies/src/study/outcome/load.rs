@@ -1,69 +1,75 @@
-//! The answers of the body and of its networks to a load.
+//! The results of the body and of its networks under a load.
 
 use super::gauge::{GaugeResult, Reading};
 use crate::model::Deformation;
 use crate::solve::Ending;
 use crate::study::metrics::DisplacementError;
 
-/// A load of a scene and the answer of the finite elements to it.
+/// A load of a scene, and the response of the finite elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyLoad {
+    /// The name of the load.
     pub name: String,
-    /// Displacements of the finite elements, `[points · dimension]`, m.
+    /// The displacements of the finite elements, `[points · dimension]`, m.
     pub fem: Vec<f64>,
-    /// At large deformation, how far the finite elements followed the load.
+    /// At large deformation, how the load was applied to the finite elements.
     pub followed: Option<Followed>,
     /// The gauge's reading of the finite elements; `None` without a gauge.
     pub gauge: Option<GaugeResult>,
-    /// `None` where nothing was measured; otherwise errors under this load are those from the measurement.
+    /// The measured displacements, if there are any; errors under this load are then relative to the measurement.
     pub measured: Option<Measured>,
-    /// How far the finite elements are deformed, at small deformation: beyond a bound the linear theory does not hold.
+    /// The deformation of the finite elements, at small deformation: beyond a bound the linear theory is not valid.
     pub deformation: Option<Deformation>,
 }
 
 /// Displacements that were measured under a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// The number of points where at least one component is known.
+    /// The number of points at which at least one component is known.
     pub points: usize,
-    /// Of the finite elements; `None` if no measured point moves.
+    /// The error of the finite elements; `None` if no measured point moves.
     pub error: Option<DisplacementError>,
 }
 
-/// A load and the answer of a network to it.
+/// A load, and the response of a network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadOutcome {
+    /// The name of the load.
     pub name: String,
-    /// Displacements of the network, `[points · dimension]`, m; `None` where it does not stand.
+    /// The displacements of the network, `[points · dimension]`, m; `None` if it is not stable.
     pub displacement: Option<Vec<f64>>,
-    /// `None` where the network does not stand or nothing moves.
+    /// The error relative to the finite elements or the measurement; `None` if the network is not stable or nothing
+    /// moves.
     pub error: Option<DisplacementError>,
-    /// By how many percent the work of the load, which is its compliance, is larger than in the finite elements: `f·u`, or that of the
-    /// forces which hold given displacements. `None` also where displacements were measured.
+    /// By how many percent the work of the load, which is its compliance, exceeds that in the finite elements: `f·u`,
+    /// or the work of the forces that hold prescribed displacements. `None` also if displacements were measured.
     pub work_error: Option<f64>,
-    /// To assemble, factorise and solve, each as if this were the only load.
+    /// The time to assemble, factorise and solve the finite elements, as if this were the only load, s.
     pub seconds_fem: f64,
+    /// The same time for the network, s.
     pub seconds_lem: f64,
-    /// At large deformation, how far the network followed the load.
+    /// At large deformation, how the load was applied to the network.
     pub followed: Option<Followed>,
     /// The gauge's reading of the network.
     pub gauge: Option<Reading>,
 }
 
-/// How far an equilibrium was followed.
+/// How a load was applied at large deformation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Followed {
+    /// Whether the whole load was reached.
     pub ending: Ending,
-    /// The share of the load reached.
+    /// The share of the load that was reached.
     pub load: f64,
     /// The last residual, relative to the forces that act.
     pub residual: f64,
+    /// The number of iterations.
     pub iterations: usize,
-    /// Iterations whose tangent was not positive definite and had to be shifted.
+    /// The number of iterations whose tangent was not positive definite and was shifted.
     pub shifted: usize,
-    /// Whether the forces balance to their rounding only, which is more than the tolerance.
+    /// Whether the equilibrium is accurate only to the rounding of the forces, which exceeds the tolerance.
     pub is_rounded: bool,
-    /// Cells that are turned inside out at a quadrature point.
+    /// The number of cells that are inverted at a quadrature point.
     pub inverted: usize,
 }
 

@@ -1,62 +1,71 @@
-//! The finite elements and the networks of a scene over time.
+//! The results of the motion of a scene.
 
 use crate::dynamics::Account;
 use crate::model::Deformation;
 use crate::study::scene::MotionRecipe;
 
-/// The motion of a scene's models.
+/// The motion of the models of a scene.
 #[derive(Debug, Clone)]
 pub struct MotionOutcome {
+    /// The settings of the motion.
     pub recipe: MotionRecipe,
-    /// How many points are watched.
+    /// The number of watched points.
     pub watched: usize,
     /// The finite elements, if they move, then the networks.
     pub models: Vec<ModelMotion>,
 }
 
-/// How one model moved.
+/// The motion of one model.
 #[derive(Debug, Clone)]
 pub struct ModelMotion {
-    /// Of the fit, or "finite elements".
+    /// The name of the fit, or "finite elements".
     pub name: String,
-    /// Its place among the fits; `None` for the finite elements.
+    /// The index of the fit; `None` for the finite elements.
     pub fit: Option<usize>,
+    /// The number of steps.
     pub steps: usize,
-    /// For the steps, without what is written.
+    /// The time for the steps, without output, s.
     pub seconds: f64,
+    /// How the motion ended.
     pub ending: MotionEnding,
-    /// Steps whose equations were not solved to the tolerance.
+    /// The number of steps whose equations were not solved to the tolerance.
     pub unsolved: usize,
-    /// The largest of the finite elements at the records, where they are linear.
+    /// The largest deformation of the finite elements at the records, if they are linear.
     pub deformation: Option<Deformation>,
-    /// Of a network whose springs turn, the mean and largest error over the records where they do not, as the linear finite elements:
-    /// what of the error is the fit's. `None` where the finite elements turn as well, or hardly.
+    /// For a network whose springs rotate: the mean and the largest error over the records of the same network with
+    /// springs that do not rotate, as linear finite elements do not. This is the part of the error that the fit causes.
+    /// `None` if the finite elements rotate as well, or hardly.
     pub linear_error: Option<[f64; 2]>,
-    /// Of a network that releases energy, how fast the fastest motion grows at rest, 1/s.
+    /// The growth rate at rest of the fastest motion of a network that releases energy, 1/s.
     pub growth: Option<f64>,
+    /// The states that are written.
     pub records: Vec<Record>,
-    /// Displacements at the records, `[points · dimension]`, m, where they are drawn.
+    /// The displacements at the records, `[points · dimension]`, m, if pictures are requested.
     pub states: Vec<Vec<f64>>,
 }
 
+/// How a motion ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MotionEnding {
+    /// All steps were made.
     Complete,
-    /// The model had no response any more, as with a cell turned inside out.
+    /// The model has no response any more, for example because a cell is inverted.
     NoResponse,
     /// Numbers grew beyond all bounds.
     RanAway,
-    /// No step could be made, and why.
+    /// No step could be made, for this reason.
     Refused(String),
 }
 
 /// A state that is written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
+    /// Energy and momentum.
     pub account: Account,
-    /// Mean displacement of the watched points, m; empty where none are.
+    /// The mean displacement of the watched points, m; empty if there are none.
     pub watched: Vec<f64>,
-    /// Root mean square distance from the finite elements, in percent of their largest displacement in the whole motion.
+    /// The root mean square distance from the finite elements, in percent of their largest displacement in the whole
+    /// motion.
     pub error: Option<f64>,
 }
 
@@ -71,6 +80,7 @@ impl Record {
 }
 
 impl ModelMotion {
+    /// The number of steps per second of computing time.
     pub fn steps_per_second(&self) -> f64 {
         self.steps as f64 / self.seconds
     }
@@ -80,20 +90,21 @@ impl ModelMotion {
         self.records.len() > 1
     }
 
-    /// Mean and largest error over the records.
+    /// The mean and the largest error over the records.
     pub fn error(&self) -> Option<[f64; 2]> {
         let errors: Option<Vec<f64>> = self.records.iter().map(|record| record.error).collect();
         mean_and_largest(&errors?)
     }
 }
 
-/// `None` of none.
+/// The mean and the largest of the errors; `None` if there are none.
 pub fn mean_and_largest(errors: &[f64]) -> Option<[f64; 2]> {
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
     (!errors.is_empty()).then(|| [mean, errors.iter().copied().fold(0.0, f64::max)])
 }
 
 impl MotionEnding {
+    /// The name in reports.
     pub fn name(&self) -> &'static str {
         match self {
             MotionEnding::Complete => "complete",

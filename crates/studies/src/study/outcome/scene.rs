@@ -10,23 +10,27 @@ use crate::mesh::Mesh;
 /// The results of a scene.
 #[derive(Debug)]
 pub struct Outcome {
+    /// The title of the scene.
     pub scene: String,
-    /// What was assumed because no input says it, as a sentence.
+    /// A sentence about what was assumed because no input gives it.
     pub assumed: Option<String>,
+    /// The mesh.
     pub mesh: Mesh,
+    /// The material.
     pub material: Material,
-    /// `[points]`, kg; `None` if the scene gives no density.
+    /// The masses, `[points]`, kg; `None` if the scene gives no density.
     pub masses: Option<Vec<f64>>,
     /// The title of the material's law; `None` at small deformation.
     pub law: Option<String>,
-    /// The loads of the scene with the answers of the finite elements.
+    /// The loads of the scene, with the response of the finite elements.
     pub loads: Vec<BodyLoad>,
+    /// The fits, in the order of the scene.
     pub fits: Vec<FitOutcome>,
-    /// `None` if the scene has no motion.
+    /// The motion, if the scene has one.
     pub motion: Option<MotionOutcome>,
-    /// Of the finite elements and of each network, if the scene asks for them.
+    /// The natural frequencies of the finite elements and of each network, if the scene requests them.
     pub frequencies: Vec<FrequencyOutcome>,
-    /// The stages that the scene did not ask for.
+    /// The stages that the scene does not request.
     pub left_out: Vec<String>,
 }
 
@@ -50,7 +54,7 @@ impl Outcome {
         }
     }
 
-    /// The place of the load of this name.
+    /// The index of the load with this name.
     pub fn load(&self, name: &str) -> Option<usize> {
         self.loads.iter().position(|load| load.name == name)
     }

@@ -1,4 +1,4 @@
-//! The index of a paper's experiments: what was printed, and the scenes and elements that run it again.
+//! The index of a paper's experiments: the printed figures, and the scenes and elements that repeat them.
 
 use crate::error::{Error, Result};
 use crate::file;
@@ -9,10 +9,13 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// The index of a paper's experiments.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Index {
+    /// The title of the paper.
     pub title: String,
+    /// Its tables and figures.
     pub table: Vec<TableEntry>,
 }
 
@@ -20,22 +23,22 @@ pub struct Index {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TableEntry {
-    /// What it is asked for by, such as "1".
+    /// The name by which it is requested, such as "1".
     pub name: String,
     pub title: String,
     pub kind: Kind,
-    /// The load of the scenes that it is about.
+    /// The load of the scenes to which it belongs.
     pub load: Option<String>,
     pub columns: Vec<Column>,
-    /// The material's constants that a surface spans: Pa, and Poisson's ratios.
+    /// The ranges that a surface covers: of Young's modulus, Pa, and of Poisson's ratio.
     pub young: Option<[f64; 2]>,
     pub poisson: Option<[f64; 2]>,
-    /// What is told under the table.
+    /// A note that is printed under the table.
     pub note: Option<String>,
-    /// Why figures differ from the printed ones: by the name of the fit, or "all".
+    /// Reasons why figures differ from the printed ones, by the name of the fit, or "all".
     #[serde(default)]
     pub why: BTreeMap<String, String>,
-    /// Of single elements; scenes have their own.
+    /// The fits of single elements; scenes have their own.
     #[serde(default)]
     pub fit: Vec<FitEntry>,
     pub row: Vec<RowEntry>,
@@ -46,30 +49,30 @@ pub struct TableEntry {
 #[serde(deny_unknown_fields)]
 pub struct RowEntry {
     pub object: String,
-    /// Relative to the index.
+    /// The path of the scene, relative to the index.
     pub scene: Option<PathBuf>,
-    /// A shipped element's name, or the path of a file relative to the index.
+    /// The name of a shipped element, or the path of a file relative to the index.
     pub element: Option<String>,
-    /// Lengths of a box of it, m.
+    /// The side lengths of a box of the element, m.
     pub size: Option<Vec<f64>>,
-    /// By the name of the fit, a figure for each column.
+    /// The printed figures by the name of the fit, one per column.
     #[serde(default)]
     pub printed: BTreeMap<String, Vec<f64>>,
     #[serde(default)]
     pub why: BTreeMap<String, String>,
 }
 
-/// How the figures of a table come about.
+/// How the figures of a table are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// From scenes under a load.
     Scenes,
-    /// By fitting random shapes of elements.
+    /// From the fits of random shapes of elements.
     Timing,
-    /// From the speed of a scene's motion.
+    /// From the speed of the motion of a scene.
     Motion,
-    /// From the moduli of a box of one element, over Young's modulus and Poisson's ratio.
+    /// From the moduli of a box of one element, as functions of Young's modulus and Poisson's ratio.
     Surface,
 }
 
@@ -77,23 +80,26 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Column {
-    /// Percent.
+    /// The root mean square error of the displacements, in percent.
     ERms,
+    /// The largest error of the displacements, in percent.
     EMax,
-    /// Of a gauge, Pa.
+    /// Young's modulus of a gauge, Pa.
     Young,
+    /// Poisson's ratio of a gauge.
     Poisson,
-    /// Per element.
+    /// The time per element, s.
     Seconds,
-    /// Steps of a motion per second.
+    /// The number of steps of a motion per second.
     Frames,
-    /// Of a surface, where it is furthest from one.
+    /// `E/E_in` of a surface, where it is farthest from one.
     YoungRatio,
-    /// `ν − ν_in` of a surface, where it is furthest from zero.
+    /// `ν − ν_in` of a surface, where it is farthest from zero.
     PoissonShift,
 }
 
 impl Column {
+    /// The heading of the column.
     pub fn name(self) -> &'static str {
         match self {
             Column::ERms => "%e_rms",
@@ -109,14 +115,18 @@ impl Column {
 }
 
 impl Index {
+    /// Reads an index.
+    ///
     /// # Errors
-    /// The file is missing or wrong: names the file, the key, what was expected and what was found.
+    /// The file is missing or wrong. The error names the file and the key, what was expected and what was found.
     pub fn load(path: &Path) -> Result<Index> {
         Index::parse(&file::read_text(path)?).map_err(|e| e.in_file(path))
     }
 
+    /// Parses the text of an index.
+    ///
     /// # Errors
-    /// As [`Index::load`], without the file.
+    /// Those of [`Index::load`], without the file.
     pub fn parse(text: &str) -> Result<Index> {
         Index::checked(text).map_err(|e| file::on_line_of_key(e, text))
     }
@@ -132,10 +142,10 @@ impl Index {
         Ok(index)
     }
 
-    /// That there are tables of these names.
+    /// Checks that there are tables with these names.
     ///
     /// # Errors
-    /// There is none of one of them.
+    /// There is none with one of them.
     pub fn expect(&self, names: &[String]) -> Result<()> {
         match names.iter().find(|name| self.table.iter().all(|table| table.name != **name)) {
             Some(name) => {
@@ -180,7 +190,7 @@ impl Index {
     }
 }
 
-/// Table 1, figure 9, torsion: as it is headed.
+/// The heading of a table: Table 1, Figure 9, Torsion.
 pub fn heading(name: &str) -> String {
     match name.chars().next() {
         Some(c) if c.is_ascii_digit() => format!("Table {name}"),
@@ -189,13 +199,13 @@ pub fn heading(name: &str) -> String {
     }
 }
 
-/// What its files are called.
+/// The stem of the names of its files.
 pub fn file_stem(name: &str) -> String {
     heading(name).to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-")
 }
 
 impl RowEntry {
-    /// The scene's name without its ending.
+    /// The name of the scene without its extension.
     pub fn stem(&self) -> Option<String> {
         Some(self.scene.as_ref()?.file_stem()?.to_string_lossy().into_owned())
     }
@@ -254,7 +264,7 @@ impl TableEntry {
         Ok(())
     }
 
-    /// Why the figures of a fit differ from the printed ones.
+    /// The reason why the figures of a fit differ from the printed ones, if there is one.
     pub fn why(&self, row: &RowEntry, fit: &str) -> Option<String> {
         let of = |why: &BTreeMap<String, String>| why.get(fit).or_else(|| why.get("all")).cloned();
         of(&row.why).or_else(|| of(&self.why))

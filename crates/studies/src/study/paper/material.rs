@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::material::Material;
 
-/// Of an element of this dimension, at plane stress in the plane; E in Pa.
+/// The material of an element of this dimension, in plane stress in the plane; `young` in Pa.
 ///
 /// # Errors
 /// A constant is out of range.

@@ -1,4 +1,4 @@
-//! The experiments of a paper, run again: its tables and figures beside ours.
+//! The experiments of a paper, run again: its printed tables and figures beside the computed ones.
 
 mod index;
 mod material;

@@ -1,43 +1,56 @@
-//! What came out of a paper's experiments.
+//! The results of a paper's experiments.
 
 use super::index::{Column, RowEntry};
 use crate::study::outcome::Outcome;
 
-/// The tables that were run, and the scenes behind them.
+/// The tables that were run, and their scenes.
 #[derive(Debug)]
 pub struct Paper {
+    /// The title of the paper.
     pub title: String,
+    /// The tables.
     pub tables: Vec<PaperTable>,
+    /// The scenes of the tables, each once.
     pub scenes: Vec<PaperScene>,
 }
 
+/// A table or figure of the paper, with the printed and the computed figures.
 #[derive(Debug)]
 pub struct PaperTable {
+    /// The name by which it is requested.
     pub name: String,
+    /// Its title.
     pub title: String,
+    /// A note that is printed under it.
     pub note: Option<String>,
-    /// Of the scenes.
+    /// The load of the scenes.
     pub load: Option<String>,
+    /// What the columns hold.
     pub columns: Vec<Column>,
+    /// The rows.
     pub rows: Vec<PaperRow>,
+    /// The surfaces of a figure of that kind.
     pub surfaces: Vec<Surface>,
 }
 
-/// A fit of an object.
+/// The figures of one fit of an object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperRow {
+    /// The object.
     pub object: String,
-    /// The stem of the scene's name, where it is from one.
+    /// The stem of the scene's name, if it is from one.
     pub scene: Option<String>,
+    /// The name of the fit.
     pub fit: String,
-    /// One figure for each column.
+    /// The printed figures, one per column, if there are any.
     pub printed: Option<Vec<f64>>,
+    /// The computed figures, one per column.
     pub found: Vec<Option<f64>>,
-    /// Whether it is a method of others.
+    /// Whether the method is one published by other authors.
     pub published: bool,
-    /// Whether the network stands, or, at large deformation, was followed to the end.
+    /// Whether the network is stable or, at large deformation, reached the whole load.
     pub stands: bool,
-    /// Why the figures differ, where they do.
+    /// The reason why the figures differ, if they do.
     pub why: Option<String>,
 }
 
@@ -48,18 +61,21 @@ pub struct PaperScene {
     pub outcome: Outcome,
 }
 
-/// The moduli of a network over those that were asked for.
+/// The moduli of a network as functions of those of the material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
+    /// The name of the fit.
     pub fit: String,
-    /// Pa, and Poisson's ratios.
+    /// Young's moduli of the material, Pa.
     pub young: Vec<f64>,
+    /// Poisson's ratios of the material.
     pub poisson: Vec<f64>,
-    /// `[young × poisson]`: Pa and Poisson's ratio, `None` where some strain meets no resistance.
+    /// Young's modulus, Pa, and Poisson's ratio of the network, `[young × poisson]`; `None` if some strain meets no
+    /// resistance.
     pub found: Vec<Option<[f64; 2]>>,
 }
 
-/// Figures that differ by less are the same.
+/// Figures whose relative difference is smaller count as equal.
 const SAME: f64 = 0.02;
 
 impl PaperRow {
@@ -68,7 +84,7 @@ impl PaperRow {
         PaperRow { object, scene, fit, printed: None, found, published, stands, why: None }
     }
 
-    /// Whether a figure is not the printed one, to two percent.
+    /// Whether a figure differs from the printed one by more than two percent.
     pub fn differs(&self) -> bool {
         let far = |(printed, found): (&f64, &Option<f64>)| {
             found.is_none_or(|found| (found - printed).abs() > SAME * printed.abs().max(1e-300))
@@ -89,7 +105,8 @@ impl PaperTable {
         objects
     }
 
-    /// Of an object, the fit whose printed %e_rms is least, and that of ours whose found one is, among those that stand.
+    /// For an object, the fit with the least printed %e_rms, and the fit with the least computed one among stable
+    /// networks.
     pub fn best(&self, object: &str) -> (Option<&PaperRow>, Option<&PaperRow>) {
         let Some(place) = self.columns.iter().position(|c| *c == Column::ERms) else { return (None, None) };
         let of = || self.rows.iter().filter(|row| row.object == object);

@@ -1,4 +1,4 @@
-//! The experiments of a paper, run again: its tables and figures beside ours.
+//! Runs the experiments of a paper.
 
 use super::index::{Column, Index, Kind, RowEntry, TableEntry};
 use super::material::material;
@@ -17,18 +17,19 @@ use crate::study::scene::{Scene, load_element};
 use springfit_shipped::EXPERIMENTS;
 use std::path::{Path, PathBuf};
 
-/// The index among the shipped experiments.
+/// The path of the index among the shipped experiments.
 const INDEX: &str = "paper/index.toml";
-/// Random shapes of each element that is timed.
+/// The number of random shapes of each element that is timed, that of the paper.
 const SHAPES: usize = 100;
-/// Poisson's ratio of what is timed, and the modulus, Pa.
+/// Poisson's ratio of the elements that are timed.
 const POISSON: f64 = 0.3;
+/// Young's modulus of the elements that are timed, Pa.
 const YOUNG: f64 = 10e3;
 
 /// Writes the shipped experiments into `folder`, and returns the path of their index.
 ///
 /// # Errors
-/// A file there has been changed, which is kept; the folder or a file cannot be written.
+/// A file there has been changed, and is kept; or the folder or a file cannot be written.
 pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
     let differs =
         |(name, text): &&(&str, &str)| std::fs::read(folder.join(name)).is_ok_and(|old| old != text.as_bytes());
@@ -46,20 +47,21 @@ pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
 }
 
 impl Index {
-    /// That of the shipped experiments.
+    /// The index of the shipped experiments.
     ///
     /// # Errors
-    /// None: it is tested.
+    /// None; a test proves it.
     pub fn shipped() -> Result<Index> {
         let text = EXPERIMENTS.iter().find(|(name, _)| *name == INDEX).map_or("", |(_, text)| text);
         Index::parse(text)
     }
 }
 
-/// Runs the tables of these names, or all, of the index at `path`; its scenes are relative to it, and each is run once.
+/// Runs the tables with these names, or all, of the index at `path`. Its scenes are relative to it, and each is run
+/// once.
 ///
 /// # Errors
-/// A table is unknown, a scene or an element is wrong, or a figure is printed for a fit that is not there.
+/// A table is unknown, a scene or an element is wrong, or a figure is printed for a fit that does not exist.
 pub fn run_paper(index: &Index, names: &[String], path: &Path, progress: &mut Progress) -> Result<Paper> {
     index.expect(names)?;
     let mut paper = Paper { title: index.title.clone(), tables: Vec::new(), scenes: Vec::new() };
@@ -68,7 +70,7 @@ pub fn run_paper(index: &Index, names: &[String], path: &Path, progress: &mut Pr
             continue;
         }
         let found = paper.run(table, path.parent().unwrap_or(Path::new("")), progress);
-        // The text tells the line, where the index is a file.
+        // If the index is a file, its text gives the line.
         let text = || read_text(path).unwrap_or_default();
         let placed = |e: Error| on_line_of_key(e.under(format!("table[{i}]")), &text()).in_file(path);
         paper.tables.push(found.map_err(|e| e.placed(placed))?);
@@ -126,7 +128,7 @@ impl Paper {
         Ok(PaperTable { name, title, note, load, columns, rows, surfaces })
     }
 
-    /// The outcome of the row's scene, which is run when it is first asked for.
+    /// The outcome of the row's scene, which is run when it is first needed.
     fn scene(&mut self, row: &RowEntry, folder: &Path, progress: &mut Progress) -> Result<&PaperScene> {
         let file = row.scene.as_deref().unwrap_or(Path::new(""));
         let stem = row.stem().unwrap_or_default();
@@ -173,7 +175,7 @@ fn of_scene(table: &TableEntry, row: &RowEntry, outcome: &Outcome) -> Result<Vec
     outcome.fits.iter().map(of_fit).collect()
 }
 
-/// A row for each fit of the scene, with how fast it moved.
+/// A row for each fit of the scene, with the speed of its motion.
 fn of_motion(row: &RowEntry, outcome: &Outcome) -> Result<Vec<PaperRow>> {
     let missing = || Error::expected("scene", "a scene with a [motion]", "one without");
     let motion = outcome.motion.as_ref().ok_or_else(missing)?;

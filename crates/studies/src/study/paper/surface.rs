@@ -1,4 +1,4 @@
-//! The moduli of a box of one element over those that were asked for.
+//! The moduli of a box of one element as functions of those of the material.
 
 use super::index::{Column, RowEntry, TableEntry};
 use super::material::material;
@@ -10,10 +10,10 @@ use crate::study::moduli::Lattice;
 use crate::study::scene::load_element;
 use std::path::Path;
 
-/// Steps along each constant.
+/// The number of steps along each constant.
 const STEPS: usize = 10;
 
-/// The moduli of a box of one element, over logarithmic steps of Young's modulus and even ones of Poisson's ratio.
+/// The moduli of a box of one element, for logarithmic steps of Young's modulus and equal steps of Poisson's ratio.
 pub fn surface(
     row: &RowEntry,
     fits: &[NamedFit],
@@ -47,7 +47,7 @@ pub fn surface(
     Ok(surfaces)
 }
 
-/// The largest departure of a surface from what was asked: `E/E_in` furthest from one, and ν furthest from ν_in.
+/// The largest deviation of a surface from the material: `E/E_in` farthest from one, and ν farthest from ν_in.
 pub fn of_surface(table: &TableEntry, row: &RowEntry, surface: &Surface) -> PaperRow {
     let asked = surface.young.iter().flat_map(|e| surface.poisson.iter().map(move |nu| [*e, *nu]));
     let known = || asked.clone().zip(&surface.found).filter_map(|(asked, found)| Some((asked, (*found)?)));

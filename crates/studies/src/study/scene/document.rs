@@ -1,4 +1,4 @@
-//! A scene, read and checked.
+//! A scene that has been read and checked.
 
 use super::entry::{FixEntry, MaterialEntry, SceneFile};
 use super::gauge::Gauge;
@@ -20,11 +20,11 @@ use crate::study::own_name::expect_own_name;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A mesh, a material, fits, supports and loads; proved as far as it can be without reading the mesh.
+/// A mesh, a material, fits, supports and loads, checked as far as possible without reading the mesh.
 #[derive(Debug, Clone)]
 pub struct Scene {
     path: PathBuf,
-    /// Of the file, for the lines of what turns out to be wrong later.
+    /// The text of the file, for the line numbers of later errors.
     text: Arc<str>,
     title: String,
     mesh: MeshInput,
@@ -39,15 +39,15 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads and checks a scene.
+    /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// Names the file, the key, what was expected and what was found.
+    /// The file is wrong. The error names the file and the key, what was expected and what was found.
     pub fn load(path: &Path) -> Result<Scene> {
         Scene::parse(&file::read_text(path)?, path)
     }
 
-    /// Checks the text of a scene that stands at `path`, from where other files are named.
+    /// Checks the text of a scene that is at `path`, to which other files are relative.
     ///
     /// # Errors
     /// Those of [`Scene::load`].
@@ -104,17 +104,17 @@ impl Scene {
         })
     }
 
-    /// The file, from where others are named.
+    /// The path of the scene file, to which other files are relative.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The title, or the stem of the file's name.
+    /// The title, or the stem of the file name.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// Where the mesh comes from.
+    /// The source of the mesh.
     pub fn mesh(&self) -> &MeshInput {
         &self.mesh
     }
@@ -134,27 +134,27 @@ impl Scene {
         &self.loads
     }
 
-    /// How loads are followed if the material has a law.
+    /// How loads are applied if the material has a law.
     pub fn newton(&self) -> Newton {
         self.newton
     }
 
-    /// Where the modulus and the ratio of a specimen are measured.
+    /// Where the modulus and the ratio of a specimen are measured, if the scene says so.
     pub fn gauge(&self) -> Option<&Gauge> {
         self.gauge.as_ref()
     }
 
-    /// How the body moves in time.
+    /// The motion of the body, if there is one.
     pub fn motion(&self) -> Option<&MotionRecipe> {
         self.motion.as_ref()
     }
 
-    /// What is written and worked out beside the table.
+    /// What is written and computed besides the table.
     pub fn output(&self) -> &Output {
         &self.output
     }
 
-    /// The same scene with other fits in place of its own.
+    /// The same scene with other fits.
     pub fn with_fits(self, fits: Vec<NamedFit>) -> Scene {
         Scene { fits, ..self }
     }
@@ -179,18 +179,18 @@ impl Scene {
         Scene { gauge: None, ..self }
     }
 
-    /// The same scene at rest.
+    /// The same scene without its motion.
     pub fn without_motion(self) -> Scene {
         Scene { motion: None, ..self }
     }
 
-    /// The same scene with the edges of all cells halved so many times more.
+    /// The same scene with the edges of all cells halved this many more times.
     pub fn halved(mut self, times: u32) -> Scene {
         self.mesh.halvings += times;
         self
     }
 
-    /// The same scene with a mesh `factor` times as large.
+    /// The same scene with all lengths of the mesh multiplied by `factor`.
     pub fn with_lengths_times(mut self, factor: f64) -> Scene {
         self.mesh.scale *= factor;
         self
@@ -204,7 +204,7 @@ impl Scene {
         self.mesh.build(&self.path).map_err(|e| self.with_line(e))
     }
 
-    /// Whether something in it is written in metres besides its mesh: conditions, and loads that vary.
+    /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.
     pub fn is_in_metres(&self) -> bool {
         let conditions = self.supports.iter().map(|(part, _)| part).chain(self.loads.iter().map(|load| &load.part));
         let varies = |load: &LoadCase| match &load.action {
@@ -214,7 +214,7 @@ impl Scene {
         conditions.into_iter().any(|part| matches!(part, Part::Where(_))) || self.loads.iter().any(varies)
     }
 
-    /// The same scene with Young's modulus times `factor`, and of another Poisson's ratio where one is given.
+    /// The same scene with Young's modulus multiplied by `factor`, and with another Poisson's ratio if one is given.
     pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
         let mut scene = self.clone();
         scene.material.young.0 *= factor;
@@ -222,18 +222,18 @@ impl Scene {
         scene
     }
 
-    /// The material of the body that is meshed.
+    /// The material of the meshed body.
     ///
     /// # Errors
-    /// Those of [`Scene::material`], and a surface in space has no thickness.
+    /// Those of [`Scene::material`]; or a surface in space has no thickness.
     pub fn material_of(&self, mesh: &Mesh) -> Result<Material> {
         self.constants().material(mesh).map_err(|e| self.at("material", e))
     }
 
-    /// The material of a body of that dimension, one metre thick where the scene does not say.
+    /// The material of a body of this dimension, one metre thick if the scene gives no thickness.
     ///
     /// # Errors
-    /// A constant is out of range, or the plane state does not go with the dimension.
+    /// A constant is out of range, or bodies of this dimension have no plane state.
     pub fn material(&self, dimension: usize) -> Result<Material> {
         self.constants().of_dimension(dimension).map_err(|e| self.at("material", e))
     }
@@ -243,12 +243,12 @@ impl Scene {
         BodyConstants { young: young.0, poisson: *poisson, plane: *plane, thickness: *thickness, area: *area }
     }
 
-    /// The name of the material's law, where the scene gives one: loads are at large deformation then.
+    /// The name of the material's law, if the scene gives one; deformations are large then.
     pub fn law(&self) -> Option<&str> {
         self.material.law.as_deref()
     }
 
-    /// The law's energy for a body of that material.
+    /// The energy of the law for a body of this material, if there is a law.
     ///
     /// # Errors
     /// There is no such law, or its file is wrong.
@@ -261,7 +261,7 @@ impl Scene {
         self.law().map(load).transpose()
     }
 
-    /// The files that it is read from, and those that it names: of the mesh, of elements, laws and data.
+    /// The scene file, and the files that it names: of the mesh, of elements, laws and data.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let mut files = vec![self.path.clone()];
@@ -274,27 +274,27 @@ impl Scene {
         files
     }
 
-    /// What the scene leaves to a default that the answers depend on.
+    /// A sentence about the defaults on which the results depend, if there are any.
     pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
         assumed(mesh, self.material.thickness, self.material.area)
     }
 
-    /// kg/m³, where the scene gives one.
+    /// The density, kg/m³, if the scene gives one.
     pub fn density(&self) -> Option<f64> {
         self.material.density
     }
 
-    /// Names the scene and the line in an error about one of its entries.
+    /// The error with the scene and the line of one of its entries.
     pub fn at(&self, key: &str, error: Error) -> Error {
         self.placed(error.under(key))
     }
 
-    /// Names the scene and the line in an error that names no file.
+    /// The error with the scene and the line, if it names no file.
     pub fn placed(&self, error: Error) -> Error {
         error.placed(|error| file::on_line_of_key(error, &self.text).in_file(&self.path))
     }
 
-    /// Names the line in an error about this scene.
+    /// The error with the line in the scene.
     pub(in crate::study) fn with_line(&self, error: Error) -> Error {
         let is_own = error.line().is_none() && error.file() == Some(&self.path);
         let line = error.key().filter(|_| is_own).and_then(|key| file::line_of_key(&self.text, key));
@@ -302,7 +302,7 @@ impl Scene {
     }
 }
 
-/// The fits of all `[[fit]]`; files are relative to `folder`.
+/// The fits of all `[[fit]]` entries; files are relative to `folder`.
 fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
     let mut fits: Vec<NamedFit> = Vec::new();
     for (i, entry) in entries.iter().enumerate() {
@@ -328,7 +328,7 @@ fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
     Ok(loads)
 }
 
-/// That the material and the loads are those that the fits need.
+/// Checks that the material and the loads are those that the fits require.
 fn check_fits(fits: &[NamedFit], material: &MaterialEntry, loads: &[LoadCase]) -> Result<()> {
     let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
     let facts = SceneFacts { law: material.law.is_some(), density: material.density.is_some(), loads: &names };

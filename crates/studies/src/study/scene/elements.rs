@@ -5,10 +5,10 @@ use crate::error::{Error, Result};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The elements of that name, or in the files of that path relative to `folder`.
+/// The elements with these names, or in the files at these paths relative to `folder`.
 ///
 /// # Errors
-/// A file is missing or wrong, or a name unknown; `elements[i]` is the key.
+/// A file is missing or wrong, or a name is unknown; the key is `elements[i]`.
 pub fn load_elements(names: &[String], folder: &Path) -> Result<Vec<Arc<Element>>> {
     let load = |(i, name): (usize, &String)| {
         load_element(name, folder).map_err(|e| e.placed(|e| Error::at(format!("elements[{i}]"), e.problem())))
@@ -16,7 +16,7 @@ pub fn load_elements(names: &[String], folder: &Path) -> Result<Vec<Arc<Element>
     names.iter().enumerate().map(load).collect()
 }
 
-/// The element of that name, or in the file of that path relative to `folder`.
+/// The element with this name, or in the file at this path relative to `folder`.
 pub(in crate::study) fn load_element(name: &str, folder: &Path) -> Result<Arc<Element>> {
     let place =
         if name.ends_with(".toml") { folder.join(name).to_string_lossy().into_owned() } else { name.to_string() };

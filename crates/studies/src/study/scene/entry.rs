@@ -1,4 +1,4 @@
-//! The scene file as it is written, key by key, and what each entry must satisfy on its own.
+//! The structure of a scene file, key by key, and the conditions on each entry alone.
 
 use super::gauge::GaugeEntry;
 use super::input::MeshInput;
@@ -40,20 +40,20 @@ pub struct MaterialEntry {
     pub young: Pressure,
     pub poisson: f64,
     pub plane: Option<Plane>,
-    /// m.
+    /// The thickness, m.
     #[serde(default, deserialize_with = "value::optional_length")]
     pub thickness: Option<f64>,
     /// The cross-section of rods, m².
     #[serde(default, deserialize_with = "value::optional_area")]
     pub area: Option<f64>,
-    /// kg/m³.
+    /// The density, kg/m³.
     #[serde(default, deserialize_with = "value::optional_density")]
     pub density: Option<f64>,
-    /// A shipped energy's name, or a path relative to the scene that ends in .toml. Loads are at large deformation then.
+    /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
     pub law: Option<String>,
 }
 
-/// How large deformations are followed.
+/// How loads are applied at large deformation.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NewtonEntry {
@@ -68,15 +68,15 @@ pub struct FixEntry {
     pub group: Option<String>,
     #[serde(rename = "where")]
     pub condition: Option<String>,
-    /// Directions that are held; all if absent.
+    /// The directions that are held; all if absent.
     pub axes: Option<Vec<String>>,
 }
 
 impl MaterialEntry {
-    /// What can be said before the dimension is known.
+    /// The checks that do not depend on the dimension.
     pub fn check(&self) -> Result<()> {
         let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
-        // Plane stress admits more of ν than a solid; a solid is checked again when the mesh is known.
+        // Plane stress admits larger ν than a solid; a solid is checked again when the mesh is known.
         let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
         Material::for_body(2, self.young.0, self.poisson, state, self.thickness).map_err(|e| e.under("material"))?;
         self.density.map_or(Ok(()), |density| range::positive("material.density", density, "kg/m³").map(|_| ()))

@@ -22,13 +22,15 @@ pub struct GaugeEntry {
 pub struct Gauge {
     pub part: Part,
     pub axis: usize,
-    /// m².
+    /// The cross-section, m².
     pub area: f64,
 }
 
 impl GaugeEntry {
+    /// The gauge of these keys.
+    ///
     /// # Errors
-    /// The part is not said or said twice, the axis is none, or the cross-section is not positive.
+    /// The part is missing or given twice, the axis is unknown, or the cross-section is not positive.
     pub fn check(self) -> Result<Gauge> {
         let part = Part::required(self.group, self.condition)?;
         let axis = ["x", "y", "z"].iter().position(|name| *name == self.axis);

@@ -1,4 +1,4 @@
-//! Where the mesh of a scene comes from.
+//! The mesh of a scene: a file, or a generated one.
 
 use super::elements::{load_element, load_elements};
 use super::value;
@@ -9,22 +9,24 @@ use crate::range;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// A file, or what is generated.
+/// The mesh of a scene: a file, a box or a disc.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshInput {
-    /// Relative to the scene.
+    /// The path of a mesh file, relative to the scene.
     pub file: Option<PathBuf>,
+    /// A box that is generated.
     #[serde(rename = "box")]
     pub generated: Option<BoxEntry>,
+    /// A disc that is generated.
     pub disc: Option<DiscEntry>,
-    /// Mesh units to metres.
+    /// The length of a mesh unit, m.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     pub scale: f64,
-    /// Element files to look in before the shipped ones, relative to the scene.
+    /// Element files that are searched before the shipped ones, relative to the scene.
     #[serde(default)]
     pub elements: Vec<String>,
-    /// Of the cells of a file.
+    /// The required quality of the cells of a file.
     pub quality: Option<QualityEntry>,
     /// How often the edges of all cells are halved.
     #[serde(skip)]
@@ -44,13 +46,17 @@ impl QualityEntry {
     }
 }
 
+/// A box filled with one element; lengths in mesh units.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoxEntry {
-    /// A shipped element's name, or a path relative to the scene that ends in .toml.
+    /// The name of a shipped element, or a path relative to the scene that ends in .toml.
     pub element: String,
+    /// The lengths of the sides.
     pub size: Vec<f64>,
+    /// The number of cells in each direction.
     pub cells: Vec<usize>,
+    /// The corner with the least coordinates; the origin if absent.
     pub origin: Option<Vec<f64>>,
 }
 
@@ -58,20 +64,24 @@ pub struct BoxEntry {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DiscEntry {
-    /// As in a box.
+    /// The name of a shipped element, or a path relative to the scene that ends in .toml.
     pub element: String,
+    /// The radius.
     pub radius: f64,
-    /// Of the middle above the rim.
+    /// The height of the centre above the rim.
     #[serde(default)]
     pub height: f64,
+    /// The number of rings.
     pub rings: usize,
-    /// In all, and on the rim; six more in each ring than in the last if absent.
+    /// The number of points in all; if absent, each ring has six points more than the previous one.
     pub points: Option<usize>,
+    /// The number of points on the rim.
     pub rim: Option<usize>,
 }
 
-/// Rings and points that a disc may have at most; more is a slip of the pen.
+/// The largest number of rings; a disc with six more points in each ring then has about two million points.
 const MOST_RINGS: usize = 800;
+/// The largest number of points, see [`bound::CELLS`].
 const MOST_POINTS: usize = bound::CELLS as usize;
 
 fn one() -> f64 {
@@ -79,6 +89,10 @@ fn one() -> f64 {
 }
 
 impl MeshInput {
+    /// Checks the entry.
+    ///
+    /// # Errors
+    /// There is no source of the mesh or more than one, or a number is out of its range.
     pub fn check(&self) -> Result<()> {
         let given: Vec<&str> =
             [("file", self.file.is_some()), ("box", self.generated.is_some()), ("disc", self.disc.is_some())]
@@ -99,7 +113,7 @@ impl MeshInput {
         Ok(())
     }
 
-    /// The files that it names, relative to `folder`; names of shipped elements lead to no file.
+    /// The files that the entry names, relative to `folder`; the names of shipped elements are not files.
     pub fn files(&self, folder: &Path) -> Vec<PathBuf> {
         let of_box = self.generated.iter().map(|entry| &entry.element);
         let elements = of_box.chain(self.disc.iter().map(|entry| &entry.element)).chain(&self.elements);
@@ -143,7 +157,8 @@ impl DiscEntry {
 }
 
 impl MeshInput {
-    /// Reads or generates the mesh of the scene at `scene`. A box is halved by its numbers of cells, any other mesh cell by cell.
+    /// Reads or generates the mesh of the scene at `scene`. A box is refined by its numbers of cells, any other mesh
+    /// cell by cell.
     ///
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume or cannot be divided.

@@ -9,12 +9,16 @@ use crate::symbolic::Scope;
 use serde::Deserialize;
 use std::path::PathBuf;
 
+/// A load of a scene.
 #[derive(Debug, Clone)]
 pub struct LoadCase {
+    /// The name in reports.
     pub name: String,
+    /// The part of the mesh on which it acts.
     pub part: Part,
+    /// What acts on that part.
     pub action: Action,
-    /// Displacements that were measured under it.
+    /// The file of displacements that were measured under it, if there is one.
     pub measured: Option<MeasuredEntry>,
 }
 
@@ -29,7 +33,7 @@ pub struct LoadEntry {
     pub force: Option<Vec<f64>>,
     pub body: Option<Vec<Varying>>,
     pub displacement: Option<Vec<PrescribedComponent>>,
-    /// What was measured under it.
+    /// The file of displacements that were measured under it.
     pub measured: Option<MeasuredEntry>,
 }
 
@@ -37,12 +41,12 @@ pub struct LoadEntry {
 #[derive(Debug, Clone, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredEntry {
-    /// Relative to the scene.
+    /// The path, relative to the scene.
     pub file: PathBuf,
-    /// Metres per unit of the file.
+    /// The length of a unit of the file, m.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     pub scale: f64,
-    /// Of several.
+    /// The name of the array, if the file has several.
     pub array: Option<String>,
 }
 
@@ -61,7 +65,7 @@ impl LoadEntry {
                     scope.expression(&text).map(Component::Varying).map_err(|e| e.under(format!("{key}[{i}]")))
                 }
             };
-            // Where some vary, what they are together is known on the mesh.
+            // If components vary, their size is known only on the mesh.
             let varies = v.iter().any(|v| number(v).is_none());
             v.iter().filter_map(number).try_for_each(|value| range::bounded(key, value, unit).map(|_| ()))?;
             range::largest(key, v.iter().filter_map(number).filter(|_| !varies), unit)?;

@@ -1,4 +1,4 @@
-//! The scene file.
+//! The scene file: its entries, and the checks that can be made before the mesh is read.
 
 mod document;
 mod elements;

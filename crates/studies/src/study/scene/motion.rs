@@ -1,4 +1,6 @@
-//! The keys of `[motion]`: how a scene moves in time.
+//! The keys of `[motion]`: the motion of a scene in time.
+//!
+//! Theory: page *Dynamics* of the book.
 
 use super::part::Part;
 use super::value::{self, Varying};
@@ -11,53 +13,63 @@ use crate::study::choice::choice;
 use crate::symbolic::{Expr, Scope, parse_rational};
 use serde::Deserialize;
 
-/// A motion before the mesh is known.
+/// A motion, before the mesh is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionRecipe {
+    /// The time step, the method and the solver.
     pub options: Options,
-    /// s.
+    /// The duration, s.
     pub duration: f64,
-    /// So many that the last reaches the end.
+    /// The number of steps; the last one reaches the end.
     pub steps: usize,
-    /// s between the states that are written; the first and the last always are.
+    /// The time between states that are written, s; the first and the last state always are.
     pub every: f64,
+    /// How masses are lumped.
     pub lumping: Lumping,
-    /// m/s²; empty for none.
+    /// The acceleration of gravity, m/s²; empty if there is none.
     pub gravity: Vec<f64>,
+    /// The damping.
     pub damping: DampingRecipe,
     /// The points whose mean displacement is written.
     pub watch: Option<Part>,
     /// Whether the finite elements move as well.
     pub finite_elements: bool,
+    /// The prescribed displacements.
     pub pulls: Vec<PrescribedMotion>,
+    /// The forces.
     pub forces: Vec<AppliedForce>,
 }
 
+/// The damping of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DampingRecipe {
-    /// α, 1/s, and β, s, of `C = α M + β K₀`.
+    /// Rayleigh damping: α, 1/s, and β, s, of `C = α M + β K₀`.
     Rayleigh([f64; 2]),
-    /// Of a damper beside each spring.
+    /// The damping ratio of a damper parallel to each spring.
     Ratio(f64),
 }
 
-/// A part whose displacement over time is prescribed, m: expressions of t, x, y, z; `None` leaves a direction free.
+/// A part with a prescribed displacement over time, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrescribedMotion {
+    /// The part.
     pub part: Part,
+    /// One expression in t, x, y, z per direction; `None` leaves a direction free.
     pub displacement: Vec<Option<Expr>>,
 }
 
-/// A force over time, N, on a part: expressions of t.
+/// A force over time, N, on a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AppliedForce {
+    /// The part.
     pub part: Part,
+    /// One expression in t per direction.
     pub force: Vec<Expr>,
-    /// On each point as much, instead of in all.
+    /// Whether the force acts on each point, instead of being the total.
     pub each: bool,
 }
 
-/// A `[motion]` as it is written.
+/// The keys of `[motion]`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEntry {
@@ -121,19 +133,20 @@ struct ForceEntry {
     each: bool,
 }
 
-/// Quotients of decimals are not exact.
+/// A tolerance for the quotient of duration and step, because decimals are not exact in binary.
 const SLACK: f64 = 1.0 - 1e-12;
-/// States that are written where the scene does not say.
+/// The number of states that are written by default.
 const STATES: f64 = 100.0;
 
 impl MotionRecipe {
-    /// In words.
+    /// The motion in words.
     pub fn title(&self) -> String {
         let (step, name) = (self.options.step, self.options.integrator.name());
         format!("{:?} s in {} steps of {step:?} s by {name}", self.duration, self.steps)
     }
 
-    /// The steps at whose end a state is written: the first at or after each multiple of `every`, and the last.
+    /// The steps at whose end a state is written: the first one at or after each multiple of `every`, and the last
+    /// step.
     pub fn written(&self) -> Vec<usize> {
         let at = |state: usize| (state as f64 * self.every / self.options.step * SLACK).ceil() as usize;
         let mut steps: Vec<usize> = (0..).map(at).take_while(|step| *step < self.steps).collect();
@@ -144,6 +157,8 @@ impl MotionRecipe {
 }
 
 impl MotionEntry {
+    /// The motion of these keys.
+    ///
     /// # Errors
     /// A value is unknown or out of range, or keys contradict each other.
     pub fn check(self) -> Result<MotionRecipe> {
@@ -223,7 +238,7 @@ impl MotionEntry {
     }
 }
 
-/// The keys of the method that makes steps.
+/// The keys of the time integration.
 struct StepEntry<'a> {
     integrator: Option<&'a str>,
     iterations: Option<usize>,

@@ -1,18 +1,19 @@
-//! What a scene has written and worked out beside its table.
+//! What a scene writes and computes besides its table.
 
 use serde::Deserialize;
 
+/// What a scene writes and computes besides its table.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// The springs and displacements as VTU files, a motion as a series of them.
+    /// Whether the springs and displacements are written as VTU files, a motion as a series of them.
     pub vtu: bool,
-    /// The springs as a CSV file.
+    /// Whether the springs are written as a CSV file.
     pub csv: bool,
-    /// What each network is as a material: Young's modulus, Poisson's ratio, Zener's ratio.
+    /// Whether each network is measured as a material: Young's modulus, Poisson's ratio, Zener's ratio.
     pub moduli: bool,
-    /// How many natural frequencies of each model, beyond those of rigid motions.
+    /// The number of natural frequencies of each model, besides those of rigid motions.
     pub frequencies: usize,
-    /// report.json; written unless switched off.
+    /// Whether report.json is written; it is unless switched off.
     pub report: Option<bool>,
 }

@@ -1,14 +1,17 @@
-//! A part of the mesh.
+//! A part of the mesh in a scene.
 
 use crate::error::{Error, Result};
 use crate::mesh::Selection;
 use crate::symbolic::Scope;
 
-/// A part of the mesh as a scene names it; a condition is parsed once the mesh's dimension is known.
+/// A part of the mesh, as a scene names it. A condition is parsed again once the dimension of the mesh is known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
+    /// The group with this name.
     Group(String),
+    /// The points that satisfy this condition on their coordinates.
     Where(String),
+    /// The whole mesh.
     Everything,
 }
 
@@ -18,7 +21,7 @@ impl Part {
             (Some(_), Some(_)) => Err(Error::new("expected \"group\" or \"where\", found both")),
             (Some(name), None) => Ok(Part::Group(name)),
             (None, Some(text)) => {
-                // Fails early on what is wrong in any dimension.
+                // Reports at once what is wrong in any dimension.
                 Scope::new(&["x", "y", "z"]).predicate(&text).map_err(|e| e.under("where"))?;
                 Ok(Part::Where(text))
             }
@@ -26,7 +29,7 @@ impl Part {
         }
     }
 
-    /// As [`Part::optional`], but not everything.
+    /// As [`Part::optional`], but the whole mesh is not accepted.
     pub(super) fn required(group: Option<String>, condition: Option<String>) -> Result<Part> {
         match Part::optional(group, condition)? {
             Part::Everything => Err(Error::new("expected \"group\" or \"where\", found neither")),
@@ -34,10 +37,10 @@ impl Part {
         }
     }
 
-    /// The part as a selection of a mesh of that dimension.
+    /// The part as a selection in a mesh of this dimension.
     ///
     /// # Errors
-    /// The condition names z in the plane.
+    /// The condition contains z in the plane.
     pub fn selection(&self, dimension: usize) -> Result<Selection> {
         Ok(match self {
             Part::Group(name) => Selection::Group(name.clone()),

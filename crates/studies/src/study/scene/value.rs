@@ -1,30 +1,30 @@
-//! Numbers of a scene that may be written in more than one way.
+//! Values of a scene that can be written in more than one way.
 
 use crate::quantity::Quantity;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
 use std::fmt;
 
-/// One direction of a load: a number, or an expression of x, y, z in m.
+/// One direction of a load: a number, or an expression in x, y, z in m.
 #[derive(Debug, Clone)]
 pub enum Varying {
     Number(f64),
     Text(String),
 }
 
-/// One direction of a prescribed displacement: a number of metres, or `"free"`.
+/// One direction of a prescribed displacement: a number in m, or `"free"`.
 #[derive(Debug, Clone, Copy)]
 pub struct PrescribedComponent(pub Option<f64>);
 
-/// A number of Pa, or a text with a unit.
+/// A number in Pa, or a text with a unit.
 #[derive(Debug, Clone, Copy)]
 pub struct Pressure(pub f64);
 
-/// What is written as a number or as a text.
+/// A visitor of values that are numbers or texts.
 struct NumberOrText<T> {
     expected: &'static str,
     number: fn(f64) -> Option<T>,
-    /// The error says what is wrong, where more is known than that it is not what is expected.
+    /// The error contains an explanation, if there is a more specific one than what was expected.
     text: fn(&str) -> Result<T, Option<String>>,
 }
 
@@ -102,10 +102,10 @@ impl Visitor<'_> for QuantityVisitor {
     }
 }
 
-/// For `deserialize_with` of keys that hold a quantity, in the SI unit.
+/// Functions for `deserialize_with` of keys that hold a quantity, in the SI unit.
 macro_rules! quantities {
     ($($one:ident, $optional:ident: $quantity:ident),+ $(,)?) => {$(
-        // Not every quantity is both asked for and left out.
+        // Not every quantity is used both as a required and as an optional key.
         #[allow(dead_code)]
         pub fn $one<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
             read(Quantity::$quantity, deserializer)

@@ -1,4 +1,4 @@
-//! Whole bodies: regions of different stiffness, and meshes that do not fit together.
+//! Whole bodies: regions of different stiffness, and meshes whose parts do not fit.
 
 use super::elements::PROMISED;
 use super::outcome::{Family, StabilityRow, Verdict, worst};
@@ -12,14 +12,14 @@ use crate::solve::{Factor, System};
 use crate::springs::norm;
 use std::sync::Arc;
 
-/// Decades of the stiffness of the second region over that of the first.
+/// The powers of ten of the ratio of the stiffness of the second region to that of the first.
 const CONTRASTS: [i32; 9] = [-12, -9, -6, -3, 0, 3, 6, 9, 12];
-/// Springs in a row.
+/// The number of springs in the chain.
 const ROW: usize = 64;
-/// Of the inverse: the condition is wanted to a part in ten.
+/// Power iterations with the inverse; the condition number is needed to one digit.
 const POWERS: usize = 40;
 
-/// A bar of each straight element that fills a box in space, springs in a row, and meshes of squares.
+/// A bar of each straight element that fills a box in space, a chain of springs, and meshes of squares.
 ///
 /// # Errors
 /// A system does not fit into memory.
@@ -40,7 +40,7 @@ pub fn sweep_bodies(elements: &[Element]) -> Result<Vec<StabilityRow>> {
     Ok(rows)
 }
 
-/// A bar of two cubes, ν = 0, pulled along: `u = σ (ℓ/E₁ + ℓ/E₂)` at its end.
+/// A bar of two cubes, ν = 0, under tension, with the exact solution `u = σ (ℓ/E₁ + ℓ/E₂)` at its end.
 fn bar(element: &Arc<Element>, case: &str, ratio: f64) -> Result<StabilityRow> {
     let spec =
         BoxMesh { element: element.clone(), size: vec![2.0, 1.0, 1.0], cells: vec![6, 3, 3], origin: vec![0.0; 3] };
@@ -60,11 +60,11 @@ fn bar(element: &Arc<Element>, case: &str, ratio: f64) -> Result<StabilityRow> {
     let f = nodal_forces(&whole, &pulled, &Action::traction(&[1.0, 0.0, 0.0]), 1.0)?;
     let ends: Vec<usize> = pulled.points(&whole)?.iter().map(|p| 3 * p).collect();
     let exact = 1.0 + 1.0 / ratio;
-    // The entries of an element are rounded, and a stiff one does not know rigid motions to the digits of a soft one.
+    // The entries of an element are rounded, and those of a stiff one have errors as large as those of a soft one.
     solved((&format!("bar of {}", element.name), case, true), &entries, &support, &f, &ends, exact)
 }
 
-/// Springs from wall to end, alternately of constants 1 and `ratio`: `u = f Σ 1/k`.
+/// A chain of springs from a wall, with alternating constants 1 and `ratio`, and the exact solution `u = f Σ 1/k`.
 fn springs_in_a_row(case: &str, ratio: f64) -> Result<StabilityRow> {
     let constant = |i: usize| if i.is_multiple_of(2) { 1.0 } else { ratio };
     let lengths = (0..ROW).map(|i| LengthSpring { points: [i, i + 1], constant: constant(i), rest: 1.0 }).collect();
@@ -79,8 +79,8 @@ fn springs_in_a_row(case: &str, ratio: f64) -> Result<StabilityRow> {
     solved(("springs in a row", case, false), &network.stiffness(&points), &support, &f, &[2 * ROW], exact)
 }
 
-/// The displacements at `ends` under the forces f against the exact one. What rounding the entries of the matrix costs, where they
-/// are rounded, is its condition, each point scaled to a stiffness of one.
+/// Compares the displacements at `ends` under the forces f with the exact ones. If the entries of the matrix are
+/// rounded, the error that this causes is its condition number, with each point scaled to a stiffness of one.
 fn solved(
     (subject, case, is_rounded): (&str, &str, bool),
     entries: &Entries,
@@ -123,7 +123,7 @@ fn solved(
     Ok(row)
 }
 
-/// The largest eigenvalue of the inverse, by powers of it.
+/// The largest eigenvalue of the inverse, by power iteration.
 fn compliance(factor: &Factor, size: usize) -> f64 {
     let mut x: Vec<f64> = (0..size).map(|i| 1.0 + (i as f64).sin()).collect();
     let mut largest = 0.0;
@@ -136,7 +136,7 @@ fn compliance(factor: &Factor, size: usize) -> f64 {
     largest
 }
 
-/// Four squares, or what is left of them: points, cells, and whether the left side is held.
+/// Four squares, or a part of them: points, cells, and whether the left side is held.
 fn meshes() -> Vec<(&'static str, MeshSource, bool)> {
     let grid = |points: &[[f64; 2]], cells: &[[usize; 4]]| MeshSource {
         format: Format::Gmsh,
@@ -170,7 +170,7 @@ fn meshes() -> Vec<(&'static str, MeshSource, bool)> {
     ]
 }
 
-/// What is said of a mesh whose left side is held, or of one that is held nowhere.
+/// The result for a mesh whose left side is held, or that is not held anywhere.
 fn mesh_row(case: &str, source: &MeshSource, hold: bool) -> StabilityRow {
     let of = |verdict| StabilityRow::new("mesh of squares", Family::Mesh, case, "read and held", verdict);
     let mesh = match Mesh::resolve_within(source, &[], 1.0, Some(Gate::default())) {

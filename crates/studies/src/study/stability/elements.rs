@@ -1,4 +1,4 @@
-//! The constants of one element in every case, against twice the digits.
+//! The constants of one element in every case, compared with double-double results.
 
 use super::outcome::{StabilityRow, Verdict, worst};
 use super::shapes::{ShapeCase, shape_cases};
@@ -15,26 +15,27 @@ use crate::study::random::Random;
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 
-/// The relative error of constants that is promised, where rounding the nodes' places costs less.
+/// The relative error of constants that is promised, unless rounding of the node positions causes a larger one.
 pub const PROMISED: f64 = 1e-9;
-/// The gap that a spectral fit proves, with the rounding of its bound.
+/// The gap that a spectral fit proves, plus the rounding of its bound.
 const GAP: f64 = 1.1e-8;
-/// Rounding of the nodes' places that an error is allowed to be worth, in units of 2⁻⁵³ of the element's size: each is rounded some
-/// ten times on its way into a Jacobian.
+/// The rounding of the node positions to whose effect an error may amount, in units of 2⁻⁵³ of the element's size. Each
+/// position is rounded some ten times on its way into a Jacobian.
 const ROUNDINGS: f64 = 32.0;
-/// Patterns of moved nodes that are tried.
+/// The number of patterns of moved nodes that are tried.
 const PATTERNS: u64 = 4;
-/// How far nodes are moved, of the element's size, from the farthest down while constants change by more than a tenth.
+/// How far nodes are moved, relative to the element's size: from the farthest down, while constants change by more than
+/// a tenth.
 const MOVES: [f64; 4] = [1.0 / (1u64 << 26) as f64, 1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 42) as f64, 1e-15];
-/// Bounded and tied fits are tried in one case out of this number, because each costs as much as the plain fit.
+/// Bounded and tied fits are tried in one of this number of cases, because each costs as much as the plain fit.
 const THINNED: usize = 4;
-/// kg/m³.
+/// The density, kg/m³.
 const DENSITY: f64 = 1000.0;
 
-/// Every case of the element by every objective.
+/// Every case of the element with every objective.
 ///
 /// # Errors
-/// The element has no springs or no valid shape.
+/// The element has no springs, or no valid shape.
 pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
     let springs = Springs::select(element, None)?;
     let rows = shape_cases(element)?.into_par_iter().enumerate().flat_map_iter(|(i, case)| {
@@ -48,7 +49,7 @@ pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
     Ok(rows.collect())
 }
 
-/// What constants are chosen from.
+/// The set from which constants are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Choice {
     Free,
@@ -92,7 +93,8 @@ impl Subject<'_> {
         let k = &fits.constants;
         let constants = |x: &[f64]| fit_element(element, springs, x, moduli, &fit).ok();
         let is_spectral = matches!(objective, Objective::Spectral(_));
-        // Outside: whether there is a reference; inside: whether the constants above zero are those of the optimum.
+        // The outer option tells whether there is a reference, the inner one whether its positive constants are those
+        // of the optimum.
         let reference = match fit.nonnegative {
             _ if is_spectral => None,
             true => bounded_constants(element, springs, &case.x, &moduli, &fit, k).ok(),
@@ -131,7 +133,7 @@ impl Subject<'_> {
         row
     }
 
-    /// The exact network: its springs between nodes against twice the digits.
+    /// The exact network: its springs between nodes compared with double-double results.
     fn exact_row(&self) -> StabilityRow {
         let Subject { element, case, .. } = self;
         let of = |verdict| StabilityRow::new(&element.name, case.family, &case.name, "exact", verdict);
@@ -154,7 +156,7 @@ impl Subject<'_> {
         row
     }
 
-    /// A verdict on an error that may be so large, or what rounding the places of the nodes costs.
+    /// The verdict on an error with this bound, or with the effect of rounding the node positions as its bound.
     fn judged(
         &self,
         of: impl Fn(Verdict) -> StabilityRow,
@@ -184,7 +186,7 @@ impl Subject<'_> {
             };
             let changes = MOVES.map(|step| (step, change(step)));
             let small = changes.iter().find(|(_, change)| *change < 0.1).unwrap_or(&changes[3]);
-            // A shape that does not stand to be moved says nothing.
+            // Shapes that become invalid when they are perturbed are skipped.
             largest = largest.max(if small.1.is_finite() { small.1 / small.0 } else { 0.0 });
         }
         ROUNDINGS * f64::EPSILON / 2.0 * largest
@@ -209,7 +211,7 @@ impl Subject<'_> {
         let mut eigenvalues: Vec<f64> = k.symmetric_eigenvalues().iter().copied().collect();
         eigenvalues.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
         let largest = eigenvalues[0].abs();
-        // Without the rigid motions, which are the nearest to zero.
+        // Without the rigid motions, whose eigenvalues are nearest to zero.
         eigenvalues.truncate(n - d * (d + 1) / 2);
         let least = eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
         row.softest = (largest > 0.0).then_some(least / largest);
@@ -218,7 +220,7 @@ impl Subject<'_> {
     }
 }
 
-/// `max |a − b| / max |b|`, with b in twice the digits.
+/// `max |a − b|/max |b|`, with b in double-double numbers.
 fn distance(a: &[f64], b: &[DoubleDouble]) -> f64 {
     let size = b.iter().map(|b| b.hi.abs()).fold(0.0, f64::max);
     let away = worst(a.iter().zip(b).map(|(a, b)| (DoubleDouble::from(*a) - b).hi.abs()));

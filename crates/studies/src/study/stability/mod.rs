@@ -1,4 +1,7 @@
-//! What is promised in stiff and extreme cases, tried: each case ends accurate, limited by its input, or with its reason named.
+//! A sweep of ill-conditioned and extreme cases. Each result is accurate, limited by the accuracy of its input, or
+//! refused with a reason.
+//!
+//! Theory: page *Digits* of the book.
 
 mod bodies;
 mod elements;

@@ -1,4 +1,4 @@
-//! Stiff motions, and elements pulled to twice their length and pressed to nothing.
+//! Stiff motions, and elements that are stretched to twice their length or compressed to nothing.
 
 use super::elements::PROMISED;
 use super::outcome::{Family, StabilityRow, Verdict, worst};
@@ -10,14 +10,16 @@ use crate::model::{LengthSpring, Network};
 use crate::stiffness::Geometry;
 use nalgebra::{Complex, Matrix3};
 
-/// Steps, s, and stiffness over mass, 1/s².
+/// The time steps, s.
 const STEPS: [f64; 4] = [1e-6, 1e-4, 1e-2, 1.0];
+/// The ratios of stiffness to mass, 1/s².
 const SQUARES: [f64; 5] = [1.0, 1e4, 1e8, 1e12, 1e14];
+/// The number of steps of each motion.
 const COUNT: i32 = 40;
-/// Of the body length that is left or reached.
+/// The lengths of the compressed or stretched body, relative to that at rest.
 const LENGTHS: [f64; 7] = [2.0, 1.5, 0.5, 0.1, 1e-3, 1e-6, 0.0];
 
-/// Stiff motions of two masses, and the straight elements among these stretched and pressed.
+/// Stiff motions of two masses, and the straight elements among `elements` under stretch and compression.
 ///
 /// # Errors
 /// None but those of shipped files, which are tested.
@@ -39,7 +41,7 @@ pub fn sweep_motions(elements: &[Element]) -> Result<Vec<StabilityRow>> {
     Ok(rows)
 }
 
-/// Two masses on a spring of `k/m = square`, m the reduced mass.
+/// Two masses on a spring with `k/m = square`, where m is the reduced mass.
 fn pair(square: f64, masses: [f64; 2]) -> Network {
     let reduced = 1.0 / (1.0 / masses[0] + 1.0 / masses[1]);
     let lengths = vec![LengthSpring { points: [0, 1], constant: square * reduced, rest: 1.0 }];
@@ -50,7 +52,7 @@ fn case(square: f64, step: f64, kind: &str) -> String {
     format!("k/m = {square:.0e}/s2, step {step:.0e} s, masses {kind}")
 }
 
-/// Implicit Euler of the spring stretched by one against its own closed form, `Re (1 − iωh)⁻ⁿ`.
+/// Implicit Euler on a spring that is stretched by one, compared with its closed form `Re (1 − iωh)⁻ⁿ`.
 fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Solver) -> StabilityRow {
     let method = match solver {
         Solver::Factor => "implicit Euler, factor",
@@ -85,7 +87,7 @@ fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Solver
     row
 }
 
-/// Symplectic Euler: refused beyond its limit, bounded within it.
+/// Symplectic Euler: refused beyond its limit, and bounded within it.
 fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRow {
     let of = |verdict| {
         StabilityRow::new("two masses", Family::Motion, &case(square, step, kind), "symplectic Euler", verdict)
@@ -101,7 +103,7 @@ fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRo
         Ok(simulation) => {
             let longest = simulation.longest_step();
             let error = (longest / limit - 1.0).abs();
-            // The limit is bounded from above by a part in a thousand.
+            // The limit is an upper bound with an error of a thousandth.
             let mut row = of(if error <= 1e-3 { Verdict::Accurate } else { Verdict::Lost }).with_error(error, 1e-3);
             row.step = Some(longest);
             row
@@ -109,7 +111,8 @@ fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRo
     }
 }
 
-/// An element of a neo-Hookean material stretched evenly along x, its energy against `W(F) V`; nothing is left of it at zero.
+/// An element of a neo-Hookean material under uniform stretch along x, its energy compared with `W(F) V`; it is
+/// compressed down to zero length.
 fn collapse(element: &Element) -> Result<Vec<StabilityRow>> {
     let d = element.dimension();
     let plane = (d == 2).then_some(crate::material::Plane::Strain);

@@ -1,36 +1,42 @@
-//! What a sweep finds.
+//! The results of a sweep.
 
 /// What is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Family {
+    /// Poisson's ratio.
     Poisson,
+    /// Young's modulus.
     Young,
+    /// The size of the element.
     Size,
+    /// The distance from the origin.
     Place,
-    /// Stretched along one axis.
+    /// Elements stretched along one axis.
     Needle,
-    /// Flattened along one axis.
+    /// Elements flattened along one axis.
     Cap,
-    /// Flattened across every face.
+    /// Elements flattened such that all nodes approach a plane and no two of them each other.
     Sliver,
     /// Two nodes near each other.
     Near,
-    /// A node between two corners off its middle.
+    /// A node on an edge away from its middle.
     Bent,
     /// A corner of a quadrilateral that opens to 180 degrees.
     Corner,
+    /// Elements with their nodes in the opposite order.
     Reversed,
     /// Regions of different stiffness side by side.
     Contrast,
-    /// Points and cells of a mesh that do not belong together.
+    /// Points and cells of a mesh that do not fit.
     Mesh,
     /// Stiff motions.
     Motion,
-    /// Stretched to twice the length, and down to nothing.
+    /// Elements stretched to twice their length and compressed to nothing.
     Collapse,
 }
 
 impl Family {
+    /// The name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Family::Poisson => "Poisson's ratio",
@@ -52,20 +58,20 @@ impl Family {
     }
 }
 
-/// How a case ended.
+/// The verdict on a case.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
-    /// The error is at most what is promised.
+    /// The error is at most the promised one.
     Accurate,
-    /// The error is more than that, but no more than rounding the input may cost.
+    /// The error is larger, but not larger than the effect of rounding the input.
     InputLimited,
-    /// Springs depend on each other: of all optima the one of least norm was taken.
+    /// The springs are linearly dependent: the optimum of least norm is returned.
     Dependent,
-    /// No answer, for this reason.
+    /// There is no result, for this reason.
     Refused(String),
-    /// An answer, and what is to be known of it.
+    /// There is a result, with this remark.
     Told(String),
-    /// The error is more than it may be: a fault of the program.
+    /// The error is larger than allowed: a fault of the program.
     Lost,
 }
 
@@ -73,6 +79,7 @@ impl Verdict {
     /// The names, in the order of the variants.
     pub const NAMES: [&'static str; 6] = ["accurate", "input-limited", "dependent", "refused", "told", "LOST"];
 
+    /// The name in reports.
     pub fn name(&self) -> &'static str {
         let place = match self {
             Verdict::Accurate => 0,
@@ -85,7 +92,7 @@ impl Verdict {
         Verdict::NAMES[place]
     }
 
-    /// The reason or the remark; empty where the name says all.
+    /// The reason or the remark; empty if there is none.
     pub fn words(&self) -> &str {
         match self {
             Verdict::Refused(words) | Verdict::Told(words) => words,
@@ -94,7 +101,7 @@ impl Verdict {
     }
 }
 
-/// The largest; infinite if one is not a number.
+/// The largest error; infinite if one is NaN.
 pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
     errors.into_iter().fold(0.0, |worst, error| {
         if error <= worst {
@@ -107,35 +114,40 @@ pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
     })
 }
 
-/// What came of one case by one method. What a case has not is `None`.
+/// The result of one case with one method. A number that the case does not have is `None`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StabilityRow {
-    /// The element, or what else is tried.
+    /// The element, or another subject.
     pub subject: String,
+    /// What is varied.
     pub family: Family,
+    /// The value that it has.
     pub case: String,
     /// The objective, the solver or the integrator.
     pub method: String,
+    /// The verdict.
     pub verdict: Verdict,
-    /// Relative to the largest: of the constants from twice the digits; of spectral fits the proven distance from the optimum; of
-    /// bodies and motions from closed forms.
+    /// The relative error: of constants from double-double results; for spectral fits the proven distance from the
+    /// optimum; of bodies and motions from closed forms.
     pub error: Option<f64>,
-    /// What the error may be.
+    /// The allowed error.
     pub allowed: Option<f64>,
     /// The same error in single precision.
     pub single: Option<f64>,
-    /// Of the normal equations, or of the assembled system, both scaled to a unit diagonal.
+    /// The condition number of the normal equations, or of the assembled system, both scaled to a unit diagonal.
     pub condition: Option<f64>,
-    /// Constants below zero, of how many.
+    /// The number of negative constants, and the number of all.
     pub negative: Option<[usize; 2]>,
-    /// The least eigenvalue of the network's stiffness beyond rigid motions, relative to the largest.
+    /// The least eigenvalue of the network's stiffness without rigid motions, relative to the largest.
     pub softest: Option<f64>,
     /// The longest stable explicit step, s, with a density of 1000 kg/m³.
     pub step: Option<f64>,
+    /// The number of iterations.
     pub iterations: Option<usize>,
 }
 
 impl StabilityRow {
+    /// A result without numbers.
     pub fn new(subject: &str, family: Family, case: &str, method: &str, verdict: Verdict) -> StabilityRow {
         StabilityRow {
             subject: subject.into(),
@@ -154,24 +166,26 @@ impl StabilityRow {
         }
     }
 
-    /// With this error, which may be so large.
+    /// The same result with this error and this allowed error.
     pub fn with_error(mut self, error: f64, allowed: f64) -> StabilityRow {
         (self.error, self.allowed) = (Some(error), Some(allowed));
         self
     }
 }
 
-/// A whole sweep.
+/// The results of a whole sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StabilityOutcome {
     /// What was swept.
     pub title: String,
+    /// The results of all cases.
     pub rows: Vec<StabilityRow>,
+    /// The time of the sweep, s.
     pub seconds: f64,
 }
 
 impl StabilityOutcome {
-    /// The rows whose error is more than it may be.
+    /// The results with an error that is larger than allowed.
     pub fn lost(&self) -> impl Iterator<Item = &StabilityRow> {
         self.rows.iter().filter(|row| row.verdict == Verdict::Lost)
     }

@@ -1,4 +1,4 @@
-//! A scene in other materials and other sizes: what must stay the same, and what the networks become.
+//! A scene with other materials and other sizes: what must stay the same, and how the networks change.
 
 use super::elements::PROMISED;
 use super::outcome::{Family, StabilityOutcome, StabilityRow, Verdict, worst};
@@ -13,19 +13,22 @@ use crate::study::run::run;
 use crate::study::scene::{Output, Scene};
 use std::time::Instant;
 
+/// Poisson's ratios, up to nearly incompressible.
 const RATIOS: [f64; 8] = [-0.9, -0.5, 0.0, 0.3, 0.45, 0.49, 0.499, 0.499999];
-/// Factors of Young's modulus and of all lengths.
+/// The factors on Young's modulus.
 const STIFFER: [f64; 6] = [1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12];
+/// The factors on all lengths.
 const LONGER: [f64; 5] = [1e-7, 1e-3, 10.0, 1e4, 1e8];
-/// kg/m³, where the scene has none.
+/// The density if the scene has none, kg/m³.
 const DENSITY: f64 = 1000.0;
 
-/// Runs the scene in each case: the fits of single cells and their displacements, without motion, gauge and outputs. Errors of
-/// displacements must not depend on units: `e_rms` of each load against that of the scene as it is, as a share of the largest
-/// displacement. Lengths are varied where no condition or expression of the scene is in metres.
+/// Runs the scene in each case: the fits of single cells and their displacements, without motion, gauge and outputs.
+///
+/// Errors of displacements must not depend on units: `e_rms` of each load is compared with that of the unchanged scene,
+/// as a share of the largest displacement. Lengths are varied if no condition or expression of the scene is in metres.
 ///
 /// # Errors
-/// The scene itself does not run, has a law, or no fit of single cells.
+/// The scene itself does not run, has a law, or has no fit of single cells.
 pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOutcome> {
     let start = Instant::now();
     if scene.law().is_some() {

@@ -1,4 +1,4 @@
-//! Cases of one element: materials, sizes, places and shapes from the ordinary to the impossible.
+//! The cases of one element: materials, sizes, positions and shapes, from ordinary to impossible ones.
 
 use super::outcome::Family;
 use crate::element::{Cell, Element};
@@ -7,36 +7,44 @@ use crate::material::{Material, Plane};
 use crate::study::shapes::random_shapes;
 use nalgebra::{Rotation3, Vector3};
 
+/// The seed of the ordinary shape.
 const SEED: u64 = 8;
+/// Young's modulus of the ordinary case, Pa.
 const YOUNG: f64 = 10e3;
+/// Poisson's ratio of the ordinary case.
 const POISSON: f64 = 0.3;
-/// m.
+/// The size of the ordinary case, m.
 const SIZE: f64 = 0.01;
 
+/// Poisson's ratios, from nearly −1 to nearly incompressible.
 const RATIOS: [f64; 10] = [-0.99, -0.9, -0.5, 0.0, 0.25, 0.4, 0.49, 0.499, 0.4999, 0.499999];
-/// Decades of what is varied, least, largest and step.
+/// The powers of ten of Young's modulus relative to the ordinary case: least, largest and step.
 const MODULI: [i32; 3] = [-12, 15, 3];
+/// The same for the size.
 const SIZES: [i32; 3] = [-9, 7, 2];
+/// The same for the distance from the origin, relative to the size.
 const PLACES: [i32; 3] = [0, 8, 2];
+/// The same for the length of needles, relative to their width.
 const ASPECTS: [i32; 3] = [1, 8, 1];
+/// The same for the height of flat elements, relative to their width.
 const FLATNESS: [i32; 3] = [-14, -2, 2];
-/// Shares of the way from a node between two corners to the first of them.
+/// The positions of nodes on edges: shares of the way from the middle to the first corner.
 const BENT: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.45, 0.49, 0.6];
-/// Where a corner is on its way to the middle of its neighbours: beyond it at the last.
+/// The position of a corner on its way to the middle of its neighbours; the last one is beyond it.
 const CORNERS: [f64; 4] = [0.9, 0.99, 1.0, 1.1];
 
 /// One shape of one material.
 #[derive(Debug, Clone)]
 pub struct ShapeCase {
     pub family: Family,
-    /// What is asked for, in words.
+    /// What is varied, and its value, in words.
     pub name: String,
-    /// `[nodes × dimension]`, m.
+    /// The positions of the nodes, `[nodes × dimension]`, m.
     pub x: Vec<f64>,
     pub material: Material,
 }
 
-/// Every case of the element, those of one family in ascending order.
+/// Every case of the element; those of one family in ascending order.
 ///
 /// # Errors
 /// No valid shape of the element is found.
@@ -84,7 +92,7 @@ pub fn shape_cases(element: &Element) -> Result<Vec<ShapeCase>> {
         add(Family::Cap, format!("1 : 1e{decade}"), x, usual);
     }
     for decade in decades(FLATNESS) {
-        // Through no face of a box or a simplex.
+        // A direction that is normal to no face of a box or a simplex.
         let along: Vec<f64> = (0..d).map(|k| if k + 1 == d { -1.0 } else { 1.0 }).collect();
         add(Family::Sliver, format!("1 : 1e{decade}"), scaled(&plain, d, &along, 10f64.powi(decade)), usual);
     }
@@ -119,7 +127,7 @@ fn decades([least, largest, step]: [i32; 3]) -> impl Iterator<Item = i32> {
     (least..=largest).step_by(step as usize)
 }
 
-/// Lengths along a direction times `factor`.
+/// The shape with lengths along a direction multiplied by `factor`.
 fn scaled(x: &[f64], d: usize, direction: &[f64], factor: f64) -> Vec<f64> {
     let square: f64 = direction.iter().map(|v| v * v).sum();
     let image = |x: &[f64]| {
@@ -129,7 +137,7 @@ fn scaled(x: &[f64], d: usize, direction: &[f64], factor: f64) -> Vec<f64> {
     x.chunks_exact(d).flat_map(image).collect()
 }
 
-/// Turned by angles that put no axis along another.
+/// The shape rotated by angles that align no axes.
 fn turned(x: &[f64], d: usize) -> Vec<f64> {
     let turn = match d {
         3 => Rotation3::from_euler_angles(0.3, 0.7, 1.1),
@@ -142,12 +150,12 @@ fn turned(x: &[f64], d: usize) -> Vec<f64> {
     x.chunks_exact(d).flat_map(image).collect()
 }
 
-/// Node `a` this share of the way to the middle of the nodes `to`.
+/// The shape with node `a` moved by this share of the way to the middle of the nodes `to`.
 fn moved(x: &[f64], d: usize, a: usize, to: &[usize], share: f64) -> Vec<f64> {
     let mut moved = x.to_vec();
     for k in 0..d {
         let middle = to.iter().map(|b| x[b * d + k]).sum::<f64>() / to.len() as f64;
-        // From the middle, so that little of the way is told to all digits.
+        // Computed from the middle, so that a small remaining distance has all digits.
         moved[a * d + k] = middle + (1.0 - share) * (x[a * d + k] - middle);
     }
     moved

@@ -1,4 +1,4 @@
-//! The sweep of one element, or of the usual ones with bodies and motions.
+//! The sweep of one element, or of the usual elements, bodies and motions.
 
 use super::bodies::sweep_bodies;
 use super::elements::sweep_element;
@@ -9,10 +9,10 @@ use crate::error::Result;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
-/// Shipped elements of so many nodes are swept where nothing is named; larger ones take a minute each.
+/// The largest number of nodes of the elements that are swept by default; larger ones take a minute each.
 const NODES: usize = 10;
 
-/// Sweeps one element, or else the usual ones, bodies and motions.
+/// Sweeps one element, or else the usual elements, bodies and motions.
 ///
 /// # Errors
 /// An element has no valid shape.

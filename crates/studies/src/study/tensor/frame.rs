@@ -3,8 +3,8 @@
 use super::sample::Sample;
 use nalgebra::{DMatrix, DVector};
 
-/// Orthonormal directions that span the points of a sample best, `[space × d]`, and their distance from that plane or line as a
-/// share of their extent, root mean squares.
+/// Orthonormal directions of the plane or line that fits the points of a sample best, `[space × d]`, and the root mean
+/// square distance of the points from it, relative to their extent.
 pub(super) fn frame(sample: &Sample, d: usize) -> (DMatrix<f64>, f64) {
     let space = sample.mesh.dimension;
     if d == space {

@@ -1,9 +1,9 @@
-//! Elasticity tensors as matrices in Kelvin's notation, whose norms are those of the tensors whatever the axes.
+//! Elasticity tensors as matrices in Kelvin's notation, whose norms are those of the tensors in any axes.
 
 use crate::material::{Material, State};
 use nalgebra::DMatrix;
 
-/// The orthonormal strains, `e_k e_k`, then `(e_k e_l + e_l e_k)/√2`, each `[d × d]`.
+/// The orthonormal strains `e_k e_k`, then `(e_k e_l + e_l e_k)/√2`, each `[d × d]`.
 pub(super) fn basis(d: usize) -> Vec<DMatrix<f64>> {
     let unit = |k: usize, l: usize| {
         let mut strain = DMatrix::zeros(d, d);
@@ -15,7 +15,7 @@ pub(super) fn basis(d: usize) -> Vec<DMatrix<f64>> {
     (0..d).map(|k| (k, k)).chain(shears).map(|(k, l)| unit(k, l)).collect()
 }
 
-/// `C₀ = λ I ⊗ I + 2μ`, Pa; in the plane times the thickness, of a rod times its cross-section.
+/// `C₀ = λ I ⊗ I + 2μ`, Pa; in the plane multiplied by the thickness, for a rod by its cross-section.
 pub(super) fn of_material(material: Material) -> DMatrix<f64> {
     let (moduli, d) = (material.moduli(), material.state().dimension());
     let size = d * (d + 1) / 2;
@@ -28,14 +28,14 @@ pub(super) fn distance(stiffness: &DMatrix<f64>, asked: &DMatrix<f64>) -> f64 {
     (stiffness - asked).norm() / asked.norm()
 }
 
-/// Young's modulus, Pa, and Poisson's ratio of a body in this state, means over all directions of tension: with
-/// `S = C⁻¹`, n and m orthogonal,
+/// Young's modulus, Pa, and Poisson's ratio of a body in this state, as means over all directions of tension. With
+/// `S = C⁻¹` and n, m orthogonal,
 ///
 /// ```text
 /// 1/E = ⟨nn : S : nn⟩,   −ν/E = ⟨nn : S : mm⟩
 /// ```
 ///
-/// `None` where some strain meets no resistance or the slope of a force is infinite; a rod has no Poisson's ratio.
+/// `None` if some strain meets no resistance or a slope is infinite; a rod has no Poisson's ratio.
 pub(super) fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, Option<f64>)> {
     let (d, size) = (state.dimension(), stiffness.nrows());
     if !stiffness.iter().all(|c| c.is_finite()) {
@@ -55,7 +55,7 @@ pub(super) fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, 
     let (young, poisson) = match state {
         State::Rod { .. } => (young, None),
         State::Solid | State::PlaneStress { .. } => (young, Some(poisson)),
-        // Plane strain is the plane stress of E/(1 − ν²), ν/(1 − ν).
+        // Plane strain is the plane stress of E/(1 − ν²) and ν/(1 − ν).
         State::PlaneStrain { .. } => {
             let poisson = poisson / (1.0 + poisson);
             (young * (1.0 - poisson * poisson), Some(poisson))
@@ -64,5 +64,5 @@ pub(super) fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, 
     Some((young / state.thickness(), poisson))
 }
 
-/// The least eigenvalue as a share of the largest that is not taken for rounding.
+/// The least eigenvalue, relative to the largest, that is not a rounding error.
 const LEAST: f64 = 1e-12;

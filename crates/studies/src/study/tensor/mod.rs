@@ -1,4 +1,4 @@
-//! The elasticity tensor of a network, at next to no cost.
+//! The elasticity tensor of a network, measured on samples of its cells at little cost.
 
 mod frame;
 mod isotropic;

@@ -1,4 +1,4 @@
-//! What a network is as a material, measured on samples of its cells.
+//! A network as a material, measured on samples of its cells.
 
 use super::frame::frame;
 use super::isotropic::{constants, distance, of_material};
@@ -13,45 +13,48 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// How many samples are taken at most. On unstructured tetrahedra samples differ by a tenth of their distance.
+/// The largest number of samples. On unstructured tetrahedra the distances of samples differ by a tenth.
 const SAMPLES: usize = 6;
-/// Each has the cells around so many points. More points relax more: on unstructured tetrahedra the distance of classical fits is
-/// 0.70 to 0.80 of single cells, 0.31 of the cells around 1 point, 0.165 around 8, 0.137 around 30, 0.124 around 100, and 0.115
-/// around 300, for 170 times the time.
+/// The number of points whose cells form a sample. More points allow more relaxation: on unstructured tetrahedra the
+/// distance of classical fits is 0.70 to 0.80 with single cells, 0.31 with the cells around 1 point, 0.165 around 8,
+/// 0.137 around 30, 0.124 around 100, and 0.115 around 300, which takes 170 times as long.
 const POINTS: usize = 30;
-/// Heights above its plane, as a share of the size of a sample, that are rounding.
+/// Heights above the plane of a sample, relative to its size, that are rounding errors.
 const FLAT: f64 = 1e-9;
 
-/// What a network is as a material.
+/// A network as a material.
 ///
-/// Of each sample, all cells around 30 neighbouring points, the boundary is strained and the points inside find their places: the
-/// energies give the elasticity tensor C of the sample, with normal–shear coupling and anisotropy. An affine strain of every point
-/// would miss that neighbours give way to each other; one tensor of the whole network would miss what differs from place to place.
+/// The boundary of each sample, which has all cells around 30 neighbouring points, is strained, and the points inside
+/// find their equilibrium. The energies give the elasticity tensor C of the sample, with normal–shear coupling and
+/// anisotropy. An affine strain of every point would ignore that neighbours give way to each other; a single tensor of
+/// the whole network would ignore variations in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NetworkMaterial {
-    /// The mean of the samples' tensors in Kelvin's notation, `σ = C ε` with strains xx, yy, (zz,) and √2 times xy, (xz, yz);
-    /// Pa, in the plane times the thickness, of a rod times its cross-section. On surfaces and curves in the directions of each
-    /// sample.
+    /// The mean of the tensors of the samples in Kelvin's notation, `σ = C ε` with the strains xx, yy, (zz,) and √2
+    /// times xy, (xz, yz); Pa, in the plane multiplied by the thickness, for a rod by its cross-section. On surfaces
+    /// and curves in the directions of each sample.
     pub stiffness: DMatrix<f64>,
-    /// Young's modulus of the mean tensor, Pa, harmonic mean over all directions of tension; `None` where some strain meets no
-    /// resistance or releases energy.
+    /// Young's modulus of the mean tensor, Pa, the harmonic mean over all directions of tension; `None` if some strain
+    /// meets no resistance or releases energy.
     pub young: Option<f64>,
-    /// Poisson's ratio of the mean tensor, mean over all directions; `None` as above, and of a rod.
+    /// Poisson's ratio of the mean tensor, the mean over all directions; `None` as for `young`, and for a rod.
     pub poisson: Option<f64>,
-    /// `‖C − C₀‖/‖C₀‖`, root mean square over the samples; C₀ is that of the material. Frobenius norm of the tensors, which does
-    /// not depend on the axes.
+    /// The relative distance `‖C − C₀‖/‖C₀‖` in the Frobenius norm, which does not depend on the axes; root mean square
+    /// over the samples. C₀ is the tensor of the material.
     pub distance: f64,
-    /// The same of the mean tensor: the part that does not differ from place to place.
+    /// The relative distance of the mean tensor: the part that does not vary in space.
     pub mean_distance: f64,
-    /// The same of the worst sample.
+    /// The relative distance of the worst sample.
     pub largest_distance: f64,
+    /// The number of samples.
     pub samples: usize,
-    /// For this, s.
+    /// The time of this measurement, s.
     pub seconds: f64,
 }
 
-/// Measures a network that was fitted to `material`, at rest. `cells` has the springs of each block of cells; empty where the
-/// springs belong to no cell, as in whole-object fits: then each spring is shared equally among the cells that have all its points.
+/// Measures a network that was fitted to `material`, at rest. `cells` has the springs of each block of cells. It is
+/// empty if the springs belong to no cell, as those of whole-object fits; each spring is then shared equally among the
+/// cells that have all of its points.
 ///
 /// On curved surfaces and curves the samples are single cells, each in its own plane.
 pub fn network_material(mesh: &Mesh, material: Material, cells: &[CellFits], network: &Network) -> NetworkMaterial {

@@ -8,13 +8,13 @@ use crate::springs::{Measure, Patch};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Springs that belong to a sample, and those of its interior points that reach out of it.
+/// The springs that belong to a sample, and the springs of its interior points that extend beyond it.
 pub(super) struct Piece {
-    /// Its points are those of the sample, then those that springs reach outside.
+    /// Its points are those of the sample, then the outer ends of springs.
     pub(super) network: Network,
-    /// `[points × dimension]`, m.
+    /// The positions of the points, `[points × dimension]`, m.
     pub(super) points: Vec<f64>,
-    /// What share of each spring belongs to the sample, lengths first.
+    /// The share of each spring that belongs to the sample, length springs first.
     pub(super) shares: Vec<f64>,
     pub(super) patches: Vec<PatchSpring>,
 }
@@ -23,17 +23,17 @@ pub(super) struct Piece {
 pub(super) struct PatchSpring {
     /// The points of the piece that it measures.
     pub(super) points: Vec<usize>,
-    /// g, `[points · dimension]`.
+    /// The gradient g, `[points · dimension]`.
     pub(super) gradient: Vec<f64>,
-    /// k, the slope of its force.
+    /// The slope k of its force.
     pub(super) slope: f64,
-    /// What share of it belongs to the sample.
+    /// The share of it that belongs to the sample.
     pub(super) share: f64,
 }
 
 impl Piece {
-    /// The springs of the sample's cells. Of springs on the content of patches belongs to the sample what the sample has of that
-    /// content.
+    /// The springs of the cells of the sample. A spring on the content of a patch belongs to the sample by the share of
+    /// that content that is in the sample.
     pub(super) fn of_cells(mesh: &Mesh, sample: &Sample, cells: &[CellFits], whole: &Network) -> Piece {
         let fits: Vec<CellFits> = cells.iter().zip(&sample.cells).map(|(fits, cells)| fits.of_cells(cells)).collect();
         let network = Network::assemble(&sample.mesh, &fits);
@@ -82,8 +82,8 @@ impl Piece {
         }
     }
 
-    /// The springs of a network that belong to no cell: each is shared equally among the cells that have all its points, or, where no
-    /// cell has, among those that have any. Patches are as in [`Piece::of_cells`].
+    /// The springs of a network that belong to no cell: each is shared equally among the cells that have all of its
+    /// points or, if there is none, among those that have any. Patches are as in [`Piece::of_cells`].
     pub(super) fn of_network(mesh: &Mesh, stars: &Stars, sample: &Sample, whole: &Network) -> Piece {
         let has = |cell: usize, point: usize| stars.points(cell).contains(&point);
         let share_of = |cells: &mut dyn Iterator<Item = usize>| {

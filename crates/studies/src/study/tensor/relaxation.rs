@@ -1,4 +1,4 @@
-//! The elasticity tensor of a piece of a network whose boundary is strained.
+//! The elasticity tensor of a piece of a network with a strained boundary.
 
 use super::isotropic::basis;
 use super::piece::{PatchSpring, Piece};
@@ -6,21 +6,22 @@ use super::sample::Sample;
 use crate::model::{Entries, content};
 use nalgebra::{DMatrix, DVector};
 
-/// C of a sample, `[strains × strains]`, Pa, from the energies `V/2 ε : C : ε` under `u = ε x` of all points but those inside the
-/// sample, which find their places; in the plane times the thickness, of a rod times its cross-section.
+/// C of a sample, `[strains × strains]`, Pa, from the energies `V/2 ε : C : ε` under `u = ε x` of all points except
+/// those inside the sample, which are in equilibrium; in the plane multiplied by the thickness, for a rod by its
+/// cross-section.
 ///
 /// ```text
 /// V C = Uᵀ K_s U − Fᵀ K_ii⁻¹ F,    F = K_i U
 /// ```
 ///
-/// U are the unit strains of [`basis`] at the points; K_s is the stiffness of the sample's share of each spring, K_i and K_ii the
-/// rows of the points inside, in whose equations every spring has its whole force. All have the geometric stiffness of springs that
-/// pull at rest. The columns of `frame`, `[space × dimension of the cells]`, are orthonormal: of flat samples in space only what
-/// moves in their plane counts.
+/// U are the unit strains of [`basis`] at the points. K_s is the stiffness of the sample's share of each spring; K_i
+/// and K_ii are the rows of the points inside, in whose equations every spring has its whole force. All contain the
+/// geometric stiffness of springs that pull at rest. The columns of `frame`, `[space × dimension of the cells]`, are
+/// orthonormal: for flat samples in space only motions in their plane count.
 pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DMatrix<f64> {
     let (space, d) = (sample.mesh.dimension, frame.ncols());
     let basis = basis(d);
-    // From one of its own points: bodies far from the origin lose no digits.
+    // Relative to one of its own points, so that bodies far from the origin lose no digits.
     let x = DMatrix::from_fn(space, piece.points.len() / space, |k, p| piece.points[p * space + k] - piece.points[k]);
     let volume = content(&sample.mesh);
     let strained: Vec<DVector<f64>> = basis
@@ -73,7 +74,7 @@ pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DM
     (affine - force.tr_mul(&solve(inner, &force))) / volume
 }
 
-/// With the directions of the frame alone.
+/// The parts in the directions of the frame.
 fn in_frame(inner: DMatrix<f64>, force: DMatrix<f64>, frame: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
     let (space, d) = frame.shape();
     if space == d {
@@ -85,7 +86,7 @@ fn in_frame(inner: DMatrix<f64>, force: DMatrix<f64>, frame: &DMatrix<f64>) -> (
     (q.tr_mul(&(inner * &q)), q.tr_mul(&force))
 }
 
-/// `K⁻¹ F`; of motions without stiffness nothing.
+/// `K⁻¹ F`; zero for motions without stiffness.
 fn solve(inner: DMatrix<f64>, force: &DMatrix<f64>) -> DMatrix<f64> {
     if let Some(factor) = inner.clone().cholesky() {
         return factor.solve(force);

@@ -1,33 +1,33 @@
-//! Parts of a mesh: the cells around a few neighbouring points.
+//! Samples of a mesh: the cells around some neighbouring points.
 
 use crate::mesh::{CellBlock, Mesh, Quality, Selection};
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
-/// Points of a sample after which no more cells are taken: equations are solved densely.
+/// The number of points of a sample at which no further cells are added, because its equations are solved densely.
 const ENOUGH: usize = 150;
 
-/// Which cells each point belongs to.
+/// The cells of each point.
 pub(super) struct Stars<'a> {
     mesh: &'a Mesh,
-    /// Where the cells of each point begin, `[points + 1]`.
+    /// The index at which the cells of each point begin, `[points + 1]`.
     starts: Vec<usize>,
-    /// Cells, counted through all blocks, grouped by the point.
+    /// Cells, numbered through all blocks, grouped by point.
     cells: Vec<usize>,
-    /// The first cell of each block.
+    /// The number of the first cell of each block.
     firsts: Vec<usize>,
 }
 
-/// A few cells of a mesh.
+/// Some cells of a mesh.
 pub(super) struct Sample {
-    /// With points of its own.
+    /// The cells as a mesh with points of its own.
     pub(super) mesh: Mesh,
-    /// The number of each of its points in the whole mesh.
+    /// The index of each of its points in the whole mesh.
     pub(super) points: Vec<usize>,
-    /// The place of each of these points.
+    /// The index in the sample of each of these points.
     pub(super) places: HashMap<usize, usize>,
-    /// Its cells, in each block.
+    /// Its cells, by block.
     pub(super) cells: Vec<Vec<usize>>,
-    /// Its points all of whose cells are in it and that are not on the surface of the body.
+    /// The points that are not on the surface of the body and whose cells are all in the sample.
     pub(super) interior: Vec<usize>,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Stars<'a> {
         &connectivity[cell * element.nodes()..(cell + 1) * element.nodes()]
     }
 
-    /// Block and number in it.
+    /// The block of a cell, and its index there.
     fn place(&self, cell: usize) -> (usize, usize) {
         let block = self.firsts.partition_point(|first| *first <= cell) - 1;
         (block, cell - self.firsts[block])
@@ -78,7 +78,8 @@ impl<'a> Stars<'a> {
         sample.cells[block].binary_search(&cell).is_ok()
     }
 
-    /// All cells around `count` points, the nearest to `seed` by the number of cells between; fewer where cells have many nodes.
+    /// All cells around `count` points, those nearest to `seed` by the number of cells between them; fewer if cells
+    /// have many nodes.
     pub(super) fn sample(&self, seed: usize, count: usize) -> Sample {
         let mut queue = VecDeque::from([seed]);
         let (mut places, mut points) = (HashMap::from([(seed, 0)]), vec![seed]);
@@ -100,7 +101,7 @@ impl<'a> Stars<'a> {
         self.gather(cells, points, places)
     }
 
-    /// One cell.
+    /// A sample of one cell.
     pub(super) fn single(&self, cell: usize) -> Sample {
         let points = self.points(cell).to_vec();
         let places = points.iter().enumerate().map(|(place, &point)| (point, place)).collect();
@@ -143,7 +144,7 @@ impl<'a> Stars<'a> {
     }
 }
 
-/// The points at the ends of cells that are lines, which have no sides, and whether a single one of them ends there.
+/// The end points of cells that are lines, which have no sides, and whether only one cell ends there.
 fn ends(mesh: &Mesh) -> HashMap<usize, bool> {
     let mut ends = HashMap::new();
     for block in mesh.blocks.iter().filter(|block| block.element.dimension() == 1) {

@@ -1,4 +1,4 @@
-//! Natural frequencies of the finite elements and the networks of a scene, side by side.
+//! Natural frequencies of the finite elements and the networks of a scene.
 
 use super::raised::{RELEASE, Raised};
 use crate::error::{Error, Result};
@@ -9,14 +9,14 @@ use crate::study::outcome::{FrequencyOutcome, Outcome};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 
-/// Share of the largest ω² by which all are raised where some motion meets no stiffness.
+/// The share of the largest ω² by which all are shifted if some motion has no stiffness.
 const SHIFT: f64 = 1e-4;
 
-/// Of the finite elements and of each network, with what `[[fix]]` holds. Masses are row sums, or where these are not positive
-/// those of HRZ, unless the scene's motion says which.
+/// The frequencies of the finite elements and of each network, with the `[[fix]]` support. Masses are row sums or, if
+/// these are not positive, those of the HRZ method, unless the motion of the scene says which.
 ///
 /// # Errors
-/// There are not so many. That a model has none is no error.
+/// There are fewer frequencies than requested. A model without frequencies is not an error.
 pub fn natural_frequencies(
     scene: &Scene,
     support: &Support,
@@ -58,14 +58,14 @@ pub fn natural_frequencies(
 struct Vibrations<'a> {
     mesh: &'a Mesh,
     support: &'a Support,
-    /// `[points]`, kg.
+    /// The masses, `[points]`, kg.
     masses: &'a [f64],
     rigid: usize,
     count: usize,
 }
 
 impl Vibrations<'_> {
-    /// Hz.
+    /// The frequencies, Hz.
     fn of(&self, stiffness: &Entries) -> Result<Vec<f64>> {
         let d = self.mesh.dimension;
         let system = System::new(stiffness, self.support)?;

@@ -1,4 +1,6 @@
-//! What a scene does over time: motions and natural frequencies.
+//! The behaviour of a scene in time: motions and natural frequencies.
+//!
+//! Theory: page *Dynamics* of the book.
 
 mod frequencies;
 mod motion;

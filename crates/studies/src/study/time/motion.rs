@@ -1,4 +1,4 @@
-//! The finite elements and the networks of a scene in motion.
+//! The motion of the finite elements and the networks of a scene.
 
 use super::raised::{RELEASE, Raised};
 use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation};
@@ -12,32 +12,32 @@ use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, MotionRecipe};
 use std::time::Instant;
 
-/// A displacement of so many times the body's size is none.
+/// A displacement of this multiple of the body's size means that the motion has diverged.
 const AWAY: f64 = 1e9;
-/// Where linear finite elements are strained or turned by more than this, in rad, springs that turn go another way by half of it: what
-/// of their error is the fit's is worked out without that.
+/// If linear finite elements are strained or rotated by more than this, in rad, springs that rotate deviate from them
+/// by half of it: the error that the fit causes is then computed with springs that do not rotate.
 const TURNING: f64 = 0.01;
 
-/// What moves a scene's models.
+/// A motion that has been checked on its mesh.
 pub struct Planned {
     pub recipe: MotionRecipe,
-    /// What `[[fix]]` holds and what is pulled.
+    /// The support of `[[fix]]` and of prescribed motions.
     pub support: Support,
     pub drive: Drive,
-    /// `[points]`, kg.
+    /// The masses, `[points]`, kg.
     pub masses: Vec<f64>,
-    /// Points whose mean displacement is written.
+    /// The points whose mean displacement is written.
     pub watched: Vec<usize>,
-    /// Steps at whose end a state is written.
+    /// The steps at whose end a state is written.
     pub written: Vec<usize>,
-    /// Whether the states are wanted after the motion.
+    /// Whether the states are needed after the motion.
     pub draws: bool,
 }
 
-/// Moves the finite elements, if they are to be, and every network of `outcome`; `energy` is that of the material's law.
+/// Moves the finite elements, if requested, and every network of `outcome`; `energy` is that of the material's law.
 ///
 /// # Errors
-/// A step is beyond the limit of an explicit method, or the equations do not fit into memory.
+/// A step exceeds the limit of an explicit method, or the equations do not fit into memory.
 pub fn move_models(
     planned: &Planned,
     energy: Option<&Energy>,
@@ -88,7 +88,7 @@ pub fn move_models(
         let model = fit.network.prepared();
         let (mut made, states) = run.follow((&fit.fit.name, growth), &model, damping, options, keeps, progress)?;
         made.fit = Some(i);
-        // None where the finite elements do not move, or an error is not finite.
+        // None if the finite elements do not move, or an error is not finite.
         let errors = |states: &[Vec<f64>]| -> Vec<Option<f64>> {
             let rms = |(u, fem): (&Vec<f64>, &Vec<f64>)| {
                 let apart: Vec<f64> = u.iter().zip(fem).map(|(a, b)| a - b).collect();
@@ -120,7 +120,7 @@ fn square(u: &[f64]) -> f64 {
 }
 
 impl Planned {
-    /// Of a network, or of the finite elements.
+    /// The damping of a network, or of the finite elements.
     fn damping(&self, network: Option<&Network>, mesh: &Mesh) -> Result<Damping> {
         Ok(match (self.recipe.damping, network) {
             (DampingRecipe::Ratio(ratio), Some(network)) => {
@@ -139,7 +139,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// One model from rest to the end, and its displacements at the records where they are kept.
+    /// Moves one model from rest to the end; returns its displacements at the records if they are kept.
     fn follow(
         &self,
         (name, growth): (&str, Option<f64>),
@@ -220,7 +220,7 @@ impl Run<'_> {
     }
 }
 
-/// What is told of a network before it moves.
+/// The note about an indefinite network before it moves.
 fn indefinite(name: &str, network: &Network) -> String {
     let worst = network.most_negative(3).into_iter().map(|(points, constant)| {
         let points: Vec<String> = points.iter().map(|p| (p + 1).to_string()).collect();
@@ -236,9 +236,9 @@ fn indefinite(name: &str, network: &Network) -> String {
     )
 }
 
-/// How fast the fastest motion grows that releases energy, 1/s, to a tenth; `None` where none does.
+/// The growth rate of the fastest motion that releases energy, 1/s, to a tenth; `None` if there is none.
 ///
-/// `K + σ M` is positive definite from `σ = −ω²` of the lowest mode on.
+/// `K + σ M` is positive definite for `σ > −ω²` of the lowest mode.
 fn growth(network: &Network, mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
     network.check_size()?;
     let stiffness = network.stiffness(&mesh.points);

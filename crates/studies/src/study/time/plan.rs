@@ -1,4 +1,4 @@
-//! What a scene does in time, proved on its mesh before any work is done.
+//! The motion and the vibrations of a scene, checked on its mesh before any work is done.
 
 use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
@@ -13,31 +13,35 @@ use crate::study::progress::Progress;
 use crate::study::scene::{AppliedForce, MotionRecipe, Part, PrescribedMotion, Scene};
 use crate::symbolic::{Expr, Program};
 
-/// Bytes of displacements that are kept until they are written or compared.
+/// The largest number of bytes of displacements that are kept until they are written or compared.
 const MOST_BYTES: f64 = 4e9;
-/// A curve is tried at so many times at most, whether it is finite there.
+/// The largest number of times at which a curve is evaluated to check that it is finite.
 const TRIALS: usize = 100_000;
 
-/// The motion and the vibrations that a scene asks for.
+/// The motion and the vibrations that a scene requests.
 pub struct TimePlan {
-    /// What `[[fix]]` holds.
+    /// The `[[fix]]` support.
     support: Support,
     motion: Option<Planned>,
 }
 
 impl TimePlan {
+    /// Checks the motion and the vibrations of a scene on its mesh.
+    ///
     /// # Errors
-    /// A part of the mesh is empty or unknown, a list has the wrong length, what moves is held, or a point that moves has no mass.
+    /// A part of the mesh is empty or unknown, a list has the wrong length, a driven degree of freedom is held, or a
+    /// point that moves has no mass.
     pub fn of(scene: &Scene, mesh: &Mesh, material: Material, support: &Support) -> Result<TimePlan> {
         let at = |e: Error| e.placed(|e| scene.at("motion", e));
         let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
         Ok(TimePlan { support: support.clone(), motion: scene.motion().map(plan).transpose()? })
     }
 
-    /// Moves the finite elements and the networks of `outcome`, and finds their frequencies, where that is asked for.
+    /// Moves the finite elements and the networks of `outcome` and computes their frequencies, as far as the scene
+    /// requests it.
     ///
     /// # Errors
-    /// A step is beyond the limit of an explicit method, or more frequencies are asked for than there are.
+    /// A step exceeds the limit of an explicit method, or there are fewer frequencies than requested.
     pub fn follow(
         &self,
         scene: &Scene,
@@ -112,7 +116,7 @@ fn points(mesh: &Mesh, part: &Part) -> Result<Vec<usize>> {
     }
 }
 
-/// Adds one `[[motion.pull]]`, the one numbered `index`.
+/// Adds the `[[motion.pull]]` with the number `index`.
 fn add_prescribed_motion(
     planned: &mut Planned,
     mesh: &Mesh,
@@ -209,11 +213,11 @@ fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<
     }
 }
 
-/// The largest size of a curve, one of `count`, whenever a step asks for it: up to `beyond` half steps after the end, from where a
-/// pull takes its velocity.
+/// The largest absolute value of a curve, one of `count`, at the times at which steps use it: up to `beyond` half steps
+/// after the end, from which a pull takes its velocity.
 ///
 /// # Errors
-/// It is not finite somewhere, or larger than a quantity may be.
+/// It is not finite somewhere, or exceeds the range of quantities.
 fn size(planned: &Planned, curve: &Curve, count: usize, beyond: usize) -> Result<f64> {
     let (h, halves) = (planned.recipe.options.step, 2 * planned.recipe.steps + beyond);
     let trials = (TRIALS / count.max(1)).max(100);
@@ -225,7 +229,7 @@ fn size(planned: &Planned, curve: &Curve, count: usize, beyond: usize) -> Result
         !(curve.at(*t).abs() <= range::LARGEST)
     };
     let Some(t) = times.find(beyond_range) else { return Ok(largest) };
-    // Without the last digits, which half steps leave.
+    // Without the last digits, which half steps change.
     let shown: f64 = format!("{t:.9e}").parse().unwrap_or(t);
     let after = if t > planned.recipe.duration * (1.0 + 1e-9) { ", half a step after the end" } else { "" };
     let expected = format!("finite values of at most {:e} in size at all times of the motion", range::LARGEST);

@@ -1,4 +1,4 @@
-//! `K + σ M` of a model whose masses are lumped at its points.
+//! The shifted stiffness `K + σ M` of a model with masses lumped at its points.
 
 use crate::dynamics::largest_square;
 use crate::error::Result;
@@ -6,15 +6,15 @@ use crate::model::{Entries, Support};
 use crate::solve::System;
 use faer::sparse::Triplet;
 
-/// A model releases energy where some ω² is below zero by this share of the largest; less is rounding.
+/// A model releases energy if some ω² is negative by this share of the largest; less is rounding.
 pub const RELEASE: f64 = 1e-9;
 
-/// The equations for any σ, their pattern analysed once.
+/// The equations for any σ, with one analysis of their pattern.
 pub struct Raised<'a> {
-    /// Those of K, then the diagonal of σ M.
+    /// The entries of K, then the diagonal of σ M.
     entries: Entries,
     springs: usize,
-    /// Of the degrees of freedom, kg.
+    /// The masses of the degrees of freedom, kg.
     masses: Vec<f64>,
     support: &'a Support,
     system: Option<System>,
@@ -23,7 +23,7 @@ pub struct Raised<'a> {
 }
 
 impl<'a> Raised<'a> {
-    /// `masses` are `[points]`, kg.
+    /// The equations of this K; `masses` are `[points]`, kg.
     pub fn new(mut entries: Entries, masses: &[f64], support: &'a Support, dimension: usize) -> Raised<'a> {
         let masses: Vec<f64> = masses.iter().flat_map(|m| std::iter::repeat_n(*m, dimension)).collect();
         let held: Vec<bool> = (0..masses.len()).map(|dof| support.is_fixed(dof)).collect();
@@ -33,8 +33,10 @@ impl<'a> Raised<'a> {
         Raised { entries, springs, masses, support, system: None, largest }
     }
 
+    /// The equations with this σ, rad²/s².
+    ///
     /// # Errors
-    /// The equations do not fit into memory.
+    /// They do not fit into memory.
     pub fn by(&mut self, shift: f64) -> Result<System> {
         self.entries[self.springs..].iter_mut().zip(&self.masses).for_each(|(entry, m)| entry.val = shift * m);
         match &self.system {

@@ -1,4 +1,4 @@
-//! The keys of a `[[fit]]` that is exact.
+//! The keys of a `[[fit]]` with the objective "exact".
 
 use super::recipe::ExactRecipe;
 use crate::error::{Error, Result};
@@ -12,11 +12,11 @@ use serde::Deserialize;
 pub struct ExactEntry {
     pub energy: Option<String>,
     pub volume: Option<String>,
-    /// Of the energy "stable-mooney-rivlin".
+    /// The share of the second invariant, for the energy "stable-mooney-rivlin".
     pub share: Option<f64>,
-    /// Whether no spring may push: the nearest network then.
+    /// Whether no constant may be negative: the nearest such network is used.
     pub nonnegative: bool,
-    /// Whether springs across the sides of cells may help with that.
+    /// Whether springs across the sides of cells may be added for this.
     pub across: bool,
 }
 
@@ -24,7 +24,8 @@ impl ExactEntry {
     /// The fit with these spring groups.
     ///
     /// # Errors
-    /// An energy or a kind of volume springs is unknown, spring groups are named, or `across` has no `nonnegative`.
+    /// An energy or a kind of volume springs is unknown, spring groups are named, or `across` is given without
+    /// `nonnegative`.
     pub fn recipe(&self, springs: Option<&[String]>) -> Result<ExactRecipe> {
         if let Some(springs) = springs {
             let expected = "no groups: an exact network joins all nodes of each cell and has springs on its content";

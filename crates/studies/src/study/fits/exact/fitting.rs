@@ -1,4 +1,4 @@
-//! Exact networks of bodies.
+//! Computes the exact network of a body.
 
 use super::outcome::ExactOutcome;
 use super::recipe::ExactRecipe;
@@ -89,7 +89,7 @@ impl FitKind for ExactRecipe {
     }
 }
 
-/// Whether a law is this energy and has no fibres besides.
+/// Whether a law is this energy and has no fibres.
 fn is_all_of(energy: &ExactEnergy, law: &Energy) -> bool {
     energy.is_that_of(law) && matches!(law.fibre_law(), Ok(None))
 }
@@ -103,7 +103,7 @@ impl CellMethod for ExactRecipe {
         "formula"
     }
 
-    /// Of the springs nothing is used: an exact network has its own.
+    /// The given springs are not used: an exact network has its own.
     fn fit_cells(
         &self,
         element: &Element,

@@ -1,4 +1,6 @@
-//! Networks that are the finite element: `objective = "exact"`.
+//! Networks that are equal to the finite element: `objective = "exact"`.
+//!
+//! Theory: page *Exact networks* of the book.
 
 mod entry;
 mod fitting;

@@ -1,29 +1,31 @@
-//! What an exact network is equal to.
+//! The body to which an exact network is equal.
 
 use super::positive::positive_note;
 use crate::fit::{ExactEnergy, VolumeSprings};
 use crate::material::Moduli;
 use crate::positive::PositiveOutcome;
 
-/// λ/μ of Poisson's ratio 1/3.
+/// λ/μ at Poisson's ratio 1/3.
 const UNLOCKED: f64 = 2.0;
 
-/// The body that the network is equal to.
+/// The body to which the network is equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExactOutcome {
+    /// The energy of the network.
     pub energy: ExactEnergy,
+    /// The contents that its volume springs measure.
     pub volume: VolumeSprings,
     /// Whether the material has another law.
     pub is_other: bool,
-    /// Patches that share cells with points that nothing holds.
+    /// The number of patches that share cells with points that are not held.
     pub patches: usize,
-    /// How far the nearest network without negative springs is from it.
+    /// The difference of the nearest network without negative springs, if that was requested.
     pub positive: Option<PositiveOutcome>,
 }
 
 impl ExactOutcome {
-    /// The moduli of finite elements that do not lock: networks with volume springs on cells or patches are softer near the
-    /// incompressible than those of the material, as they are to be.
+    /// The moduli of finite elements that do not lock. For nearly incompressible materials networks with volume springs
+    /// on cells or patches are softer than finite elements with the moduli of the material, and should be.
     pub fn compared(&self, moduli: Moduli) -> Moduli {
         match self.volume {
             VolumeSprings::Points => moduli,
@@ -33,7 +35,7 @@ impl ExactOutcome {
         }
     }
 
-    /// What a reader must know of it.
+    /// Notes for the reader, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let other = self.is_other.then(|| {
             format!(

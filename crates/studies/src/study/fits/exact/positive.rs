@@ -1,30 +1,35 @@
-//! A network without negative springs, as a report has it.
+//! The record of a network without negative springs in a report.
 
 use crate::positive::{PositiveOutcome, Route};
 use serde::{Deserialize, Serialize};
 
-/// How far it is from the exact network. Errors of energies are shares of the exact ones.
+/// The difference from the exact network. Errors of energies are relative to the exact ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PositiveRecord {
     /// What was changed: `unchanged`, `springs`, `across` or `tensions`.
     pub route: String,
-    /// Of the exact network.
+    /// The number of negative springs of the exact network.
     pub negative_springs: usize,
+    /// The number of springs of the exact network that were removed.
     pub dropped_springs: usize,
+    /// The number of springs that were added across the sides of cells.
     pub springs_across: usize,
-    /// The least and the largest of a spring on content, as a multiple of the exact one.
+    /// The least and the largest tension of a spring on content, relative to the exact one.
     pub tensions: [f64; 2],
-    /// The largest error of the energy of a homogeneous strain.
+    /// The largest relative error of the energy of a homogeneous strain.
     pub affine_energy_error: f64,
+    /// The number of modes whose energies were to be kept.
     pub modes: usize,
-    /// The least and the largest error of the energy of a mode.
+    /// The least and the largest relative error of the energy of a mode.
     pub mode_energy_errors: [f64; 2],
-    /// The largest force on a point at rest, as a share of the largest force of a spring.
+    /// The largest force on a point at rest, relative to the largest force of a spring.
     pub rest_force: f64,
+    /// The iterations of the solver.
     pub iterations: u32,
 }
 
 impl PositiveRecord {
+    /// The record of this outcome.
     pub fn of(outcome: &PositiveOutcome) -> PositiveRecord {
         PositiveRecord {
             route: outcome.route.name().into(),
@@ -41,7 +46,7 @@ impl PositiveRecord {
     }
 }
 
-/// What a reader must know of it.
+/// A note for the reader.
 pub(super) fn positive_note(outcome: &PositiveOutcome) -> String {
     let PositiveOutcome { negative, modes, mode_errors: [low, high], .. } = outcome;
     let affine = 100.0 * outcome.affine;

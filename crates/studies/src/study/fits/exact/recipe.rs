@@ -1,4 +1,4 @@
-//! An exact network before the material is known.
+//! An exact network, before the material is known.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
@@ -7,21 +7,22 @@ use crate::mesh::{CellBlock, Mesh};
 use crate::model::patch_springs;
 use crate::positive::PositiveFit;
 
-/// An exact network before the material is known.
+/// The settings of an exact network, before the material is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ExactRecipe {
-    /// That of the material's law, or the stable neo-Hookean one where it has none, if absent.
+    /// The energy; if absent that of the material's law, or the stable neo-Hookean one if the material has no law.
     pub energy: Option<ExactEnergy>,
+    /// The contents that volume springs measure.
     pub volume: VolumeSprings,
-    /// The nearest network without negative springs instead.
+    /// The settings of the nearest network without negative springs, if it is requested.
     pub positive: Option<PositiveFit>,
 }
 
 impl ExactRecipe {
-    /// The network of a body whose material has this law, if it has one.
+    /// The exact network of a body with this law, if the material has one.
     ///
     /// # Errors
-    /// The law is no energy of springs and no other is named.
+    /// The law is not an energy of springs, and no other energy is named.
     pub fn resolve(&self, law: Option<&Energy>) -> Result<ExactFit> {
         let of_law = |law: &Energy| {
             ExactEnergy::of_law(law).ok_or_else(|| {
@@ -39,7 +40,8 @@ impl ExactRecipe {
         Ok(ExactFit { energy, volume: self.volume, large: law.is_some() })
     }
 
-    /// Whether a body of this material and law has the network. The first cell of each block answers for all; patches are made.
+    /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
+    /// patches are constructed.
     pub fn serves(&self, law: Option<&Energy>, mesh: &Mesh, material: Material) -> bool {
         let Ok(fit) = self.resolve(law) else { return false };
         let block = |block: &CellBlock| {

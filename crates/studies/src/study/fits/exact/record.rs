@@ -1,19 +1,23 @@
-//! The settings of an exact network, as a report has them.
+//! The settings of an exact network in a report.
 
 use super::recipe::ExactRecipe;
 use crate::fit::ExactEnergy;
 use serde::{Deserialize, Serialize};
 
-/// The settings.
+/// The settings of an exact network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactRecord {
+    /// The objective, `exact`.
     pub objective: String,
-    /// Null: that of the material's law, or the stable neo-Hookean one where it has none.
+    /// The energy. Null: that of the material's law, or the stable neo-Hookean one if there is no law.
     pub energy: Option<String>,
+    /// The contents that volume springs measure: `points`, `cells` or `patches`.
     pub volume: String,
-    /// Of the second invariant, where the energy has one.
+    /// The share of the second invariant, if the energy has one.
     pub share: Option<f64>,
+    /// Whether no constant may be negative.
     pub nonnegative: bool,
+    /// Whether springs across the sides of cells may be added.
     pub across: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// The keys: none of its own.
+/// There are no keys besides those of all fits.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PublishedEntry {}

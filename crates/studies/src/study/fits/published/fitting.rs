@@ -1,4 +1,4 @@
-//! Fits by published formulas.
+//! Computes springs by published formulas.
 
 use super::outcome::PublishedOutcome;
 use super::record::PublishedRecord;

@@ -6,12 +6,14 @@ use crate::material::Material;
 /// The assumptions of the method that are not met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PublishedOutcome {
+    /// The method.
     pub method: Method,
+    /// The assumptions that are not met.
     pub unmet: Unmet,
 }
 
 impl PublishedOutcome {
-    /// What a reader must know of it. The body has `cells` cells of `material`.
+    /// Notes for the reader, one sentence each. The body has `cells` cells of `material`.
     pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
         let unmet = &self.unmet;
         let ratio = unmet.poisson.map(|assumed| {

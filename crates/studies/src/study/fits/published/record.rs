@@ -1,22 +1,25 @@
-//! A published method, as a report has it.
+//! The record of a published method in a report.
 
 use crate::fit::published::{Method, Unmet};
 use serde::{Deserialize, Serialize};
 
-/// The method and where it was published.
+/// The method, and where it is published.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PublishedRecord {
+    /// The name of the method.
     pub objective: String,
+    /// The paper.
     pub source: String,
 }
 
 /// The assumptions of the method that are not met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PublishedOutcomeRecord {
-    /// Poisson's ratio of the formula, where that of the material is another.
+    /// The Poisson's ratio of the formula, if that of the material is different.
     pub poisson_assumed: Option<f64>,
+    /// The number of elements of another shape than the formula assumes.
     pub elements_of_other_shape: usize,
-    /// Of their lengths from those of the formula, as a share.
+    /// The largest relative deviation of their lengths from those of the assumed shape.
     pub largest_deviation: f64,
 }
 
@@ -27,6 +30,7 @@ impl PublishedRecord {
 }
 
 impl PublishedOutcomeRecord {
+    /// The record of these assumptions.
     pub fn of(unmet: &Unmet) -> PublishedOutcomeRecord {
         let Unmet { poisson, cells, deviation, .. } = *unmet;
         PublishedOutcomeRecord {

@@ -1,4 +1,4 @@
-//! The keys of a `[[fit]]` whose objective is "sampled".
+//! The keys of a `[[fit]]` with the objective "sampled".
 
 use super::force::ForceRecipe;
 use super::recipe::SampledRecipe;
@@ -46,7 +46,7 @@ impl SampledEntry {
     /// The recipe, with the values of [`SampledRecipe::default`] for keys that are not given.
     ///
     /// # Errors
-    /// A key has a wrong value; a file of gradients cannot be read.
+    /// A key has a wrong value, or a file of gradients cannot be read.
     pub fn check(self, folder: &Path) -> Result<SampledRecipe> {
         let law = self.law.map(|law| law_at(&law, folder));
         let mut recipe = SampledRecipe { law, ..SampledRecipe::default() };
@@ -123,12 +123,12 @@ impl ShapesEntry {
     }
 }
 
-/// A law's name, or its file's path relative to `folder`.
+/// The name of a law, or the path of its file relative to `folder`.
 pub fn law_at(law: &str, folder: &Path) -> String {
     if law.ends_with(".toml") { folder.join(law).to_string_lossy().into_owned() } else { law.into() }
 }
 
-/// A law for all springs, or a table of laws by group.
+/// One law for all springs, or a table of laws by group.
 fn force_of(value: &toml::Value) -> Result<ForceRecipe> {
     match value {
         toml::Value::String(text) => ForceRecipe::parse(text),
@@ -169,7 +169,7 @@ fn pair(value: &toml::Value) -> Option<[f64; 2]> {
     numbers?.try_into().ok()
 }
 
-/// Numbers between commas, spaces and line ends; `#` begins a comment.
+/// Numbers separated by commas, spaces and line ends; `#` begins a comment.
 fn numbers_of(text: &str) -> Result<Vec<f64>> {
     let mut numbers = Vec::new();
     for (i, line) in text.lines().enumerate() {

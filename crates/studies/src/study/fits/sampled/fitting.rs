@@ -1,4 +1,4 @@
-//! Fits to the forces at sampled shapes.
+//! Computes fits to the forces at sampled shapes.
 
 use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
@@ -51,7 +51,7 @@ impl FitKind for SampledRecipe {
 /// The fits of each block of cells.
 ///
 /// # Errors
-/// There is no energy, no shape, a law of force without a group, or a spring group is no group of the elements.
+/// There is no energy or no shape, a force law has no group, or the elements have no such spring group.
 pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) -> Result<Vec<SampledFits>> {
     let Task { mesh, material, .. } = *task;
     let own = recipe.law.as_ref().map(|law| Energy::load(law, material)).transpose();

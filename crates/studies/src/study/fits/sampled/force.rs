@@ -1,4 +1,4 @@
-//! The law of force of a sampled fit.
+//! The force law of a sampled fit.
 
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
@@ -6,23 +6,25 @@ use crate::named::unknown;
 use crate::springs::{Force, Law, Springs};
 use std::sync::Arc;
 
-/// The law of force of a sampled fit.
+/// The force law of a sampled fit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum ForceRecipe {
+    /// Linear springs with the rest measure of the mesh.
     #[default]
     Linear,
+    /// Linear springs with rest measures of their own.
     FreeRest,
-    /// For all groups.
+    /// One law for all groups.
     Law(Law),
-    /// For each group by name.
+    /// A law for each group, by name.
     Groups(Vec<(String, Law)>),
 }
 
 impl ForceRecipe {
-    /// `linear`, `free-rest` or a law.
+    /// Parses `linear`, `free-rest` or a law.
     ///
     /// # Errors
-    /// The text is no law.
+    /// The text is not a law.
     pub fn parse(text: &str) -> Result<ForceRecipe> {
         match text {
             "linear" => Ok(ForceRecipe::Linear),
@@ -31,7 +33,7 @@ impl ForceRecipe {
         }
     }
 
-    /// With a law for each group of `springs`.
+    /// The force with a law for each group of `springs`.
     ///
     /// # Errors
     /// A group has no law.
@@ -53,7 +55,7 @@ impl ForceRecipe {
         }
     }
 
-    /// Unknowns of a fit of all springs of the element.
+    /// The number of unknowns of a fit of all springs of the element.
     pub fn unknowns(&self, element: &Element) -> usize {
         let columns = |group: &SpringGroup| match self {
             ForceRecipe::Linear => 1,
@@ -66,6 +68,7 @@ impl ForceRecipe {
         element.springs.iter().map(|group| columns(group) * group.nodes.len().max(1)).sum()
     }
 
+    /// Whether the force is linear in its parameters.
     pub fn is_linear(&self) -> bool {
         match self {
             ForceRecipe::Linear | ForceRecipe::FreeRest => true,
@@ -74,10 +77,10 @@ impl ForceRecipe {
         }
     }
 
-    /// That every law has a group among `known`, those of all elements of a mesh.
+    /// Checks that every law belongs to a group among `known`, those of all elements of a mesh.
     ///
     /// # Errors
-    /// One has none.
+    /// A law does not.
     pub fn check_groups(&self, known: &[&str]) -> Result<()> {
         let ForceRecipe::Groups(laws) = self else { return Ok(()) };
         match laws.iter().find(|(group, _)| !known.contains(&group.as_str())) {
@@ -89,6 +92,7 @@ impl ForceRecipe {
         }
     }
 
+    /// The name in reports.
     pub fn name(&self) -> String {
         match self {
             ForceRecipe::Linear => String::new(),

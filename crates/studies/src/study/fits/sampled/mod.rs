@@ -1,4 +1,6 @@
 //! Springs from the forces of a hyperelastic element at sampled shapes: `objective = "sampled"`.
+//!
+//! Theory: page *Sampled fits* of the book.
 
 mod entry;
 mod fitting;

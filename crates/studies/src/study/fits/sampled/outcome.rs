@@ -1,23 +1,25 @@
-//! How well a sampled fit meets the forces.
+//! The errors of a sampled fit.
 
 use super::recipe::SampledRecipe;
 use crate::fit::{SampledFits, Spread};
 
-/// How a sampled fit meets the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` over the cells.
+/// The relative errors of the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` for each cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledOutcome {
+    /// The number of shapes of the fit.
     pub shapes: usize,
+    /// The errors on the shapes of the fit.
     pub trained: Spread,
-    /// `None` where no shapes were held out.
+    /// The errors on the shapes that were held out; `None` if there are none.
     pub held_out: Option<Spread>,
-    /// The least share of starts that found the best parameters, where there were several.
+    /// The least share, over the cells, of starts that found the best parameters; `None` with a single start.
     pub agreeing: Option<f64>,
-    /// Loads of the scene whose shapes were sampled: their errors are not held out.
+    /// The loads of the scene whose shapes were sampled; errors under them are not held out.
     pub loads: Vec<String>,
 }
 
 impl SampledOutcome {
-    /// Of the fits of all blocks of cells.
+    /// The outcome of the fits of all blocks of cells.
     pub(super) fn of(recipe: &SampledRecipe, found: &[SampledFits]) -> SampledOutcome {
         let spread =
             |of: fn(&SampledFits) -> &Vec<f64>| Spread::of(&found.iter().flat_map(of).copied().collect::<Vec<f64>>());
@@ -33,16 +35,16 @@ impl SampledOutcome {
     }
 }
 
-/// A fit that leaves more of the forces than this share does not describe the body.
+/// A fit with a larger relative error than this does not describe the body.
 const UNEXPLAINED: f64 = 0.1;
 
 impl SampledOutcome {
-    /// The largest share of the forces that the fit leaves in a cell, at the shapes it was fitted to and at those held out.
+    /// The largest relative error of a cell, at the shapes of the fit and at those held out.
     fn unexplained(&self) -> f64 {
         self.held_out.iter().map(|spread| spread.max).fold(self.trained.max, f64::max)
     }
 
-    /// What a reader must know of it.
+    /// Notes for the reader, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let unexplained = Some(self.unexplained()).filter(|share| !(*share <= UNEXPLAINED)).map(|share| {
             format!(

@@ -1,4 +1,4 @@
-//! A sampled fit before the mesh is known.
+//! A sampled fit, before the mesh is known.
 
 use super::force::ForceRecipe;
 use crate::element::Element;
@@ -9,22 +9,23 @@ use crate::study::fits::facts::SceneFacts;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A sampled fit before the mesh is known.
+/// The settings of a sampled fit, before the mesh is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledRecipe {
-    /// With the force and the source of the shapes left open where the others say them.
+    /// The settings of the fit; force and shapes are filled in from the other fields.
     pub fit: SampledFit,
+    /// The force law of the springs.
     pub force: ForceRecipe,
-    /// Loads of the scene: the shapes are those of the finite elements under them.
+    /// The loads of the scene under which the shapes are those of the finite elements.
     pub loads: Vec<String>,
-    /// The energy, where the material has none: a shipped one's name, or the path of a file.
+    /// The energy if the material has no law: the name of a shipped one, or the path of a file.
     pub law: Option<String>,
-    /// The file that the shapes were read from.
+    /// The file from which deformation gradients were read.
     pub gradients: Option<PathBuf>,
 }
 
 impl Default for SampledRecipe {
-    /// Shapes around rest and in all directions, each counting for its relative error.
+    /// Shapes around rest and in all directions, each weighted by its relative error.
     fn default() -> SampledRecipe {
         let families = vec![Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
         let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
@@ -34,12 +35,12 @@ impl Default for SampledRecipe {
 }
 
 impl SampledRecipe {
-    /// The files that it names; the name of a shipped energy leads to no file.
+    /// The files that it names; the name of a shipped energy is not a file.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         self.law.iter().map(PathBuf::from).chain(self.gradients.clone())
     }
 
-    /// The fit of one element's springs; `states` are positions of the mesh where the recipe names loads.
+    /// The fit of the springs of one element; `states` are positions of the mesh if the recipe names loads.
     ///
     /// # Errors
     /// A group has no law.
@@ -52,10 +53,11 @@ impl SampledRecipe {
         Ok(fit)
     }
 
-    /// That the material and the loads of the scene are those that the fit needs. A law for the fit is not asked for here.
+    /// Checks that the material and the loads of the scene are those that the fit requires. Whether the fit has a law
+    /// is not checked here.
     ///
     /// # Errors
-    /// There are two laws, no law that loads are followed with, or an unknown load.
+    /// There are two laws, the loads have no law, or a load is unknown.
     pub fn check(&self, scene: &SceneFacts) -> Result<()> {
         if let (true, Some(law)) = (scene.law, &self.law) {
             return Err(Error::expected("law", "none, as the material has a law", format!("\"{law}\"")));
@@ -67,7 +69,7 @@ impl SampledRecipe {
         scene.expect_loads("shapes.loads", &self.loads)
     }
 
-    /// The shapes, as a stage names them.
+    /// The shapes, in words, for a list of stages.
     pub fn shapes(&self) -> String {
         let sampling = &self.fit.sampling;
         format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)

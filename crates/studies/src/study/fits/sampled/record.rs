@@ -1,4 +1,4 @@
-//! The settings and errors of a sampled fit, as a report has them.
+//! The settings and errors of a sampled fit in a report.
 
 use super::force::ForceRecipe;
 use super::outcome::SampledOutcome;
@@ -8,31 +8,42 @@ use crate::study::fits::spread::SpreadRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The settings, with defaults resolved.
+/// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SampledRecord {
+    /// The objective, `sampled`.
     pub objective: String,
-    /// How much each shape counts: `relative` or `none`.
+    /// The weights of the shapes: `relative` or `none`.
     pub weight: String,
+    /// The scale of the forces that do no work on homogeneous deformations.
     pub higher: f64,
+    /// Whether all springs of a group have the same parameters.
     pub tied: bool,
+    /// Whether no parameter may be negative.
     pub nonnegative: bool,
+    /// The force law.
     pub force: ForceRecord,
+    /// The norm of the residual forces.
     pub norm: String,
-    /// The share of the norm "huber".
+    /// The δ of the norm "huber", as a share.
     pub huber: Option<f64>,
-    /// Of parameters by name.
+    /// The bounds of parameters, by name.
     pub bounds: BTreeMap<String, [f64; 2]>,
+    /// The number of starts of the search.
     pub starts: usize,
-    /// `None` if the shapes are from a file or from loads.
+    /// The families of deformations; `None` if the shapes are from a file or from loads.
     pub families: Option<Vec<String>>,
+    /// The least and the largest amplitude.
     pub stretch: [f64; 2],
+    /// How far nodes are moved in addition, as a share of the size of the cell.
     pub perturbation: f64,
+    /// The seed of the random numbers.
     pub seed: u64,
+    /// The energy, if it is not that of the material.
     pub law: Option<String>,
 }
 
-/// A law of force for all springs, or one for each group.
+/// One force law for all springs, or one for each group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ForceRecord {
@@ -40,18 +51,23 @@ pub enum ForceRecord {
     Groups(BTreeMap<String, String>),
 }
 
-/// How well the forces are met, as relative errors.
+/// The relative errors of the forces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SampledOutcomeRecord {
+    /// The number of shapes of the fit.
     pub shapes: usize,
+    /// The errors on the shapes of the fit.
     pub trained: SpreadRecord,
+    /// The errors on the shapes that were held out.
     pub held_out: Option<SpreadRecord>,
     /// The least share of starts that found the best parameters.
     pub agreeing_starts: Option<f64>,
+    /// The loads of the scene whose shapes were sampled.
     pub loads: Vec<String>,
 }
 
 impl SampledRecord {
+    /// The record of these settings.
     pub fn of(recipe: &SampledRecipe) -> SampledRecord {
         let fit = &recipe.fit;
         SampledRecord {
@@ -87,6 +103,7 @@ impl SampledRecord {
 }
 
 impl SampledOutcomeRecord {
+    /// The record of this outcome.
     pub fn of(outcome: &SampledOutcome) -> SampledOutcomeRecord {
         SampledOutcomeRecord {
             shapes: outcome.shapes,

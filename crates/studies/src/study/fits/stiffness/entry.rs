@@ -14,7 +14,7 @@ pub struct StiffnessEntry {
     pub tied: bool,
     pub nonnegative: bool,
     pub solver: Option<String>,
-    /// Of a general solver, as the two that follow.
+    /// These three belong to the general solvers.
     pub iterations: Option<u64>,
     pub topology: bool,
     pub sparsity: Option<f64>,
@@ -22,10 +22,11 @@ pub struct StiffnessEntry {
 }
 
 impl StiffnessEntry {
-    /// The fit by the objective of this name.
+    /// The fit with the objective of this name.
     ///
     /// # Errors
-    /// The objective, the solver or the rest measure is unknown, a number is out of its range, or choices contradict each other.
+    /// The objective, the solver or the rest measure is unknown; a number is out of its range; or settings contradict
+    /// each other.
     pub fn fit(&self, objective: &str) -> Result<Fit> {
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
         let objective = Objective::named(objective, choices)?;

@@ -1,4 +1,4 @@
-//! Fits to the stiffness at rest.
+//! Computes fits to the stiffness at rest.
 
 use super::outcome::StiffnessOutcome;
 use super::record::StiffnessRecord;
@@ -54,7 +54,7 @@ impl FitKind for Fit {
 /// The constants of all cells of the body.
 ///
 /// # Errors
-/// A spring group is no group of the elements, or the objective does not go with them.
+/// The elements have no such spring group, or the objective does not apply to them.
 pub fn fit_at_rest(fit: &Fit, task: &Task, progress: &mut Progress) -> Result<Vec<CellFits>> {
     let moduli = task.material.moduli();
     task.each_block(progress, |block, springs, progress| {

@@ -1,4 +1,7 @@
-//! Springs from the stiffness at rest: `objective = "frobenius"`, `"spectral"` and the others of [`crate::fit::Objective`].
+//! Springs from the stiffness at rest: `objective = "frobenius"`, `"spectral"` and the others of
+//! [`crate::fit::Objective`].
+//!
+//! Theory: pages *Least squares*, *The barrier*, *Divergence* and *Modal weights* of the book.
 
 mod entry;
 mod fitting;

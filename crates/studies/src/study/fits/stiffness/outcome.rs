@@ -1,18 +1,18 @@
-//! What is known of a fit to the stiffness at rest.
+//! The results of a fit to the stiffness at rest.
 
 use super::tension::TensionOutcome;
 use crate::fit::{CellFits, Fit, MotionWeight, Objective};
 
-/// The certificates of a fit to the stiffness at rest, and how its springs pull there.
+/// The certificates of a fit to the stiffness at rest, and the tension of its springs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StiffnessOutcome {
-    /// Cells whose spectral optimum is not unique.
+    /// The number of cells whose spectral optimum is not unique.
     pub ambiguous: usize,
     /// The largest relative duality gap; `None` if the objective has no certificates.
     pub gap: Option<f64>,
-    /// The relative error of the energy: ε if `(1 − ε) R ⪯ K ⪯ (1 + ε) R` in every cell with ε < 1.
+    /// The relative error of the energy: the least ε with `(1 − ε) R ⪯ K ⪯ (1 + ε) R` in every cell, if ε < 1.
     pub energy_error: Option<f64>,
-    /// `None` if no spring pulls at rest.
+    /// The tension of the springs at rest; `None` if no spring pulls.
     pub tension: Option<TensionOutcome>,
 }
 
@@ -29,7 +29,7 @@ impl StiffnessOutcome {
         }
     }
 
-    /// What a reader must know of it.
+    /// Notes for the reader, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let gap = self.gap.map(|gap| {
             let mut note =

@@ -1,24 +1,28 @@
-//! The settings of a fit to the stiffness at rest, as a report has them.
+//! The settings of a fit to the stiffness at rest in a report.
 
 use crate::fit::{Fit, Objective, Rest, Solver};
 use serde::{Deserialize, Serialize};
 
-/// The settings, with defaults resolved; what the objective does not have is null.
+/// The settings, with defaults filled in. Settings that the objective does not have are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StiffnessRecord {
+    /// The objective.
     pub objective: String,
+    /// The weight of a norm.
     pub weight: Option<String>,
-    /// Scale of the modes beyond constant strain.
+    /// The scale of the motions beyond constant strain.
     pub higher: Option<f64>,
-    /// From 0, soft, to 1, stiff.
+    /// The balance of the divergence, from 0 (soft) to 1 (stiff).
     pub balance: Option<f64>,
-    /// One constant per group.
+    /// Whether there is one constant per group.
     pub tied: bool,
+    /// Whether no constant may be negative.
     pub nonnegative: bool,
+    /// The solver.
     pub solver: String,
-    /// Price of a spring, as a share of the objective at the start.
+    /// The cost of a spring, as a share of the objective at the start.
     pub sparsity: Option<f64>,
-    /// `mesh`, `free` or `zero`.
+    /// The rest measures: `mesh`, `free` or `zero`.
     pub rest: String,
 }
 

@@ -1,30 +1,31 @@
-//! How the springs of a fit with rest measures of its own pull at rest.
+//! The tension at rest of a fit whose springs have rest measures of their own.
 
 use crate::fit::{CellFits, Spread};
 use crate::model::{Network, RestTension};
 use crate::study::fits::spread::SpreadRecord;
 use serde::{Deserialize, Serialize};
 
-/// What is to be known of a network whose springs pull at rest.
+/// The tension of a network whose springs pull at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TensionOutcome {
+    /// The rest lengths, and how well the springs are in equilibrium.
     pub network: RestTension,
-    /// Cells in which no springs but those of no force satisfy what the fit asks for.
+    /// The number of cells in which only springs without a force satisfy the conditions of the fit.
     pub idle: usize,
 }
 
-/// The same, as a report has it.
+/// The record of the tension in a report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TensionRecord {
     /// `|rest length / length in the mesh − 1|` of the springs between two points.
     pub rest_lengths: SpreadRecord,
-    /// Springs with a rest length below zero.
+    /// The number of springs with a negative rest length.
     pub negative_rest_lengths: usize,
-    /// Springs whose force does not depend on what they measure.
+    /// The number of springs whose force does not depend on what they measure.
     pub constant_forces: usize,
-    /// The largest force on a node at rest over the largest force of a spring.
+    /// The largest force on a node at rest, relative to the largest force of a spring.
     pub unbalanced: f64,
-    /// Elements without springs.
+    /// The number of elements without springs.
     pub idle_elements: usize,
 }
 
@@ -38,7 +39,7 @@ impl TensionOutcome {
         TensionOutcome { network: RestTension::of(network, points), idle: cells.iter().map(idle).sum() }
     }
 
-    /// What a reader must know of it.
+    /// Notes for the reader, one sentence each.
     pub(super) fn notes(&self) -> Vec<String> {
         let RestTension { rest_lengths: Spread { mean, max }, negative, steady, unbalanced } = self.network;
         let mut notes = vec![format!(

@@ -1,4 +1,4 @@
-//! The body that whole-object fits of a scene are fitted to.
+//! The body to which the whole-object fits of a scene are fitted.
 
 use super::outcome::WholeOutcome;
 use super::recipe::{LoadSelection, Sharing, Start, ValidationRecipe, WholeRecipe};
@@ -17,23 +17,23 @@ use crate::whole::{
 };
 use std::sync::OnceLock;
 
-/// How many random loads choose the regularization.
+/// The number of random loads that choose the regularization.
 const RANDOM: usize = 4;
 
-/// The body that whole-object fits of a scene are fitted to.
+/// The body to which the whole-object fits of a scene are fitted.
 pub struct WholeBody<'a> {
     mesh: &'a Mesh,
     material: Material,
-    /// What `[[fix]]` holds.
+    /// The support of the `[[fix]]` entries.
     support: &'a Support,
     pub(in crate::study) cases: &'a [Case],
-    /// Of the finite elements, one per case; `None` where the load was not reached.
+    /// The displacements of the finite elements, one list per case; `None` if the load was not reached.
     pub(in crate::study) displacements: Vec<Option<&'a Vec<f64>>>,
-    /// At large deformation.
+    /// How loads are applied at large deformation; `None` at small deformation.
     pub(in crate::study) newton: Option<Newton>,
-    /// `[points]`, kg.
+    /// The masses, `[points]`, kg.
     pub masses: Option<&'a [f64]>,
-    /// The finite elements with what `[[fix]]` holds, where loads were solved with it.
+    /// The equations of the finite elements with the `[[fix]]` support, if loads were solved with it.
     pub(in crate::study) solved: Option<&'a (System, Factor)>,
     controls: &'a Controls,
     entries: OnceLock<Entries>,
@@ -41,7 +41,7 @@ pub struct WholeBody<'a> {
 }
 
 impl<'a> WholeBody<'a> {
-    /// At small deformation, without loads of its own.
+    /// A body at small deformation, without loads of a scene.
     pub fn new(mesh: &'a Mesh, material: Material, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
         let (cases, displacements, newton, masses, solved, entries, held) = Default::default();
         WholeBody { mesh, material, support, cases, displacements, newton, masses, solved, controls, entries, held }
@@ -82,10 +82,10 @@ impl<'a> WholeBody<'a> {
         Ok(targets)
     }
 
-    /// The finite elements with what `[[fix]]` holds; the key is what needs them.
+    /// The equations of the finite elements with the `[[fix]]` support; the key of errors is what requires them.
     ///
     /// # Errors
-    /// A body can move as a whole, or some motion meets no stiffness.
+    /// A body can move as a rigid body, or some motion has no stiffness.
     pub(in crate::study) fn held(&self, key: &str) -> Result<&(System, Factor)> {
         if let Some(known) = self.solved.or(self.held.get()) {
             return Ok(known);
@@ -106,7 +106,7 @@ impl<'a> WholeBody<'a> {
         let (system, factor) = self.held("frequencies")?;
         let modes = lowest_modes(system, factor, masses, self.mesh.dimension, count)
             .map_err(|e| Error::at("frequencies", e.problem()))?;
-        // As much as one load in all.
+        // All frequencies together have the weight of one load.
         let weight = 1.0 / count as f64;
         let (support, masses) = (self.support.clone(), masses.to_vec());
         Ok(Some(Frequencies { support, masses, squares: modes.squares, weight }))
@@ -173,7 +173,7 @@ impl<'a> WholeBody<'a> {
         };
         let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch)?;
         if let Err(e) = kept {
-            // What was found is worth more than what it would go on from.
+            // An error about the checkpoint must not discard the result.
             progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
         }
         let outcome = WholeOutcome::of(recipe, &wanted, &found);

@@ -1,4 +1,4 @@
-//! The keys of a `[[fit]]` whose objective is "whole".
+//! The keys of a `[[fit]]` with the objective "whole".
 
 use super::recipe::{LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::bound::{self, check_count};
@@ -10,15 +10,16 @@ use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::{Method, Residual, WholeSettings};
 use serde::Deserialize;
 
+/// The default seed of the random loads.
 const SEED: u64 = 2010;
 
 /// The keys. Those of sampled fits are allowed as well if the fit starts from one.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WholeEntry {
-    /// An objective, "sampled" or "equal", or a list of them.
+    /// The start: an objective, "sampled" or "equal", or a list of them.
     pub start: Option<toml::Value>,
-    /// Of the objective that it starts from, as the two that follow.
+    /// These three belong to the objective of the start.
     pub weight: Option<String>,
     pub higher: Option<f64>,
     pub balance: Option<f64>,
@@ -35,10 +36,10 @@ pub struct WholeEntry {
 }
 
 impl WholeEntry {
-    /// The recipes, one for each start with the name of the start; `sampled` makes that of a sampled fit.
+    /// The recipes, one for each start, with the name of the start; `sampled` makes the recipe of a sampled fit.
     ///
     /// # Errors
-    /// A value is unknown or out of range, or a load is fitted and validates as well.
+    /// A value is unknown or out of range, or a load is both fitted and used for validation.
     pub fn recipes(&self, sampled: impl Fn() -> Result<SampledRecipe>) -> Result<Vec<(String, WholeRecipe)>> {
         let recipe = |name: String| {
             let start = match name.as_str() {
@@ -73,7 +74,7 @@ impl WholeEntry {
     /// The recipe with this start.
     ///
     /// # Errors
-    /// A value is unknown or out of range, or a load is fitted and validates as well.
+    /// A value is unknown or out of range, or a load is both fitted and used for validation.
     fn recipe(&self, start: Start) -> Result<WholeRecipe> {
         let loads = self.loads.clone().unwrap_or_else(|| vec![MADE.into()]);
         if loads.is_empty() {
@@ -145,10 +146,10 @@ impl WholeEntry {
     }
 }
 
-/// The names of the starts: a name or a list of names, each once.
+/// The names of the starts: a name, or a list of different names.
 ///
 /// # Errors
-/// It is neither.
+/// The value is neither.
 pub fn starts(value: Option<&toml::Value>) -> Result<Vec<String>> {
     let Some(value) = value else { return Ok(vec!["offdiag".into()]) };
     let names: Option<Vec<String>> = match value.as_array() {

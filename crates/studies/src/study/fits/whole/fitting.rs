@@ -1,4 +1,4 @@
-//! Fits to the displacements of the whole object.
+//! Computes fits to the displacements of the whole object.
 
 use super::recipe::{Start, WholeRecipe};
 use super::record::WholeRecord;
@@ -16,11 +16,11 @@ use crate::whole::raise_idle;
 use std::time::Instant;
 
 impl WholeRecipe {
-    /// The constants that it starts from.
+    /// The constants from which the fit starts.
     fn begin(&self, task: &Task, progress: &mut Progress) -> Result<Vec<CellFits>> {
         match &self.start {
             Start::Fit(fit) => fit_at_rest(fit, task, progress),
-            // Its springs are what matters, not their constants.
+            // Only its springs are needed, not their constants.
             Start::Equal => fit_at_rest(&Fit::new(Objective::Frobenius(Weight::None)), task, progress),
             Start::Sampled(recipe) => {
                 Ok(fit_shapes(recipe, task, progress)?.into_iter().map(|found| found.fits).collect())

@@ -1,4 +1,6 @@
 //! Springs from the displacements of the whole object: `objective = "whole"`.
+//!
+//! Theory: page *Whole-object fits* of the book.
 
 mod body;
 mod entry;

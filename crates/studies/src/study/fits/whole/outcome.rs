@@ -1,39 +1,45 @@
-//! The loads that a whole-object fit was fitted to, and how it ended.
+//! The loads of a whole-object fit, and its result.
 
 use super::recipe::WholeRecipe;
 use crate::whole::{Errors, Target, Wanted, WholeFit};
 
-/// What a whole-object fit has seen, and what it did.
+/// The loads of a whole-object fit, and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WholeOutcome {
-    /// The loads that were fitted, and those that chose the regularization.
+    /// The names of the loads that were fitted.
     pub loads: Vec<String>,
+    /// The names of the loads that chose the regularization.
     pub validated: Vec<String>,
-    /// `None` where the start was best.
+    /// The regularization ρ that was chosen; `None` if the start was best.
     pub regularization: Option<f64>,
-    /// The loads of the fit, and those that chose the regularization.
+    /// The errors on the loads of the fit.
     pub fitted: Vec<FittedLoad>,
+    /// The errors on the loads that chose the regularization.
     pub judged: Vec<FittedLoad>,
-    /// `ω_i/ω̄_i − 1` of the frequencies that were fitted, before and after.
+    /// The relative errors `ω_i/ω̄_i − 1` of the frequencies that were fitted, before and after.
     pub frequencies: [Vec<f64>; 2],
     /// The largest factor by which a constant changed.
     pub change: f64,
-    /// The largest constant of a length spring, as a multiple of the least.
+    /// The ratio of the largest to the least constant of the length springs.
     pub range: f64,
-    /// Whether a smaller ρ was left because the range would have been too large.
+    /// Whether a smaller ρ was rejected because this ratio would have been too large.
     pub limited: bool,
+    /// The number of steps.
     pub steps: usize,
-    /// Whether the network stands under every load at the start; else it is left as it is.
+    /// Whether the network is stable under every load at the start; otherwise it is returned unchanged.
     pub stands: bool,
-    /// Whether it was ended before its time.
+    /// Whether the fit was cancelled.
     pub cancelled: bool,
 }
 
-/// `‖u_l − ū_l‖/‖ū_l‖` of a load before and after a whole-object fit.
+/// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FittedLoad {
+    /// The name of the load.
     pub name: String,
+    /// The error at the start.
     pub before: f64,
+    /// The error after the fit.
     pub after: f64,
 }
 
@@ -61,7 +67,7 @@ impl WholeOutcome {
         }
     }
 
-    /// What a reader must know of it.
+    /// Notes for the reader, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let validated = match &self.validated[..] {
             [] => String::new(),

@@ -1,4 +1,4 @@
-//! A whole-object fit before the mesh is known.
+//! A whole-object fit, before the mesh is known.
 
 use crate::error::{Error, Result};
 use crate::fit::Fit;
@@ -6,64 +6,79 @@ use crate::study::fits::facts::SceneFacts;
 use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::WholeSettings;
 
-/// A whole-object fit before the mesh is known.
+/// The settings of a whole-object fit, before the mesh is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WholeRecipe {
+    /// The constants from which it starts.
     pub start: Start,
+    /// Which springs share an unknown factor.
     pub unknowns: Sharing,
-    /// Loads of the scene that are fitted, and whether those made from the mesh are.
+    /// The loads that are fitted: those of the scene by name, and whether those generated from the mesh are used.
     pub loads: LoadSelection,
+    /// How the regularization is chosen.
     pub validation: ValidationRecipe,
+    /// The settings of the optimisation.
     pub settings: WholeSettings,
-    /// How many natural frequencies of the finite elements are fitted as well.
+    /// The number of natural frequencies of the finite elements that are fitted as well.
     pub frequencies: usize,
-    /// Of the random loads.
+    /// The seed of the random loads.
     pub seed: u64,
 }
 
-/// The constants it starts from; none is below zero.
+/// The constants from which a fit starts; none is negative.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Start {
+    /// Those of a fit to the stiffness at rest.
     Fit(Fit),
-    /// Large deformation.
+    /// Those of a sampled fit, at large deformation.
     Sampled(Box<SampledRecipe>),
     /// One constant for all springs of a kind.
     Equal,
 }
 
-/// What has a factor of its own.
+/// The springs that share an unknown factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sharing {
+    /// Each spring of the network has a factor.
     #[default]
     Spring,
+    /// The springs of each group share a factor.
     Group,
+    /// The springs of each group in each region of the mesh share a factor.
     Region,
+    /// Each spring of each element has a factor.
     Element,
 }
 
-/// Loads of the scene by name, and whether a set that is made from the mesh is used as well.
+/// Loads of the scene by name, and whether a set generated from the mesh is used as well.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LoadSelection {
+    /// The names of the loads.
     pub names: Vec<String>,
+    /// Whether generated loads are used.
     pub made: bool,
 }
 
-/// What chooses the regularization.
+/// How the regularization is chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ValidationRecipe {
+    /// By the error on these loads.
     Loads(LoadSelection),
+    /// By the error on each load of the fit when it is left out.
     LeaveOneOut,
-    /// Nothing: the last regularization is taken.
+    /// Not at all: the last regularization is used.
     None,
 }
 
-/// The name of the loads that are made from the mesh.
+/// The name of the loads that are generated from the mesh.
 pub const MADE: &str = "made";
+/// The name of the validation that leaves out one load at a time.
 pub const LEAVE_ONE_OUT: &str = "leave-one-out";
 /// Names that no load of a scene may have.
 pub const RESERVED: [&str; 2] = [MADE, LEAVE_ONE_OUT];
 
 impl Start {
+    /// The name in reports.
     pub fn title(&self) -> String {
         match self {
             Start::Fit(fit) => fit.objective.title(),
@@ -76,10 +91,10 @@ impl Start {
 crate::named!(Sharing { "spring" => Spring, "group" => Group, "region" => Region, "element" => Element });
 
 impl WholeRecipe {
-    /// What of it goes with the material.
+    /// Checks the settings that depend on the material.
     ///
     /// # Errors
-    /// Loads are made where displacements are large, or frequencies wanted without a density.
+    /// Loads are generated and displacements are large, or frequencies are fitted without a density.
     pub fn check(&self, law: bool, density: bool) -> Result<()> {
         let judged = matches!(&self.validation, ValidationRecipe::Loads(loads) if loads.made);
         for (key, made) in [("loads", self.loads.made), ("validate", judged)] {
@@ -94,10 +109,10 @@ impl WholeRecipe {
         Ok(())
     }
 
-    /// That the loads of the recipe are in the scene, and [`WholeRecipe::check`].
+    /// Checks that the loads of the recipe are in the scene, and calls [`WholeRecipe::check`].
     ///
     /// # Errors
-    /// A load is unknown, or a choice does not go with the material.
+    /// A load is unknown, or a setting contradicts the material.
     pub fn check_in(&self, scene: &SceneFacts) -> Result<()> {
         scene.expect_loads("loads", &self.loads.names)?;
         if let ValidationRecipe::Loads(loads) = &self.validation {
@@ -108,12 +123,13 @@ impl WholeRecipe {
 }
 
 impl LoadSelection {
+    /// These names, among which `made` stands for the generated loads.
     pub fn new(names: Vec<String>) -> LoadSelection {
         let made = names.iter().any(|name| name == MADE);
         LoadSelection { names: names.into_iter().filter(|name| name != MADE).collect(), made }
     }
 
-    /// In words, for notes and reports.
+    /// The loads in words, for notes and reports.
     pub fn words(&self) -> Vec<String> {
         let made = self.made.then(|| "loads made from the mesh".to_string());
         self.names.iter().cloned().chain(made).collect()
@@ -121,7 +137,7 @@ impl LoadSelection {
 }
 
 impl ValidationRecipe {
-    /// In words, for notes and reports.
+    /// The validation in words, for notes and reports.
     pub fn words(&self) -> Vec<String> {
         match self {
             ValidationRecipe::Loads(loads) if loads.made && loads.names.is_empty() => {

@@ -1,23 +1,30 @@
-//! The settings and errors of a whole-object fit, as a report has them.
+//! The settings and errors of a whole-object fit in a report.
 
 use super::outcome::{FittedLoad, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
 use serde::{Deserialize, Serialize};
 
-/// The settings, with defaults resolved.
+/// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WholeRecord {
+    /// The objective, `whole`.
     pub objective: String,
+    /// The constants from which the fit starts.
     pub start: StartRecord,
-    /// Of the objective that it starts from, as `higher`.
+    /// The weight of the objective of the start.
     pub weight: Option<String>,
+    /// The scale of the motions beyond constant strain in that weight.
     pub higher: Option<f64>,
-    /// What has a factor of its own: `spring`, `group`, `region` or `element`.
+    /// Which springs share an unknown factor: `spring`, `group`, `region` or `element`.
     pub unknowns: String,
+    /// The residuals: `displacements`, `forces` or `forces-first`.
     pub residual: String,
+    /// The solver.
     pub solver: String,
+    /// The number of natural frequencies that are fitted.
     pub frequencies: usize,
+    /// The seed of the random loads.
     pub seed: u64,
 }
 
@@ -29,25 +36,36 @@ pub enum StartRecord {
     Sampled(Box<SampledRecord>),
 }
 
-/// What the fit was fitted to, and how it ended.
+/// The loads of the fit, and its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WholeOutcomeRecord {
+    /// The names of the loads that were fitted.
     pub loads: Vec<String>,
+    /// The names of the loads that chose the regularization.
     pub validated: Vec<String>,
-    /// Null if the start was best.
+    /// The regularization that was chosen; null if the start was best.
     pub regularization: Option<f64>,
+    /// The largest factor by which a constant changed.
     pub largest_change: Option<f64>,
+    /// The ratio of the largest to the least constant of the length springs.
     pub range: Option<f64>,
+    /// Whether a smaller regularization was rejected because of this ratio.
     pub limited_by_range: bool,
+    /// The number of steps.
     pub steps: usize,
+    /// Whether the fit was cancelled.
     pub cancelled: bool,
+    /// Whether the network is stable under every load at the start.
     pub stands: bool,
+    /// The relative errors on the loads of the fit.
     pub relative_errors_fitted: Vec<FittedLoadRecord>,
+    /// The relative errors on the loads that chose the regularization.
     pub relative_errors_validated: Vec<FittedLoadRecord>,
+    /// The relative errors of the frequencies.
     pub relative_errors_of_frequencies: FrequencyErrorsRecord,
 }
 
-/// The relative error under a load; null where the network does not stand.
+/// The relative error under a load; null if the network is not stable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FittedLoadRecord {
     pub load: String,
@@ -55,7 +73,7 @@ pub struct FittedLoadRecord {
     pub after: Option<f64>,
 }
 
-/// `ω_i/ω̄_i − 1`.
+/// The relative errors `ω_i/ω̄_i − 1` of the frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FrequencyErrorsRecord {
     pub before: Vec<Option<f64>>,
@@ -87,6 +105,7 @@ impl WholeRecord {
 }
 
 impl WholeOutcomeRecord {
+    /// The record of this outcome.
     pub fn of(outcome: &WholeOutcome) -> WholeOutcomeRecord {
         let finite = |value: f64| Some(value).filter(|value| value.is_finite());
         let load = |load: &FittedLoad| FittedLoadRecord {
