@@ -46,9 +46,9 @@ pub fn fit(
     keys: &Bound<PyDict>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Network> {
-    let entry: FitEntry = table(keys)?.try_into().map_err(|error: toml::de::Error| {
-        raised(py, Error::new(error.message().to_string()))
-    })?;
+    let entry: FitEntry = table(keys)?
+        .try_into()
+        .map_err(|error: toml::de::Error| raised(py, Error::new(error.message().to_string())))?;
     let (density, constants) = (material.density, material);
     progress::run(py, progress, |told| {
         entry.check()?;

@@ -36,7 +36,12 @@ impl Mesh {
         let block = |(element, nodes): &Block| {
             let (key, n) = (format!("cells of {}", element.0.name), element.0.nodes());
             if nodes.shape()[1] != n {
-                return Err(invalid(py, &key, &format!("an array of shape (cells, {n})"), format!("{:?}", nodes.shape())));
+                return Err(invalid(
+                    py,
+                    &key,
+                    &format!("an array of shape (cells, {n})"),
+                    format!("{:?}", nodes.shape()),
+                ));
             }
             Ok((element.0.clone(), places(py, &key, nodes.as_array().iter())?))
         };

@@ -117,7 +117,8 @@ impl Network {
             true => Some(self.network().stiffness(&x)),
             false => self.network().respond(&x).map(|response| response.tangent),
         });
-        let entries = entries.ok_or_else(|| invalid(py, "x", "positions where the springs have a tangent", "others"))?;
+        let entries =
+            entries.ok_or_else(|| invalid(py, "x", "positions where the springs have a tangent", "others"))?;
         Ok(triplets(py, &entries, list))
     }
 
@@ -136,8 +137,7 @@ impl Network {
             return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
         }
         let held = held.as_array();
-        let support =
-            Support { prescribed: held.iter().zip(prescribed).map(|(held, u)| held.then_some(u)).collect() };
+        let support = Support { prescribed: held.iter().zip(prescribed).map(|(held, u)| held.then_some(u)).collect() };
         let solved = py.detach(|| {
             let system = System::new(&self.network().stiffness(&self.mesh.points), &support)?;
             let factor = system.factorize()?;
@@ -145,7 +145,8 @@ impl Network {
         });
         let solved = solved.map_err(|error| raised(py, error))?;
         let expected = "supports that hold the network, and springs that resist every motion";
-        let ((u, left), is_stable) = solved.ok_or_else(|| invalid(py, "fix", expected, "a motion without stiffness"))?;
+        let ((u, left), is_stable) =
+            solved.ok_or_else(|| invalid(py, "fix", expected, "a motion without stiffness"))?;
         Ok((matrix(py, u, self.mesh.dimension), left, is_stable))
     }
 
@@ -210,7 +211,8 @@ fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyResul
     let (record, n) = (PyDict::new(py), springs[0].points.len());
     record.set_item("kind", springs[0].kind.name())?;
     record.set_item("unit", SpringKind::properties(springs[0].kind).unit)?;
-    record.set_item("points", matrix(py, springs.iter().flat_map(|s| s.points.iter().map(|&p| p as i32)).collect(), n))?;
+    record
+        .set_item("points", matrix(py, springs.iter().flat_map(|s| s.points.iter().map(|&p| p as i32)).collect(), n))?;
     record.set_item("constants", list(py, springs.iter().map(|s| s.constant).collect()))?;
     record.set_item("rest", list(py, springs.iter().map(|s| s.rest).collect()))?;
     if let Some(law) = &springs[0].law {

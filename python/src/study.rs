@@ -3,11 +3,10 @@
 use crate::arrays::matrix;
 use crate::error::raised;
 use crate::progress;
-use crate::value::table;
+use crate::value::{table, text};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::Error;
 use springfit::report;
 use springfit::study::{Controls, Outcome, Scene, run_with};
 use std::collections::BTreeMap;
@@ -28,7 +27,7 @@ pub fn run<'py>(
 ) -> PyResult<Ran<'py>> {
     let scene = match scene.cast::<PyDict>() {
         Ok(keys) => {
-            let text = toml::to_string(&table(keys)?).map_err(|error| raised(py, Error::new(error.to_string())))?;
+            let text = text(&table(keys)?);
             // The name that a scene without a title gets.
             Scene::parse(&text, &folder.join("scene.toml"))
         }

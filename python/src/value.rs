@@ -10,6 +10,39 @@ pub fn table(given: &Bound<PyDict>) -> PyResult<Table> {
     keyed(given, "")
 }
 
+/// The text of a table, one line for each of its keys.
+pub fn text(table: &Table) -> String {
+    table.iter().map(|(key, value)| format!("{} = {}\n", quoted(key), inline(value))).collect()
+}
+
+fn inline(value: &Value) -> String {
+    match value {
+        Value::String(text) => quoted(text),
+        Value::Integer(number) => number.to_string(),
+        Value::Float(number) if number.is_nan() => "nan".into(),
+        Value::Float(number) => format!("{number:?}"),
+        Value::Boolean(flag) => flag.to_string(),
+        Value::Datetime(date) => date.to_string(),
+        Value::Array(entries) => format!("[{}]", entries.iter().map(inline).collect::<Vec<_>>().join(", ")),
+        Value::Table(table) => {
+            let entries: Vec<String> =
+                table.iter().map(|(key, value)| format!("{} = {}", quoted(key), inline(value))).collect();
+            format!("{{{}}}", entries.join(", "))
+        }
+    }
+}
+
+/// A basic string of TOML.
+fn quoted(text: &str) -> String {
+    let escaped = text.chars().map(|c| match c {
+        '"' => "\\\"".into(),
+        '\\' => "\\\\".into(),
+        c if c.is_control() => format!("\\U{:08x}", u32::from(c)),
+        c => c.to_string(),
+    });
+    format!("\"{}\"", escaped.collect::<String>())
+}
+
 fn keyed(given: &Bound<PyDict>, parent: &str) -> PyResult<Table> {
     let mut table = Table::new();
     for (key, item) in given {

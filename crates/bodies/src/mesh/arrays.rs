@@ -73,7 +73,11 @@ impl MeshArrays {
                 return Err(Error::expected(key, expected, format!("one of dimension {}", element.dimension())));
             }
             if connectivity.is_empty() || !connectivity.len().is_multiple_of(n) {
-                return Err(Error::expected(key, format!("cells of {n} nodes"), format!("{} nodes", connectivity.len())));
+                return Err(Error::expected(
+                    key,
+                    format!("cells of {n} nodes"),
+                    format!("{} nodes", connectivity.len()),
+                ));
             }
             if let Some(found) = outside(connectivity) {
                 return Err(Error::expected(key, expected(), found));
