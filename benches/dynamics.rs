@@ -2,7 +2,7 @@
 //! its rim and poked in the middle, and ones of more springs: larger membranes of the same cells, where `h² k/m` of a spring stays, and
 //! the same membrane refined, where it grows as the number of springs. `cargo bench --bench dynamics`.
 
-use springfit::dynamics::{Curve, Drive, Integrator, Motion, Options, Outcome, Simulation, Solver};
+use springfit::dynamics::{Curve, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome};
 use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight, fit_cells};
 use springfit::material::{Material, State};
@@ -57,7 +57,7 @@ fn seconds(mesh: &Mesh, network: &Network, options: Options, times: usize) -> (f
                 simulation.start(&zero, &zero).expect("it rests");
                 for _ in 0..STEPS {
                     let step = simulation.step();
-                    assert_ne!(step.outcome, Outcome::Stalled, "a step was not solved");
+                    assert_ne!(step.outcome, StepOutcome::Stalled, "a step was not solved");
                     iterations += step.solver_iterations;
                 }
             }
@@ -71,7 +71,7 @@ fn seconds(mesh: &Mesh, network: &Network, options: Options, times: usize) -> (f
 
 fn main() {
     let real_time = Options { iterations: 1, account: false, ..Options::default() };
-    let gradients = |tolerance| Options { solver: Solver::ConjugateGradients { tolerance }, ..real_time };
+    let gradients = |tolerance| Options { solver: LinearSolver::ConjugateGradients { tolerance }, ..real_time };
     let methods = [
         ("linear, one factor", Options { linear: true, ..real_time }),
         ("linear, CG to 1e-6", Options { linear: true, ..gradients(1e-6) }),

@@ -20,9 +20,10 @@ fn main() -> ExitCode {
     #[cfg(unix)]
     #[allow(unsafe_code)]
     unsafe {
-        // A file that may not grow further is an error like a full disk, not the end.
+        // A file that may not grow further (RLIMIT_FSIZE) gives an error like a full disk instead of ending the
+        // program.
         libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
-        // Rust aborts where memory fails that no estimate saw coming: an error like others.
+        // Rust aborts if an allocation fails that no estimate predicted; this ends like other errors.
         libc::signal(libc::SIGABRT, aborted as extern "C" fn(libc::c_int) as libc::sighandler_t);
     }
     CommandLine::parse().command.run(&mut Terminal::new()).unwrap_or_else(|error| {
@@ -31,7 +32,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Ends the program as an error does; nothing here asks for memory.
+/// Ends the program as an error does. Nothing here allocates memory.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 extern "C" fn aborted(_: libc::c_int) {

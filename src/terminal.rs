@@ -1,4 +1,4 @@
-//! What the program prints: results on standard output; notes, errors and progress on standard error.
+//! The output of the program: results on standard output; notes, errors and progress on standard error.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use springfit::error::{Error, Result};
@@ -9,7 +9,8 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Shows progress: on a terminal in a bar that appears once work has taken a second, elsewhere in a line every ten seconds.
+/// Shows progress: on a terminal in a bar that appears once work has taken a second, elsewhere in a line every ten
+/// seconds.
 pub struct Terminal {
     start: Instant,
     bar: Option<ProgressBar>,
@@ -18,15 +19,16 @@ pub struct Terminal {
     last: Instant,
 }
 
-/// The stage that runs, and what was done of it when it began.
+/// The running stage, and how much of it was done when it began.
 struct Stage {
     name: String,
     start: Instant,
     first: usize,
 }
 
+/// The time between two lines of progress.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
-/// Before, a stage does not say how long it will take.
+/// A stage states the remaining time after it has run this long.
 const TRIAL: Duration = Duration::from_secs(1);
 
 impl Stage {
@@ -34,7 +36,7 @@ impl Stage {
         Stage { name: name.into(), start: Instant::now(), first: done }
     }
 
-    /// The time that is left at the pace so far.
+    /// The remaining time at the present pace.
     fn left(&self, done: usize, total: usize) -> Option<Duration> {
         let elapsed = self.start.elapsed();
         let (made, left) = (done.checked_sub(self.first)?, total.saturating_sub(done));
@@ -90,7 +92,7 @@ impl Terminal {
         }
     }
 
-    /// Prints to standard output; a reader who has gone away, as `head` does, ends the program quietly.
+    /// Prints to standard output. If the reader is gone, as with `head`, the program ends without an error.
     ///
     /// # Errors
     /// Standard output cannot be written.
@@ -113,7 +115,7 @@ impl Terminal {
         Ok(())
     }
 
-    /// Names the files that were written.
+    /// Names the written files.
     ///
     /// # Errors
     /// Standard output cannot be written.
@@ -131,7 +133,7 @@ fn words(time: Duration) -> String {
     }
 }
 
-/// A line on standard error; if nobody can read it, nothing is lost.
+/// Prints a line on standard error; if it cannot be written, nothing is lost.
 pub fn tell(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", printable_lines(line));
 }

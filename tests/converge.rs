@@ -538,7 +538,7 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
     assert!(error.contains("load: expected a load \"shear\" as in the scene, found pull"), "{error}");
 }
 
-/// The figures of docs/exact-networks.md: tetrahedra at ν = 0.4999 against the limit of quadratic hexahedra, and classical springs on a
+/// The figures of docs/src/studies/convergence.md: tetrahedra at ν = 0.4999 against the limit of quadratic hexahedra, and classical springs on a
 /// structured block, which do not converge.
 #[test]
 fn the_figures_of_the_page_on_exact_networks() {

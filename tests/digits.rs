@@ -1,6 +1,6 @@
 //! Digits that ill-conditioned problems keep: contrast, bounded and tied constants on flat shapes, springs on functions.
 
-use springfit::dynamics::{Motion, Options, Simulation, Solver};
+use springfit::dynamics::{LinearSolver, Motion, Options, Simulation};
 use springfit::element::Element;
 use springfit::error::ErrorKind;
 use springfit::fit::{
@@ -66,11 +66,11 @@ fn definiteness_is_the_same_for_every_solver() {
         Simulation::new(motion, Options { step: 1e12, linear: true, solver, ..Options::default() }).err()
     };
     for tolerance in [0.9, 1e-8, 1e-15] {
-        let gradients = Solver::ConjugateGradients { tolerance };
-        assert!(begun(1e-15, Solver::Factor).is_none());
+        let gradients = LinearSolver::ConjugateGradients { tolerance };
+        assert!(begun(1e-15, LinearSolver::Factor).is_none());
         let error = begun(1e-15, gradients).unwrap();
         assert_eq!((error.key(), error.kind()), (Some("model"), ErrorKind::Infeasible), "{error}");
-        for solver in [Solver::Factor, gradients] {
+        for solver in [LinearSolver::Factor, gradients] {
             let error = begun(-1e-3, solver).unwrap();
             assert_eq!(error.key(), Some("step"), "{error}");
             assert!(begun(1e-3, solver).is_none());

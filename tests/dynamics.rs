@@ -3,7 +3,7 @@
 use crate::messages::reads;
 use springfit::dynamics::largest_square;
 use springfit::dynamics::{
-    Account, Curve, Dampers, Damping, Drive, Integrator, Motion, Options, Outcome, Simulation, Solver,
+    Account, Curve, Dampers, Damping, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome,
 };
 use springfit::element::{Element, SHIPPED};
 use springfit::fit::{Fit, Higher, Objective, Weight, fit_cells};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 const IMPLICIT: [Integrator; 3] =
     [Integrator::ImplicitEuler, Integrator::Bdf2, Integrator::Newmark { beta: 0.25, gamma: 0.5 }];
 
-const SOLVERS: [Solver; 2] = [Solver::Factor, Solver::ConjugateGradients { tolerance: 1e-6 }];
+const SOLVERS: [LinearSolver; 2] = [LinearSolver::Factor, LinearSolver::ConjugateGradients { tolerance: 1e-6 }];
 
 fn all_integrators() -> [Integrator; 4] {
     let [a, b, c] = IMPLICIT;
@@ -63,7 +63,7 @@ fn scattered(dofs: usize, size: f64) -> Vec<f64> {
 
 fn run(simulation: &mut Simulation, steps: usize) {
     for _ in 0..steps {
-        assert_eq!(simulation.step().outcome, Outcome::Converged);
+        assert_eq!(simulation.step().outcome, StepOutcome::Converged);
     }
 }
 
@@ -186,7 +186,7 @@ fn implicit_euler_never_gains_energy() {
             let mut last = simulation.account().total();
             for _ in 0..60 {
                 let outcome = simulation.step().outcome;
-                assert!(matches!(outcome, Outcome::Converged | Outcome::Stalled), "{outcome:?}");
+                assert!(matches!(outcome, StepOutcome::Converged | StepOutcome::Stalled), "{outcome:?}");
                 let now = simulation.account().total();
                 assert!(now <= last * (1.0 + 1e-12), "{step} s: {last} J, then {now} J");
                 last = now;
@@ -321,8 +321,8 @@ fn implicit_euler_bears_any_stiffness() {
             for _ in 0..300 {
                 let outcome = simulation.step().outcome;
                 // At rest there is nothing left to linearise.
-                let is_linearized = iterations == 1 && outcome == Outcome::Linearized;
-                assert!(is_linearized || outcome == Outcome::Converged, "{constant} N/m: {outcome:?}");
+                let is_linearized = iterations == 1 && outcome == StepOutcome::Linearized;
+                assert!(is_linearized || outcome == StepOutcome::Converged, "{constant} N/m: {outcome:?}");
                 let reach = simulation.state().displacement.iter().fold(0.0f64, |a, u| a.max(u.abs()));
                 assert!(
                     reach < 0.05 + 100.0 * hanging,
@@ -377,7 +377,7 @@ fn one_factor_gives_the_motion_of_many() {
         let mut many = Simulation::new(motion(&again), options).unwrap();
         let mut one = Simulation::new(motion(&network), Options { linear: true, ..options }).unwrap();
         for _ in 0..200 {
-            assert_eq!((many.step().outcome, one.step().outcome), (Outcome::Converged, Outcome::Converged));
+            assert_eq!((many.step().outcome, one.step().outcome), (StepOutcome::Converged, StepOutcome::Converged));
             // Newton stops at a residual of 1e-10.
             for (a, b) in many.state().displacement.iter().zip(&one.state().displacement) {
                 assert_near(*a, *b, 1e-10 * 1e-3 * 100.0);
@@ -422,7 +422,7 @@ fn conjugate_gradients_give_the_motion_of_the_factor() {
             ..Motion::free(&network, &mesh.points, &masses)
         };
         let options = Options { integrator, linear, iterations, step: 0.002, ..Options::default() };
-        let solver = Solver::ConjugateGradients { tolerance: 1e-12 };
+        let solver = LinearSolver::ConjugateGradients { tolerance: 1e-12 };
         let mut factor = Simulation::new(motion.clone(), options).unwrap();
         let mut gradients = Simulation::new(motion, Options { solver, ..options }).unwrap();
         for _ in 0..100 {
@@ -449,9 +449,11 @@ fn buckled_springs_are_borne_by_each_solver() {
     let masses = masses(&mesh, 1000.0, 1.0);
     let pressed: Vec<f64> = mesh.points.iter().map(|x| -0.5 * x).collect();
     let pushing = network.scaled(&vec![-1.0; network.len()]);
-    for solver in
-        [Solver::Factor, Solver::ConjugateGradients { tolerance: 1e-6 }, Solver::ConjugateGradients { tolerance: 0.1 }]
-    {
+    for solver in [
+        LinearSolver::Factor,
+        LinearSolver::ConjugateGradients { tolerance: 1e-6 },
+        LinearSolver::ConjugateGradients { tolerance: 0.1 },
+    ] {
         for iterations in [1, 3, 20] {
             let options = Options { iterations, solver, ..Options::default() };
             let mut simulation = Simulation::new(Motion::free(&network, &mesh.points, &masses), options).unwrap();
@@ -751,7 +753,7 @@ fn bodies_of_finite_elements_move() {
     let mut simulation = Simulation::new(motion, Options::default()).unwrap();
     run(&mut simulation, 2);
     let before = simulation.state().clone();
-    assert_eq!(simulation.step().outcome, Outcome::NoResponse);
+    assert_eq!(simulation.step().outcome, StepOutcome::NoResponse);
     assert_eq!(simulation.state(), &before);
 }
 
@@ -760,7 +762,7 @@ fn faults_are_named() {
     let (network, points) = pair(1.0);
     let error = |motion: Motion, options: Options| Simulation::new(motion, options).unwrap_err().to_string();
     let masses = [1.0, 1.0];
-    let gradients = |tolerance| Solver::ConjugateGradients { tolerance };
+    let gradients = |tolerance| LinearSolver::ConjugateGradients { tolerance };
     let free = || Motion::free(&network, &points, &masses);
     let (plain, d) = (Options::default(), Drive::default);
     reads(&error(free(), Options { step: 0.0, ..plain }), "step: … found 0").unwrap();
@@ -785,7 +787,7 @@ fn faults_are_named() {
     reads(&Curve::of(&two).unwrap_err().to_string(), "curve: … found one of more variables").unwrap();
     // A spring that pushes away as it is stretched: no linear step of a second.
     let (released, _) = pair(-10.0);
-    for solver in [Solver::Factor, gradients(1e-6)] {
+    for solver in [LinearSolver::Factor, gradients(1e-6)] {
         let options = Options { step: 1.0, linear: true, solver, ..plain };
         reads(&error(Motion::free(&released, &points, &masses), options), "step: … found 1e0 s").unwrap();
     }

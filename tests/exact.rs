@@ -3,7 +3,7 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::{DMatrix, DVector};
-use springfit::dynamics::{Drive, Integrator, Motion, Options, Outcome, Simulation};
+use springfit::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use springfit::element::Element;
 use springfit::fit::{CellFits, ExactEnergy, ExactFit, VolumeSprings, element_errors, fit_exact};
 use springfit::material::{Energy, Material, Moduli, Plane, State};
@@ -383,7 +383,7 @@ fn frequencies_and_motion_are_those_of_the_body() {
                 let options = Options { step, integrator, tolerance: 1e-13, ..Options::default() };
                 let mut simulation = Simulation::new(motion, options).unwrap();
                 for _ in 0..200 {
-                    assert_eq!(simulation.step().outcome, Outcome::Converged, "{element} {integrator:?}");
+                    assert_eq!(simulation.step().outcome, StepOutcome::Converged, "{element} {integrator:?}");
                 }
                 simulation.state().displacement.clone()
             });

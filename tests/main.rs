@@ -1,6 +1,7 @@
 //! All tests of the library and of the program, in one binary: each file states truths about one subject.
 
 mod bad_input;
+mod book;
 mod cases;
 mod catalogue;
 mod check;

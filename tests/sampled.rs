@@ -6,8 +6,8 @@ use crate::shapes::{Random, distorted};
 use nalgebra::{DMatrix, DVector};
 use springfit::element::Element;
 use springfit::fit::{
-    Balance, CellFits, Family, Fit, Higher, Norm, Objective, SampledFit, SampledFits, Sampling, Source, Weight,
-    Weights, fit_cells, fit_sampled,
+    Balance, CellFits, DeformationFamily, Fit, Higher, Norm, Objective, SampledFit, SampledFits, Sampling, Source,
+    Weight, Weights, fit_cells, fit_sampled,
 };
 use springfit::material::{Energy, Material, Plane, State};
 use springfit::mesh::{BoxMesh, Mesh, Selection};
@@ -34,7 +34,12 @@ fn law(text: &str, springs: &Springs) -> Force {
     Force::of_all(Law::parse(text).unwrap(), springs.names().len())
 }
 
-const BASIC: [Family; 4] = [Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
+const BASIC: [DeformationFamily; 4] = [
+    DeformationFamily::Uniaxial,
+    DeformationFamily::Equibiaxial,
+    DeformationFamily::SimpleShear,
+    DeformationFamily::Volumetric,
+];
 /// A cubic whose slope is not below zero at strains up to a half, where its parameters are not.
 const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s)^3 - 0.125)";
 
@@ -119,7 +124,8 @@ fn samplings_out_of_range_are_told() {
     let energy = Energy::load("neo-hookean", material).unwrap();
     let x = element.positions.clone();
     let shapes = |sampling: Sampling| SampledFit { sampling, ..SampledFit::default() };
-    let families = |list: &[Family]| Sampling { source: Source::Families(list.to_vec()), ..Sampling::default() };
+    let families =
+        |list: &[DeformationFamily]| Sampling { source: Source::Families(list.to_vec()), ..Sampling::default() };
     let bounds = vec![("b".to_string(), [0.0, 1.0])];
     for (fit, error) in [
         (shapes(Sampling { shapes: 0, ..Sampling::default() }), "shapes: … found 0"),
@@ -130,7 +136,7 @@ fn samplings_out_of_range_are_told() {
         ),
         (shapes(Sampling { stretch: [0.0; 2], perturbation: 0.0, ..Sampling::default() }), "stretch: … found none"),
         (shapes(families(&[])), "families: expected at least one family, found none"),
-        (shapes(families(&[Family::Torsion])), "families: … found \"torsion\""),
+        (shapes(families(&[DeformationFamily::Torsion])), "families: … found \"torsion\""),
         (
             shapes(Sampling { source: Source::Gradients(Arc::new(vec![1.0; 5])), ..Sampling::default() }),
             "gradients: … 4 numbers, found 5 numbers in all",
@@ -317,7 +323,7 @@ fn sampled_springs_follow_large_deformations() {
             error(fit_cells(&block.element, &springs, points, cells, material.moduli(), &fit, &mut |_| {}).unwrap())
         };
         let best = objectives.map(at_rest).fold(f64::INFINITY, f64::min);
-        let source = Source::Families(vec![Family::Uniaxial, Family::SimpleShear]);
+        let source = Source::Families(vec![DeformationFamily::Uniaxial, DeformationFamily::SimpleShear]);
         let sampling = Sampling { source, stretch: [-0.1, 0.35], perturbation: 0.02, ..Sampling::default() };
         let sampled = |force: Force| {
             let nonnegative = matches!(&force, Force::Laws(laws) if laws[0].parameters.len() > 1);
@@ -361,7 +367,7 @@ fn fits_that_shapes_do_not_determine_are_told() {
         fit_sampled(&element, &springs, &x, &[0, 1, 2, 3], &energy, State::Solid, &fit, &mut |_| {})
     };
     let grown = Sampling {
-        source: Source::Families(vec![Family::Volumetric]),
+        source: Source::Families(vec![DeformationFamily::Volumetric]),
         stretch: [0.2, 0.5],
         perturbation: 0.0,
         ..Sampling::default()

@@ -9,8 +9,8 @@ use springfit::solve::{Newton, System, lowest_modes};
 use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
-    Balance, Displacements, Frequencies, GaussNewton, LeastSquares, Method, NodalLoad, Object, Residual, Target,
-    Unknowns, Validation, Wanted, WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads,
+    DescentMethod, Displacements, Frequencies, GaussNewton, LeastSquares, NodalLoad, Object, Residual, ResidualForces,
+    Target, Unknowns, Validation, Wanted, WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads,
 };
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -120,7 +120,7 @@ fn derivatives_are_those_of_differences() {
         let problem = Displacements::new(&object, targets.iter().collect(), Some(&frequencies)).unwrap();
         compare_with_differences(&problem);
         let entries = finite_elements(&body.mesh, body.material.moduli());
-        compare_with_differences(&Balance::new(&object, vec![&targets[0], &targets[2]], &entries).unwrap());
+        compare_with_differences(&ResidualForces::new(&object, vec![&targets[0], &targets[2]], &entries).unwrap());
     }
 }
 
@@ -186,9 +186,13 @@ fn what_a_network_did_is_found() {
         Wanted { trained, body: Some(finite_elements(&body.mesh, body.material.moduli())), ..Wanted::default() };
     let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
     for (method, residual, limit) in [
-        (Method::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }), Residual::Displacements, 1e-4),
-        (Method::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }), Residual::Forces, 1e-4),
-        (Method::Lbfgs { memory: 20 }, Residual::ForcesFirst, 5e-3),
+        (
+            DescentMethod::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }),
+            Residual::Displacements,
+            1e-4,
+        ),
+        (DescentMethod::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }), Residual::Forces, 1e-4),
+        (DescentMethod::Lbfgs { memory: 20 }, Residual::ForcesFirst, 5e-3),
     ] {
         let regularizations = vec![1e-4, 1e-8, 0.0];
         let settings = WholeSettings { regularizations, iterations: 100, method, residual, ..WholeSettings::default() };
@@ -208,14 +212,14 @@ fn the_residual_of_forces_has_one_minimum() {
     let entries = finite_elements(&body.mesh, body.material.moduli());
     let least = |network: &Network| {
         let object = Object::new(network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();
-        let method = Method::GaussNewton(GaussNewton { products: 400, accuracy: 0.01, decrease: 1e-9 });
+        let method = DescentMethod::GaussNewton(GaussNewton { products: 400, accuracy: 0.01, decrease: 1e-9 });
         let residual = Residual::Forces;
         let (regularizations, range) = (vec![0.0], f64::INFINITY);
         let settings = WholeSettings { regularizations, iterations: 100, method, residual, range };
         let wanted = Wanted { trained: targets.clone(), body: Some(entries.clone()), ..Wanted::default() };
         let found = quietly(&object, &wanted, &settings);
         let object = Object::new(&found.network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();
-        let balance = Balance::new(&object, targets.iter().collect(), &entries).unwrap();
+        let balance = ResidualForces::new(&object, targets.iter().collect(), &entries).unwrap();
         balance.at(&vec![0.0; network.len()]).unwrap().unwrap().square()
     };
     let far = network.scaled(&waves(network.len(), 1.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
@@ -249,7 +253,7 @@ fn made_tractions_are_in_balance() {
     }
 }
 
-/// The figures of the README: loads that no fit has seen, the range of the constants, and starts that agree or are said not to.
+/// The figures of docs/src/studies/whole-object.md: loads that no fit has seen, the range of the constants, and starts that agree or are said not to.
 #[test]
 fn held_out_errors_fall() {
     // %e_rms under bending and gravity to the side that a prototype reached, and what is reached with volume springs.

@@ -18,7 +18,7 @@ pub struct Account {
     /// The angular momentum `Σ m (x × v)` about the origin, kg m²/s: about z in the plane, about x, y, z in space.
     pub angular_momentum: Vec<f64>,
     /// The balance of energy, if [`Options::account`](super::Options::account) is set.
-    pub balance: Option<Balance>,
+    pub balance: Option<EnergyBalance>,
 }
 
 impl Account {
@@ -30,7 +30,7 @@ impl Account {
 
 /// The balance of energy over the steps so far, by the trapezoidal rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Balance {
+pub struct EnergyBalance {
     /// The work of loads, gravity and moved supports, J.
     pub work: f64,
     /// The energy that damping forces have dissipated, J.

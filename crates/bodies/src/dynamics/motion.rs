@@ -3,7 +3,7 @@
 use super::damping::Damping;
 use super::drive::Drive;
 use super::integrator::Integrator;
-use super::solver::Solver;
+use super::solver::LinearSolver;
 use crate::error::{Error, Result};
 use crate::model::{Elastic, Support};
 use std::fmt;
@@ -96,7 +96,7 @@ pub struct Options {
     /// have the same matrix.
     pub linear: bool,
     /// The solver of the linear equations of implicit steps.
-    pub solver: Solver,
+    pub solver: LinearSolver,
     /// Whether work and dissipation are summed; this costs the forces at the end of a step if they are not computed
     /// anyway.
     pub account: bool,
@@ -104,7 +104,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Options {
-        let (integrator, solver) = (Integrator::default(), Solver::default());
+        let (integrator, solver) = (Integrator::default(), LinearSolver::default());
         Options { step: 0.01, integrator, iterations: 20, tolerance: 1e-10, linear: false, solver, account: true }
     }
 }

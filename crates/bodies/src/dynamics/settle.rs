@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-14;
 
 /// How a step ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum StepOutcome {
     /// The equations hold to the tolerance. Steps of explicit methods always end so, and so do those of linear models.
     Converged,
     /// One iteration was allowed, and made.
@@ -31,7 +31,7 @@ pub enum Outcome {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// How the step ended.
-    pub outcome: Outcome,
+    pub outcome: StepOutcome,
     /// The number of Newton iterations.
     pub iterations: usize,
     /// The residual of the equations, relative to the forces that act; `None` if it was not computed: for linearised
@@ -179,7 +179,7 @@ impl Trial {
         equations: &mut dyn Equations,
     ) -> Step {
         let mut step =
-            Step { outcome: Outcome::NoResponse, iterations: 1, residual: None, modified: 0, solver_iterations: 0 };
+            Step { outcome: StepOutcome::NoResponse, iterations: 1, residual: None, modified: 0, solver_iterations: 0 };
         if !self.evaluate(resistance, target, start, equations.order(), Tangent::None) {
             return step;
         }
@@ -187,7 +187,7 @@ impl Trial {
         step.solver_iterations = solved.iterations;
         equations.order().iter().zip(&self.residual).for_each(|(&dof, s)| target.delta[dof] += s);
         if self.residual.iter().sum::<f64>().is_finite() {
-            step.outcome = if solved.end == End::Exact { Outcome::Converged } else { Outcome::Stalled };
+            step.outcome = if solved.end == End::Exact { StepOutcome::Converged } else { StepOutcome::Stalled };
         }
         step
     }
@@ -204,11 +204,11 @@ impl Trial {
         tolerance: f64,
     ) -> Step {
         let mut made =
-            Step { outcome: Outcome::Stalled, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
+            Step { outcome: StepOutcome::Stalled, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
         // A single step cannot be corrected: either tangent is accurate to first order.
         let tangent = if iterations == 1 { Tangent::Definite } else { Tangent::Exact };
         if !self.evaluate(resistance, target, start, equations.order(), tangent) {
-            return Step { outcome: Outcome::NoResponse, ..made };
+            return Step { outcome: StepOutcome::NoResponse, ..made };
         }
         made.residual = Some(self.size);
         while made.iterations < iterations {
@@ -221,7 +221,7 @@ impl Trial {
             made.iterations += 1;
             if iterations == 1 {
                 equations.order().iter().zip(&self.step).for_each(|(&dof, s)| target.delta[dof] += s);
-                let outcome = if end == End::Exact { Outcome::Linearized } else { Outcome::Stalled };
+                let outcome = if end == End::Exact { StepOutcome::Linearized } else { StepOutcome::Stalled };
                 return Step { outcome, residual: None, ..made };
             }
             let (potential, size) = (self.potential, self.size);
@@ -247,11 +247,11 @@ impl Trial {
             }
             made.residual = Some(self.size);
             if is_rounding {
-                return Step { outcome: Outcome::Converged, ..made };
+                return Step { outcome: StepOutcome::Converged, ..made };
             }
         }
         if self.size <= tolerance {
-            made.outcome = Outcome::Converged;
+            made.outcome = StepOutcome::Converged;
         }
         made
     }

@@ -4,19 +4,19 @@
 
 use super::equations::Equations;
 use super::integrator::{Integrator, Past};
-use super::ledger::{self, Account, Balance, Forces, Ledger};
+use super::ledger::{self, Account, EnergyBalance, Forces, Ledger};
 use super::limit::longest_step;
 use super::motion::{Motion, Options};
 use super::resistance::Resistance;
-use super::settle::{Outcome, Step, Target, Trial};
-use super::solver::Solver;
+use super::settle::{Step, StepOutcome, Target, Trial};
+use super::solver::LinearSolver;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::displaced;
 use crate::solve::generator;
 
 /// Displacements and velocities of a model at one time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct State {
+pub struct MotionState {
     /// The time, s.
     pub time: f64,
     /// The displacements from the positions at rest, `[points · dimension]`, m.
@@ -35,7 +35,7 @@ pub struct Simulation<'a> {
     equations: Option<Box<dyn Equations>>,
     /// The coefficients with which the matrix of a linear model was assembled.
     factored: [f64; 2],
-    state: State,
+    state: MotionState,
     steps: usize,
     /// The accelerations of the free degrees of freedom, m/s², if the method requires them.
     acceleration: Vec<f64>,
@@ -74,7 +74,7 @@ impl<'a> Simulation<'a> {
             resistance,
             equations,
             factored: [f64::NAN; 2],
-            state: State { time: 0.0, displacement: zero(), velocity: zero() },
+            state: MotionState { time: 0.0, displacement: zero(), velocity: zero() },
             steps: 0,
             acceleration: zero(),
             way: zero(),
@@ -118,7 +118,7 @@ impl<'a> Simulation<'a> {
         }
         self.steps = 0;
         self.ledger = None;
-        self.state = State { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
+        self.state = MotionState { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
         for (dof, prescribed) in self.motion.support.prescribed.iter().enumerate() {
             if let Some(u) = prescribed {
                 (self.state.displacement[dof], self.state.velocity[dof]) = (*u, 0.0);
@@ -176,7 +176,8 @@ impl<'a> Simulation<'a> {
             return Ok(is_definite);
         }
         let resistance = &self.resistance;
-        let mut proof = Solver::Factor.equations(&resistance.places(), &resistance.held, self.motion.dimension())?;
+        let mut proof =
+            LinearSolver::Factor.equations(&resistance.places(), &resistance.held, self.motion.dimension())?;
         resistance.assemble(coefficients, &resistance.rest.values, proof.as_mut());
         match proof.prepare() {
             true if !is_prepared => {
@@ -203,7 +204,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// The current state.
-    pub fn state(&self) -> &State {
+    pub fn state(&self) -> &MotionState {
         &self.state
     }
 
@@ -230,7 +231,7 @@ impl<'a> Simulation<'a> {
             None => self.leap(),
             Some(_) => self.settle(time),
         };
-        if step.outcome == Outcome::NoResponse {
+        if step.outcome == StepOutcome::NoResponse {
             self.refresh();
             return step;
         }
@@ -260,7 +261,7 @@ impl<'a> Simulation<'a> {
             velocity[dof] = self.state.velocity[dof] + h * rest / self.resistance.mass[dof];
             delta[dof] = h * velocity[dof];
         }
-        Step { outcome: Outcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
+        Step { outcome: StepOutcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
     }
 
     /// Restores the state before an explicit step.
@@ -270,7 +271,7 @@ impl<'a> Simulation<'a> {
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         self.refresh();
-        Step { outcome: Outcome::NoResponse, ..step }
+        Step { outcome: StepOutcome::NoResponse, ..step }
     }
 
     /// Solves for the end of an implicit step.
@@ -304,12 +305,12 @@ impl<'a> Simulation<'a> {
             true => trial.solve_linear(resistance, target, start, equations),
             false => trial.settle(resistance, target, start, equations, iterations, tolerance),
         };
-        self.is_current = !linear && step.outcome != Outcome::Linearized;
+        self.is_current = !linear && step.outcome != StepOutcome::Linearized;
         let [c1, c2] = target.coefficients;
         for &dof in equations.order() {
             target.velocity[dof] = c1 * (target.delta[dof] - target.z[dof]);
             self.acceleration[dof] = match step.outcome {
-                Outcome::NoResponse => self.acceleration[dof],
+                StepOutcome::NoResponse => self.acceleration[dof],
                 _ => c2 * (target.delta[dof] - target.y[dof]),
             };
         }
@@ -353,7 +354,7 @@ impl<'a> Simulation<'a> {
             let gained = energy - start - work + dissipated;
             ledger.largest = ledger.largest.max(energy.abs());
             let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
-            Balance { work, dissipated, drift }
+            EnergyBalance { work, dissipated, drift }
         };
         Account {
             time: self.state.time,

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 
 /// The solver of the linear equations of an implicit step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Solver {
+pub enum LinearSolver {
     /// A Cholesky factorisation, accurate to rounding. On membranes its size and the time of a solution grow as
     /// `n log n`, and the time of the factorisation as `n^(3/2)`. A linear model is factorised once.
     #[default]
@@ -27,7 +27,7 @@ pub enum Solver {
 /// The default tolerance of conjugate gradients.
 const TOLERANCE: f64 = 1e-8;
 
-crate::named!(Solver {
+crate::named!(LinearSolver {
     "factor" => Factor,
     "conjugate-gradients" => ConjugateGradients { tolerance: TOLERANCE },
 });
@@ -35,10 +35,10 @@ crate::named!(Solver {
 /// The smallest tolerance of conjugate gradients; smaller residuals are rounding errors.
 pub const LEAST_TOLERANCE: f64 = 1e-15;
 
-impl Solver {
+impl LinearSolver {
     pub(super) fn check(self) -> Result<()> {
         match self {
-            Solver::ConjugateGradients { tolerance } if !(LEAST_TOLERANCE..1.0).contains(&tolerance) => {
+            LinearSolver::ConjugateGradients { tolerance } if !(LEAST_TOLERANCE..1.0).contains(&tolerance) => {
                 Err(Error::expected("solver.tolerance", "a number from 1e-15 to below 1", format!("{tolerance:?}")))
             }
             _ => Ok(()),
@@ -54,8 +54,8 @@ impl Solver {
         dimension: usize,
     ) -> Result<Box<dyn Equations>> {
         Ok(match self {
-            Solver::Factor => Box::new(Factored::new(places, held)?),
-            Solver::ConjugateGradients { tolerance } => match dimension {
+            LinearSolver::Factor => Box::new(Factored::new(places, held)?),
+            LinearSolver::ConjugateGradients { tolerance } => match dimension {
                 1 => Box::new(Gradients::<1>::new(places, held, tolerance)?),
                 2 => Box::new(Gradients::<2>::new(places, held, tolerance)?),
                 _ => Box::new(Gradients::<3>::new(places, held, tolerance)?),

@@ -1,7 +1,7 @@
 //! Springs on the stretch of fibres: `I4 = |F a|²` is a quadratic form of the nodes, so that a law of fibres is a law
 //! of springs.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::network::MeasureSpring;
 use super::system::each_cell;

@@ -1,6 +1,6 @@
 //! Loads as nodal forces that are consistent with the shape functions; they are the same for both models.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::integration::each_cell_points;
 use crate::element::{Integrand, SideTable, Tabulation};

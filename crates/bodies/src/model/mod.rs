@@ -4,7 +4,7 @@
 //! Supports, loads and masses are common to both, so that they can be compared. The degree of freedom of a point in a
 //! direction has the number `point · dimension + direction`.
 //!
-//! Theory: pages *Stiffness* and *Exact networks* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 mod assembly;
 mod deformation;

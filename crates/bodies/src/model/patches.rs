@@ -4,7 +4,7 @@
 //! Each cell is shared among its points that are not held, because patches of held points lock as cells do. A cell
 //! whose points are all held is a patch of its own.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::network::MeasureSpring;
 use crate::element::SpringKind;

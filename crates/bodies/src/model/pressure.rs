@@ -1,6 +1,6 @@
 //! The pressure in a network with volume springs on patches.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::network::{MeasureSpring, Network};
 use crate::material::{Material, State};

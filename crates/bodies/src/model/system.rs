@@ -1,6 +1,6 @@
 //! The assembled finite element model.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::Entries;
 use crate::element::Tabulation;

@@ -17,7 +17,7 @@ const ROUNDS: usize = 12;
 const RAISED: f64 = 1e-9;
 
 /// The springs whose forces at rest have to be in equilibrium.
-pub(super) struct Balance<'a> {
+pub(super) struct RestForces<'a> {
     mesh: &'a Mesh,
     network: &'a Network,
     edges: &'a Edges,
@@ -26,9 +26,9 @@ pub(super) struct Balance<'a> {
     fixed: Vec<f64>,
 }
 
-impl<'a> Balance<'a> {
+impl<'a> RestForces<'a> {
     /// Of the network's springs on content, those in `contents` may change their tension.
-    pub fn new(mesh: &'a Mesh, network: &'a Network, edges: &'a Edges, contents: &'a Contents) -> Balance<'a> {
+    pub fn new(mesh: &'a Mesh, network: &'a Network, edges: &'a Edges, contents: &'a Contents) -> RestForces<'a> {
         let d = mesh.dimension;
         let mut fixed = vec![0.0; mesh.points.len()];
         let mut free = contents.places.iter().peekable();
@@ -42,7 +42,7 @@ impl<'a> Balance<'a> {
                 add(&mut fixed, &spring.points, &spring.measure.gradient(&x, d), tension);
             }
         }
-        Balance { mesh, network, edges, contents, fixed }
+        RestForces { mesh, network, edges, contents, fixed }
     }
 
     /// The gradient of the energy in the positions at rest, `[points × dimension]`, N, with these constants and these

@@ -17,7 +17,7 @@
 //! If all of this fails, the only network in equilibrium at rest without negative constants is the one whose constants
 //! are all zero.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 mod balance;
 mod contents;
@@ -29,4 +29,4 @@ mod vibrations;
 
 pub use nearest::{PositiveFit, nearest_positive};
 pub use outcome::{PositiveOutcome, Route};
-pub use programme::Watch;
+pub use programme::SearchProgress;

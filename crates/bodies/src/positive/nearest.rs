@@ -1,10 +1,10 @@
 //! The nearest network without negative springs.
 
-use super::balance::Balance;
+use super::balance::RestForces;
 use super::contents::{Contents, tightened};
 use super::edges::Edges;
 use super::outcome::{PositiveOutcome, Route};
-use super::programme::{Changes, Programme, Watch};
+use super::programme::{Changes, Programme, SearchProgress};
 use super::vibrations::Vibrations;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
@@ -41,7 +41,7 @@ pub fn nearest_positive(
     mesh: &Mesh,
     network: &Network,
     fit: &PositiveFit,
-    watch: &mut Watch,
+    watch: &mut SearchProgress,
 ) -> Result<(Network, PositiveOutcome)> {
     check(mesh, network)?;
     let mut outcome = PositiveOutcome { tensions: [1.0; 2], ..PositiveOutcome::default() };
@@ -65,7 +65,7 @@ pub fn nearest_positive(
     let scales = programme(&plain);
     if (0..plain.len()).all(|edge| plain.constants[edge] >= -ROUNDING * scales.scale(edge)) {
         let mut constants: Vec<f64> = plain.constants.iter().map(|k| k.max(0.0)).collect();
-        outcome.rest_force = Balance::new(mesh, network, &plain, &none).correct(&mut constants, &mut [])?;
+        outcome.rest_force = RestForces::new(mesh, network, &plain, &none).correct(&mut constants, &mut [])?;
         let rounded = search.network(&plain, &constants, &none, &[])?;
         outcome.dropped = outcome.negative;
         return Ok((rounded, outcome));
@@ -118,7 +118,7 @@ impl Search<'_> {
         edges: &Edges,
         contents: &Contents,
         vibrations: &Vibrations,
-        watch: &mut Watch,
+        watch: &mut SearchProgress,
     ) -> Result<Option<Changes>> {
         let d = self.mesh.dimension;
         let mode = |u: &Vec<f64>| {
@@ -152,7 +152,7 @@ impl Search<'_> {
         };
         let before: Vec<f64> = (0..contents.places.len()).map(tension).collect();
         let mut tensions: Vec<f64> = before.iter().zip(&changes.tensions).map(|(t, change)| t + change).collect();
-        outcome.rest_force = Balance::new(mesh, network, edges, contents).correct(&mut constants, &mut tensions)?;
+        outcome.rest_force = RestForces::new(mesh, network, edges, contents).correct(&mut constants, &mut tensions)?;
         outcome.iterations = changes.iterations;
         let more: Vec<f64> = tensions.iter().zip(&before).map(|(now, before)| now - before).collect();
         let nearest = self.network(edges, &constants, contents, &more)?;

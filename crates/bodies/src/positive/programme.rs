@@ -1,6 +1,6 @@
 //! The quadratic programme of the nearest network, solved by Clarabel's interior-point method.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::contents::Contents;
 use super::edges::Edges;
@@ -28,7 +28,7 @@ const MEMORY: f64 = 1.7e8;
 const NEAR: usize = 8;
 
 /// A callback `(done, total)` for the progress of a search.
-pub type Watch<'a> = dyn FnMut(usize, usize) + 'a;
+pub type SearchProgress<'a> = dyn FnMut(usize, usize) + 'a;
 
 /// What may change, and what should be kept.
 pub(super) struct Programme<'a> {
@@ -90,7 +90,7 @@ impl Programme<'_> {
     ///
     /// # Errors
     /// The solver stops without a solution and without a proof that there is none.
-    pub fn solve(&self, watch: &mut Watch) -> Result<Option<Changes>> {
+    pub fn solve(&self, watch: &mut SearchProgress) -> Result<Option<Changes>> {
         let (mesh, edges, contents) = (self.mesh, self.edges, self.contents);
         let (d, dofs) = (mesh.dimension, mesh.points.len());
         let (count, tensions) = (edges.len(), contents.places.len());

@@ -1,6 +1,6 @@
 //! The internal forces of a model at given displacements, and their rounding errors.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use crate::element::Quadrature;
 use crate::model::{Elastic, Entries, Response, Support, displaced};

@@ -1,6 +1,6 @@
 //! Linear statics: `K u = f` with prescribed displacements.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::cholesky::{Analysis, Cholesky, out_of_memory};
 use crate::error::{Error, Result};

@@ -1,7 +1,7 @@
 //! Equilibrium and natural vibrations of either model, and the stability of a network compared with the finite
 //! elements.
 //!
-//! Theory: pages *Stiffness* and *Digits* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Precision* of the book.
 
 mod cholesky;
 mod internal;

@@ -1,6 +1,6 @@
 //! Statics at large deformation: Newton's method with load steps and a line search, for finite elements or a network.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::internal::{Form, Internal, Rest, masked};
 use super::linear::System;
@@ -91,14 +91,14 @@ impl Newton {
             let mut u = found.displacement.clone();
             let (history, balance) = statics.settle(target, &mut u)?;
             match balance {
-                Balance::Exact | Balance::Rounded => {
+                ForceBalance::Exact | ForceBalance::Rounded => {
                     found.residuals.push(history);
                     found.path.push(u.clone());
                     (found.displacement, found.load) = (u, target);
-                    found.is_rounded = balance == Balance::Rounded;
+                    found.is_rounded = balance == ForceBalance::Rounded;
                     step = (2.0 * step).min(first);
                 }
-                Balance::None => {
+                ForceBalance::None => {
                     step /= 2.0;
                     if step < first * 0.5f64.powi(HALVINGS as i32) {
                         found.residuals.push(history);
@@ -127,13 +127,13 @@ impl Newton {
         let mut statics = Statics::new(*self, Rest { model, points, support }, forces);
         let mut u = guess.to_vec();
         let (_, balance) = statics.settle(1.0, &mut u)?;
-        Ok((balance != Balance::None).then_some(u))
+        Ok((balance != ForceBalance::None).then_some(u))
     }
 }
 
 /// Whether the forces are in equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Balance {
+enum ForceBalance {
     /// To the tolerance.
     Exact,
     /// To their rounding error.
@@ -165,11 +165,11 @@ impl<'a> Statics<'a> {
 
     /// Newton's method at one load; returns the residuals, and whether the forces are in equilibrium. If the rounding
     /// of the forces hides the residual, they are computed from the displacements.
-    fn settle(&mut self, load: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, Balance)> {
+    fn settle(&mut self, load: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, ForceBalance)> {
         let Statics { newton, rest: model, tension, forces, known, shifted } = self;
         let support = model.support;
         let (mut history, mut form) = (Vec::new(), Form::Position);
-        let Some(mut now) = model.at(u, form) else { return Ok((history, Balance::None)) };
+        let Some(mut now) = model.at(u, form) else { return Ok((history, ForceBalance::None)) };
         for _ in 0..newton.iterations {
             // The remaining part of the prescribed displacements.
             let moves: Vec<Option<f64>> =
@@ -188,17 +188,18 @@ impl<'a> Statics<'a> {
                 |now: &Internal, rest: &[f64]| moved && model.free(rest) <= newton.tolerance * acting(&now.force);
             if form == Form::Position && is_hidden(&now, &rest) && !is_balanced(&now, &rest) {
                 form = Form::Displacement;
-                let Some(finer) = model.at(u, form) else { return Ok((history, Balance::None)) };
+                let Some(finer) = model.at(u, form) else { return Ok((history, ForceBalance::None)) };
                 now = finer;
                 rest = left(&now.force);
             }
             let (size, acting) = (model.free(&rest), acting(&now.force));
             history.push(if acting > 0.0 { size / acting } else { 0.0 });
             if is_balanced(&now, &rest) {
-                return Ok((history, Balance::Exact));
+                return Ok((history, ForceBalance::Exact));
             }
             let hidden = is_hidden(&now, &rest);
-            let rounded = if hidden && now.rounding <= ROUGHEST * acting { Balance::Rounded } else { Balance::None };
+            let rounded =
+                if hidden && now.rounding <= ROUGHEST * acting { ForceBalance::Rounded } else { ForceBalance::None };
             let Some((step, shift)) = direction(&now.response.tangent, moves, &rest, known)? else {
                 return Ok((history, rounded));
             };
@@ -230,7 +231,7 @@ impl<'a> Statics<'a> {
                 None => return Ok((history, rounded)),
             };
         }
-        Ok((history, Balance::None))
+        Ok((history, ForceBalance::None))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Whether a network is stable: its energy in all motions, relative to that of the finite elements.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::linear::{Factor, System};
 use crate::springs::dot;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// The residuals `r_l = √w_l R⁻¹ (f_l − F(ū_l; θ))/‖ū_l‖`, with R the stiffness of the finite elements at rest. They
 /// are linear in the constants, so that the sum of squares without regularization has only one minimum.
 #[derive(Debug)]
-pub struct Balance<'a> {
+pub struct ResidualForces<'a> {
     object: &'a Object<'a>,
     scales: Vec<Vec<f64>>,
     targets: Vec<&'a Target>,
@@ -21,12 +21,12 @@ pub struct Balance<'a> {
     tangents: Vec<Tangent>,
 }
 
-impl<'a> Balance<'a> {
+impl<'a> ResidualForces<'a> {
     /// `body` is the stiffness of the finite elements.
     ///
     /// # Errors
     /// It is not positive definite, a load moves nothing, or a displacement is not known at every point.
-    pub fn new(object: &'a Object<'a>, targets: Vec<&'a Target>, body: &Entries) -> Result<Balance<'a>> {
+    pub fn new(object: &'a Object<'a>, targets: Vec<&'a Target>, body: &Entries) -> Result<ResidualForces<'a>> {
         let displacements = Displacements::new(object, targets, None)?;
         let Displacements { targets, scales, groups, .. } = displacements;
         if let Some(target) = targets.iter().find(|target| target.weights.contains(&0.0)) {
@@ -52,11 +52,11 @@ impl<'a> Balance<'a> {
                 all.push(Tangent { system, factor, gradients: Arc::new(gradients), loads });
             }
         }
-        Ok(Balance { object, scales, targets, tangents: all })
+        Ok(ResidualForces { object, scales, targets, tangents: all })
     }
 }
 
-impl LeastSquares for Balance<'_> {
+impl LeastSquares for ResidualForces<'_> {
     fn unknowns(&self) -> usize {
         self.object.unknowns.count()
     }

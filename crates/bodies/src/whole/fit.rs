@@ -2,7 +2,7 @@
 
 use super::displacements::{Displacements, Errors};
 use super::object::Object;
-use super::path::{Best, Path, Snapshot, Watch, leave_one_out, mean};
+use super::path::{Best, Path, Snapshot, StepCallback, leave_one_out, mean};
 use super::settings::{Validation, Wanted, WholeSettings};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Network;
@@ -43,7 +43,7 @@ pub fn fit_whole(
     wanted: &Wanted,
     settings: &WholeSettings,
     from: Option<Snapshot>,
-    watch: &mut Watch,
+    watch: &mut StepCallback,
 ) -> Result<WholeFit> {
     let (m, stages) = (object.unknowns().count(), settings.regularizations.len());
     if let Some(snapshot) = &from {

@@ -22,14 +22,14 @@ mod settings;
 mod target;
 mod unknowns;
 
-pub use balance::Balance;
+pub use balance::ResidualForces;
 pub use displacements::{Displacements, Errors};
 pub use fit::{WholeFit, fit_whole};
 pub use gauss_newton::GaussNewton;
 pub use linearized::{LeastSquares, Linearized};
 pub use loads::{NodalLoad, made_loads, random_loads};
 pub use object::{Object, raise_idle};
-pub use path::{Best, Snapshot, Watch};
-pub use settings::{Method, Residual, Validation, Wanted, WholeSettings};
+pub use path::{Best, Snapshot, StepCallback};
+pub use settings::{DescentMethod, Residual, Validation, Wanted, WholeSettings};
 pub use target::{Frequencies, Target};
 pub use unknowns::Unknowns;

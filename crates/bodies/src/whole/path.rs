@@ -2,12 +2,12 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use super::balance::Balance;
+use super::balance::ResidualForces;
 use super::descent::lbfgs;
 use super::displacements::{Displacements, Errors};
 use super::linearized::LeastSquares;
 use super::object::Object;
-use super::settings::{Method, Residual, Validation, Wanted, WholeSettings};
+use super::settings::{DescentMethod, Residual, Validation, Wanted, WholeSettings};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +38,7 @@ pub struct Best {
 }
 
 /// A callback after each step, with the current state, or `None` during cross-validation. Returning false ends the fit.
-pub type Watch<'a> = dyn FnMut(Option<&Snapshot>) -> bool + 'a;
+pub type StepCallback<'a> = dyn FnMut(Option<&Snapshot>) -> bool + 'a;
 
 /// The number of stages without improvement after which the path ends.
 const PATIENCE: usize = 2;
@@ -76,7 +76,7 @@ impl Path<'_> {
         problem: &Displacements,
         judge: &Displacements,
         snapshot: &mut Snapshot,
-        watch: &mut Watch,
+        watch: &mut StepCallback,
     ) -> Result<Best> {
         let range = |theta: &[f64]| self.object.network(theta).range();
         let limit = self.settings.range.max(range(&vec![0.0; snapshot.theta.len()]));
@@ -137,7 +137,7 @@ impl Path<'_> {
         if forces {
             let missing = || Error::expected("residual", "the stiffness of the finite elements for it", "none");
             let body = self.wanted.body.as_ref().ok_or_else(missing)?;
-            let balance = Balance::new(self.object, problem.targets.clone(), body)?;
+            let balance = ResidualForces::new(self.object, problem.targets.clone(), body)?;
             theta = self.descend(&balance, rho, &theta, visit)?;
         }
         match self.settings.residual {
@@ -155,8 +155,8 @@ impl Path<'_> {
     ) -> Result<Vec<f64>> {
         let iterations = self.settings.iterations;
         match self.settings.method {
-            Method::GaussNewton(method) => method.descend(problem, rho, theta, iterations, visit),
-            Method::Lbfgs { memory } => lbfgs(problem, rho, theta, memory, iterations, visit),
+            DescentMethod::GaussNewton(method) => method.descend(problem, rho, theta, iterations, visit),
+            DescentMethod::Lbfgs { memory } => lbfgs(problem, rho, theta, memory, iterations, visit),
         }
     }
 }
@@ -167,7 +167,7 @@ pub(super) fn leave_one_out(
     object: &Object,
     wanted: &Wanted,
     settings: &WholeSettings,
-    watch: &mut Watch,
+    watch: &mut StepCallback,
 ) -> Result<Option<usize>> {
     let count = wanted.trained.len();
     if count < 2 {

@@ -8,7 +8,7 @@ use crate::model::Entries;
 
 /// The method that minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
+pub enum DescentMethod {
     /// Gauss–Newton steps within a trust region.
     GaussNewton(GaussNewton),
     /// L-BFGS.
@@ -21,7 +21,7 @@ pub enum Method {
 /// The default number of pairs of L-BFGS.
 const MEMORY: usize = 10;
 
-crate::named!(Method { "gauss-newton" => GaussNewton { 0: GaussNewton::default() }, "l-bfgs" => Lbfgs { memory: MEMORY } });
+crate::named!(DescentMethod { "gauss-newton" => GaussNewton { 0: GaussNewton::default() }, "l-bfgs" => Lbfgs { memory: MEMORY } });
 
 /// The residuals whose squares are minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,7 +29,7 @@ pub enum Residual {
     /// Differences of displacements, see [`Displacements`](super::Displacements).
     #[default]
     Displacements,
-    /// Residual forces at the target displacements, see [`Balance`](super::Balance).
+    /// Residual forces at the target displacements, see [`ResidualForces`](super::ResidualForces).
     Forces,
     /// Residual forces at the largest ρ, then differences of displacements.
     ForcesFirst,
@@ -45,7 +45,7 @@ pub struct WholeSettings {
     /// The largest number of steps with each ρ.
     pub iterations: usize,
     /// The method that minimises the objective.
-    pub method: Method,
+    pub method: DescentMethod,
     /// The residuals.
     pub residual: Residual,
     /// The largest ratio of the constants of two length springs. A ρ that leads to a larger one is rejected, unless the
@@ -64,7 +64,7 @@ impl Default for WholeSettings {
         WholeSettings {
             regularizations: WholeSettings::REGULARIZATIONS.to_vec(),
             iterations: 20,
-            method: Method::GaussNewton(GaussNewton::default()),
+            method: DescentMethod::GaussNewton(GaussNewton::default()),
             residual: Residual::default(),
             range: 1e3,
         }

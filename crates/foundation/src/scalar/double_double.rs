@@ -1,7 +1,7 @@
 //! Double-double numbers, with twice the digits of `f64`: the reference against which rounding errors are measured.
 //! Also `f32`, with half the digits.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::lanes::with_fused_products;
 use super::{Real, Scalar};

@@ -4,7 +4,7 @@
 //! One source of each kernel serves `f64`, [`Lanes`] (one element per lane), `f32` and [`DoubleDouble`] for studies of
 //! rounding, exact rationals, and the rational functions of [`symbolic`](crate::symbolic).
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 mod coordinates;
 mod double_double;

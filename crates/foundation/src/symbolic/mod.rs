@@ -3,7 +3,7 @@
 //! Shape functions, spring measures, energies and conditions on coordinates are such expressions. Constants are exact
 //! rationals: `1/3` is one third until a floating-point value is asked for.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 mod differentiate;
 mod evaluate;

@@ -1,7 +1,6 @@
-//! The parser of expressions and conditions.
-//!
-//! The crate `evalexpr` builds the operator tree. A lexer in front of it rejects what evalexpr would misread (`a b`,
-//! `a**b`, `+a`, `//`), reports columns, and keeps every literal exact by handing evalexpr a name in its place.
+//! The parser of expressions and conditions. The crate `evalexpr` builds the operator tree. A lexer in front of it
+//! rejects what evalexpr would misread (`a b`, `a**b`, `+a`, `//`), reports columns, and keeps every literal exact by
+//! handing evalexpr a name in its place.
 //!
 //! `-x^2` is `-(x^2)`. A power of a power and a sign inside a term require parentheses: `(a^b)^c`, `a*(-b)`.
 
@@ -20,8 +19,7 @@ const LONGEST_TEXT: usize = 10_000;
 const DEEPEST_NESTING: usize = 100;
 /// The largest number of operators, because a chain of operators becomes a tree as deep as it is long.
 const MOST_OPERATORS: usize = 1000;
-/// The largest number of parts of an expression. Named sub-expressions are copied to each place of use and `ramp(a)`
-/// becomes `a*step(a)`, so that a short text can grow exponentially.
+/// The largest number of parts, because named sub-expressions are copied to each place of use and grow exponentially.
 const MOST_PARTS: usize = 2000;
 /// The largest number of bits of a constant: about a thousand decimal digits.
 const MOST_BITS: u64 = 3322;
@@ -60,8 +58,7 @@ impl Scope {
     /// Parses a real-valued expression.
     ///
     /// # Errors
-    /// The text is malformed, or it is a condition. The error gives the column, what was expected there and what was
-    /// found.
+    /// The text is malformed, or it is a condition. The error gives the column, what was expected and what was found.
     pub fn expression(&self, text: &str) -> Result<Expr> {
         match self.parse(text)? {
             Parsed::Real(expr) => Ok(expr),
@@ -72,8 +69,7 @@ impl Scope {
     /// Parses a condition: comparisons joined by `&&`, `||`, `!`.
     ///
     /// # Errors
-    /// The text is malformed, or it is a number. The error gives the column, what was expected there and what was
-    /// found.
+    /// The text is malformed, or it is a number. The error gives the column, what was expected and what was found.
     pub fn predicate(&self, text: &str) -> Result<Predicate> {
         match self.parse(text)? {
             Parsed::Condition(predicate) => Ok(predicate),
@@ -378,8 +374,7 @@ fn end_of_number(chars: &[char], start: usize) -> usize {
     if end > signed { end } else { at }
 }
 
-/// The exact rational value of `12`, `0.1` or `2.5e-3`; `None` if the text is not a decimal number or its exponent is
-/// too large.
+/// The exact rational value of `12`, `0.1` or `2.5e-3`; `None` if the text is no decimal number or too large.
 fn decimal(literal: &str) -> Option<BigRational> {
     let (mantissa, exponent) = match literal.find(['e', 'E']) {
         Some(e) => (&literal[..e], literal[e + 1..].parse::<i32>().ok()?),

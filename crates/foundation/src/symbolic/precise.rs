@@ -1,6 +1,6 @@
 //! Expressions evaluated in double-double numbers, with elementary functions to 30 digits.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::Function;
 use super::evaluate::Value;

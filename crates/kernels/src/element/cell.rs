@@ -1,6 +1,6 @@
 //! Reference cells: the closed list of shapes that an element can have.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use serde::Deserialize;
 

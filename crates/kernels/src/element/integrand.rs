@@ -1,7 +1,7 @@
 //! Tables of shape functions for loads and masses. The degree of the integrand determines their quadrature, whatever
 //! the rule of the stiffness is.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::cell::Cell;
 use super::quadrature::Quadrature;

@@ -1,6 +1,6 @@
 //! The kinds of springs, one row of properties for each.
 //!
-//! Theory: pages *Stiffness* and *Exact networks* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 use super::formula::Formula;
 use serde::Deserialize;

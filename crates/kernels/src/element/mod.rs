@@ -3,7 +3,7 @@
 //! No element is named in the code. The files of the folder `elements` are embedded in the program; files of users have
 //! the same rights. [`Element::load`] proves the properties that every other module relies on.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 mod cell;
 mod constant;

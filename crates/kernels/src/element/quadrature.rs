@@ -1,6 +1,6 @@
 //! Quadrature rules on reference cells.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::cell::Cell;
 use gauss_quad::GaussLegendre;

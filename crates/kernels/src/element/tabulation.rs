@@ -1,6 +1,6 @@
 //! Shape functions and their gradients as numbers, at the points of a quadrature rule.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::quadrature::Quadrature;
 use crate::symbolic::{Expr, Program};

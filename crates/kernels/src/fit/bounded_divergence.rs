@@ -6,7 +6,7 @@
 //! others take the Newton step, as far as it decreases the objective. A step is projected onto the bounds instead of
 //! ending before them, so that it remains long on flat cells, whose optimal constants differ by orders of magnitude.
 //!
-//! Theory: page *Divergence* of the book.
+//! Theory: page *The divergence* of the book.
 
 use super::dense::{add_outers, at_half, at_rounding, factorize, inner, invert, row_products, solve, tie, trace};
 use super::objective::Balance;

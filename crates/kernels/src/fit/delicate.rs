@@ -1,7 +1,7 @@
 //! Cells that require more digits than `f64` has, such as slivers and needles. They are fitted in double-double
 //! numbers.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::constrained::solve_precisely;
 use super::least_squares::normal_equations;

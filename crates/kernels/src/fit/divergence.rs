@@ -6,7 +6,7 @@
 //! stiff; c = 1 is symmetric in A and A⁻¹. With h_s in units of R̂, Newton's method needs only A⁻¹: the slope is
 //! `h·h − (1 − c) h·A⁻¹h − c h·A⁻²h`, and the curvature is `(1 − c)(h_s·A⁻¹h_t)² + 2c (h_s·A⁻¹h_t)(h_s·A⁻²h_t)`.
 //!
-//! Theory: page *Divergence* of the book.
+//! Theory: page *The divergence* of the book.
 
 use super::dense::{
     add_outers, at_rounding, factorize, inner, invert, least_pivot, room_below, row_products, solve, tie, trace,

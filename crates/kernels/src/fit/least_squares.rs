@@ -97,7 +97,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     gram.resize(m * m, zero.clone());
     images.resize(lengths * D, zero.clone());
     let images = images.as_chunks_mut::<D>().0;
-    let cell = Cell::new(springs, x, geometry, moduli, edges, q, rhs);
+    let cell = EdgeCell::new(springs, x, geometry, moduli, edges, q, rhs);
     let edges = cell.edges;
     let two = zero.one() + &zero.one();
     match weight {
@@ -198,7 +198,7 @@ pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry,
 }
 
 /// One element, or one per lane, with the vectors of its length springs.
-pub struct Cell<'a, T, const D: usize> {
+pub struct EdgeCell<'a, T, const D: usize> {
     springs: &'a Springs,
     x: &'a [[T; D]],
     /// `d_s = x_j − x_i`
@@ -210,7 +210,7 @@ pub struct Cell<'a, T, const D: usize> {
     mu: T,
 }
 
-impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
+impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
     /// Fills `edges` and `q` with those of the element, and `rhs` with zeros.
     #[inline(always)]
     pub fn new(
@@ -221,7 +221,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
         edges: &'a mut Vec<T>,
         q: &'a mut Vec<T>,
         rhs: &mut Vec<T>,
-    ) -> Cell<'a, T, D> {
+    ) -> EdgeCell<'a, T, D> {
         let zero = x[0][0].zero();
         let lengths = springs.pairs.len();
         rhs.clear();
@@ -234,7 +234,7 @@ impl<'a, T: Scalar, const D: usize> Cell<'a, T, D> {
             *q = zero.one() / &dot(d, d);
         }
         let (lambda, mu) = (zero.constant(&moduli.lambda), zero.constant(&moduli.mu));
-        Cell { springs, x, edges, q: &q[..lengths], geometry, lambda, mu }
+        EdgeCell { springs, x, edges, q: &q[..lengths], geometry, lambda, mu }
     }
 
     /// `b_s = g_sᵀ R g_s` of the length springs.

@@ -1,6 +1,6 @@
 //! The objectives that require R itself, for one element or one per lane.
 //!
-//! Theory: pages *The barrier* and *Divergence* of the book.
+//! Theory: pages *The 2-norm* and *The divergence* of the book.
 
 use super::bounded_divergence::settle;
 use super::constrained::{bounded_optimum, solve_nonnegative, solve_precisely};

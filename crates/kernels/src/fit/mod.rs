@@ -4,8 +4,8 @@
 //! [`fit_cells`] fits all cells of one element type; [`fit_exact`] makes networks that are equal to the finite element;
 //! [`fit_sampled`] fits to forces at large deformation; [`published`] holds the formulas of other authors.
 //!
-//! Theory: pages *Least squares*, *The barrier*, *Divergence*, *Modal weights*, *Exact networks* and *Sampled fits* of
-//! the book.
+//! Theory: pages *Least squares*, *The 2-norm*, *The divergence*, *Modal weights*, *Exact networks and patches* and
+//! *Sampled fits* of the book.
 
 mod batch;
 mod bounded_divergence;
@@ -54,7 +54,7 @@ pub use objective::{Balance, Choices, Objective};
 pub use precision::{bounded_constants, condition, constants_of_kind, distance_from_optimum};
 pub use residual::{ElementErrors, Spread, element_errors};
 pub use rest::Rest;
-pub use sampled::{Family, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
+pub use sampled::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 pub use settings::Fit;
 pub use solver::{Search, Solver, Topology};
 pub use weight::{Higher, MotionWeight, Weight};

@@ -8,7 +8,7 @@
 //! Theory: page *Least squares* of the book.
 
 use super::dense::solve as substitute;
-use super::least_squares::Cell;
+use super::least_squares::EdgeCell;
 use super::normal::Normal;
 use super::weight::ClosedWeight;
 use crate::material::Moduli;
@@ -72,7 +72,7 @@ impl<T: Scalar> Nodal<T> {
         let (n, m, lengths) = (springs.nodes, springs.len(), springs.pairs.len());
         let x = &x.as_chunks::<D>().0[..n];
         let Normal { rhs, edges, inverse_squares, .. } = normal;
-        let cell = Cell::<T, D>::new(springs, x, geometry, moduli, edges, inverse_squares, rhs);
+        let cell = EdgeCell::<T, D>::new(springs, x, geometry, moduli, edges, inverse_squares, rhs);
         cell.plain_energies(rhs);
         let zero = x[0][0].zero();
         self.border.clear();
@@ -115,7 +115,7 @@ impl<T: Scalar> Nodal<T> {
 
     /// `n_k n_l`, l ≤ k, of every length spring.
     #[inline(always)]
-    fn set_entries<const D: usize>(&mut self, cell: &Cell<T, D>) {
+    fn set_entries<const D: usize>(&mut self, cell: &EdgeCell<T, D>) {
         self.entries.clear();
         for (d, q) in cell.edges.iter().zip(cell.q) {
             for k in 0..D {

@@ -1,6 +1,6 @@
 //! What a fit of each element minimises: a measure of `R − K(k)`, `K(k) = Σ_s k_s g_s g_sᵀ`, seen through a weight.
 //!
-//! Theory: pages *Least squares*, *The barrier*, *Divergence* and *Modal weights* of the book.
+//! Theory: pages *Least squares*, *The 2-norm*, *The divergence* and *Modal weights* of the book.
 
 use super::weight::{Higher, MotionWeight, Route, Weight};
 use crate::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! One element in another kind of number: in double-double numbers, to measure the effect of rounding, or in `f32`.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 use super::constrained::bounded_optimum;
 use super::input::{check_finite, check_length, check_moduli, check_nodes};

@@ -1,7 +1,5 @@
-//! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, on which R
-//! is regular. They are weighted and scaled to a size of one.
-//!
-//! Theory: page *The barrier* of the book (the reduced space).
+//! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, weighted
+//! and scaled to a size of one. Theory: page *Stiffness and the reduced space* of the book.
 
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;
@@ -11,7 +9,7 @@ use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`, with one unknown κ_I per spring, or per group if
+/// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`, one unknown κ_I per spring, or per group if
 /// tied.
 #[derive(Debug, Clone)]
 pub struct Reduced<T> {
@@ -29,14 +27,13 @@ pub struct Reduced<T> {
     pub size: T,
     /// What the weight divides by, N/m, or 1.
     unit: T,
-    /// The least pivot of R̂ relative to its diagonal, if the weight divides by R; about the ratio of the softest to
-    /// the stiffest motion.
+    /// The least pivot of R̂ relative to its diagonal, if the weight divides by R: about the softest over the stiffest
+    /// motion.
     pub softest: T,
     mix: Vec<T>,
     nodal: Vec<T>,
     work: Vec<T>,
-    /// Orthonormal rows that sum to zero, `[nodes − 1 × nodes]`: differences of nodes, which translations do not
-    /// change.
+    /// Orthonormal rows that sum to zero, `[nodes − 1 × nodes]`: differences, which translations do not change.
     differences: Vec<f64>,
     norms: Vec<T>,
 }
@@ -67,8 +64,7 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// Fills in the element with nodes at `x`, `[nodes × dimension]`; `measured` are the gradients of the springs on
-    /// functions, `[springs × nodes·dimension]`.
+    /// Fills in the element with nodes at `x` and these gradients of springs on functions, `[functions × nodes·dimension]`.
     pub fn set(
         &mut self,
         weight: MotionWeight,
@@ -273,10 +269,8 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// `h ← R̂^(−1/2) h`, here with the Cholesky factor, which differs by a rotation: `R̂ = L Lᵀ`, `h ← L⁻¹ h`,
-    /// `R̂ ← I`.
-    ///
-    /// R̂ has a trace of `order` before, because roots of numbers whose ratio is an odd power of two round differently.
+    /// `h ← R̂^(−1/2) h`, with the Cholesky factor instead of the root, from which it differs by a rotation. R̂ has a
+    /// trace of `order` before, because roots of numbers whose ratio is an odd power of two round differently.
     #[inline(always)]
     fn divide_by_stiffness(&mut self) {
         let p = self.order;
@@ -347,8 +341,7 @@ impl<T: Real> Reduced<T> {
         add_outers(e, self.rows(), p, kappa, &self.unknowns, -1.0);
     }
 
-    /// The Gram matrix of the matrices of the unknowns, `Σ_{s∈I, t∈J} (h_s·h_t)²`, lower triangle of order
-    /// `[unknowns]`. `products` receives the `h_s·h_t`, `[springs × springs]`.
+    /// The Gram matrix `Σ_{s∈I, t∈J} (h_s·h_t)²`, lower triangle; `products` receives `h_s·h_t`, `[springs × springs]`.
     pub fn gram(&self, products: &mut [T], out: &mut [T]) {
         let (h, count) = (self.rows(), self.scales.len());
         row_products(h, h, self.order, true, products);

@@ -1,6 +1,6 @@
 //! The rest lengths, or rest measures, of the springs of a fit.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::objective::Objective;
 use super::solver::Solver;

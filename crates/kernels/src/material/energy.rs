@@ -1,6 +1,6 @@
 //! Hyperelastic materials: the energy per volume at rest, as an expression in the invariants of the deformation.
 //!
-//! Theory: pages *Stiffness* and *Exact networks* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 use super::{Material, Moduli};
 use crate::error::{Error, ErrorKind, Result};

@@ -3,7 +3,7 @@
 //!
 //! Hyperelastic energies are in [`Energy`].
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 mod energy;
 

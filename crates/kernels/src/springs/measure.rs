@@ -26,7 +26,7 @@ pub enum Measure {
 
 /// Energy, force and tangent of a spring at given positions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Response {
+pub struct SpringResponse {
     /// The energy U, in J; `½ k (c − c₀)²` for a linear spring.
     pub energy: f64,
     /// The forces on its points, `−T ∇c`, `[points × dimension]`, N; `T = k (c − c₀)` for a linear spring.
@@ -117,17 +117,17 @@ impl Measure {
 
     /// The response of a linear spring with this constant and rest measure at the positions `x`,
     /// `[points × dimension]`, m.
-    pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> Response {
+    pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> SpringResponse {
         self.respond_by(|c| linear(constant, c - rest), x, dimension)
     }
 
     /// The response of a spring whose energy U, force `T = U'` and slope `T'` are `law(c)`.
-    pub fn respond_by(&self, law: impl Fn(f64) -> [f64; 3], x: &[f64], dimension: usize) -> Response {
+    pub fn respond_by(&self, law: impl Fn(f64) -> [f64; 3], x: &[f64], dimension: usize) -> SpringResponse {
         let Jet { value, gradient, hessian } = self.jet(x, dimension);
         let n = gradient.len();
         let [energy, pull, slope] = law(value);
         let entry = |(i, h): (usize, f64)| slope * gradient[i / n] * gradient[i % n] + pull * h;
-        Response {
+        SpringResponse {
             energy,
             force: gradient.iter().map(|g| -pull * g).collect(),
             tangent: hessian.into_iter().enumerate().map(entry).collect(),

@@ -3,7 +3,7 @@
 //!
 //! At rest the tangent stiffness is `K(k) = Σ_s k_s g_s g_sᵀ`, so that a fit needs only the gradients g of the springs.
 //!
-//! Theory: pages *Stiffness* and *Exact networks* of the book.
+//! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 mod content;
 mod law;
@@ -13,7 +13,7 @@ mod vector;
 
 pub use content::Content;
 pub use law::{Force, Law, LawRoom};
-pub use measure::{Measure, Response, linear};
+pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
 pub use vector::{distance, dot, norm, unit};
 

@@ -1,6 +1,6 @@
 //! One element at large deformation: energy, nodal forces and tangent of a hyperelastic material.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::Geometry;
 use crate::material::{Energy, State, Tangent};
@@ -11,7 +11,7 @@ const STEPS: usize = 60;
 
 /// Energy, forces and tangent of an element at given positions.
 #[derive(Debug, Clone)]
-pub struct Response {
+pub struct ElementResponse {
     /// The energy `∫ W dV`, in J.
     pub energy: f64,
     /// The gradient of the energy `∂/∂x_a ∫ W dV = ∫ P ∇N_a dV`, `[nodes × dimension]`, N.
@@ -26,9 +26,10 @@ impl Geometry {
     /// energy is not finite.
     ///
     /// The separate quadrature rule of the term λ (div u)² is not used here.
-    pub fn respond(&self, energy: &Energy, state: State, x: &[f64]) -> Option<Response> {
+    pub fn respond(&self, energy: &Energy, state: State, x: &[f64]) -> Option<ElementResponse> {
         let (n, d) = (self.nodes, self.dimension);
-        let mut response = Response { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
+        let mut response =
+            ElementResponse { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
         for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
             let f = deformation(grad, x, d);
             let (w, stress, tangent) = match state {

@@ -1,13 +1,13 @@
 //! The stiffness of one element: its geometry at the quadrature points, and `R = ∫ Bᵀ D B dV`.
 //!
-//! Theory: page *Stiffness* of the book.
+//! Theory: page *Stiffness and the reduced space* of the book.
 
 mod fault;
 mod large;
 mod placement;
 
 pub use fault::Fault;
-pub use large::Response;
+pub use large::ElementResponse;
 pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;

@@ -8,7 +8,7 @@ use super::metrics::displacement_error;
 use super::progress::{Event, Progress};
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
-use crate::fit::{Balance, Family, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
+use crate::fit::{Balance, DeformationFamily, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
 use crate::material::{Energy, Material};
 use crate::mesh::{BoxMesh, Mesh, Selection};
 use crate::model::{Body, Elastic, Response, Support, displaced};
@@ -168,7 +168,7 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
     }
     let recipe = |(name, force, nonnegative): (&str, ForceRecipe, bool)| {
         let mut recipe = SampledRecipe { force, ..SampledRecipe::default() };
-        let source = Source::Families(vec![Family::Uniaxial, Family::SimpleShear]);
+        let source = Source::Families(vec![DeformationFamily::Uniaxial, DeformationFamily::SimpleShear]);
         recipe.fit.sampling = Sampling { source, stretch: [-0.1, stretch], ..recipe.fit.sampling };
         recipe.fit.nonnegative = nonnegative;
         if element.has_higher_modes() {

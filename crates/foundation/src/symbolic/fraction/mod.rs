@@ -1,6 +1,6 @@
 //! Exact rational functions of several variables, in lowest terms. A kernel that computes with them returns a formula.
 //!
-//! Theory: page *Stiffness* of the book (closed forms).
+//! Theory: page *Stiffness and the reduced space* of the book (closed forms).
 
 mod divisor;
 mod field;

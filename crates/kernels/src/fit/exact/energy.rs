@@ -1,6 +1,6 @@
 //! The energies whose finite elements are networks of springs, and the force laws of their springs on content.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, Material, Moduli, State};

@@ -1,6 +1,6 @@
 //! The springs of exact networks, computed with one cell per SIMD lane.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 use super::energy::Coefficients;
 use super::volume::Shares;

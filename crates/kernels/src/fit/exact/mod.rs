@@ -11,7 +11,7 @@
 //! spring on `J_q` at each quadrature point. If `U'(1) = −μ`, the forces on the nodes vanish at rest, and the tangent
 //! there is R with `λ = U''(1) − μ`.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 mod energy;
 mod kernel;

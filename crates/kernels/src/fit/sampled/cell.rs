@@ -37,7 +37,7 @@ const MOST_HELD: usize = 1 << 23;
 pub const REST_RANGE: [f64; 2] = [0.5, 2.0];
 
 /// One cell with the data of its fit.
-pub struct Cell<'a> {
+pub struct SampledCell<'a> {
     springs: Vec<Spring>,
     /// The unknowns of each spring.
     unknowns: Vec<Range<usize>>,
@@ -87,7 +87,7 @@ pub struct Sample {
     pub measures: Vec<f64>,
 }
 
-impl<'a> Cell<'a> {
+impl<'a> SampledCell<'a> {
     pub fn new(
         element: &Arc<Element>,
         springs: &'a Springs,
@@ -96,7 +96,7 @@ impl<'a> Cell<'a> {
         state: State,
         fit: &'a SampledFit,
         shapes: Shapes<'a>,
-    ) -> Cell<'a> {
+    ) -> SampledCell<'a> {
         let d = element.dimension();
         let with_rest = |(nodes, measure): (Vec<usize>, Measure)| {
             let rest = measure.value(&gathered(shapes.rest, d, &nodes), d);
@@ -111,7 +111,7 @@ impl<'a> Cell<'a> {
             widest = widest.max(own.len());
             unknowns.push(own);
         }
-        Cell {
+        SampledCell {
             unknowns,
             count,
             groups: &springs.groups,
@@ -207,7 +207,7 @@ impl<'a> Cell<'a> {
     /// Stores the samples of the fit for later sums, as far as there is memory.
     ///
     /// # Errors
-    /// Those of [`Cell::sample`].
+    /// Those of [`SampledCell::sample`].
     pub fn hold(&mut self) -> Result<()> {
         let room = MOST_HELD / ((self.len() + 1) * (self.seen() + 1));
         for i in 0..self.fit.sampling.shapes.min(room) {

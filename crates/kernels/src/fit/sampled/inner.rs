@@ -6,7 +6,7 @@
 //!
 //! Theory: page *Sampled fits* of the book.
 
-use super::cell::{Cell, Sums};
+use super::cell::{SampledCell, Sums};
 use super::shapes::{Numbers, Part};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::constrained::solve_nonnegative;
@@ -35,7 +35,7 @@ pub struct Search {
 }
 
 /// Minimises from `starts` points within `bounds` of each unknown.
-pub fn search(cell: &Cell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search> {
+pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search> {
     let outer = cell.each_parameter(|law, i| law.outer()[i]);
     let mut found: Vec<(Vec<f64>, Sums, bool)> = Vec::new();
     for start in 0..starts.max(1) {
@@ -58,7 +58,7 @@ pub fn search(cell: &Cell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search>
 
 /// Inner parameters as the start prescribes, the same for all springs; outer ones are zero, or as near to it as their
 /// bounds allow.
-fn start_of(cell: &Cell, outer: &[bool], start: usize, bounds: &[[f64; 2]]) -> Vec<f64> {
+fn start_of(cell: &SampledCell, outer: &[bool], start: usize, bounds: &[[f64; 2]]) -> Vec<f64> {
     let places = cell.each_parameter(|_, i| i);
     let numbers = Numbers { index: start, seed: cell.fit.sampling.seed };
     let value = |(i, &[lower, upper]): (usize, &[f64; 2])| {
@@ -76,7 +76,7 @@ fn start_of(cell: &Cell, outer: &[bool], start: usize, bounds: &[[f64; 2]]) -> V
 }
 
 /// The outer parameters of least squares for given inner ones.
-fn outer_solved(cell: &Cell, outer: &[bool], mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<Vec<f64>> {
+fn outer_solved(cell: &SampledCell, outer: &[bool], mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<Vec<f64>> {
     let outer: Vec<usize> = (0..unknowns.len()).filter(|&i| outer[i]).collect();
     if outer.is_empty() {
         return Ok(unknowns);
@@ -91,7 +91,7 @@ fn outer_solved(cell: &Cell, outer: &[bool], mut unknowns: Vec<f64>, bounds: &[[
     Ok(unknowns)
 }
 
-fn descend(cell: &Cell, mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<(Vec<f64>, Sums, bool)> {
+fn descend(cell: &SampledCell, mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<(Vec<f64>, Sums, bool)> {
     let mut sums = cell.sums(Part::Trained, &unknowns)?;
     let mut damping = 1e-3;
     for _ in 0..STEPS {

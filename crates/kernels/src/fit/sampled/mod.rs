@@ -14,7 +14,7 @@ mod settings;
 mod shapes;
 
 pub use settings::{SampledFit, Weights};
-pub use shapes::{Family, Sampling, Source};
+pub use shapes::{DeformationFamily, Sampling, Source};
 
 use super::cells::CellFits;
 use super::congruence::Congruence;
@@ -28,7 +28,7 @@ use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, State};
 use crate::springs::{Force, Law, Springs};
-use cell::{Cell, REST_RANGE, Sample};
+use cell::{REST_RANGE, Sample, SampledCell};
 use rayon::prelude::*;
 use shapes::{Part, Shapes};
 use std::sync::Arc;
@@ -105,7 +105,7 @@ pub fn fit_sampled(
                     extent: geometry.content().powf(1.0 / element.dimension() as f64),
                     poisson: energy.poisson(),
                 };
-                let mut cell = Cell::new(element, springs, geometry, energy, state, fit, shapes);
+                let mut cell = SampledCell::new(element, springs, geometry, energy, state, fit, shapes);
                 match cell.fit() {
                     Ok(one) => found.push(one),
                     Err(error) => outcome = Err(error),
@@ -212,7 +212,7 @@ impl SampledFit {
     }
 }
 
-impl Cell<'_> {
+impl SampledCell<'_> {
     fn fit(&mut self) -> Result<CellFit> {
         let (unknowns, found) = match &self.fit.force {
             Force::Laws(_) if !self.fit.is_direct() || !self.fit.bounds.is_empty() => self.iterated()?,

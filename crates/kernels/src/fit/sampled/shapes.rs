@@ -21,7 +21,7 @@ const APART: usize = 5;
 
 /// Kinds of deformation. Their axes are random in every shape, and their amplitudes fill the range evenly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
+pub enum DeformationFamily {
     /// `λ = 1 + a` along one axis (`1/(1 − a)` if a < 0), and `λ^(−ν)` across it.
     Uniaxial,
     /// λ in a plane, `λ^(−2ν/(1 − ν))` across it.
@@ -38,7 +38,7 @@ pub enum Family {
     Gradients,
 }
 
-crate::named!(Family {
+crate::named!(DeformationFamily {
     "uniaxial" => Uniaxial,
     "equibiaxial" => Equibiaxial,
     "simple-shear" => SimpleShear,
@@ -52,7 +52,7 @@ crate::named!(Family {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
     /// Families of deformations, which take turns.
-    Families(Vec<Family>),
+    Families(Vec<DeformationFamily>),
     /// Deformation gradients, `[shapes × dimension × dimension]`.
     Gradients(Arc<Vec<f64>>),
     /// Positions of all points of the mesh, `[states][points × dimension]`, m. A cell uses those of its own nodes and
@@ -81,7 +81,7 @@ pub struct Sampling {
 impl Default for Sampling {
     fn default() -> Sampling {
         Sampling {
-            source: Source::Families(vec![Family::Gradients]),
+            source: Source::Families(vec![DeformationFamily::Gradients]),
             shapes: 300,
             held_out: 100,
             stretch: [-0.3, 0.3],
@@ -117,7 +117,7 @@ impl Sampling {
             Source::Families(families) if families.is_empty() => {
                 return Err(Error::expected("families", "at least one family", "none"));
             }
-            Source::Families(families) if families.contains(&Family::Torsion) && dimension < 3 => {
+            Source::Families(families) if families.contains(&DeformationFamily::Torsion) && dimension < 3 => {
                 return Err(Error::expected("families", "families of the plane", "\"torsion\""));
             }
             Source::Families(_) if self.stretch == [0.0; 2] && self.perturbation == 0.0 => {
@@ -227,11 +227,11 @@ impl Shapes<'_> {
         self.rest.chunks_exact(d).flat_map(place).collect()
     }
 
-    fn family(&self, family: Family, scale: f64, numbers: &Numbers) -> Vec<f64> {
+    fn family(&self, family: DeformationFamily, scale: f64, numbers: &Numbers) -> Vec<f64> {
         let d = self.dimension;
         let [least, largest] = self.sampling.stretch;
         let amplitude = |coordinate: usize| scale * (least + (largest - least) * numbers.number(coordinate));
-        if family == Family::Gradients {
+        if family == DeformationFamily::Gradients {
             let entry = |k: usize, l: usize| f64::from(u8::from(k == l)) + amplitude(k * d + l);
             return self.homogeneous(&within(d, entry));
         }
@@ -244,13 +244,17 @@ impl Shapes<'_> {
         };
         let nu = self.poisson;
         match family {
-            Family::Uniaxial => self.homogeneous(&across(e, ratio, ratio.powf(-nu))),
+            DeformationFamily::Uniaxial => self.homogeneous(&across(e, ratio, ratio.powf(-nu))),
             // In the plane both axes are in the plane.
-            Family::Equibiaxial if d == 3 => self.homogeneous(&across(e, ratio.powf(-2.0 * nu / (1.0 - nu)), ratio)),
-            Family::Equibiaxial | Family::Volumetric => self.homogeneous(&(Matrix3::identity() * ratio)),
-            Family::SimpleShear => self.homogeneous(&(Matrix3::identity() + a * e * f.transpose())),
-            Family::Torsion => self.moved(|x| Rotation3::new(e * (2.0 * a * e.dot(&x) / self.extent)) * x),
-            Family::Bending => {
+            DeformationFamily::Equibiaxial if d == 3 => {
+                self.homogeneous(&across(e, ratio.powf(-2.0 * nu / (1.0 - nu)), ratio))
+            }
+            DeformationFamily::Equibiaxial | DeformationFamily::Volumetric => {
+                self.homogeneous(&(Matrix3::identity() * ratio))
+            }
+            DeformationFamily::SimpleShear => self.homogeneous(&(Matrix3::identity() + a * e * f.transpose())),
+            DeformationFamily::Torsion => self.moved(|x| Rotation3::new(e * (2.0 * a * e.dot(&x) / self.extent)) * x),
+            DeformationFamily::Bending => {
                 let curvature = 2.0 * a / self.extent;
                 self.moved(|x| {
                     let (along, over) = (e.dot(&x), f.dot(&x));
@@ -265,7 +269,7 @@ impl Shapes<'_> {
                     x + e * (arc + over * sine - along) + f * (sag + over * cosine - over)
                 })
             }
-            Family::Gradients => unreachable!("placed above"),
+            DeformationFamily::Gradients => unreachable!("placed above"),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! With u the eigenvectors of `E = R̂ − K(κ)` at ±t, the optima differ from κ by directions d with `K(d) u = 0`. Such a
 //! d does not change the active eigenvalues, and it can be followed until another eigenvalue reaches ±t.
 //!
-//! Theory: page *The barrier* of the book.
+//! Theory: page *The 2-norm* of the book.
 
 use super::problem::{Optimum, Problem};
 use nalgebra::{DMatrix, DVector};

@@ -1,6 +1,6 @@
 //! The lower bound that the barrier method proves: no constants reach a smaller value.
 //!
-//! Theory: page *The barrier* of the book.
+//! Theory: page *The 2-norm* of the book.
 
 use super::Spectral;
 use crate::fit::dense::{add_outers, factorize, inner, mirror, row_products, solve, trace};

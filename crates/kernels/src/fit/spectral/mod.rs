@@ -9,7 +9,7 @@
 //! `⟨R̂, X − Y⟩/(tr X + tr Y)`. A Newton step (ΔA, ΔB) of norm below one gives such a pair, `X = μ (A⁻¹ − A⁻¹ ΔA A⁻¹)`
 //! and Y correspondingly; [`Spectral::bound`] checks it independently.
 //!
-//! Theory: page *The barrier* of the book.
+//! Theory: page *The 2-norm* of the book.
 
 mod ambiguity;
 mod dual;
@@ -27,7 +27,7 @@ use super::dense::{
 use super::jacobi::eigenvectors;
 use super::reduction::Reduced;
 use crate::scalar::Real;
-use side::Side;
+use side::ShiftedMatrix;
 
 /// The requested duality gap, relative to t, or relative to `EXACT ‖R‖` if t is smaller. It is half of the digits of
 /// `f64`; numbers of another precision use half of theirs.
@@ -60,8 +60,8 @@ pub struct Spectral<T> {
     pub curvature: T,
     nonnegative: bool,
     e: Vec<T>,
-    a: Side<T>,
-    b: Side<T>,
+    a: ShiftedMatrix<T>,
+    b: ShiftedMatrix<T>,
     /// The Hessian of the barrier in (κ, t), and its gradient without `1/μ`.
     hessian: Vec<T>,
     gradient: Vec<T>,
@@ -89,8 +89,8 @@ impl<T: Real> Spectral<T> {
             curvature: zero.clone(),
             nonnegative,
             e: room(p * p),
-            a: Side::new(&zero, p, m),
-            b: Side::new(&zero, p, m),
+            a: ShiftedMatrix::new(&zero, p, m),
+            b: ShiftedMatrix::new(&zero, p, m),
             hessian: room((c + 1) * (c + 1)),
             gradient: room(c + 1),
             pivots: room(c + 1),

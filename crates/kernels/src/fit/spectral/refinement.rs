@@ -6,7 +6,7 @@
 //! converge quadratically (Overton and Womersley, SIAM J. Matrix Anal. Appl. 16, 697, 1995). The multipliers U and V
 //! are the dual pair `X = Q₊ U Q₊ᵀ`, `Y = Q₋ V Q₋ᵀ` that proves the bound.
 //!
-//! Theory: page *The barrier* of the book.
+//! Theory: page *The 2-norm* of the book.
 
 use super::EXACT;
 use super::problem::{Optimum, Problem, Spectrum};
@@ -154,7 +154,7 @@ impl Active {
             let q = self.spectrum.vectors.columns(first, count).into_owned();
             let multipliers = q.transpose() * multipliers * &q;
             let others = others(&w, &values, sign, first, count);
-            Side { sign, first, pairs: pairs(count), multipliers, bends: others.tr_mul(&w), others }
+            ActiveSide { sign, first, pairs: pairs(count), multipliers, bends: others.tr_mul(&w), others }
         };
         let mut sides = [side(1.0, 0, self.above, &self.x), side(-1.0, p - self.below, self.below, &self.y)];
         let equations = sides[0].pairs.len() + sides[1].pairs.len();
@@ -196,7 +196,7 @@ impl Active {
         problem: &Problem,
         w: &DMatrix<f64>,
         values: &DVector<f64>,
-        sides: &[Side; 2],
+        sides: &[ActiveSide; 2],
     ) -> (DMatrix<f64>, DVector<f64>) {
         let (m, f) = (problem.h.ncols(), self.free.len());
         let mut place = vec![None; problem.unknown_count()];
@@ -206,7 +206,7 @@ impl Active {
         let (mut system, mut rhs) = (DMatrix::zeros(size, size), DVector::zeros(size));
         rhs[f] = -1.0;
         let mut row = f + 1;
-        for Side { sign, first, pairs, multipliers, bends, .. } in sides {
+        for ActiveSide { sign, first, pairs, multipliers, bends, .. } in sides {
             if pairs.is_empty() {
                 continue;
             }
@@ -239,7 +239,7 @@ impl Active {
 }
 
 /// The eigenvalues at t, or those at −t.
-struct Side {
+struct ActiveSide {
     sign: f64,
     /// The index of the first of them among all.
     first: usize,

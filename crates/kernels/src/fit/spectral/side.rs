@@ -5,7 +5,7 @@ use crate::scalar::Real;
 
 /// One of the two matrices that stay positive definite, with its inverse.
 #[derive(Debug, Clone)]
-pub struct Side<T> {
+pub struct ShiftedMatrix<T> {
     pub matrix: Vec<T>,
     pub pivots: Vec<T>,
     pub inverse: Vec<T>,
@@ -15,10 +15,16 @@ pub struct Side<T> {
     pub products: Vec<T>,
 }
 
-impl<T: Real> Side<T> {
-    pub fn new(zero: &T, p: usize, m: usize) -> Side<T> {
+impl<T: Real> ShiftedMatrix<T> {
+    pub fn new(zero: &T, p: usize, m: usize) -> ShiftedMatrix<T> {
         let room = |size: usize| vec![zero.clone(); size];
-        Side { matrix: room(p * p), pivots: room(p), inverse: room(p * p), images: room(m * p), products: room(m * m) }
+        ShiftedMatrix {
+            matrix: room(p * p),
+            pivots: room(p),
+            inverse: room(p * p),
+            images: room(m * p),
+            products: room(m * m),
+        }
     }
 
     /// Factorises `tI ± E` and returns the least relative pivot.

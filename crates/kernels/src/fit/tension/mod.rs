@@ -4,7 +4,7 @@
 //! In equilibrium K vanishes on the rigid motions, so that the norm can be taken on the deformations alone. The
 //! equations are solved by orthogonal transformations, which do not square their condition number.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 mod bounded;
 mod cell;

@@ -5,7 +5,7 @@
 use super::part::Part;
 use super::value::{self, Varying};
 use crate::bound::{self, check_count};
-use crate::dynamics::{Integrator, LEAST_TOLERANCE, Options, Solver};
+use crate::dynamics::{Integrator, LEAST_TOLERANCE, LinearSolver, Options};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Lumping;
 use crate::range;
@@ -264,19 +264,19 @@ impl StepEntry<'_> {
             let problem = "belongs to implicit steps, found with integrator = \"symplectic-euler\"";
             return Err(Error::at("solver", problem));
         }
-        let mut solver = choice("solver", self.solver, Solver::default(), Solver::named)?;
+        let mut solver = choice("solver", self.solver, LinearSolver::default(), LinearSolver::named)?;
         match (&mut solver, self.remainder) {
-            (Solver::Factor, Some(_)) => {
+            (LinearSolver::Factor, Some(_)) => {
                 return Err(Error::at("remainder", "belongs to solver = \"conjugate-gradients\""));
             }
-            (Solver::ConjugateGradients { tolerance }, Some(remainder)) => {
+            (LinearSolver::ConjugateGradients { tolerance }, Some(remainder)) => {
                 if !(LEAST_TOLERANCE..1.0).contains(&remainder) {
                     let found = format!("{remainder:?}");
                     return Err(Error::expected("remainder", "a share from 1e-15 to below 1", found));
                 }
                 *tolerance = remainder;
             }
-            (Solver::Factor | Solver::ConjugateGradients { .. }, None) => {}
+            (LinearSolver::Factor | LinearSolver::ConjugateGradients { .. }, None) => {}
         }
         let options = Options { integrator, solver, linear: self.linear, ..Options::default() };
         let iterations = self.iterations.unwrap_or(options.iterations);

@@ -1,7 +1,7 @@
 //! A sweep of ill-conditioned and extreme cases. Each result is accurate, limited by the accuracy of its input, or
 //! refused with a reason.
 //!
-//! Theory: page *Digits* of the book.
+//! Theory: page *Precision* of the book.
 
 mod bodies;
 mod elements;

@@ -2,7 +2,7 @@
 
 use super::elements::PROMISED;
 use super::outcome::{Family, StabilityRow, Verdict, worst};
-use crate::dynamics::{Integrator, Motion, Options, Simulation, Solver};
+use crate::dynamics::{Integrator, LinearSolver, Motion, Options, Simulation};
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::{Energy, Material, State};
@@ -28,7 +28,7 @@ pub fn sweep_motions(elements: &[Element]) -> Result<Vec<StabilityRow>> {
     for square in SQUARES {
         for step in STEPS {
             for (kind, masses) in [("alike", [1.0, 1.0]), ("1e-9 and 1e3 kg", [1e-9, 1e3])] {
-                for solver in [Solver::Factor, Solver::ConjugateGradients { tolerance: 1e-14 }] {
+                for solver in [LinearSolver::Factor, LinearSolver::ConjugateGradients { tolerance: 1e-14 }] {
                     rows.push(implicit(square, step, kind, masses, solver));
                 }
                 rows.push(explicit(square, step, kind, masses));
@@ -53,10 +53,10 @@ fn case(square: f64, step: f64, kind: &str) -> String {
 }
 
 /// Implicit Euler on a spring that is stretched by one, compared with its closed form `Re (1 − iωh)⁻ⁿ`.
-fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Solver) -> StabilityRow {
+fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: LinearSolver) -> StabilityRow {
     let method = match solver {
-        Solver::Factor => "implicit Euler, factor",
-        Solver::ConjugateGradients { .. } => "implicit Euler, conjugate gradients",
+        LinearSolver::Factor => "implicit Euler, factor",
+        LinearSolver::ConjugateGradients { .. } => "implicit Euler, conjugate gradients",
     };
     let of = |verdict| StabilityRow::new("two masses", Family::Motion, &case(square, step, kind), method, verdict);
     let network = pair(square, masses);

@@ -1,7 +1,7 @@
 //! The motion of the finite elements and the networks of a scene.
 
 use super::raised::{RELEASE, Raised};
-use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Outcome as StepOutcome, Simulation};
+use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use crate::error::{Error, Result};
 use crate::material::Energy;
 use crate::mesh::Mesh;

@@ -1,6 +1,6 @@
 //! Networks that are equal to the finite element: `objective = "exact"`.
 //!
-//! Theory: page *Exact networks* of the book.
+//! Theory: page *Exact networks and patches* of the book.
 
 mod entry;
 mod fitting;

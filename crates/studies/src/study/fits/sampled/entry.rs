@@ -4,7 +4,7 @@ use super::force::ForceRecipe;
 use super::recipe::SampledRecipe;
 use crate::error::{Error, Result};
 use crate::file;
-use crate::fit::{Family, Norm, Source, Weights};
+use crate::fit::{DeformationFamily, Norm, Source, Weights};
 use crate::springs::Law;
 use crate::study::choice::choice;
 use serde::Deserialize;
@@ -93,7 +93,8 @@ impl ShapesEntry {
         }
         let sampling = &mut recipe.fit.sampling;
         if let Some(names) = &self.families {
-            let families: Result<Vec<Family>> = names.iter().map(|name| Family::named(name)).collect();
+            let families: Result<Vec<DeformationFamily>> =
+                names.iter().map(|name| DeformationFamily::named(name)).collect();
             sampling.source = Source::Families(families.map_err(|e| e.under("families"))?);
         }
         if let Some(path) = &self.gradients {

@@ -3,7 +3,7 @@
 use super::force::ForceRecipe;
 use crate::element::Element;
 use crate::error::{Error, Result};
-use crate::fit::{Family, SampledFit, Sampling, Source, Weights};
+use crate::fit::{DeformationFamily, SampledFit, Sampling, Source, Weights};
 use crate::springs::Springs;
 use crate::study::fits::facts::SceneFacts;
 use std::path::PathBuf;
@@ -27,7 +27,12 @@ pub struct SampledRecipe {
 impl Default for SampledRecipe {
     /// Shapes around rest and in all directions, each weighted by its relative error.
     fn default() -> SampledRecipe {
-        let families = vec![Family::Uniaxial, Family::Equibiaxial, Family::SimpleShear, Family::Volumetric];
+        let families = vec![
+            DeformationFamily::Uniaxial,
+            DeformationFamily::Equibiaxial,
+            DeformationFamily::SimpleShear,
+            DeformationFamily::Volumetric,
+        ];
         let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
         let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
         SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None, gradients: None }

@@ -3,7 +3,7 @@
 use super::force::ForceRecipe;
 use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
-use crate::fit::{Family, Norm, Source};
+use crate::fit::{DeformationFamily, Norm, Source};
 use crate::study::fits::spread::SpreadRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -90,7 +90,7 @@ impl SampledRecord {
             starts: fit.starts,
             families: match &fit.sampling.source {
                 Source::Families(families) if recipe.loads.is_empty() => {
-                    Some(families.iter().map(Family::name).map(String::from).collect())
+                    Some(families.iter().map(DeformationFamily::name).map(String::from).collect())
                 }
                 Source::Families(_) | Source::Gradients(_) | Source::States(_) => None,
             },

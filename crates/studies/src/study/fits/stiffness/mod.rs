@@ -1,7 +1,7 @@
 //! Springs from the stiffness at rest: `objective = "frobenius"`, `"spectral"` and the others of
 //! [`crate::fit::Objective`].
 //!
-//! Theory: pages *Least squares*, *The barrier*, *Divergence* and *Modal weights* of the book.
+//! Theory: pages *Least squares*, *The 2-norm*, *The divergence* and *Modal weights* of the book.
 
 mod entry;
 mod fitting;

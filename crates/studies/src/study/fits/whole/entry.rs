@@ -7,7 +7,7 @@ use crate::fit::{Choices, Fit, Objective};
 use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
-use crate::whole::{Method, Residual, WholeSettings};
+use crate::whole::{DescentMethod, Residual, WholeSettings};
 use serde::Deserialize;
 
 /// The default seed of the random loads.
@@ -89,7 +89,7 @@ impl WholeEntry {
         let settings = WholeSettings::default();
         let mut settings = WholeSettings {
             iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
-            method: choice("solver", self.solver.as_deref(), settings.method, Method::named)?,
+            method: choice("solver", self.solver.as_deref(), settings.method, DescentMethod::named)?,
             residual: choice("residual", self.residual.as_deref(), settings.residual, Residual::named)?,
             ..settings
         };

@@ -1,0 +1,10 @@
+//! README and book: links lead somewhere, commands print what the pages say, files are read, figures are measured again.
+
+mod figures;
+mod links;
+mod markdown;
+mod printed;
+mod readme;
+mod snippets;
+mod tables;
+mod transcripts;

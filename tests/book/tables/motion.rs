@@ -1,0 +1,31 @@
+//! Frequencies and errors over time.
+
+use super::{markdown, outcome, scene, signed};
+
+pub fn frequencies() -> String {
+    let outcome = outcome(&scene("cube_hex_motion"));
+    let motion = outcome.motion.unwrap();
+    let body = outcome.frequencies[0].found.clone().unwrap();
+    let row = |(own, moved): (&springfit::study::FrequencyOutcome, &springfit::study::ModelMotion)| {
+        let found = own.found.clone().unwrap();
+        let off = found.iter().zip(&body).map(|(own, body)| match own == body {
+            true => format!("{own:.2} Hz"),
+            false => format!("{} %", signed(100.0 * (own / body - 1.0), 1)),
+        });
+        let error = moved.error().map_or("reference".into(), |[mean, max]| format!("{mean:.2} / {max:.2}"));
+        std::iter::once(format!("`{}`", own.name)).chain(off).chain([error]).collect()
+    };
+    let rows: Vec<Vec<String>> = outcome.frequencies.iter().zip(&motion.models).map(row).collect();
+    markdown(&["model", "1", "2", "3", "4", "5", "6", "%e_rms, mean / largest"], &rows)
+}
+
+/// The error of the springs of the membrane, as they turn and with both models linear.
+pub fn membrane() -> String {
+    let motion = outcome(&scene("membrane")).motion.unwrap();
+    let springs = &motion.models[1];
+    let [mean, max] = springs.error().unwrap();
+    let [own_mean, own_max] = springs.linear_error.unwrap();
+    let rows = [("springs that turn", mean, max), ("both models linear", own_mean, own_max)];
+    let rows = rows.map(|(name, mean, max)| vec![name.to_string(), format!("{mean:.2}"), format!("{max:.2}")]);
+    markdown(&["compared", "%e_rms, mean", "largest"], &rows)
+}
