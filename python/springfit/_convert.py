@@ -124,7 +124,7 @@ def from_skfem(mesh: Any):
     nodes = np.asarray(mesh.t.T, dtype=np.int64)
     if kind == "MeshHex1":
         # Corners of the unit cube as scikit-fem numbers them, in VTK's order.
-        nodes = nodes[:, [0, 1, 4, 2, 3, 6, 7, 5]]
+        nodes = nodes[:, [0, 3, 6, 2, 1, 5, 7, 4]]
     groups = {name: np.unique(mesh.facets[:, places]) for name, places in (mesh.boundaries or {}).items()}
     return np.ascontiguousarray(mesh.p.T), {names[kind]: nodes}, groups
 

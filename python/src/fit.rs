@@ -4,7 +4,7 @@ use crate::arrays::list;
 use crate::error::raised;
 use crate::mesh::Mesh;
 use crate::network::{Network, Triplets};
-use crate::progress;
+use crate::progress::{self, apart};
 use crate::value::table;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -63,7 +63,7 @@ pub fn fit(
 /// The stiffness of the finite elements, in triplets of both triangles.
 #[pyfunction]
 pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: Constants) -> PyResult<Triplets<'py>> {
-    let entries = py.detach(|| Ok(model::finite_elements(&mesh.0, material.of(mesh)?.moduli())));
+    let entries = apart(py, || Ok(model::finite_elements(&mesh.0, material.of(mesh)?.moduli())));
     let entries = entries.map_err(|error| raised(py, error))?;
     Ok(crate::network::triplets(py, &entries, list))
 }

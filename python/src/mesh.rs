@@ -3,6 +3,7 @@
 use crate::arrays::{list, matrix, place_list, places, rows};
 use crate::element::Element;
 use crate::error::{invalid, raised};
+use crate::progress::apart;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -54,7 +55,7 @@ impl Mesh {
             blocks: blocks.iter().map(block).collect::<PyResult<_>>()?,
             groups: groups.iter().map(group).collect::<PyResult<_>>()?,
         };
-        let mesh = py.detach(|| arrays.build(gate)).map_err(|error| raised(py, error))?;
+        let mesh = apart(py, || arrays.build(gate)).map_err(|error| raised(py, error))?;
         Ok(Mesh(Arc::new(mesh)))
     }
 
@@ -70,7 +71,7 @@ impl Mesh {
         least: Option<f64>,
     ) -> PyResult<Mesh> {
         let own: Vec<_> = elements.iter().map(|element| element.0.clone()).collect();
-        let mesh = py.detach(|| {
+        let mesh = apart(py, || {
             springfit::range::positive("scale", scale, "metres per mesh unit")?;
             let gate = Gate::named(below, least)?;
             let source = MeshSource::read(&path)?;
@@ -83,7 +84,7 @@ impl Mesh {
     #[staticmethod]
     fn of_box(py: Python, element: &Element, size: Vec<f64>, cells: Vec<usize>, origin: Vec<f64>) -> PyResult<Mesh> {
         let spec = BoxMesh { element: element.0.clone(), size, cells, origin };
-        let mesh = py.detach(|| spec.build()).map_err(|error| raised(py, error))?;
+        let mesh = apart(py, || spec.build()).map_err(|error| raised(py, error))?;
         Ok(Mesh(Arc::new(mesh)))
     }
 

@@ -2,6 +2,7 @@
 
 use crate::arrays::{list, matrix, vectors};
 use crate::error::{invalid, raised};
+use crate::progress::apart;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -91,7 +92,7 @@ impl Network {
     #[pyo3(signature = (x=None))]
     fn energy(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<f64> {
         let x = self.positions(py, x)?;
-        let energy = py.detach(|| self.network().energy(&x));
+        let energy = apart(py, || self.network().energy(&x));
         energy.ok_or_else(|| invalid(py, "x", "positions where the springs have an energy", "others"))
     }
 
@@ -100,7 +101,7 @@ impl Network {
     fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let x = self.positions(py, x)?;
         let mut slopes = vec![0.0; x.len()];
-        if !py.detach(|| self.network().forces(&x, &mut slopes)) {
+        if !apart(py, || self.network().forces(&x, &mut slopes)) {
             return Err(invalid(py, "x", "positions where the springs have a force", "others"));
         }
         // The springs pull against the energy's slope.
@@ -113,7 +114,7 @@ impl Network {
     fn stiffness<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Triplets<'py>> {
         let at_rest = x.is_none();
         let x = self.positions(py, x)?;
-        let entries = py.detach(|| match at_rest {
+        let entries = apart(py, || match at_rest {
             true => Some(self.network().stiffness(&x)),
             false => self.network().respond(&x).map(|response| response.tangent),
         });
@@ -138,7 +139,10 @@ impl Network {
         }
         let held = held.as_array();
         let support = Support { prescribed: held.iter().zip(prescribed).map(|(held, u)| held.then_some(u)).collect() };
-        let solved = py.detach(|| {
+        if !model::unheld_bodies(&self.mesh, &support).is_empty() {
+            return Err(invalid(py, "fix", "supports that hold every piece of the mesh", "one that can move as it is"));
+        }
+        let solved = apart(py, || {
             let system = System::new(&self.network().stiffness(&self.mesh.points), &support)?;
             let factor = system.factorize()?;
             Ok(factor.map(|factor| (system.solve(&factor, &forces), factor.is_positive_definite())))
@@ -152,7 +156,7 @@ impl Network {
 
     /// Writes the springs: .vtu, .json or .csv.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| {
+        let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
             springfit::check_file(&path)?;
             let notes = report::notes(&self.outcome);

@@ -3,12 +3,42 @@
 use crate::error::raised;
 use pyo3::prelude::*;
 use springfit::error::Result;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use springfit::study::Event;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::process;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Python is asked no more often.
 const BETWEEN: Duration = Duration::from_millis(50);
+
+/// The process that first worked, whose threads are those of the library.
+static OWNER: OnceLock<u32> = OnceLock::new();
+/// The threads of a process that was forked from it, which has none of the owner's.
+static FORKED: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// Runs `work` without the interpreter's lock, also in a process that was forked after the library has worked.
+pub fn apart<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> T {
+    let own = process::id();
+    py.detach(|| {
+        if *OWNER.get_or_init(|| own) == own {
+            return work();
+        }
+        let mut forked = FORKED.lock().unwrap_or_else(PoisonError::into_inner);
+        let pool = match &*forked {
+            Some((process, pool)) if *process == own => pool.clone(),
+            _ => {
+                let pool = Arc::new(ThreadPoolBuilder::new().build().expect("a process may start threads"));
+                // Those of another process are not joined: there are none.
+                std::mem::forget(forked.replace((own, pool.clone())));
+                pool
+            }
+        };
+        drop(forked);
+        pool.install(work)
+    })
+}
 
 /// Ends the work; what Python raised.
 struct Ended(PyErr);
@@ -23,7 +53,7 @@ pub fn run<T: Send>(
     listener: Option<Py<PyAny>>,
     work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send,
 ) -> PyResult<T> {
-    let outcome = py.detach(|| {
+    let outcome = apart(py, || {
         let mut last: Option<Instant> = None;
         let mut told = |event: Event| {
             let Event::Stage { name, done, total } = event else { return };

@@ -38,6 +38,8 @@ def test_meshio_has_the_same_cells(name):
     nodes[:, order] = mesh.cells[0][1]
     points = np.zeros((len(mesh.points), 3))
     points[:, : mesh.dimension] = mesh.points
+    if kind not in meshio._common.num_nodes_per_cell or kind not in meshio._mesh.topological_dimension:
+        pytest.skip(f"meshio holds no {kind}")
     other = meshio.Mesh(points, [(kind, nodes)], point_sets={"held": np.arange(4)})
     again = sf.Mesh.from_meshio(other)
     assert np.array_equal(again.cells[0][1], mesh.cells[0][1])
@@ -123,7 +125,7 @@ TET = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
         (TET, {"tet4": np.zeros((0, 4), int)}, {}, "cells of tet4"),
         (TET, {"tri3": [[0, 1, 2]], "tet4": [[0, 1, 2, 3]]}, {}, "cells of tet4"),
         (TET, {}, {}, "cells"),
-        (TET, {"tet5": [[0, 1, 2, 3]]}, {}, None),
+        (TET, {"tet5": [[0, 1, 2, 3]]}, {}, "element"),
         (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": [4]}, "groups.a"),
         (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": [-1]}, "groups.a"),
         (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": [[0]]}, "groups.a"),

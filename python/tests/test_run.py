@@ -30,8 +30,7 @@ def test_a_scene_as_a_dictionary_and_as_a_file(tmp_path, scenes):
     assert not np.allclose(moved["frobenius"], moved[""], rtol=1e-3)
     own = sf.run(scenes / "square_quad.toml")
     again = sf.run(scenes / "square_quad.toml", set={"material.poisson": own.record["poisson"]})
-    strip = lambda fits: [{k: v for k, v in fit.items() if "seconds" not in k and k != "loads"} for fit in fits]
-    assert strip(own.record["fits"]) == strip(again.record["fits"])
+    assert own.loads["e_rms"].tolist() == again.loads["e_rms"].tolist() and len(own.loads) > 10
     other = sf.run(scenes / "square_quad.toml", set={"material.poisson": 0.1, "fit[0].name": "first"})
     assert other.record["poisson"] == 0.1 and other.record["fits"][0]["name"] == "first"
 
@@ -60,7 +59,7 @@ def test_figures_equal_those_of_the_command(tmp_path, scenes):
 @pytest.mark.parametrize(
     "change, key",
     [
-        ({"material": {"young": 1e4}}, "material.poisson"),
+        ({"material": {"young": 1e4}}, "poisson"),
         ({"fit": []}, "fit"),
         ({"fit": [{"objective": "frobenius", "name": 'a"\\\n'}, {"objective": "x"}]}, "fit[1].objective"),
         ({"fix": [{"group": "left"}]}, "fix[0].group"),
