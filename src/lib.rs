@@ -90,6 +90,14 @@ pub mod prelude;
 #[allow(missing_docs)]
 pub mod report;
 
+// The examples of the README and of the book are compiled and run with those of this page.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+#[cfg(doctest)]
+#[doc = include_str!("../docs/src/reference/library.md")]
+struct LibraryPage;
+
 pub use springfit_bodies::{dynamics, mesh, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, range, scalar, symbolic, text};
 pub use springfit_kernels::{element, fit, material, springs, stiffness};
@@ -98,8 +106,13 @@ pub use springfit_studies::study;
 #[cfg(feature = "cli")]
 use springfit_foundation::file;
 pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};
+pub use springfit_foundation::named::{suggestion, unknown};
 
-// The examples of the README are compiled and run with those of this page.
+// The examples of README and of the book are compiled and run with those of this page.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod examples {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/src/reference/library.md")]
+    struct Library;
+}

@@ -3,18 +3,57 @@
 mod commands;
 mod terminal;
 
-use clap::Parser;
+use clap::{Args, CommandFactory, Parser};
 use commands::Command;
 use std::process::ExitCode;
-use terminal::{Terminal, tell};
+use terminal::{Level, Terminal, tell};
 
 /// Mass-spring models that answer like finite elements.
 #[derive(Parser)]
-#[command(version, about)]
+#[command(name = "springfit", version, about, after_help = AFTER)]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    verbosity: Verbosity,
 }
+
+/// How much is said beside the results.
+#[derive(Args)]
+struct Verbosity {
+    /// Print results and errors alone: no notes, no progress, no names of files
+    #[arg(short, long, global = true, help_heading = "Messages", conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the time of each stage as well
+    #[arg(short, long, global = true, help_heading = "Messages")]
+    verbose: bool,
+}
+
+impl Verbosity {
+    fn level(&self) -> Level {
+        match (self.quiet, self.verbose) {
+            (true, _) => Level::Quiet,
+            (_, true) => Level::Verbose,
+            _ => Level::Usual,
+        }
+    }
+}
+
+const AFTER: &str = "\
+Examples:
+  springfit new organ.msh -o organ.toml   # a commented scene for a mesh
+  springfit run organ.toml                # fit, solve, compare
+  springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
+
+Results go to standard output; notes, progress and errors to standard error.
+Tables fit the terminal, or 120 columns where there is none; COLUMNS sets another width.
+NO_COLOR=1 or CLICOLOR=0 turns colours off.
+
+Exit codes:
+  0    done
+  1    done, and a check failed: of an element (check), of an accuracy (stability)
+  2    an input is wrong, or something cannot be read, written or solved; a line says what
+  130  interrupted";
 
 fn main() -> ExitCode {
     #[cfg(unix)]
@@ -26,7 +65,10 @@ fn main() -> ExitCode {
         // Rust aborts if an allocation fails that no estimate predicted; this ends like other errors.
         libc::signal(libc::SIGABRT, aborted as extern "C" fn(libc::c_int) as libc::sighandler_t);
     }
-    CommandLine::parse().command.run(&mut Terminal::new()).unwrap_or_else(|error| {
+    let line = CommandLine::parse();
+    let mut terminal = Terminal::new(CommandLine::command, line.verbosity.level());
+    line.command.run(&mut terminal).unwrap_or_else(|error| {
+        terminal.clear();
         tell(&format!("error: {error}"));
         ExitCode::from(2)
     })

@@ -1,22 +1,40 @@
 //! The output of the program: results on standard output; notes, errors and progress on standard error.
 
+use clap::builder::styling::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
 use springfit::error::{Error, Result};
 use springfit::report;
 use springfit::study::{Event, Outcome};
-use springfit::text::{printable, printable_lines};
+use springfit::text::{printable, printable_lines, time_in_words};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Shows progress: on a terminal in a bar that appears once work has taken a second, elsewhere in a line every ten
-/// seconds.
+/// How much the program says beside its results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Level {
+    /// Errors alone.
+    Quiet,
+    /// Notes and progress as well.
+    #[default]
+    Usual,
+    /// The time of each stage as well.
+    Verbose,
+}
+
+/// Shows progress: on a terminal in a bar that appears once work has taken a second, elsewhere in a line every ten seconds.
 pub struct Terminal {
+    /// The arguments of the program, for completions and manual pages.
+    pub grammar: fn() -> clap::Command,
+    level: Level,
     start: Instant,
     bar: Option<ProgressBar>,
     stage: Stage,
     /// When the last line was printed.
     last: Instant,
+    /// Whether standard output is a JSON document.
+    is_json: bool,
 }
 
 /// The running stage, and how much of it was done when it began.
@@ -24,16 +42,23 @@ struct Stage {
     name: String,
     start: Instant,
     first: usize,
+    /// Whether it was said that it will take long.
+    is_announced: bool,
 }
 
 /// The time between two lines of progress.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// A stage states the remaining time after it has run this long.
 const TRIAL: Duration = Duration::from_secs(1);
+/// A stage that will take longer says so.
+const LONG: Duration = Duration::from_secs(10);
+/// Columns of a page where there is no terminal, and the least that tables are fitted to.
+const PAGE: usize = 120;
+const NARROWEST: usize = 40;
 
 impl Stage {
     fn new(name: &str, done: usize) -> Stage {
-        Stage { name: name.into(), start: Instant::now(), first: done }
+        Stage { name: name.into(), start: Instant::now(), first: done, is_announced: false }
     }
 
     /// The remaining time at the present pace.
@@ -47,28 +72,37 @@ impl Stage {
 }
 
 impl Terminal {
-    pub fn new() -> Terminal {
+    pub fn new(grammar: fn() -> clap::Command, level: Level) -> Terminal {
         let now = Instant::now();
-        Terminal { start: now, bar: None, stage: Stage::new("", 0), last: now }
+        report::set_page_width(page_width());
+        Terminal { grammar, level, start: now, bar: None, stage: Stage::new("", 0), last: now, is_json: false }
     }
 
     /// Shows a stage in the bar, and a note above it.
     pub fn show(&mut self, event: Event) {
         let (name, done, total) = match event {
             Event::Stage { name, done, total } => (name, done, total),
-            Event::Note(note) => {
-                self.clear();
-                return tell(&format!("note: {note}"));
-            }
+            Event::Note(note) => return self.note(note),
         };
         if self.stage.name != name || done < self.stage.first {
+            self.end_stage();
             self.stage = Stage::new(name, done);
         }
-        let left = self.stage.left(done, total).map_or(String::new(), |left| format!(", about {} left", words(left)));
+        if self.level == Level::Quiet {
+            return;
+        }
+        let left = self.stage.left(done, total);
+        let words = left.map_or(String::new(), |left| format!(", about {} left", time_in_words(left.as_secs_f64())));
+        if left.is_some_and(|left| left > LONG) && !self.stage.is_announced {
+            self.stage.is_announced = true;
+            self.last = Instant::now();
+            let line = format!("note: {name}: {done} of {total}{words}, estimated from the pace so far");
+            return self.above_bar(|| tell(&line));
+        }
         if !std::io::stderr().is_terminal() {
             if self.last.elapsed() >= BETWEEN_LINES {
                 self.last = Instant::now();
-                tell(&format!("note: {name}: {done} of {total}{left}"));
+                tell(&format!("note: {name}: {done} of {total}{words}"));
             }
             return;
         }
@@ -81,7 +115,31 @@ impl Terminal {
             bar.set_length(total as u64);
             bar.set_position(done as u64);
             bar.set_message(printable(name).into_owned());
-            bar.set_prefix(left);
+            bar.set_prefix(words);
+        }
+    }
+
+    /// Says how long the stage took, if that is asked for.
+    fn end_stage(&mut self) {
+        if self.level == Level::Verbose && !self.stage.name.is_empty() {
+            let line = format!("stage: {}: {:.2} s", self.stage.name, self.stage.start.elapsed().as_secs_f64());
+            self.above_bar(|| tell(&line));
+        }
+        self.stage = Stage::new("", 0);
+    }
+
+    fn above_bar(&self, print: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(print),
+            None => print(),
+        }
+    }
+
+    /// A sentence for the user on standard error.
+    pub fn note(&mut self, note: &str) {
+        if self.level != Level::Quiet {
+            self.clear();
+            tell(&format!("note: {note}"));
         }
     }
 
@@ -97,43 +155,94 @@ impl Terminal {
     /// # Errors
     /// Standard output cannot be written.
     pub fn print(&mut self, text: &str) -> Result<()> {
+        self.print_bytes(printable_lines(text).as_bytes())
+    }
+
+    /// The same of text of our own, which may have control characters.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn print_bytes(&mut self, text: &[u8]) -> Result<()> {
+        self.end_stage();
         self.clear();
-        match std::io::stdout().write_all(printable_lines(text).as_bytes()) {
+        match std::io::stdout().write_all(text).and_then(|()| std::io::stdout().flush()) {
             Ok(()) => Ok(()),
             Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
             Err(e) => Err(Error::io(format!("standard output cannot be written: {e}"), e)),
         }
     }
 
-    /// Prints the tables of an outcome, and its notes.
+    /// Prints a record as the one JSON document of standard output.
+    ///
+    /// # Errors
+    /// As [`Terminal::print`].
+    pub fn print_json(&mut self, record: &impl Serialize) -> Result<()> {
+        self.is_json = true;
+        self.print(&(serde_json::to_string_pretty(record).expect("keys are text") + "\n"))
+    }
+
+    /// Prints the tables of an outcome or its report, and its notes, which a report has as well.
     ///
     /// # Errors
     /// Standard output cannot be written.
-    pub fn print_outcome(&mut self, outcome: &Outcome) -> Result<()> {
+    pub fn print_outcome(&mut self, outcome: &Outcome, json: bool) -> Result<()> {
+        if json {
+            return self.print_json(&report::Report::of(outcome));
+        }
         self.print(&format!("{}\n{}", report::summary(outcome), report::table(outcome)))?;
-        report::notes(outcome).iter().for_each(|note| tell(&format!("note: {note}")));
+        report::notes(outcome).iter().for_each(|note| self.note(note));
         Ok(())
     }
 
-    /// Names the written files.
+    /// Names the files that were written; beside a JSON document on standard error.
     ///
     /// # Errors
     /// Standard output cannot be written.
     pub fn written(&mut self, paths: &[PathBuf]) -> Result<()> {
-        paths.iter().try_for_each(|path| self.print(&format!("written: {}\n", path.display())))
+        paths.iter().try_for_each(|path| self.say(&format!("written: {}", path.display())))
+    }
+
+    /// A line after the results.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn say(&mut self, line: &str) -> Result<()> {
+        match (self.level, self.is_json) {
+            (Level::Quiet, _) => Ok(()),
+            (_, true) => {
+                tell(line);
+                Ok(())
+            }
+            (_, false) => self.print(&format!("{line}\n")),
+        }
     }
 }
 
-/// `45 s`, `12 min` or `3 h`.
-fn words(time: Duration) -> String {
-    match time.as_secs_f64() {
-        s if s < 100.0 => format!("{s:.0} s"),
-        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.0} h", s / 3600.0),
-    }
+/// The columns of the terminal or of `COLUMNS`, which goes first.
+fn page_width() -> usize {
+    let given = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse::<usize>().ok());
+    let terminal = || {
+        let terminal = console::Term::stdout();
+        terminal
+            .features()
+            .is_attended()
+            .then(|| terminal.size_checked())
+            .flatten()
+            .map(|(_, columns)| usize::from(columns))
+    };
+    given.filter(|columns| *columns > 0).or_else(terminal).unwrap_or(PAGE).max(NARROWEST)
 }
 
-/// Prints a line on standard error; if it cannot be written, nothing is lost.
+/// Prints a line on standard error; if it cannot be written, nothing is lost. Its first word has a colour on a terminal,
+/// unless `NO_COLOR` is set or `CLICOLOR` is 0.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", printable_lines(line));
+    let bold = |color: AnsiColor| Style::new().bold().fg_color(Some(color.into()));
+    let styles =
+        [("error:", bold(AnsiColor::Red)), ("note:", bold(AnsiColor::Cyan)), ("stage:", bold(AnsiColor::Green))];
+    let line = printable_lines(line);
+    let mut stream = anstream::stderr();
+    let _ = match styles.iter().find(|(word, _)| line.starts_with(word)) {
+        Some((word, style)) => writeln!(stream, "{style}{word}{style:#}{}", &line[word.len()..]),
+        None => writeln!(stream, "{line}"),
+    };
 }

@@ -6,7 +6,7 @@ use springfit::study::{KindRecord, Scene, run};
 use std::path::Path;
 
 /// Everything that a linear scene may have: fits to the stiffness, published and to the whole object, a gauge, a motion.
-const LINEAR: &str = r#"
+pub const LINEAR: &str = r#"
 [mesh]
 box = { element = "quad4", size = [3, 1], cells = [6, 2] }
 [material]
@@ -59,7 +59,7 @@ moduli = true
 "#;
 
 /// Large deformation, with a fit to forces.
-const LARGE: &str = r#"
+pub const LARGE: &str = r#"
 [mesh]
 box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
 [material]
@@ -95,7 +95,7 @@ traction = [0, 0, 0.1]
 "#;
 
 /// The report as it is written, and read back.
-fn reports(text: &str) -> (Value, Report) {
+pub fn reports(text: &str) -> (Value, Report) {
     let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
     let text = report(&run(&scene, &mut |_| {}).unwrap());
     (serde_json::from_str(&text).unwrap(), serde_json::from_str(&text).unwrap())

@@ -1,5 +1,6 @@
 //! `springfit check`.
 
+use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
@@ -11,14 +12,20 @@ use std::process::ExitCode;
 
 /// Check element files: one line for each property; exit code 1 if one fails
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Check {
     /// Element files, folders of them, or names of shipped elements
     #[arg(required = true)]
     what: Vec<String>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit check my-element.toml
+  springfit check elements                # all files of a folder
+  springfit check hex8 --json             # a list of files with the keys file, title, passes, properties";
 
 impl Check {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -44,12 +51,12 @@ impl Check {
                 return Err(error.clone());
             }
             let inspection = study::inspect(file, loaded);
-            if !self.json {
+            if !self.output.json {
                 terminal.print(&(report::check_text(&inspection) + "\n"))?;
             }
             inspections.push(inspection);
         }
-        if self.json {
+        if self.output.json {
             terminal.print(&report::check_json(&inspections))?;
         } else {
             let failed = inspections.iter().filter(|i| !i.passes()).count();

@@ -1,6 +1,7 @@
 //! `springfit compare`.
 
-use super::scene_file::is_scene;
+use super::output::OutputOptions;
+use super::scene_file::{Settings, is_scene};
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
@@ -9,38 +10,54 @@ use springfit::error::{Error, Result};
 use springfit::fit::Solver;
 use springfit::material::Material;
 use springfit::report::{self, Comparison};
-use springfit::study::{self, Event, Scene};
+use springfit::study::{self, Event, Forecast, stages};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Compare objectives and solvers, error against run time, on random shapes of an element or on a scene
+/// Compare objectives and solvers on random shapes of an element or on a scene
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Compare {
     /// A shipped element's name, an element file, or a scene
     what: String,
+    #[command(flatten)]
+    settings: Settings,
     /// Random shapes of an element
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = 100, help_heading = "Element")]
     shapes: usize,
     /// Iterations of the general optimisers
-    #[arg(long, default_value_t = Solver::DEFAULT_ITERATIONS)]
+    #[arg(long, default_value_t = Solver::DEFAULT_ITERATIONS, help_heading = "Element")]
     iterations: u64,
     /// Poisson's ratio, for an element
-    #[arg(long, default_value_t = 0.3, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 0.3, allow_hyphen_values = true, help_heading = "Element")]
     poisson: f64,
     /// An element at large deformation: the energy, a shipped name such as neo-hookean, or a file
-    #[arg(long)]
+    #[arg(long, help_heading = "Element")]
     law: Option<String>,
     /// With --law, the largest stretch that is sampled
-    #[arg(long, default_value_t = 0.35, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 0.35, allow_hyphen_values = true, help_heading = "Element")]
     stretch: f64,
     /// Plane element: stress or strain [default: stress]
-    #[arg(long)]
+    #[arg(long, help_heading = "Element")]
     plane: Option<State>,
-    /// Where the tables and figures go [default: out/compare-NAME]
+    /// Of a scene: print what would be done, with estimates of time and memory, and stop
     #[arg(long)]
+    explain: bool,
+    /// Folder of the tables and figures [default: out/compare-NAME]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit compare tet4
+  springfit compare hex8 --shapes 20 --poisson 0.45
+  springfit compare tri3 --law neo-hookean --plane strain
+  springfit compare scene.toml --explain                 # the fits of a scene and their expected times
+  springfit compare scene.toml --json                    # of a scene: the keys of report.json";
 
 impl Compare {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -56,12 +73,31 @@ impl Compare {
             return Err(Error::at("--law", "belongs to an element; a scene names its law in [material]"));
         }
         let comparison = if is_scene(path) {
-            let scene = Scene::load(path)?;
+            let scene = self.settings.scene(path)?;
+            if self.explain {
+                let scene = study::compared(&scene)?;
+                let forecast = Forecast::of(&scene)?;
+                match self.output.json {
+                    true => terminal.print_json(&forecast)?,
+                    false => terminal.print(&report::forecast_text(scene.title(), &forecast, &stages(&scene)))?,
+                }
+                return Ok(ExitCode::SUCCESS);
+            }
             report::check_outputs(&folder, names, &scene.inputs())?;
             let outcome = study::compare_scene(&scene, &mut progress)?;
             outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
+            if self.output.json {
+                let paths = Comparison::of_scene(&outcome).write(&folder);
+                terminal.print_json(&report::Report::of(&outcome))?;
+                terminal.written(&paths?)?;
+                return Ok(ExitCode::SUCCESS);
+            }
             Comparison::of_scene(&outcome)
         } else {
+            self.settings.expect_none()?;
+            if self.explain {
+                return Err(Error::at("--explain", "belongs to a scene, found an element"));
+            }
             let element = Element::load(&self.what)?;
             let plane = self.plane.map(Into::into);
             let material =
@@ -72,7 +108,10 @@ impl Compare {
                 let law = |e: Error| if e.key() == Some("energy") { e.at_key("--law") } else { e.of_option() };
                 let study = study.map_err(|e| e.placed(law))?;
                 let paths = report::write_stretches(&study, &folder);
-                terminal.print(&report::stretches_text(&study))?;
+                match self.output.json {
+                    true => terminal.print_json(&study)?,
+                    false => terminal.print(&report::stretches_text(&study))?,
+                }
                 terminal.written(&paths?)?;
                 return Ok(ExitCode::SUCCESS);
             }
@@ -83,7 +122,14 @@ impl Compare {
             let outcomes = study::compare_element(&element, material, shapes, iterations, &mut progress)
                 .map_err(|e| e.placed(Error::of_option))?;
             let title = format!("{}: {shapes} random shapes, nu = {}, one thread", element.name, self.poisson);
-            Comparison::of_element(title, &outcomes, material.young())
+            let comparison = Comparison::of_element(title, &outcomes, material.young());
+            if self.output.json {
+                let paths = comparison.write(&folder);
+                terminal.print_json(&outcomes)?;
+                terminal.written(&paths?)?;
+                return Ok(ExitCode::SUCCESS);
+            }
+            comparison
         };
         let paths = comparison.write(&folder);
         terminal.print(&comparison.table())?;

@@ -1,35 +1,66 @@
 //! `springfit converge`.
 
+use super::output::OutputOptions;
+use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::report;
-use springfit::study::{self, Event, Scene};
+use springfit::study::{self, Event, Forecast, Scene, stages};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Refine the mesh of a scene, and report how finite elements and networks converge
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Converge {
     /// The scene file
     scene: PathBuf,
+    #[command(flatten)]
+    settings: Settings,
     /// Meshes, from 2 to 8: that of the scene, and others with cells of half the size each [default: 4, or fewer if they would take long]
     #[arg(long, allow_hyphen_values = true)]
     levels: Option<usize>,
     /// A scene of the same body and loads whose finite elements give the truth, such as one of quadratic cells; its fits are not made [default: the scene itself]
     #[arg(long)]
     truth: Option<PathBuf>,
-    /// Where the table and the plot go [default: out/converge-NAME]
+    /// Print what would be done on each level, with estimates of time and memory, and stop
     #[arg(long)]
+    explain: bool,
+    /// Folder of the table and the plot [default: out/converge-NAME]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit converge scene.toml
+  springfit converge scene.toml --levels 3 --set material.poisson=0.45
+  springfit converge linear.toml --truth quadratic.toml  # both have the same body, supports and loads";
 
 impl Converge {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let scene = Scene::load(&self.scene)?;
+        let scene = self.settings.scene(&self.scene)?;
+        if self.explain {
+            let levels = study::refinements(&scene, self.levels).map_err(|e| e.placed(Error::of_option))?;
+            let forecasts = levels.iter().map(Forecast::of).collect::<Result<Vec<_>>>()?;
+            if self.output.json {
+                terminal.print_json(&forecasts)?;
+            } else {
+                let title = |level: usize| format!("{}, level {} of {}", scene.title(), level + 1, levels.len());
+                let text = forecasts.iter().enumerate().map(|(level, forecast)| {
+                    let stages = if level == 0 { stages(&levels[0]) } else { Vec::new() };
+                    report::forecast_text(&title(level), forecast, &stages)
+                });
+                terminal.print(&text.collect::<Vec<_>>().join("\n"))?;
+            }
+            return Ok(ExitCode::SUCCESS);
+        }
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
-        let truth = self.truth.as_ref().map(|path| Scene::load(path)).transpose()?;
+        let truth = self.truth.as_ref().map(|path| self.settings.reference(path)).transpose()?;
         let inputs: Vec<PathBuf> =
             [Some(&scene), truth.as_ref()].into_iter().flatten().flat_map(Scene::inputs).collect();
         report::check_outputs(&folder, &report::CONVERGENCE_FILES, &inputs)?;
@@ -40,7 +71,10 @@ impl Converge {
         };
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         let paths = report::write_convergence(&convergence, &folder);
-        terminal.print(&report::convergence_text(&convergence))?;
+        match self.output.json {
+            true => terminal.print_json(&convergence)?,
+            false => terminal.print(&report::convergence_text(&convergence))?,
+        }
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

@@ -10,10 +10,12 @@ use springfit::material::Plane;
 use springfit::report::Derivation;
 use springfit::springs::Springs;
 use springfit::study::Event;
+use springfit::unknown;
 use std::process::ExitCode;
 
 /// Print the exact closed forms of an element's stiffness and spring constants
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Derive {
     /// A shipped element's name, or an element file
     element: String,
@@ -30,12 +32,18 @@ pub struct Derive {
     #[arg(long)]
     objective: Option<String>,
     /// Print the stiffness matrix as well
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     matrix: bool,
     /// Print LaTeX
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     latex: bool,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit derive quad4
+  springfit derive quad4 --plane strain --sides          # a rectangle with sides a and b
+  springfit derive tri3 --objective frobenius --latex";
 
 impl Derive {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -68,7 +76,7 @@ impl Derive {
             Some("offdiag") => Ok((false, vec![Weight::OffDiagonal])),
             Some(other) => {
                 let expected = "exact, frobenius or offdiag, which have closed forms";
-                Err(Error::expected("--objective", expected, format!("\"{other}\"")))
+                Err(unknown(expected, ["exact", "frobenius", "offdiag"], other).at_key("--objective"))
             }
         }
     }

@@ -1,18 +1,20 @@
 //! `springfit fit`.
 
 use super::interrupt::end_early;
+use super::mesh_file::MeshOptions;
+use super::output::OutputOptions;
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::mesh::{Gate, Mesh, MeshSource, Selection};
+use springfit::mesh::{Mesh, Selection};
 use springfit::model::Support;
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::report::{self, NetworkFile, NetworkFormat};
 use springfit::study::{
-    BodyConstants, Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, assumed, fit_mesh,
-    load_elements, point_masses,
+    BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Reference, WholeBody, assumed, fit_mesh,
+    point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -20,99 +22,108 @@ use std::sync::Arc;
 
 /// Fit the springs of a mesh, without a scene
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Fit {
     /// The mesh: .msh, .vtu or .vtk
     mesh: PathBuf,
+    /// Print what would be done, with estimates of time and memory, and stop
+    #[arg(long)]
+    explain: bool,
     /// Young's modulus, such as 10kPa
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     young: String,
     /// Poisson's ratio
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     poisson: f64,
-    /// exact, frobenius, offdiag, modal, spectral, divergence, sampled, whole or a published method [default: exact]. For programs
-    /// with springs and volume constraints: exact. For those with classical springs alone, which rest at the lengths of the mesh:
-    /// divergence, or offdiag with --nonnegative
-    #[arg(long)]
+    /// exact, frobenius, offdiag, modal, spectral, divergence, sampled, whole, or a published method, which are listed below
+    /// [default: exact]. For programs with springs and volume constraints: exact. For those with classical springs alone, which rest
+    /// at the lengths of the mesh: divergence, or offdiag with --nonnegative
+    #[arg(long, help_heading = "Fit")]
     objective: Option<String>,
     /// The body's energy: stable-neo-hookean or neo-hookean [default: stable-neo-hookean] (exact only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Exact networks")]
     energy: Option<String>,
     /// Where volumes are measured: points, cells or patches [default: points] (exact only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Exact networks")]
     volume: Option<String>,
     /// A group of the mesh that is held; may be repeated (whole only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Whole-object fits")]
     fix: Vec<String>,
     /// Energy whose forces are sampled: a shipped name such as neo-hookean, or a file (sampled only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Sampled fits")]
     law: Option<String>,
     /// linear, free-rest, or a law of force such as "k1*s + k3*s^3" (sampled only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Sampled fits")]
     force: Option<String>,
     /// Largest amplitude of the sampled shapes [default: 0.3] (sampled only)
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Sampled fits")]
     stretch: Option<f64>,
     /// How many shapes to fit to [default: 300] (sampled only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Sampled fits")]
     shapes: Option<usize>,
     /// What counts: none, offdiag, modal or relative (with frobenius and spectral), none or relative (with sampled)
-    #[arg(long)]
+    #[arg(long, help_heading = "Fits to the stiffness")]
     weight: Option<String>,
     /// Scale of what is beyond constant strain (modal and sampled only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Fits to the stiffness")]
     higher: Option<f64>,
     /// From 0, which errs to the soft side, to 1 (divergence only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Fits to the stiffness")]
     balance: Option<f64>,
     /// Spring groups to use, separated by commas [default: all that are not optional]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',', help_heading = "Fit")]
     springs: Option<Vec<String>>,
     /// One constant per group
-    #[arg(long)]
+    #[arg(long, help_heading = "Fit")]
     tied: bool,
     /// No constant below zero
-    #[arg(long)]
+    #[arg(long, help_heading = "Fit")]
     nonnegative: bool,
     /// Springs across the sides of cells where no others suffice (exact with --nonnegative only)
-    #[arg(long)]
+    #[arg(long, help_heading = "Exact networks")]
     across: bool,
     /// Rest measures: mesh, free or zero (frobenius, offdiag and modal only) [default: mesh]
-    #[arg(long)]
+    #[arg(long, help_heading = "Fits to the stiffness")]
     rest: Option<String>,
     /// Plane mesh or surface: stress or strain [default: stress]
-    #[arg(long)]
+    #[arg(long, help_heading = "Material")]
     plane: Option<State>,
     /// Plane mesh or surface: thickness such as "0.5 mm" [default of plane meshes: 1 m; required for surfaces in space]
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     thickness: Option<String>,
     /// Mesh of lines: cross-section such as "2 mm^2" [default: 1 m^2]
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     area: Option<String>,
     /// Density such as "1060 kg/m^3"; gives the points masses
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     density: Option<String>,
-    /// Length of one mesh unit, such as mm or 0.001
-    #[arg(long, default_value = "1", allow_hyphen_values = true)]
-    scale: String,
-    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]. Cells that are flat or tangled,
-    /// that have the nodes of another or are folded over their neighbours are left out with skip and refused otherwise
-    #[arg(long)]
-    below: Option<String>,
-    /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
-    #[arg(long)]
-    least: Option<f64>,
-    /// An element file to look in before the shipped ones; may be repeated
-    #[arg(long)]
-    element: Vec<String>,
+    #[command(flatten)]
+    options: MeshOptions,
     /// Where the springs go: .vtu, .json or .csv
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     output: PathBuf,
+    #[command(flatten)]
+    format: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
+  springfit fit organ.msh --young 10kPa --poisson 0.3 --objective divergence -o springs.json
+  springfit fit organ.msh --scale mm --young 10kPa --poisson 0.3 -o springs.csv --explain
+
+Published methods, for --objective:
+  van-gelder, van-gelder-simple    Van Gelder (1998): triangles, tetrahedra
+  lloyd, lloyd-preserving          Lloyd et al. (2007): triangles, quadrilaterals, tetrahedra
+  baudet, baudet-corrected         Baudet et al. (2007, 2009): rectangles, bricks
+  delingette-quadratic             Delingette (2008): triangles
+  delingette-biquadratic           the same
+  maciel-uniform                   Maciel et al. (2003)";
 
 impl Fit {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let format = NetworkFormat::of(&self.output).map_err(|e| e.at_key("--output"))?;
-        let elements = self.element.iter().chain(&self.law).map(PathBuf::from);
+        let elements = self.options.elements().iter().chain(&self.law).map(PathBuf::from);
         let inputs: Vec<PathBuf> = [self.mesh.clone()].into_iter().chain(elements).collect();
         springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
         springfit::check_file(&self.output)?;
@@ -122,9 +133,9 @@ impl Fit {
             |quantity, key, text: &Option<String>| text.as_deref().map(|text| given(quantity, key, text)).transpose();
         let young = given(Quantity::Pressure, "young", &self.young)?;
         let named = self.named_fit()?;
-        let scale = given(Quantity::MeshUnit, "scale", &self.scale)?;
+        self.options.scale()?;
         let density = asked(Quantity::Density, "density", &self.density)?;
-        check(scale, density)?;
+        density.map_or(Ok(()), |density| range::positive("--density", density, "kg/m³").map(|_| ()))?;
         let constants = BodyConstants {
             young,
             poisson: self.poisson,
@@ -145,10 +156,20 @@ impl Fit {
             let expected = "the energy whose forces the objective \"sampled\" samples, such as neo-hookean";
             return Err(Error::expected("--law", expected, "none"));
         }
-        let mesh = self.mesh(scale)?;
+        let mesh = self.options.mesh(&self.mesh)?;
         let material = constants.material(&mesh).map_err(Error::of_option)?;
         let assumed = assumed(&mesh, constants.thickness, constants.area);
         let support = self.support(&mesh)?;
+        let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
+        if self.explain {
+            let title = self.mesh.display().to_string();
+            match self.format.json {
+                true => terminal.print_json(&forecast)?,
+                false => terminal.print(&report::forecast_text(&title, &forecast, &[]))?,
+            }
+            return Ok(ExitCode::SUCCESS);
+        }
+        forecast.announcement().iter().for_each(|words| terminal.note(words));
         let controls = Arc::new(Controls::default());
         if whole {
             end_early(&controls);
@@ -164,7 +185,7 @@ impl Fit {
         // The file first: who reads the table may have gone away.
         let file = NetworkFile { mesh: &outcome.mesh, masses, fit: &outcome.fits[0], loads: &[], notes: &notes };
         format.write(&self.output, &file)?;
-        terminal.print_outcome(&outcome)?;
+        terminal.print_outcome(&outcome, self.format.json)?;
         terminal.written(std::slice::from_ref(&self.output))?;
         Ok(ExitCode::SUCCESS)
     }
@@ -193,15 +214,6 @@ impl Fit {
         Ok(entry.fits(Path::new("")).map_err(|e| e.placed(of_option))?.remove(0))
     }
 
-    fn mesh(&self, scale: f64) -> Result<Mesh> {
-        let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
-        let source = MeshSource::read(&self.mesh)?;
-        let asked = self.below.is_some() || self.least.is_some();
-        let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
-        let mesh = Mesh::resolve_within(&source, &own, scale, asked.then_some(gate));
-        mesh.map_err(|e| e.in_file(&self.mesh))
-    }
-
     /// The groups that are held.
     fn support(&self, mesh: &Mesh) -> Result<Support> {
         let mut support = Support::free(mesh);
@@ -225,9 +237,4 @@ fn of_option(error: Error) -> Error {
         }
         _ => error,
     }
-}
-
-fn check(scale: f64, density: Option<f64>) -> Result<()> {
-    range::positive("--scale", scale, "metres per mesh unit")?;
-    density.map_or(Ok(()), |density| range::positive("--density", density, "kg/m³").map(|_| ()))
 }

@@ -2,13 +2,22 @@
 
 mod check;
 mod compare;
+mod completions;
 mod converge;
 mod derive;
+mod elements;
 mod fit;
+mod groups;
 mod interrupt;
+mod man;
+mod materials;
+mod mesh_file;
+mod new;
+mod output;
 mod paper;
 mod run;
 mod scene_file;
+mod schema;
 mod stability;
 mod state;
 
@@ -40,6 +49,7 @@ macro_rules! commands {
 }
 
 commands! {
+    New: new::New,
     Run: run::Run,
     Fit: Box<fit::Fit>,
     Check: check::Check,
@@ -48,4 +58,10 @@ commands! {
     Converge: converge::Converge,
     Paper: paper::Paper,
     Stability: stability::Stability,
+    Elements: elements::Elements,
+    Materials: materials::Materials,
+    Groups: groups::Groups,
+    Schema: schema::Schema,
+    Completions: completions::Completions,
+    Man: man::Man,
 }

@@ -1,5 +1,6 @@
 //! `springfit paper`.
 
+use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
@@ -10,17 +11,26 @@ use std::process::ExitCode;
 
 /// Reproduce the tables and figures of Natsupakpong and Cavusoglu (2010)
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Paper {
     /// Only this table, such as 1 or "figure 9"; may be repeated
     #[arg(long)]
     table: Vec<String>,
-    /// Where the tables and figures go, and the scenes that were run [default: out/paper]
-    #[arg(long)]
-    out: Option<PathBuf>,
     /// An index of experiments of your own, such as scenes/paper/index.toml
     #[arg(long)]
     index: Option<PathBuf>,
+    /// Folder of the tables and figures, and of the scenes that were run [default: out/paper]
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit paper
+  springfit paper --table 1 --table 'figure 9'
+  springfit paper --index my-experiments/index.toml";
 
 impl Paper {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -35,11 +45,15 @@ impl Paper {
         let paper = study::run_paper(&index, &self.table, &path, &mut |event| terminal.show(event));
         let paper = paper.map_err(|e| e.placed(Error::of_option))?;
         let written = report::write_paper(&paper, &folder);
-        for table in &paper.tables {
-            terminal.print(&(report::paper_text(table) + "\n"))?;
+        if self.output.json {
+            terminal.print_json(&paper.tables)?;
+        } else {
+            for table in &paper.tables {
+                terminal.print(&(report::paper_text(table) + "\n"))?;
+            }
         }
         let written = written?;
-        terminal.print(&format!("written: {} files in {}\n", written.len(), folder.display()))?;
+        terminal.say(&format!("written: {} files in {}", written.len(), folder.display()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -1,10 +1,12 @@
 //! `springfit run`.
 
 use super::interrupt::end_early;
+use super::output::OutputOptions;
+use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::study::{Controls, Scene, run_with, stages};
+use springfit::study::{Controls, Forecast, run_with, stages};
 use springfit::{check_apart, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,35 +14,48 @@ use std::sync::Arc;
 
 /// Fit, solve and compare a scene
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Run {
     /// The scene file
     scene: PathBuf,
-    /// Where the report goes [default: out/NAME of the scene]
-    #[arg(long)]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    settings: Settings,
     /// Where whole-object fits save their state, and what they go on from if it is there; Ctrl-C ends them at their best point
     #[arg(long)]
     checkpoint: Option<PathBuf>,
-    /// Say which stages will run and which are left out, and stop
+    /// Print what would be done, with estimates of time and memory, and stop
     #[arg(long)]
     explain: bool,
+    /// Folder of report.json and of the files that [output] asks for [default: out/NAME of the scene]
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit run scene.toml
+  springfit run scene.toml --explain                     # sizes, stages, estimates; nothing is run
+  springfit run scene.toml --set material.poisson=0.45 --out out/soft
+  springfit run scene.toml --json | jq '.fits[].name'    # the keys of report.json: springfit schema report";
 
 impl Run {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let scene = Scene::load(&self.scene)?;
+        let scene = self.settings.scene(&self.scene)?;
         if self.explain {
-            let lines = stages(&scene).into_iter().map(|(stage, left_out)| match left_out {
-                None => format!("run       {stage}\n"),
-                Some(why) => format!("left out  {stage}: {why}\n"),
-            });
-            terminal.print(&lines.collect::<String>())?;
+            let forecast = Forecast::of(&scene)?;
+            match self.output.json {
+                true => terminal.print_json(&forecast)?,
+                false => terminal.print(&report::forecast_text(scene.title(), &forecast, &stages(&scene)))?,
+            }
             return Ok(ExitCode::SUCCESS);
         }
         let stem = self.scene.file_stem().unwrap_or_default();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
         report::check_scene_outputs(&scene, &folder, &[])?;
-        let controls = Arc::new(Controls { checkpoint: self.checkpoint.clone(), ..Controls::default() });
+        let controls =
+            Arc::new(Controls { checkpoint: self.checkpoint.clone(), announce: true, ..Controls::default() });
         if scene.fits().iter().any(|fit| fit.recipe.whole().is_some()) {
             check_apart(self.checkpoint.as_slice(), &scene.inputs()).map_err(|e| e.at_key("--checkpoint"))?;
             end_early(&controls);
@@ -53,7 +68,7 @@ impl Run {
         let outcome = run_with(&scene, &controls, &mut |event| terminal.show(event))?;
         // Files first: who reads the table may have gone away.
         let paths = report::write_outputs(&outcome, scene.output(), &folder);
-        terminal.print_outcome(&outcome)?;
+        terminal.print_outcome(&outcome, self.output.json)?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

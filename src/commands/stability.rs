@@ -1,24 +1,36 @@
 //! `springfit stability`.
 
-use super::scene_file::is_scene;
+use super::output::OutputOptions;
+use super::scene_file::{Settings, is_scene};
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
 use springfit::error::Result;
 use springfit::report;
-use springfit::study::{self, Event, Scene};
+use springfit::study::{self, Event};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Run the numerical stability sweep against double-double and closed-form references; exit code 1 if an error is too large
+/// Run the sweep of ill-conditioned cases; exit code 1 if an error is too large
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Stability {
     /// A shipped element's name, an element file, or a scene [default: an element of each kind, bodies and motions]
     what: Option<String>,
-    /// Where the table and the maps go [default: out/stability, or out/stability-NAME]
-    #[arg(long)]
+    #[command(flatten)]
+    settings: Settings,
+    /// Folder of the table and the maps [default: out/stability, or out/stability-NAME]
+    #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit stability                     # the whole sweep
+  springfit stability tet4
+  springfit stability scene.toml          # the scene in other units and materials";
 
 impl Stability {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -34,14 +46,20 @@ impl Stability {
         let mut progress = |event: Event| terminal.show(event);
         let outcome = match what {
             Some(path) if is_scene(Path::new(path)) => {
-                let scene = Scene::load(Path::new(path))?;
+                let scene = self.settings.scene(Path::new(path))?;
                 report::check_outputs(&folder, &report::STABILITY_FILES, &scene.inputs())?;
                 study::sweep_scene(&scene, &mut progress)?
             }
-            _ => study::sweep(what.map(Element::load).transpose()?, &mut progress)?,
+            _ => {
+                self.settings.expect_none()?;
+                study::sweep(what.map(Element::load).transpose()?, &mut progress)?
+            }
         };
         let paths = report::write_stability(&outcome, &folder);
-        terminal.print(&report::stability_text(&outcome))?;
+        match self.output.json {
+            true => terminal.print_json(&outcome)?,
+            false => terminal.print(&report::stability_text(&outcome))?,
+        }
         terminal.written(&paths?)?;
         Ok(if outcome.lost().count() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }

@@ -2,6 +2,7 @@
 
 use super::number::finite;
 use crate::study::{Inspection, Mark, Property};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
@@ -17,7 +18,7 @@ pub fn check_text(inspection: &Inspection) -> String {
 }
 
 /// A file in the JSON of `check`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InspectionRecord {
     /// The file, or the name of a shipped element.
     pub file: String,
@@ -27,7 +28,7 @@ pub struct InspectionRecord {
 }
 
 /// A property of a file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PropertyRecord {
     pub property: String,
     /// `ok`, `FAIL` or `-`.

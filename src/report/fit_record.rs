@@ -7,10 +7,11 @@ use crate::study::{
     FitOutcome, KindRecord, PositiveRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
     WholeOutcomeRecord,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A fit: the settings of its kind, its network and its errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FitRecord {
     #[serde(flatten)]
     pub kind: KindRecord,

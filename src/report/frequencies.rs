@@ -2,6 +2,7 @@
 
 use super::columns::{Heading, aligned};
 use crate::study::{FrequencyOutcome, Outcome};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One row per model, a network's frequencies with their distance from those of the finite elements; empty where none were asked for.
@@ -43,7 +44,7 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
 }
 
 /// The natural frequencies of a model in `report.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrequencyRecord {
     /// Of the fit, or "finite elements".
     pub name: String,

@@ -10,18 +10,21 @@ use super::number::finite;
 use super::table::notes;
 use crate::mesh::Mesh;
 use crate::study::{BodyLoad, GaugeResult, Outcome, extent};
+use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
 /// Of the report's keys; it changes when a key is removed or its meaning changes.
 pub const VERSION: u32 = 2;
 
 /// `report.json`. A value that does not exist or is not finite is null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     /// [`VERSION`].
     pub version: u32,
     /// The title.
     pub scene: String,
+    /// What was given in place of values of the scene's file, as `KEY=VALUE`.
+    pub settings: Vec<String>,
     /// The size of the box around the body along each axis, m.
     pub extent: Vec<f64>,
     /// What was assumed because no input says it, as a sentence.
@@ -62,7 +65,7 @@ pub struct Report {
 }
 
 /// The quality of the mesh.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QualityRecord {
     /// From 0, flat, to 1, right angles.
     pub worst: Option<f64>,
@@ -84,7 +87,7 @@ pub struct QualityRecord {
 }
 
 /// Whether whole-object fits from several starts give the same errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AgreementRecord {
     pub fits: Vec<String>,
     /// The held-out load under which the errors differ most.
@@ -92,6 +95,11 @@ pub struct AgreementRecord {
     /// As a share of the least error.
     pub difference: Option<f64>,
     pub agree: bool,
+}
+
+/// The JSON Schema of reports.
+pub fn schema() -> serde_json::Value {
+    schema_for!(Report).to_value()
 }
 
 /// The report as text.
@@ -108,6 +116,7 @@ impl Report {
         Report {
             version: VERSION,
             scene: outcome.scene.clone(),
+            settings: outcome.settings.clone(),
             extent: extent(mesh),
             assumed: outcome.assumed.clone(),
             nodes: mesh.point_count(),

@@ -3,10 +3,11 @@
 use super::number::finite;
 use crate::model::Deformation;
 use crate::study::{BodyLoad, ModelMotion, Outcome};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How far linear finite elements are deformed under a load or in a motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DeformationRecord {
     /// The load; null for the motion.
     pub load: Option<String>,

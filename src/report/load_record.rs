@@ -3,17 +3,18 @@
 use super::number::finite;
 use crate::solve::Ending;
 use crate::study::{BodyLoad, Followed, LoadOutcome, Reading};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Young's modulus, Pa, and Poisson's ratio as a gauge measures them.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReadingRecord {
     pub young: f64,
     pub poisson: f64,
 }
 
 /// A load under which displacements were measured.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasuredRecord {
     pub load: String,
     pub points: usize,
@@ -23,7 +24,7 @@ pub struct MeasuredRecord {
 }
 
 /// How far an equilibrium was followed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FollowedRecord {
     pub converged: bool,
     /// The share of the load that was reached.
@@ -39,7 +40,7 @@ pub struct FollowedRecord {
 }
 
 /// The answer of a network to a load.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LoadRecord {
     pub name: String,
     /// Percent of the largest displacement.

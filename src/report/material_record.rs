@@ -2,10 +2,11 @@
 
 use super::number::finite;
 use crate::study::NetworkMaterial;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a network is as a material, from samples of its cells.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NetworkMaterialRecord {
     /// Young's modulus, Pa, harmonic mean over all directions; null where some strain meets no resistance.
     pub young: Option<f64>,

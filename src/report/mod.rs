@@ -1,6 +1,7 @@
 //! What a person or a program reads of an outcome.
 
 mod agreement;
+mod catalogue;
 mod check;
 mod columns;
 mod comparison;
@@ -9,7 +10,9 @@ mod convergence_plot;
 mod deformed;
 mod derivation;
 mod fit_record;
+mod forecast;
 mod frequencies;
+mod groups;
 mod json;
 mod linear_theory;
 mod load_errors;
@@ -31,15 +34,18 @@ mod stretches;
 mod surface;
 mod table;
 
+pub use catalogue::{ElementRecord, MaterialRecord, SpringGroupRecord, elements_text, materials_text};
 pub use check::{InspectionRecord, PropertyRecord, check_json, check_text};
-pub use columns::Heading;
+pub use columns::{Heading, set_page_width};
 pub use comparison::{COMPARISON_FILES, Comparison};
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
 pub use fit_record::FitRecord;
+pub use forecast::forecast_text;
 pub use frequencies::FrequencyRecord;
-pub use json::{AgreementRecord, QualityRecord, Report, VERSION, report};
+pub use groups::{CellsRecord, GroupRecord, MeshRecord};
+pub use json::{AgreementRecord, QualityRecord, Report, VERSION, report, schema};
 pub use linear_theory::DeformationRecord;
 pub use load_record::{FollowedRecord, LoadRecord, MeasuredRecord, ReadingRecord};
 pub use material_record::NetworkMaterialRecord;

@@ -3,10 +3,11 @@
 use super::number::finite;
 use crate::dynamics::Integrator;
 use crate::study::{DampingRecipe, ModelMotion, MotionEnding, MotionOutcome, Record};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings of a motion, with defaults resolved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionOptionsRecord {
     /// s.
     pub duration: f64,
@@ -29,7 +30,7 @@ pub struct MotionOptionsRecord {
 }
 
 /// The motion of a model, one number for each state that is written in its lists; null where a model has none.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionRecord {
     /// Of the fit, or "finite elements".
     pub name: String,

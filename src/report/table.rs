@@ -33,7 +33,9 @@ pub(super) fn summary_line(outcome: &Outcome) -> String {
 /// What was modelled, in a line or two.
 pub fn summary(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
-    let mut text = format!("{}\n{}\n", printable(&outcome.scene), summary_line(outcome));
+    let given =
+        if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
+    let mut text = format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
     let turned = "elements had their nodes in inverted order and were reversed";
     match &mesh.quality.turned {
         _ if mesh.reversed == 0 => {}

@@ -1,9 +1,10 @@
-//! The picture of README: what it says of errors is what a fresh run gives.
+//! Pictures: the errors in them are those of a fresh run.
 
 use super::markdown::root;
 use super::printed::compare;
 use springfit::report::deformed;
 use springfit::study::{Scene, run};
+use std::process::Command;
 
 /// The words of a picture, one text a line.
 fn words(svg: &str) -> String {
@@ -23,4 +24,23 @@ fn the_picture_shows_the_errors_of_a_fresh_run() {
     let known = words(&std::fs::read_to_string(path).unwrap());
     assert!(known.contains("%e_rms"), "{known}");
     compare(&known, &words(&picture), 0.0).unwrap();
+}
+
+/// Of the study of the paper, whose command draws them.
+#[test]
+#[ignore = "takes minutes; .ci/run has it"]
+fn the_pictures_of_the_paper_are_those_of_a_fresh_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["paper", "--table", "1", "--table", "3", "--table", "figure 9", "--out", "paper"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
+    assert!(command.args(arguments).current_dir(folder.path()).output().unwrap().status.success());
+    for name in ["cube_tet-tension", "cube_hex_large-tension", "figure-9"] {
+        let known = root().join(format!("docs/src/figures/{name}.svg"));
+        let made = std::fs::read_to_string(folder.path().join(format!("paper/{name}.svg"))).unwrap();
+        if std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some() {
+            std::fs::write(known, made).unwrap();
+        } else {
+            compare(&words(&std::fs::read_to_string(known).unwrap()), &words(&made), 0.2).unwrap();
+        }
+    }
 }

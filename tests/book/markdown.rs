@@ -124,7 +124,7 @@ impl Page {
     /// The lines between `<!-- table NAME -->` and `<!-- end -->`, by name.
     pub fn tables(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
-        for part in self.text.split("<!-- table ").skip(1) {
+        for part in self.text.split("\n<!-- table ").skip(1) {
             let (name, rest) = part.split_once(" -->\n").expect("a mark ends its line");
             let (table, _) =
                 rest.split_once("<!-- end -->").unwrap_or_else(|| panic!("{}: {name}: no end", self.name()));

@@ -5,6 +5,7 @@ mod links;
 mod markdown;
 mod printed;
 mod readme;
+mod reference;
 mod snippets;
 mod tables;
 mod transcripts;

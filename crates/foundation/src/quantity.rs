@@ -22,13 +22,18 @@ pub enum Quantity {
 /// A unit and its power of ten in the SI unit. The SI unit comes first in each list.
 type Unit = (&'static str, i32);
 
+/// Units of length.
 const LENGTHS: [Unit; 8] =
     [("m", 0), ("km", 3), ("dm", -1), ("cm", -2), ("mm", -3), ("um", -6), ("µm", -6), ("nm", -9)];
+/// Units of area.
 const AREAS: [Unit; 8] =
     [("m^2", 0), ("m²", 0), ("cm^2", -4), ("cm²", -4), ("mm^2", -6), ("mm²", -6), ("um^2", -12), ("µm²", -12)];
+/// Units of pressure.
 const PRESSURES: [Unit; 8] =
     [("Pa", 0), ("kPa", 3), ("MPa", 6), ("GPa", 9), ("N/m^2", 0), ("N/m²", 0), ("N/mm^2", 6), ("N/mm²", 6)];
+/// Units of density.
 const DENSITIES: [Unit; 4] = [("kg/m^3", 0), ("kg/m³", 0), ("g/cm^3", 3), ("g/cm³", 3)];
+/// Units of time.
 const TIMES: [Unit; 4] = [("s", 0), ("ms", -3), ("us", -6), ("µs", -6)];
 
 impl Quantity {

@@ -14,6 +14,26 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
     replaced(text, |c| c != '\n' && acts_on_terminal(c))
 }
 
+/// A time for people: `0.20 s`, `45 s`, `12 min` or `3 h`.
+pub fn time_in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => format!("{:.2} s", s.max(0.01)),
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.0} h", s / 3600.0),
+    }
+}
+
+/// A number of bytes for people: `0.4 MB`, `35 MB` or `1.5 GB`.
+pub fn memory_in_words(bytes: f64) -> String {
+    match bytes / 1e6 {
+        mega if mega < 10.0 => format!("{mega:.1} MB"),
+        mega if mega < 1000.0 => format!("{mega:.0} MB"),
+        mega => format!("{:.1} GB", mega / 1e3),
+    }
+}
+
 /// Control characters, marks that change the direction of writing, and characters that end a line.
 fn acts_on_terminal(c: char) -> bool {
     c.is_control()

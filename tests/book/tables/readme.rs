@@ -4,7 +4,7 @@ use super::{all_groups, fit, markdown, outcome, scene, signed};
 use springfit::study::{FitEntry, converge, converge_to};
 
 /// Nanoseconds to fit one tetrahedron on one core: `cargo bench --bench fit -- tet4`.
-const TIMES: [&str; 2] = ["47 ns (`exact`)", "38 ns (`offdiag`), 31 µs (`spectral`)"];
+const TIMES: [&str; 2] = ["23 ns", "26 ns (`offdiag`), 43 µs (`spectral`)"];
 
 /// %e_rms under the two loads of a scene.
 fn errors(name: &str, entry: FitEntry) -> String {

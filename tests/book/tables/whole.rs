@@ -14,7 +14,7 @@ fn error(fit: &FitOutcome, load: &str) -> Option<String> {
 fn rows(name: &str, outcome: &Outcome) -> Vec<Vec<String>> {
     let shear = if outcome.load("shear x").is_some() { "shear x" } else { "shear" };
     let [bending, gravity] =
-        if outcome.load("bending x").is_some() { ["bending x", "gravity x"] } else { ["bending", "gravity"] };
+        if outcome.load("bending x").is_some() { ["bending x", "gravity x"] } else { ["bending", "side gravity"] };
     let row = |fit: &FitOutcome| {
         let mut row = vec![name.trim_end_matches("_whole").to_string(), format!("`{}`", fit.fit.name)];
         let loads = ["tension", shear, "torsion", bending, gravity];

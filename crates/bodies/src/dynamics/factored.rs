@@ -15,7 +15,9 @@ use faer::{Conj, Par, Side};
 /// The work per entry, as a share of faer's default, from which columns are eliminated in dense groups. With three
 /// coordinates per point this is twice as fast on membranes of a thousand triangles.
 const SUPERNODAL: f64 = 0.2;
+/// The name of the memory in errors.
 const FACTOR: &str = "the factor of an implicit step";
+/// What to do if it does not fit.
 const ADVICE: &str = "take solver = \"conjugate-gradients\", which needs none, or a mesh with fewer points";
 
 /// The matrix, in the order of elimination, and its Cholesky factor. Entries are written directly to their positions: a

@@ -6,6 +6,7 @@ use crate::scalar::Sum;
 
 /// Energy and momentum at one time.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Account {
     /// The time, s.
     pub time: f64,
@@ -30,6 +31,7 @@ impl Account {
 
 /// The balance of energy over the steps so far, by the trapezoidal rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct EnergyBalance {
     /// The work of loads, gravity and moved supports, J.
     pub work: f64,

@@ -29,6 +29,7 @@ pub enum StepOutcome {
 
 /// The outcome of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Step {
     /// How the step ended.
     pub outcome: StepOutcome,

@@ -1,10 +1,10 @@
-//! The parts of a mesh that share no node.
+//! The connected parts of a mesh: those that share no node with each other.
 
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// The points of each connected part, ascending; the parts in the order of their first points. Two cells are connected if they share
-    /// a node: points at one place that are not one node connect nothing.
+    /// The points of each connected part, ascending; the parts are in the order of their first points. Two cells are
+    /// connected if they share a node: different nodes at one position do not connect cells.
     pub fn pieces(&self) -> Vec<Vec<usize>> {
         let mut parent: Vec<usize> = (0..self.point_count()).collect();
         for nodes in self.blocks.iter().flat_map(|block| block.cells()) {
@@ -28,7 +28,7 @@ impl Mesh {
     }
 }
 
-/// The point that stands for the part of `point`; paths to it are halved on the way.
+/// The point that represents the part of `point`; paths to it are halved on the way.
 fn root(parent: &mut [usize], mut point: usize) -> usize {
     while parent[point] != point {
         parent[point] = parent[parent[point]];

@@ -33,6 +33,7 @@ impl Support {
 
 /// A connected part of the mesh that the support leaves free to move as a rigid body.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Unheld {
     /// The number of its points.
     pub points: usize,

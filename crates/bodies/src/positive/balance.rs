@@ -12,6 +12,7 @@ use faer::sparse::Triplet;
 const TOLERANCE: f64 = 1e-10;
 /// Corrections end when the largest force is below this share.
 const FOUND: f64 = 1e-14;
+/// The largest number of corrections.
 const ROUNDS: usize = 12;
 /// The shift of the diagonal, relative to its mean. The equations are singular, because rigid motions cause no force.
 const RAISED: f64 = 1e-9;

@@ -23,6 +23,7 @@ crate::named!(Route {
 
 /// The difference between the network and the exact one. Errors of energies are relative to the exact ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct PositiveOutcome {
     /// What was changed.
     pub route: Route,

@@ -6,7 +6,7 @@ use crate::model::ADVICE;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
 use faer::prelude::MatMut;
-use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
+use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Side, get_global_parallelism};
 use std::sync::Arc;
@@ -37,6 +37,26 @@ impl Analysis {
     pub fn bytes(&self) -> u64 {
         let scratch = self.0.factorize_numeric_llt_scratch::<f64>(get_global_parallelism(), Default::default());
         8 * self.0.len_val() as u64 + scratch.unaligned_bytes_required() as u64
+    }
+
+    /// The entries of the factor, and `Σ c²` over its columns with `c` entries.
+    pub fn cost(&self) -> (f64, f64) {
+        let sum = |columns: &mut dyn Iterator<Item = usize>| {
+            columns.fold((0.0, 0.0), |(entries, squares), c| (entries + c as f64, squares + (c as f64).powi(2)))
+        };
+        match self.0.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                sum(&mut factor.col_ptr().windows(2).map(|ends| ends[1] - ends[0]))
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => {
+                let columns = |s: usize| {
+                    let (width, below) =
+                        (factor.supernode_end()[s] - factor.supernode_begin()[s], factor.supernode(s).pattern().len());
+                    (1..=width).map(move |column| column + below)
+                };
+                sum(&mut (0..factor.n_supernodes()).flat_map(columns))
+            }
+        }
     }
 
     /// The factor; `None` if the matrix is not positive definite.

@@ -38,6 +38,7 @@ pub enum Ending {
 
 /// An equilibrium, or the last one that was found.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Equilibrium {
     /// Whether the whole load was reached.
     pub ending: Ending,

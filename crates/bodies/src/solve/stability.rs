@@ -16,6 +16,7 @@ const SOFT: f64 = 0.01;
 
 /// How a network resists the motions that a body resists.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stability {
     /// The verdict.
     pub standing: Standing,

@@ -32,6 +32,7 @@ type Vibrating = (Vec<f64>, Vec<Vec<f64>>);
 
 /// The relative errors of a network.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Errors {
     /// `‖u_l − ū_l‖_W/‖ū_l‖_W` of each load.
     pub loads: Vec<f64>,

@@ -9,6 +9,7 @@ use crate::model::Network;
 
 /// The result of a whole-object fit.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct WholeFit {
     /// The fitted network.
     pub network: Network,

@@ -2,7 +2,8 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The reference cell of an element.
 ///
@@ -10,7 +11,7 @@ use serde::Deserialize;
 /// origin and at the unit points of the axes. A wedge is the triangle times [−1, 1]. A pyramid has the square as its
 /// base and its apex at (0, 0, 1). The corners of the pentagon are rational points of the unit circle, nearly evenly
 /// spaced, so that exact arithmetic is possible.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cell {
     /// One dimension, [−1, 1].

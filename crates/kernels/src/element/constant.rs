@@ -2,7 +2,9 @@
 
 use crate::symbolic::{Expr, Scope};
 use num_rational::BigRational;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +31,17 @@ impl Constant {
         } else {
             Err(format!("expected a finite number, found \"{text}\""))
         }
+    }
+}
+
+impl JsonSchema for Constant {
+    fn schema_name() -> Cow<'static, str> {
+        "Constant".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let description = "A number, or a constant expression such as \"sqrt(3)/3\".";
+        json_schema!({ "type": ["number", "string"], "description": description })
     }
 }
 

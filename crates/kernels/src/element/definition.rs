@@ -3,9 +3,11 @@
 use super::cell::Cell;
 use super::constant::Constant;
 use super::kind::SpringKind;
+use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
     pub name: String,
@@ -17,6 +19,7 @@ pub struct Definition {
     pub source: Option<String>,
     /// Named sub-expressions, in the order of the file.
     #[serde(default, rename = "let")]
+    #[schemars(with = "BTreeMap<String, String>")]
     pub definitions: toml::Table,
     pub nodes: Vec<NodeEntry>,
     pub quadrature: Rule,
@@ -28,14 +31,14 @@ pub struct Definition {
     pub formats: Formats,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodeEntry {
     pub at: Vec<Constant>,
     pub shape: String,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Rule {
     GaussLegendre { points: usize },
@@ -44,7 +47,7 @@ pub enum Rule {
     Explicit { points: Vec<Vec<Constant>>, weights: Vec<Constant> },
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringEntry {
     pub group: String,
@@ -61,22 +64,27 @@ pub struct SpringEntry {
     pub optional: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringClass {
     Auto,
 }
 
 /// Lists of nodes, or `"complete"`: all pairs of nodes that have no spring yet.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "lists of nodes, or \"complete\"")]
 pub enum NodeLists {
     Named(String),
     Given(Vec<Vec<usize>>),
 }
 
-/// The cell types of the element in mesh files.
-#[derive(Debug, Clone, Default, Deserialize)]
+/// The JSON Schema of element files.
+pub fn schema() -> serde_json::Value {
+    schema_for!(Definition).to_value()
+}
+
+/// What mesh files call the element.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formats {
     /// The type in Gmsh files.
@@ -86,7 +94,7 @@ pub struct Formats {
 }
 
 /// A cell type of a mesh format, with the order in which the format lists the nodes.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormatEntry {
     /// The number of the cell type.

@@ -14,6 +14,8 @@ use std::collections::{BTreeMap, HashSet};
 pub struct SpringGroup {
     /// The name of the group in files and options.
     pub name: String,
+    /// The name in the element file, which the classes of one entry share.
+    pub entry: String,
     /// What its springs measure.
     pub kind: SpringKind,
     /// The nodes of each spring, `[springs][nodes of a spring]`; empty if the whole cell is measured.
@@ -64,7 +66,15 @@ pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<S
                 return Err(Error::expected(key("group"), "a name used once", format!("\"{name}\" again")));
             }
             let measure = measure.clone();
-            groups.push(SpringGroup { name, kind: entry.kind, nodes, measure, optional: entry.optional });
+            let entry_name = entry.group.clone();
+            groups.push(SpringGroup {
+                name,
+                entry: entry_name,
+                kind: entry.kind,
+                nodes,
+                measure,
+                optional: entry.optional,
+            });
         }
     }
     Ok(groups)

@@ -3,11 +3,12 @@
 //! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 use super::formula::Formula;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
 /// What a spring measures. Its energy is ½ k (c − c₀)², with c the measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringKind {
     /// The distance of two nodes, in m.
@@ -56,6 +57,7 @@ crate::named!(SpringKind {
 const MOST_NODES: usize = 8;
 
 /// The properties of a kind of springs.
+#[non_exhaustive]
 pub struct Kind {
     /// How many nodes a spring may have.
     pub nodes: RangeInclusive<usize>,

@@ -20,7 +20,7 @@ mod symmetry;
 mod tabulation;
 
 pub use cell::{Cell, Side};
-pub use definition::{FormatEntry, Formats};
+pub use definition::{FormatEntry, Formats, schema};
 pub use formula::coordinate_names;
 pub(crate) use formula::{Formula, dot};
 pub use groups::SpringGroup;
@@ -76,6 +76,7 @@ pub struct Element {
 
 /// A side of the element: its nodes, and the shape functions along it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SideTable {
     /// The nodes of the element that are on the side.
     pub nodes: Vec<usize>,
@@ -245,19 +246,21 @@ impl Element {
         self.functions.values.iter().map(degree).max().unwrap_or(1)
     }
 
-    /// The groups that a fit uses: the named ones, or all that are not optional.
+    /// The groups that a fit uses: the named ones, or all that are not optional. The name of an entry that is divided into classes
+    /// names all of them.
     ///
     /// # Errors
     /// The element has no group of this name.
     pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
         let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
-        if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| g.name == **n)) {
+        let is_named = |group: &SpringGroup, name: &String| group.name == *name || group.entry == *name;
+        if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| is_named(g, n))) {
             let known: Vec<_> = self.springs.iter().map(|g| format!("\"{}\"", g.name)).collect();
             let expected = format!("groups of {}: {}", self.name, known.join(", "));
-            let groups = self.springs.iter().map(|g| g.name.as_str());
+            let groups = self.springs.iter().flat_map(|g| [g.name.as_str(), g.entry.as_str()]);
             return Err(unknown(expected, groups, wrong).at_key("springs"));
         }
-        Ok(self.springs.iter().filter(|g| names.contains(&g.name)).collect())
+        Ok(self.springs.iter().filter(|g| names.iter().any(|name| is_named(g, name))).collect())
     }
 }
 

@@ -41,6 +41,7 @@ pub struct ClosedForm {
 
 /// Springs that have the same constant because the shape is symmetric.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SymmetryClass {
     /// The group of the springs.
     pub group: String,
@@ -50,6 +51,7 @@ pub struct SymmetryClass {
 
 /// The exact network: springs of rest length zero, and springs on the content.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ExactForm {
     /// The classes of pairs of nodes that a symmetry of the shape maps onto each other, and the constant of each spring
     /// for μ = 1, in N/m.
@@ -60,6 +62,7 @@ pub struct ExactForm {
 
 /// The constants under one weight.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ClosedFit {
     /// The weight.
     pub weight: Weight,

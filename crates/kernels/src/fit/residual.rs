@@ -9,10 +9,11 @@ use crate::material::Moduli;
 use crate::springs::{Force, Measure};
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// Mean and maximum of a number over the elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Spread {
     /// The mean.
     pub mean: f64,
@@ -22,6 +23,7 @@ pub struct Spread {
 
 /// The relative error `‖R − K‖/‖R‖` of each element.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ElementErrors {
     /// In the Frobenius norm, `[cells]`.
     pub frobenius: Vec<f64>,

@@ -8,6 +8,7 @@ use crate::file;
 use crate::named::unknown;
 use crate::symbolic::{Expr, Jet, Program, Scope};
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 use springfit_shipped::MATERIALS;
 use std::collections::BTreeMap;
@@ -26,7 +27,7 @@ const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
 /// of 1e-10 there, and the limit has an error of the square of this share.
 const SAME: f64 = 1e-6;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Definition {
     name: String,
@@ -38,8 +39,14 @@ struct Definition {
     #[serde(default)]
     parameters: BTreeMap<String, f64>,
     #[serde(default, rename = "let")]
+    #[schemars(with = "BTreeMap<String, String>")]
     definitions: toml::Table,
     energy: String,
+}
+
+/// The JSON Schema of material files.
+pub fn schema() -> serde_json::Value {
+    schema_for!(Definition).to_value()
 }
 
 /// The energy `W(F)` per volume at rest of one material, in J/m³.
@@ -51,6 +58,8 @@ pub struct Energy {
     pub title: String,
     /// Where the energy is published.
     pub source: Option<String>,
+    /// The numbers beside the moduli, with their values.
+    pub parameters: BTreeMap<String, f64>,
     fibre: Option<Vector3<f64>>,
     /// A function of the invariants, then of the moduli, then of the parameters.
     expression: Expr,
@@ -91,6 +100,20 @@ impl Energy {
                 Err(unknown(expected, names, name_or_path).at_key("energy"))
             }
         }
+    }
+
+    /// The shipped energies, with moduli of 1 Pa and 0.3.
+    ///
+    /// # Errors
+    /// None for the files that are shipped: all are tested.
+    pub fn shipped() -> Result<Vec<Energy>> {
+        let material = Material::for_body(3, 1.0, 0.3, None, None)?;
+        MATERIALS.iter().map(|(name, _)| Energy::load(name, material)).collect()
+    }
+
+    /// Whether it has a direction of fibres.
+    pub fn has_fibres(&self) -> bool {
+        self.fibre.is_some()
     }
 
     /// Parses the text of a material file and proves that the body is free of stress at rest.
@@ -141,6 +164,7 @@ impl Energy {
             name: definition.name,
             title: definition.title,
             source: definition.source,
+            parameters: definition.parameters,
             fibre: fibre.map(|a| a.normalize()),
             by_stretches: uses(4..7),
             slopes: (0..INVARIANTS.len()).map(|v| Program::of(&expression.derivative(v))).collect(),

@@ -7,11 +7,12 @@
 
 mod energy;
 
-pub use energy::{Energy, Tangent};
+pub use energy::{Energy, Tangent, schema};
 pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};
 use crate::range::positive;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// How a body of fewer than three dimensions stands for a solid.
@@ -72,7 +73,7 @@ impl State {
 }
 
 /// The two plane states, by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Plane {
     /// Plane stress.

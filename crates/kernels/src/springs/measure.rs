@@ -26,6 +26,7 @@ pub enum Measure {
 
 /// Energy, force and tangent of a spring at given positions.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SpringResponse {
     /// The energy U, in J; `½ k (c − c₀)²` for a linear spring.
     pub energy: f64,

@@ -11,6 +11,7 @@ const STEPS: usize = 60;
 
 /// Energy, forces and tangent of an element at given positions.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ElementResponse {
     /// The energy `∫ W dV`, in J.
     pub energy: f64,

@@ -18,6 +18,8 @@ pub struct Controls {
     /// The file to which whole-object fits save their state every few seconds and at their end, and from which they
     /// continue if it exists.
     pub checkpoint: Option<PathBuf>,
+    /// Whether work that will take more than ten seconds is announced with an estimate.
+    pub announce: bool,
 }
 
 /// The states of the whole-object fits of a scene.

@@ -6,7 +6,7 @@ use super::fits::{ExactRecipe, NamedFit, Recipe, WholeBody};
 use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
 use super::progress::{Event, Progress};
-use super::run::run;
+use super::run::run_with;
 use super::scene::{Output, Scene};
 use super::shapes::random_shapes;
 use super::stretches::sampled_fits;
@@ -18,6 +18,7 @@ use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSpr
 use crate::material::{Energy, Material};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Springs;
+use serde::Serialize;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -31,7 +32,7 @@ const SEED: u64 = 2010;
 const SAMPLED: f64 = 0.35;
 
 /// The result of one method on the random shapes of an element.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodOutcome {
     /// The name of the fit.
     pub name: String,
@@ -154,6 +155,15 @@ fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<Name
 /// # Errors
 /// Those of [`run`](super::run()); or the scene has no loads.
 pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
+    let controls = Controls { announce: true, ..Controls::default() };
+    run_with(&compared(scene)?, &controls, progress)
+}
+
+/// The scene with every objective in place of its own fits.
+///
+/// # Errors
+/// Those of the mesh, the supports and the loads, and a scene without loads.
+pub fn compared(scene: &Scene) -> Result<Scene> {
     if scene.loads().is_empty() {
         let problem = "expected at least one [[load]] to compare under, found none";
         return Err(scene.placed(Error::at("load", problem)));
@@ -201,5 +211,5 @@ pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> 
         }
     }
     let output = Output { frequencies: 0, ..scene.output().clone() };
-    run(&scene.clone().with_fits(all_fits).with_output(output).without_motion(), progress)
+    Ok(scene.clone().with_fits(all_fits).with_output(output).without_motion())
 }

@@ -10,6 +10,7 @@ pub const SOLVED: f64 = 1e-6;
 /// The distances of the points of the network from those of the finite elements, in percent of the largest
 /// displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DisplacementError {
     /// The root mean square `100 √(mean_i |u_i^FEM − u_i^LEM|²)/max_i |u_i^FEM|`, over all points.
     pub rms: f64,

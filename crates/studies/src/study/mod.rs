@@ -15,9 +15,11 @@ mod checkpoint;
 mod choice;
 mod comparison;
 mod convergence;
+mod draft;
 mod extent;
 mod fits;
 mod fitting;
+mod forecast;
 mod masses;
 mod metrics;
 mod moduli;
@@ -39,11 +41,12 @@ pub use body::LargeBody;
 pub use body_material::{BodyConstants, assumed};
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
-pub use comparison::{MethodOutcome, compare_element, compare_scene, measure_recipes};
+pub use comparison::{MethodOutcome, compare_element, compare_scene, compared, measure_recipes};
 pub use convergence::{
     Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
-    limit_of, most_unknowns, rates,
+    limit_of, most_unknowns, rates, refinements,
 };
+pub use draft::{contents, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
@@ -53,6 +56,7 @@ pub use fits::{
     WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
+pub use forecast::{ExpectedStage, Forecast};
 pub use masses::point_masses;
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
@@ -67,7 +71,7 @@ pub use progress::{Event, Progress};
 pub use run::{run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, MeshInput, MotionRecipe, Output, Part,
-    PrescribedMotion, Scene, load_elements,
+    PrescribedMotion, Scene, Setting, load_elements, scene_schema,
 };
 pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, sweep, sweep_scene};

@@ -11,14 +11,15 @@ use crate::springs::Springs;
 use crate::study::metrics::SOLVED;
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The moduli of a homogenised material; if it is anisotropic, means over the axes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectiveModuli {
-    /// The stiffness C in `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane
-    /// N/m.
+    /// C, `σ = C ε` with the strains xx, yy, (zz,) xy, (xz, yz), shears as `2 ε_kl`; Pa, in the plane N/m.
+    #[serde(skip)]
     pub stiffness: DMatrix<f64>,
     /// Young's modulus, the mean over the axes, in the unit of the stiffness.
     pub young: f64,

@@ -4,6 +4,7 @@ use super::body::{Case, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
 use super::fits::{Reference, WholeBody};
 use super::fitting::fit_mesh;
+use super::forecast::Forecast;
 use super::masses::point_masses;
 use super::moduli::moduli_of_body;
 use super::outcome::{BodyLoad, Outcome};
@@ -37,10 +38,16 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let material = scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
+    let energy = scene.energy(material)?;
+    if controls.announce
+        && let Some(words) = Forecast::of_body(scene, &mesh, material, &cases, energy.as_ref())?.announcement()
+    {
+        progress(Event::Note(&words));
+    }
     let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
     let plan = TimePlan::of(scene, &mesh, material, &support)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(scene.path()));
-    let large = match scene.energy(material)? {
+    let large = match energy {
         Some(energy) => {
             let state = material.state();
             Some(LargeBody::solve(&mesh, state, energy, scene.newton(), &cases, progress).map_err(in_scene)?)
@@ -116,6 +123,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     }
     let mut outcome = Outcome {
         scene: scene.title().into(),
+        settings: scene.settings().iter().map(|setting| setting.to_string()).collect(),
         assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,

@@ -14,6 +14,7 @@ use crate::mesh::{BoxMesh, Mesh, Selection};
 use crate::model::{Body, Elastic, Response, Support, displaced};
 use crate::solve::{Ending, Newton};
 use crate::springs::{Law, Springs};
+use serde::Serialize;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -29,7 +30,7 @@ const STEP: f64 = 0.1;
 const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s)^3 - 0.125) + p*(s + 1/2) + q*(s - 1)";
 
 /// One way to find the springs, and its errors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StretchedFit {
     /// The name of the fit.
     pub name: String,
@@ -42,7 +43,7 @@ pub struct StretchedFit {
 }
 
 /// A sampled fit with a number of shapes, of one element on one thread.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SampledRun {
     /// The name of the fit.
     pub name: String,
@@ -57,7 +58,7 @@ pub struct SampledRun {
 }
 
 /// Both studies of one element.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stretches {
     /// The name of the element.
     pub element: String,

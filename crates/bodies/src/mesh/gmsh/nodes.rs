@@ -20,6 +20,7 @@ enum Places {
     Sparse(HashMap<u64, usize>),
 }
 
+/// Marks a tag without a node.
 const ABSENT: usize = usize::MAX;
 
 impl Nodes {

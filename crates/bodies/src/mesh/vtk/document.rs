@@ -10,7 +10,9 @@ use std::ops::Range;
 const DEEPEST_TAGS: usize = 32;
 /// The largest number of pieces, because a piece takes up more memory than its tag does.
 const MOST_PIECES: usize = 4096;
+/// The tags around the arrays of a grid.
 const ARRAY_PATH: [&[u8]; 3] = [b"VTKFile", b"UnstructuredGrid", b"Piece"];
+/// The end tag of the appended data.
 const APPENDED_END: &[u8] = b"</AppendedData";
 
 /// A `.vtu` whose tags have been read.

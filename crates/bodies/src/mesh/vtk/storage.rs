@@ -7,6 +7,7 @@ use base64::{DecodeError, Engine};
 use flate2::{Decompress, FlushDecompress, Status};
 use std::borrow::Cow;
 
+/// Base64 with padding. Some programs leave bits after the last byte, which are ignored.
 const BASE64: GeneralPurpose = GeneralPurpose::new(&STANDARD, PAD.with_decode_allow_trailing_bits(true));
 
 /// The largest ratio by which zlib compresses.

@@ -99,8 +99,9 @@ fn check_arrays(arrays: &[Array], count: usize) -> Result<()> {
 /// Writes `grid` as a `.vtu`, in binary.
 ///
 /// # Errors
-/// The grid has no cells, a cell is of no type that VTK has, has the wrong number of points for its type or names a
-/// point that is not there, an array has no name of its own or too few or many values, or the file cannot be written.
+/// The grid has no cells; a cell has a type that VTK does not have, has the wrong number of points for its type or
+/// names a point that does not exist; an array has no name or that of another one, or too few or many values; or the
+/// file cannot be written.
 pub fn write(path: &Path, grid: &Grid) -> Result<()> {
     grid.check().map_err(|error| error.in_file(path))?;
     write_with(path, |to| encode(grid, &mut Text(to)))

@@ -31,6 +31,7 @@ pub enum Method {
 
 /// What a method requires and assumes for one kind of cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Cover {
     /// The cell.
     pub cell: Cell,

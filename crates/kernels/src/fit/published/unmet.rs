@@ -11,6 +11,7 @@ use crate::springs::distance;
 
 /// The assumptions of a method that cells and material do not meet; none if it equals `Unmet::default()`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Unmet {
     /// The Poisson's ratio for which the constants are made, if that of the material (in the plane, of the plane) is
     /// different.

@@ -23,6 +23,7 @@ const FLAT: f64 = 0.2;
 const HALVINGS: i32 = 8;
 /// The number of shapes that one thread sums,
 const BLOCK: usize = 256;
+/// and the number of such blocks before they are added to the rest.
 const BLOCKS: usize = 16;
 /// Numbers of equations that are stored before they are summed: a few hundred kilobytes.
 const HELD: usize = 1 << 15;

@@ -40,6 +40,7 @@ const MOST_NUMBERS: usize = 1 << 26;
 
 /// The constants of all cells, and the errors at the shapes.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SampledFits {
     /// The constants and parameters.
     pub fits: CellFits,

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 /// The properties of one file.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Inspection {
     /// The path of the file, or the name of a shipped element.
     pub file: String,

@@ -13,6 +13,7 @@ pub enum Mark {
 
 /// One property of a file.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Property {
     /// The name of the property.
     pub name: &'static str,

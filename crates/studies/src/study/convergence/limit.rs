@@ -1,5 +1,6 @@
 //! The limit of a sequence of values on meshes whose cells are halved from level to level.
 
+use serde::Serialize;
 /// Values that differ by less than this share are equal: solutions are not more accurate.
 const EQUAL: f64 = 1e-9;
 /// The lowest order from which a limit is extrapolated. At order ½ the extrapolation adds 2.4 times the last
@@ -7,7 +8,7 @@ const EQUAL: f64 = 1e-9;
 const SLOWEST: f64 = 0.5;
 
 /// The limit of a sequence.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limit {
     /// The limit.
     pub value: f64,
@@ -18,8 +19,9 @@ pub struct Limit {
     pub kind: LimitKind,
 }
 
-/// How a limit was found. If it was not extrapolated, it is the value of the finest level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// How a limit was found; if it was not extrapolated, it is the value of the finest level.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LimitKind {
     /// Extrapolated from the three finest levels, with this order in the size of the cells.
     Extrapolated(f64),

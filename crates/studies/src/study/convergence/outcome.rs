@@ -1,12 +1,13 @@
 //! The results of a convergence study.
 
 use super::limit::{Limit, limit_of};
+use serde::Serialize;
 
 /// Relative errors up to this share are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A scene on a sequence of meshes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Convergence {
     /// The title of the scene.
     pub scene: String,
@@ -23,7 +24,7 @@ pub struct Convergence {
 }
 
 /// One mesh of the sequence.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Level {
     /// The cell size `h`, m. On the first level it is that of a cell of mean content, `(V/cells)^(1/d)`; it is halved
     /// from level to level.
@@ -39,7 +40,7 @@ pub struct Level {
 }
 
 /// The results of the models under one load on all levels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoadConvergence {
     /// The name of the load.
     pub name: String,
@@ -52,7 +53,7 @@ pub struct LoadConvergence {
 }
 
 /// One model under one load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelConvergence {
     /// The name of the fit, or `finite elements`.
     pub name: String,
@@ -61,7 +62,7 @@ pub struct ModelConvergence {
 }
 
 /// One model under one load on one level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Step {
     /// The work of the load, `f·u`, or `u·r` with the reactions `r` to prescribed displacements, J; `None` if the model
     /// has no solution.

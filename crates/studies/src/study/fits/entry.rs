@@ -32,11 +32,11 @@ pub struct FitEntry {
 }
 
 /// The keys that all fits have.
-const COMMON: [&str; 3] = ["name", "objective", "springs"];
+pub(super) const COMMON: [&str; 3] = ["name", "objective", "springs"];
 
 /// The kind of a fit, by its objective.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Stiffness,
     Sampled,
     Whole,
@@ -66,7 +66,7 @@ impl Kind {
         Kind::all().find(|kind| kind.objectives().contains(&objective)).ok_or_else(no_kind)
     }
 
-    fn objectives(self) -> Vec<&'static str> {
+    pub(super) fn objectives(self) -> Vec<&'static str> {
         match self {
             Kind::Stiffness => Objective::NAMES.to_vec(),
             Kind::Sampled => vec!["sampled"],

@@ -12,6 +12,7 @@ use crate::model::Network;
 use std::time::Instant;
 
 /// The springs of a fit.
+#[non_exhaustive]
 pub struct Fitted {
     /// The springs of each block of cells; empty if springs belong to no cell.
     pub cells: Vec<CellFits>,

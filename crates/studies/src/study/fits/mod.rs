@@ -11,6 +11,7 @@ mod published;
 mod recipe;
 mod record;
 mod sampled;
+mod schema;
 mod spread;
 mod stiffness;
 mod whole;

@@ -5,10 +5,11 @@ use super::published::PublishedRecord;
 use super::sampled::SampledRecord;
 use super::stiffness::StiffnessRecord;
 use super::whole::WholeRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings of a fit by its kind, which the key `objective` determines.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum KindRecord {
     /// A sampled fit.

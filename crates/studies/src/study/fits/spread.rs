@@ -1,10 +1,11 @@
 //! Means and maxima over elements in a report.
 
 use crate::fit::Spread;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The mean and the maximum of a number over the elements; null if there is none.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpreadRecord {
     /// The mean.
     pub mean: Option<f64>,

@@ -10,6 +10,7 @@ use crate::study::tensor::NetworkMaterial;
 
 /// A fit with its network and its errors.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct FitOutcome {
     /// The fit.
     pub fit: NamedFit,

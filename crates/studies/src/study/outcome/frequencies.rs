@@ -2,6 +2,7 @@
 
 /// The lowest natural frequencies of one model, with masses lumped at its points.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FrequencyOutcome {
     /// The name of the fit, or "finite elements".
     pub name: String,

@@ -7,6 +7,7 @@ use crate::study::metrics::DisplacementError;
 
 /// A load of a scene, and the response of the finite elements.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BodyLoad {
     /// The name of the load.
     pub name: String,
@@ -24,6 +25,7 @@ pub struct BodyLoad {
 
 /// Displacements that were measured under a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Measured {
     /// The number of points at which at least one component is known.
     pub points: usize,
@@ -33,6 +35,7 @@ pub struct Measured {
 
 /// A load, and the response of a network.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LoadOutcome {
     /// The name of the load.
     pub name: String,
@@ -56,6 +59,7 @@ pub struct LoadOutcome {
 
 /// How a load was applied at large deformation.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Followed {
     /// Whether the whole load was reached.
     pub ending: Ending,

@@ -6,6 +6,7 @@ use crate::study::scene::MotionRecipe;
 
 /// The motion of the models of a scene.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct MotionOutcome {
     /// The settings of the motion.
     pub recipe: MotionRecipe,
@@ -17,6 +18,7 @@ pub struct MotionOutcome {
 
 /// The motion of one model.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ModelMotion {
     /// The name of the fit, or "finite elements".
     pub name: String,
@@ -59,6 +61,7 @@ pub enum MotionEnding {
 
 /// A state that is written.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Record {
     /// Energy and momentum.
     pub account: Account,

@@ -12,6 +12,8 @@ use crate::mesh::Mesh;
 pub struct Outcome {
     /// The title of the scene.
     pub scene: String,
+    /// What was given in place of values of the scene's file, as `KEY=VALUE`.
+    pub settings: Vec<String>,
     /// A sentence about what was assumed because no input gives it.
     pub assumed: Option<String>,
     /// The mesh.
@@ -37,10 +39,11 @@ pub struct Outcome {
 impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
-        let (law, loads, motion, frequencies, left_out) = Default::default();
+        let (settings, law, loads, motion, frequencies, left_out) = Default::default();
         let assumed = None;
         Outcome {
             scene: name,
+            settings,
             assumed,
             mesh,
             material,

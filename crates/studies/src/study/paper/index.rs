@@ -5,7 +5,7 @@ use crate::file;
 use crate::named::unknown;
 use crate::range::LARGEST;
 use crate::study::fits::FitEntry;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -77,7 +77,7 @@ pub enum Kind {
 }
 
 /// What a column of figures holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Column {
     /// The root mean square error of the displacements, in percent.

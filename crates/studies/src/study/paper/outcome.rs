@@ -2,6 +2,7 @@
 
 use super::index::{Column, RowEntry};
 use crate::study::outcome::Outcome;
+use serde::Serialize;
 
 /// The tables that were run, and their scenes.
 #[derive(Debug)]
@@ -15,7 +16,7 @@ pub struct Paper {
 }
 
 /// A table or figure of the paper, with the printed and the computed figures.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub struct PaperTable {
     /// The name by which it is requested.
     pub name: String,
@@ -34,7 +35,7 @@ pub struct PaperTable {
 }
 
 /// The figures of one fit of an object.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PaperRow {
     /// The object.
     pub object: String,
@@ -62,7 +63,7 @@ pub struct PaperScene {
 }
 
 /// The moduli of a network as functions of those of the material.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Surface {
     /// The name of the fit.
     pub fit: String,

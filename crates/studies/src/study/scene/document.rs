@@ -1,12 +1,14 @@
 //! A scene that has been read and checked.
 
-use super::entry::{FixEntry, MaterialEntry, SceneFile};
+use super::entry::{FixEntry, MaterialEntry};
 use super::gauge::Gauge;
 use super::input::MeshInput;
 use super::load::{LoadCase, LoadEntry};
 use super::motion::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
+use super::setting::Setting;
+use super::source::SceneSource;
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::file;
@@ -18,14 +20,12 @@ use crate::study::body_material::{BodyConstants, assumed};
 use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
 use crate::study::own_name::expect_own_name;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// A mesh, a material, fits, supports and loads, checked as far as possible without reading the mesh.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    path: PathBuf,
-    /// The text of the file, for the line numbers of later errors.
-    text: Arc<str>,
+    /// Kept for the lines of what turns out to be wrong later.
+    source: SceneSource,
     title: String,
     mesh: MeshInput,
     material: MaterialEntry,
@@ -44,7 +44,15 @@ impl Scene {
     /// # Errors
     /// The file is wrong. The error names the file and the key, what was expected and what was found.
     pub fn load(path: &Path) -> Result<Scene> {
-        Scene::parse(&file::read_text(path)?, path)
+        Scene::load_with(path, &[])
+    }
+
+    /// Reads and checks a scene with other values of some keys.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load`]; the key of a fault that a setting brings in is `--set` and the key of the scene, without a file.
+    pub fn load_with(path: &Path, settings: &[Setting]) -> Result<Scene> {
+        Scene::parse_with(&file::read_text(path)?, path, settings)
     }
 
     /// Checks the text of a scene that is at `path`, to which other files are relative.
@@ -52,11 +60,21 @@ impl Scene {
     /// # Errors
     /// Those of [`Scene::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Scene> {
-        Scene::checked(text, path).map_err(|e| file::on_line_of_key(e, text).in_file(path))
+        Scene::parse_with(text, path, &[])
     }
 
-    fn checked(text: &str, path: &Path) -> Result<Scene> {
-        let entry: SceneFile = file::parse_toml(text)?;
+    /// As [`Scene::parse`], with other values of some keys.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load_with`].
+    pub fn parse_with(text: &str, path: &Path, settings: &[Setting]) -> Result<Scene> {
+        let source = SceneSource::new(text, path, settings);
+        let alone = || Scene::checked(source.alone()).map(|_| ());
+        Scene::checked(source.clone()).map_err(|error| source.explained(error, alone))
+    }
+
+    fn checked(source: SceneSource) -> Result<Scene> {
+        let (entry, path) = (source.entries()?, source.path.clone());
         for (i, fit) in entry.fit.iter().enumerate() {
             fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
         }
@@ -89,8 +107,7 @@ impl Scene {
         }
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Scene {
-            path: path.to_path_buf(),
-            text: text.into(),
+            source,
             title: entry.title.unwrap_or(stem),
             mesh,
             material: entry.material,
@@ -106,7 +123,12 @@ impl Scene {
 
     /// The path of the scene file, to which other files are relative.
     pub fn path(&self) -> &Path {
-        &self.path
+        &self.source.path
+    }
+
+    /// What is given in place of values of the file, in the order in which it was given.
+    pub fn settings(&self) -> &[Setting] {
+        &self.source.settings
     }
 
     /// The title, or the stem of the file name.
@@ -201,7 +223,7 @@ impl Scene {
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume.
     pub fn build_mesh(&self) -> Result<Mesh> {
-        self.mesh.build(&self.path).map_err(|e| self.with_line(e))
+        self.mesh.build(self.path()).map_err(|e| self.with_line(e))
     }
 
     /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.
@@ -253,7 +275,7 @@ impl Scene {
     /// # Errors
     /// There is no such law, or its file is wrong.
     pub fn energy(&self, material: Material) -> Result<Option<Energy>> {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let folder = self.path().parent().unwrap_or(Path::new(""));
         let load = |law: &str| {
             Energy::load(&law_at(law, folder), material)
                 .map_err(|e| e.placed(|e| self.placed(e.at_key("material.law"))))
@@ -263,8 +285,8 @@ impl Scene {
 
     /// The scene file, and the files that it names: of the mesh, of elements, laws and data.
     pub fn inputs(&self) -> Vec<PathBuf> {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
-        let mut files = vec![self.path.clone()];
+        let folder = self.path().parent().unwrap_or(Path::new(""));
+        let mut files = vec![self.path().to_path_buf()];
         files.extend(self.mesh.files(folder));
         files.extend(self.law().map(|law| PathBuf::from(law_at(law, folder))));
         let measured = self.loads.iter().filter_map(|load| load.measured.as_ref());
@@ -291,14 +313,12 @@ impl Scene {
 
     /// The error with the scene and the line, if it names no file.
     pub fn placed(&self, error: Error) -> Error {
-        error.placed(|error| file::on_line_of_key(error, &self.text).in_file(&self.path))
+        self.source.placed(error)
     }
 
     /// The error with the line in the scene.
     pub(in crate::study) fn with_line(&self, error: Error) -> Error {
-        let is_own = error.line().is_none() && error.file() == Some(&self.path);
-        let line = error.key().filter(|_| is_own).and_then(|key| file::line_of_key(&self.text, key));
-        line.into_iter().fold(error, Error::on_line)
+        self.source.with_line(error)
     }
 }
 

@@ -13,9 +13,10 @@ use crate::material::{Material, Plane};
 use crate::range;
 use crate::solve::Newton;
 use crate::study::fits::FitEntry;
+use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     pub title: Option<String>,
@@ -34,7 +35,7 @@ pub struct SceneFile {
     pub output: Output,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialEntry {
     pub young: Pressure,
@@ -42,19 +43,22 @@ pub struct MaterialEntry {
     pub plane: Option<Plane>,
     /// The thickness, m.
     #[serde(default, deserialize_with = "value::optional_length")]
+    #[schemars(schema_with = "value::quantity")]
     pub thickness: Option<f64>,
     /// The cross-section of rods, m².
     #[serde(default, deserialize_with = "value::optional_area")]
+    #[schemars(schema_with = "value::quantity")]
     pub area: Option<f64>,
     /// The density, kg/m³.
     #[serde(default, deserialize_with = "value::optional_density")]
+    #[schemars(schema_with = "value::quantity")]
     pub density: Option<f64>,
     /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
     pub law: Option<String>,
 }
 
 /// How loads are applied at large deformation.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewtonEntry {
     pub steps: Option<usize>,
@@ -62,7 +66,7 @@ pub struct NewtonEntry {
     pub tolerance: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FixEntry {
     pub group: Option<String>,
@@ -70,6 +74,11 @@ pub struct FixEntry {
     pub condition: Option<String>,
     /// The directions that are held; all if absent.
     pub axes: Option<Vec<String>>,
+}
+
+/// The JSON Schema of scene files.
+pub fn scene_schema() -> serde_json::Value {
+    schema_for!(SceneFile).to_value()
 }
 
 impl MaterialEntry {

@@ -4,16 +4,19 @@ use super::part::Part;
 use super::value;
 use crate::error::{Error, Result};
 use crate::range;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GaugeEntry {
     pub group: Option<String>,
     #[serde(rename = "where")]
     pub condition: Option<String>,
+    #[schemars(extend("enum" = ["x", "y", "z"]))]
     pub axis: String,
     #[serde(deserialize_with = "value::area")]
+    #[schemars(schema_with = "value::quantity")]
     pub area: f64,
 }
 

@@ -6,11 +6,12 @@ use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
 use crate::range;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// The mesh of a scene: a file, a box or a disc.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshInput {
     /// The path of a mesh file, relative to the scene.
@@ -22,6 +23,7 @@ pub struct MeshInput {
     pub disc: Option<DiscEntry>,
     /// The length of a mesh unit, m.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
+    #[schemars(schema_with = "value::quantity")]
     pub scale: f64,
     /// Element files that are searched before the shipped ones, relative to the scene.
     #[serde(default)]
@@ -33,7 +35,7 @@ pub struct MeshInput {
     pub halvings: u32,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QualityEntry {
     pub least: Option<f64>,
@@ -47,7 +49,7 @@ impl QualityEntry {
 }
 
 /// A box filled with one element; lengths in mesh units.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxEntry {
     /// The name of a shipped element, or a path relative to the scene that ends in .toml.
@@ -61,7 +63,7 @@ pub struct BoxEntry {
 }
 
 /// A round disc or dome of triangles; lengths in mesh units.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscEntry {
     /// The name of a shipped element, or a path relative to the scene that ends in .toml.

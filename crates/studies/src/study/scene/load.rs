@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::{Action, Component};
 use crate::range;
 use crate::symbolic::Scope;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -22,7 +23,7 @@ pub struct LoadCase {
     pub measured: Option<MeasuredEntry>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadEntry {
     pub name: Option<String>,
@@ -38,13 +39,14 @@ pub struct LoadEntry {
 }
 
 /// A file of displacements.
-#[derive(Debug, Clone, Deserialize, PartialEq)]
+#[derive(Debug, Clone, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredEntry {
     /// The path, relative to the scene.
     pub file: PathBuf,
     /// The length of a unit of the file, m.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
+    #[schemars(schema_with = "value::quantity")]
     pub scale: f64,
     /// The name of the array, if the file has several.
     pub array: Option<String>,

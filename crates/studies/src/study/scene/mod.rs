@@ -9,14 +9,18 @@ mod load;
 mod motion;
 mod output;
 mod part;
+mod setting;
+mod source;
 mod value;
 
 pub use document::Scene;
 pub(in crate::study) use elements::load_element;
 pub use elements::load_elements;
+pub use entry::scene_schema;
 pub use gauge::Gauge;
 pub use input::{BoxEntry, DiscEntry, MeshInput};
 pub use load::{LoadCase, MeasuredEntry};
 pub use motion::{AppliedForce, DampingRecipe, MotionRecipe, PrescribedMotion};
 pub use output::Output;
 pub use part::Part;
+pub use setting::Setting;

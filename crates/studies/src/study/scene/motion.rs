@@ -11,6 +11,7 @@ use crate::model::Lumping;
 use crate::range;
 use crate::study::choice::choice;
 use crate::symbolic::{Expr, Scope, parse_rational};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A motion, before the mesh is known.
@@ -70,25 +71,31 @@ pub struct AppliedForce {
 }
 
 /// The keys of `[motion]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEntry {
     #[serde(deserialize_with = "value::time")]
+    #[schemars(schema_with = "value::quantity")]
     duration: f64,
     #[serde(deserialize_with = "value::time")]
+    #[schemars(schema_with = "value::quantity")]
     step: f64,
+    #[schemars(extend("enum" = Integrator::NAMES))]
     integrator: Option<String>,
     iterations: Option<usize>,
     tolerance: Option<f64>,
     #[serde(default)]
     linear: bool,
     account: Option<bool>,
+    #[schemars(extend("enum" = LinearSolver::NAMES))]
     solver: Option<String>,
     remainder: Option<f64>,
+    #[schemars(extend("enum" = Lumping::NAMES))]
     mass: Option<String>,
     gravity: Option<Vec<f64>>,
     damping: Option<DampingEntry>,
     #[serde(default, deserialize_with = "value::optional_time")]
+    #[schemars(schema_with = "value::quantity")]
     every: Option<f64>,
     watch: Option<WatchEntry>,
     finite_elements: Option<bool>,
@@ -98,14 +105,14 @@ pub struct MotionEntry {
     force: Vec<ForceEntry>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct DampingEntry {
     rayleigh: Option<[f64; 2]>,
     ratio: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WatchEntry {
     group: Option<String>,
@@ -113,7 +120,7 @@ struct WatchEntry {
     condition: Option<String>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct PullEntry {
     group: Option<String>,
@@ -122,7 +129,7 @@ struct PullEntry {
     displacement: Vec<Varying>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ForceEntry {
     group: Option<String>,

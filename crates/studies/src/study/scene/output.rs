@@ -1,9 +1,10 @@
 //! What a scene writes and computes besides its table.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// What a scene writes and computes besides its table.
-#[derive(Debug, Clone, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// Whether the springs and displacements are written as VTU files, a motion as a series of them.

@@ -1,8 +1,10 @@
 //! Values of a scene that can be written in more than one way.
 
 use crate::quantity::Quantity;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 
 /// One direction of a load: a number, or an expression in x, y, z in m.
@@ -73,6 +75,32 @@ impl<'de> Deserialize<'de> for Pressure {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Pressure, D::Error> {
         read(Quantity::Pressure, deserializer).map(Pressure)
     }
+}
+
+/// The schema of a quantity.
+pub fn quantity(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": ["number", "string"] })
+}
+
+/// The schemas of values that are written as a number or as a text.
+macro_rules! schemas {
+    ($($type:ident: $description:literal),+ $(,)?) => {$(
+        impl JsonSchema for $type {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!({ "type": ["number", "string"], "description": $description })
+            }
+        }
+    )+};
+}
+
+schemas! {
+    Varying: "A number, or an expression of x, y, z (m) such as \"1e5*x\".",
+    PrescribedComponent: "A number of metres, or \"free\".",
+    Pressure: "A pressure in Pa, or a text with a unit such as \"10 kPa\".",
 }
 
 /// A number in the SI unit, or a text with a unit.

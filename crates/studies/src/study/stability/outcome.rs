@@ -1,7 +1,9 @@
 //! The results of a sweep.
 
+use serde::Serialize;
 /// What is varied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Family {
     /// Poisson's ratio.
     Poisson,
@@ -58,8 +60,9 @@ impl Family {
     }
 }
 
-/// The verdict on a case.
-#[derive(Debug, Clone, PartialEq)]
+/// How a case ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "verdict", content = "words")]
 pub enum Verdict {
     /// The error is at most the promised one.
     Accurate,
@@ -115,7 +118,7 @@ pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// The result of one case with one method. A number that the case does not have is `None`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityRow {
     /// The element, or another subject.
     pub subject: String,
@@ -126,6 +129,7 @@ pub struct StabilityRow {
     /// The objective, the solver or the integrator.
     pub method: String,
     /// The verdict.
+    #[serde(flatten)]
     pub verdict: Verdict,
     /// The relative error: of constants from double-double results; for spectral fits the proven distance from the
     /// optimum; of bodies and motions from closed forms.
@@ -174,7 +178,7 @@ impl StabilityRow {
 }
 
 /// The results of a whole sweep.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityOutcome {
     /// What was swept.
     pub title: String,

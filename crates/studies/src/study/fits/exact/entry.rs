@@ -4,13 +4,16 @@ use super::recipe::ExactRecipe;
 use crate::error::{Error, Result};
 use crate::fit::{ExactEnergy, VolumeSprings};
 use crate::positive::PositiveFit;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// The keys.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExactEntry {
+    #[schemars(extend("enum" = ExactEnergy::NAMES))]
     pub energy: Option<String>,
+    #[schemars(extend("enum" = VolumeSprings::NAMES))]
     pub volume: Option<String>,
     /// The share of the second invariant, for the energy "stable-mooney-rivlin".
     pub share: Option<f64>,

@@ -10,6 +10,7 @@ const UNLOCKED: f64 = 2.0;
 
 /// The body to which the network is equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ExactOutcome {
     /// The energy of the network.
     pub energy: ExactEnergy,

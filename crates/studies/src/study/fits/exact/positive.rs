@@ -1,10 +1,11 @@
 //! The record of a network without negative springs in a report.
 
 use crate::positive::{PositiveOutcome, Route};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The difference from the exact network. Errors of energies are relative to the exact ones.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PositiveRecord {
     /// What was changed: `unchanged`, `springs`, `across` or `tensions`.
     pub route: String,

@@ -2,10 +2,11 @@
 
 use super::recipe::ExactRecipe;
 use crate::fit::ExactEnergy;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings of an exact network.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ExactRecord {
     /// The objective, `exact`.
     pub objective: String,

@@ -5,6 +5,7 @@ use crate::material::Material;
 
 /// The assumptions of the method that are not met.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct PublishedOutcome {
     /// The method.
     pub method: Method,

@@ -1,10 +1,11 @@
 //! The record of a published method in a report.
 
 use crate::fit::published::{Method, Unmet};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The method, and where it is published.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedRecord {
     /// The name of the method.
     pub objective: String,
@@ -13,7 +14,7 @@ pub struct PublishedRecord {
 }
 
 /// The assumptions of the method that are not met.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedOutcomeRecord {
     /// The Poisson's ratio of the formula, if that of the material is different.
     pub poisson_assumed: Option<f64>,

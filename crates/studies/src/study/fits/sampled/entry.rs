@@ -7,28 +7,34 @@ use crate::file;
 use crate::fit::{DeformationFamily, Norm, Source, Weights};
 use crate::springs::Law;
 use crate::study::choice::choice;
+use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SampledEntry {
+    #[schemars(extend("enum" = Weights::NAMES))]
     pub weight: Option<String>,
     pub higher: Option<f64>,
     pub tied: bool,
     pub nonnegative: bool,
+    #[schemars(with = "Option<serde_json::Value>")]
     pub force: Option<toml::Value>,
+    #[schemars(extend("enum" = Norm::NAMES))]
     pub norm: Option<String>,
     pub huber: Option<f64>,
+    #[schemars(with = "Option<BTreeMap<String, [f64; 2]>>")]
     pub bounds: Option<toml::Table>,
     pub starts: Option<usize>,
     pub shapes: Option<ShapesEntry>,
     pub law: Option<String>,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapesEntry {
     pub families: Option<Vec<String>>,
@@ -37,6 +43,7 @@ pub struct ShapesEntry {
     pub loads: Option<Vec<String>>,
     pub count: Option<usize>,
     pub held_out: Option<usize>,
+    #[schemars(with = "Option<serde_json::Value>")]
     pub stretch: Option<toml::Value>,
     pub perturbation: Option<f64>,
     pub seed: Option<u64>,

@@ -5,11 +5,12 @@ use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
 use crate::fit::{DeformationFamily, Norm, Source};
 use crate::study::fits::spread::SpreadRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The settings, with defaults filled in.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledRecord {
     /// The objective, `sampled`.
     pub objective: String,
@@ -44,7 +45,7 @@ pub struct SampledRecord {
 }
 
 /// One force law for all springs, or one for each group.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ForceRecord {
     All(String),
@@ -52,7 +53,7 @@ pub enum ForceRecord {
 }
 
 /// The relative errors of the forces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledOutcomeRecord {
     /// The number of shapes of the fit.
     pub shapes: usize,

@@ -1,23 +1,27 @@
 //! The keys of a `[[fit]]` to the stiffness at rest.
 
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective, Rest, Solver, Topology};
+use crate::fit::{Choices, Fit, Objective, Rest, Solver, Topology, Weight};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// The keys.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StiffnessEntry {
+    #[schemars(extend("enum" = Weight::NAMES))]
     pub weight: Option<String>,
     pub higher: Option<f64>,
     pub balance: Option<f64>,
     pub tied: bool,
     pub nonnegative: bool,
+    #[schemars(extend("enum" = Solver::NAMES))]
     pub solver: Option<String>,
     /// These three belong to the general solvers.
     pub iterations: Option<u64>,
     pub topology: bool,
     pub sparsity: Option<f64>,
+    #[schemars(extend("enum" = Rest::NAMES))]
     pub rest: Option<String>,
 }
 

@@ -5,6 +5,7 @@ use crate::fit::{CellFits, Fit, MotionWeight, Objective};
 
 /// The certificates of a fit to the stiffness at rest, and the tension of its springs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct StiffnessOutcome {
     /// The number of cells whose spectral optimum is not unique.
     pub ambiguous: usize,

@@ -1,10 +1,11 @@
 //! The settings of a fit to the stiffness at rest in a report.
 
 use crate::fit::{Fit, Objective, Rest, Solver};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults filled in. Settings that the objective does not have are null.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StiffnessRecord {
     /// The objective.
     pub objective: String,

@@ -3,6 +3,7 @@
 use crate::fit::{CellFits, Spread};
 use crate::model::{Network, RestTension};
 use crate::study::fits::spread::SpreadRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The tension of a network whose springs pull at rest.
@@ -15,7 +16,7 @@ pub struct TensionOutcome {
 }
 
 /// The record of the tension in a report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TensionRecord {
     /// `|rest length / length in the mesh − 1|` of the springs between two points.
     pub rest_lengths: SpreadRecord,

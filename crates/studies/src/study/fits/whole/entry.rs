@@ -8,16 +8,18 @@ use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::{DescentMethod, Residual, WholeSettings};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// The default seed of the random loads.
 const SEED: u64 = 2010;
 
 /// The keys. Those of sampled fits are allowed as well if the fit starts from one.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WholeEntry {
     /// The start: an objective, "sampled" or "equal", or a list of them.
+    #[schemars(with = "Option<serde_json::Value>")]
     pub start: Option<toml::Value>,
     /// These three belong to the objective of the start.
     pub weight: Option<String>,
@@ -25,12 +27,15 @@ pub struct WholeEntry {
     pub balance: Option<f64>,
     pub loads: Option<Vec<String>>,
     pub validate: Option<Vec<String>>,
+    #[schemars(extend("enum" = Sharing::NAMES))]
     pub unknowns: Option<String>,
+    #[schemars(extend("enum" = Residual::NAMES))]
     pub residual: Option<String>,
     pub regularization: Option<f64>,
     pub range: Option<f64>,
     pub frequencies: Option<usize>,
     pub seed: Option<u64>,
+    #[schemars(extend("enum" = DescentMethod::NAMES))]
     pub solver: Option<String>,
     pub iterations: Option<u64>,
 }

@@ -5,6 +5,7 @@ use crate::whole::{Errors, Target, Wanted, WholeFit};
 
 /// The loads of a whole-object fit, and its result.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct WholeOutcome {
     /// The names of the loads that were fitted.
     pub loads: Vec<String>,
@@ -34,6 +35,7 @@ pub struct WholeOutcome {
 
 /// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FittedLoad {
     /// The name of the load.
     pub name: String,

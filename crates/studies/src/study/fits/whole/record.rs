@@ -3,10 +3,11 @@
 use super::outcome::{FittedLoad, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults filled in.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WholeRecord {
     /// The objective, `whole`.
     pub objective: String,
@@ -29,7 +30,7 @@ pub struct WholeRecord {
 }
 
 /// The start: an objective or "equal", or the settings of a sampled fit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum StartRecord {
     Name(String),
@@ -37,7 +38,7 @@ pub enum StartRecord {
 }
 
 /// The loads of the fit, and its result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WholeOutcomeRecord {
     /// The names of the loads that were fitted.
     pub loads: Vec<String>,
@@ -66,7 +67,7 @@ pub struct WholeOutcomeRecord {
 }
 
 /// The relative error under a load; null if the network is not stable.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FittedLoadRecord {
     pub load: String,
     pub before: Option<f64>,
@@ -74,7 +75,7 @@ pub struct FittedLoadRecord {
 }
 
 /// The relative errors `ω_i/ω̄_i − 1` of the frequencies.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrequencyErrorsRecord {
     pub before: Vec<Option<f64>>,
     pub after: Vec<Option<f64>>,

@@ -1,0 +1,248 @@
+//! The first scene for a mesh: it runs as it is, and says in comments what else there is.
+
+use super::extent::extent;
+use crate::mesh::{CellBlock, Group, Mesh};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Groups that are listed at most.
+const LISTED: usize = 40;
+/// Names of groups that are probably meant to be held.
+const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "left", "min"];
+/// What the load strains the body by, about.
+const STRAIN: f64 = 0.01;
+const YOUNG: f64 = 10e3;
+
+/// The text of a scene for the mesh in `file`, relative to the scene, whose unit is `unit`, such as `0.001` or `mm`, and which has
+/// cells of the files `elements`.
+///
+/// A solid or plane body is held at a group, or at the points that lie lowest along its longest axis, so that no part of it can move as
+/// a rigid body; a load acts on another group, or on the whole body. Surfaces and curves in space have fits alone: they do not
+/// resist all motions.
+pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &str) -> String {
+    let mut text = String::new();
+    let mut line = |words: &str| writeln!(text, "{words}").expect("a String grows");
+    let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
+    let sizes: Vec<String> = extent(mesh).iter().map(|x| rounded(*x, 3)).collect();
+    line(&format!("# {} points, {}; {} m", mesh.point_count(), cells.join(", "), sizes.join(" x ")));
+    line("# Quantities are in SI units, or texts with a unit such as \"10 kPa\".");
+    line(&format!("title = {}\n", quoted(title)));
+    line("[mesh]");
+    line(&format!("file  = {}", quoted(file)));
+    let scale = if unit.parse::<f64>().is_ok() { unit.to_string() } else { quoted(unit) };
+    line(&format!("scale = {scale:<17} # metres per mesh unit; \"mm\" for a mesh in millimetres"));
+    if !elements.is_empty() {
+        let names: Vec<String> = elements.iter().map(|name| quoted(name)).collect();
+        line(&format!("elements = [{}]", names.join(", ")));
+    }
+    line("");
+    groups(mesh).iter().for_each(|listed| line(listed));
+    line("[material]");
+    line("young   = \"10 kPa\"        # Young's modulus");
+    line("poisson = 0.3             # Poisson's ratio, below 0.5");
+    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    match mesh.cell_dimension() {
+        2 => {
+            line(&format!("thickness = {:<13} # m", rounded(longest / 100.0, 1)));
+            line("plane   = \"stress\"        # or \"strain\"");
+        }
+        1 => line(&format!("area    = {:<15} # m^2, the cross-section", rounded(longest * longest / 1e4, 1))),
+        _ => {}
+    }
+    line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it");
+    line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies\n");
+    let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
+    let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
+        true => ("least squares", "frobenius", "bent cells of a surface or curve have no exact network"),
+        false => ("exact", "exact", "springs and volume constraints that have the energy of the material"),
+    };
+    line("[[fit]]");
+    line(&format!("name      = {:<13} # of your choice", quoted(fit)));
+    line(&format!("objective = {:<13} # {words}\n", quoted(objective)));
+    line("[[fit]]");
+    line("name        = \"classical springs, k >= 0\"");
+    line("objective   = \"offdiag\"   # springs alone; `springfit compare --help` lists the objectives");
+    line("nonnegative = true");
+    let names = mesh.blocks.first().map(|block| block.element.springs.iter().map(|group| quoted(&group.name)));
+    let names = names.into_iter().flatten().collect::<Vec<_>>().join(", ");
+    line(&format!("# springs = [{names}]   # spring groups; those that are not optional if absent\n"));
+    conditions(mesh, longest).iter().for_each(|written| line(written));
+    line("\n[output]");
+    line("# vtu = true              # springs and displacements for ParaView");
+    line("# csv = true              # springs as a table");
+    line("# moduli = true           # each network as a material");
+    line("# frequencies = 6         # natural frequencies");
+    text
+}
+
+/// The groups as comments.
+fn groups(mesh: &Mesh) -> Vec<String> {
+    let mut lines = Vec::new();
+    if mesh.groups.is_empty() {
+        lines.push(
+            "# The mesh has no groups; parts are selected by conditions such as where = \"z < 0.01\" (x, y, z in m)."
+                .into(),
+        );
+    } else {
+        lines.push(
+            "# Groups of the mesh; conditions such as where = \"z < 0.01\" (x, y, z in m) select parts as well:".into(),
+        );
+    }
+    let longest = mesh.groups.keys().take(LISTED).map(|name| quoted(name).chars().count()).max().unwrap_or(0).min(30);
+    for (name, group) in mesh.groups.iter().take(LISTED) {
+        lines.push(format!("#   {:longest$}  {}", quoted(name), contents(group)));
+    }
+    if mesh.groups.len() > LISTED {
+        lines.push(format!("#   and {} more: `springfit groups MESH`", mesh.groups.len() - LISTED));
+    }
+    lines.push(String::new());
+    lines
+}
+
+/// `12 cells, 30 points`.
+pub fn contents(group: &Group) -> String {
+    let counted = [
+        (group.cells.len(), "cells"),
+        (group.sides.len(), "sides"),
+        (group.edges.len(), "edges"),
+        (group.points.len(), "points"),
+    ];
+    counted.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect::<Vec<_>>().join(", ")
+}
+
+/// The supports and loads.
+fn conditions(mesh: &Mesh, longest: f64) -> Vec<String> {
+    let d = mesh.dimension;
+    let none = |why: &str| {
+        let example = vec!["0"; d - 1].join(", ");
+        vec![
+            format!("# {why}"),
+            "# [[fix]]\n# where = \"x < 0.01\"\n#\n# [[load]]\n# name = \"pull\"".into(),
+            format!(
+                "# where = \"x > 0.09\"\n# traction = [100, {example}]   # Pa; or force (N), body (N/m^3), displacement (m)"
+            ),
+        ]
+    };
+    if mesh.cell_dimension() < d {
+        return none(
+            "A surface or curve in space bends freely: it is solved with a [motion], or with a law and enough supports.",
+        );
+    }
+    let parts = parts(mesh);
+    let held_by = |group: &&String| holds(mesh, &parts, &mesh.groups[*group].points);
+    let is_likely = |group: &&String| HELD.iter().any(|word| group.to_lowercase().contains(word));
+    let able: Vec<&String> = mesh.groups.keys().filter(held_by).collect();
+    let group = able.iter().find(|group| is_likely(group)).or(able.first()).copied();
+    let mut lines = Vec::new();
+    let (held, fix) = match group {
+        Some(group) => (mesh.groups[group].points.clone(), format!("group = {}", quoted(group))),
+        None => match lowest(mesh, &parts) {
+            Some((points, condition)) => (points, format!("where = {}", quoted(&condition))),
+            None => return none("Too few points are left free to load the body when it is held."),
+        },
+    };
+    lines.push(format!("[[fix]]\n{fix}\n# axes = [\"x\"]            # all if absent\n"));
+    let zeros = vec!["0"; d - 1].join(", ");
+    let is_free = |group: &&Group| group.points.iter().all(|point| held.binary_search(point).is_err());
+    let loaded =
+        mesh.groups.iter().find(|(_, group)| !group.sides.is_empty() && group.cells.is_empty() && is_free(group));
+    lines.push("[[load]]\nname     = \"pull\"".into());
+    lines.push(match loaded {
+        Some((name, _)) => {
+            let traction = rounded(STRAIN * YOUNG, 1);
+            format!(
+                "group    = {}\ntraction = [{traction}, {zeros}]   # Pa; or force (N), body (N/m^3), displacement (m)",
+                quoted(name)
+            )
+        }
+        None => {
+            let body = rounded(STRAIN * YOUNG / longest, 1);
+            format!("body     = [{body}, {zeros}]   # N/m^3; on a part: traction (Pa), force (N), displacement (m)")
+        }
+    });
+    lines
+}
+
+/// The part of the body that each point belongs to: parts have no point in common.
+fn parts(mesh: &Mesh) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..mesh.point_count()).collect();
+    fn root(parent: &mut [usize], mut point: usize) -> usize {
+        while parent[point] != point {
+            parent[point] = parent[parent[point]];
+            point = parent[point];
+        }
+        point
+    }
+    for nodes in mesh.blocks.iter().flat_map(|block| block.cells()) {
+        let first = root(&mut parent, nodes[0]);
+        for &node in &nodes[1..] {
+            let other = root(&mut parent, node);
+            parent[other] = first;
+        }
+    }
+    (0..parent.len()).map(|point| root(&mut parent, point)).collect()
+}
+
+/// Whether no part of the body can move if these points are held, and some point is free.
+fn holds(mesh: &Mesh, parts: &[usize], points: &[usize]) -> bool {
+    let mut held: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    points.iter().for_each(|&point| held.entry(parts[point]).or_default().push(point));
+    let is_root = |point: &usize| parts[*point] == *point;
+    points.len() < mesh.point_count()
+        && (0..mesh.point_count())
+            .filter(is_root)
+            .all(|part| held.get(&part).is_some_and(|points| is_rigid(mesh, points)))
+}
+
+/// Whether the points span a line in the plane, and a plane in space: a body that is held there cannot turn.
+fn is_rigid(mesh: &Mesh, points: &[usize]) -> bool {
+    let at = |point: usize| mesh.point(point);
+    let from = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| b - a).collect() };
+    let square = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>();
+    let Some((&first, others)) = points.split_first() else { return false };
+    let arm = |point: &usize| from(at(first), at(*point));
+    let longest = others.iter().map(arm).max_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default();
+    let length = square(&longest);
+    if !(length > 0.0) || mesh.dimension == 2 {
+        return length > 0.0;
+    }
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // The square of the sine of the angle between the arms; in the middle of a flat set of points some are off the line.
+    let off = |v: Vec<f64>| square(&v) / length - (dot(&v, &longest) / length).powi(2);
+    others.iter().map(arm).any(|v| off(v) > 1e-4)
+}
+
+/// The points that lie lowest along the longest axis, as few layers as hold the body, and the condition that selects them.
+fn lowest(mesh: &Mesh, parts: &[usize]) -> Option<(Vec<usize>, String)> {
+    let sizes = extent(mesh);
+    let axis = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
+    let mut along: Vec<f64> = (0..mesh.point_count()).map(|point| mesh.point(point)[axis]).collect();
+    let places = along.clone();
+    along.sort_by(f64::total_cmp);
+    let gaps: Vec<f64> = along
+        .windows(2)
+        .filter(|pair| pair[1] - pair[0] > 1e-4 * sizes[axis])
+        .map(|pair| (pair[0] + pair[1]) / 2.0)
+        .collect();
+    let below = |limit: f64| -> Vec<usize> { (0..places.len()).filter(|&point| places[point] < limit).collect() };
+    // What holds the body holds it with more points as well.
+    let place = gaps.partition_point(|limit| !holds(mesh, parts, &below(*limit)));
+    let limit = *gaps.get(place)?;
+    let text = rounded(limit, 6);
+    let written: f64 = text.parse().ok()?;
+    (below(written) == below(limit)).then(|| (below(limit), format!("{} < {text}", ["x", "y", "z"][axis])))
+}
+
+/// The number with so many digits.
+fn rounded(value: f64, digits: usize) -> String {
+    let short = format!("{:.*e}", digits - 1, value).parse::<f64>().unwrap_or(value);
+    match short.abs() {
+        0.0 | 1e-4..1e6 => format!("{short}"),
+        _ => format!("{short:e}"),
+    }
+}
+
+/// As a text of TOML, whose escapes are those of JSON.
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}

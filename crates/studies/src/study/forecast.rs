@@ -1,0 +1,255 @@
+//! What a scene will take, before it is run: its sizes, and estimates of time and memory.
+
+use super::body::{Case, LargeBody, load_cases};
+use super::fits::{NamedFit, Reference};
+use super::fitting::fit_mesh;
+use super::scene::Scene;
+use super::tensor::most_samples;
+use crate::error::Result;
+use crate::material::{Energy, Material};
+use crate::mesh::{CellBlock, Mesh};
+use crate::solve::{FactorCost, dense_rate, factor_cost};
+use crate::text::{memory_in_words, time_in_words};
+use serde::Serialize;
+use std::collections::{BTreeMap, HashMap};
+use std::time::Instant;
+
+/// Work that takes longer is announced, s.
+const LONG: f64 = 10.0;
+/// The seconds that one fit is tried for, about, unless it is done in `SHORT` by the trials before.
+const TRIAL: f64 = 0.02;
+const SHORT: f64 = 0.2;
+/// Cells that one thread fits at a time.
+const CHUNK: usize = 512;
+/// Of the rate of a dense factor, the share that sparse ones reach; and the entries of a factor that a solution reads in a second.
+/// Measured on bodies of 10 000 to 100 000 unknowns.
+const SPARSE: f64 = 0.8;
+const SOLUTIONS: f64 = 1e9;
+/// Work that is not measured at this rate takes no time.
+const SLOWEST_RATE: f64 = 1e8;
+/// Solutions while one network is compared with the body: Lanczos' steps.
+const COMPARISONS: f64 = 45.0;
+/// Solutions of one load, with their refinement.
+const REFINEMENTS: f64 = 3.0;
+/// Newton's iterations of a step of the load, as most take.
+const ITERATIONS: f64 = 6.0;
+/// Seconds and bytes for each entry of the stiffnesses of all cells, while they are assembled.
+const ASSEMBLY: f64 = 6e-8;
+const BYTES: f64 = 70.0;
+/// Bytes of a spring of a network.
+const SPRING: f64 = 160.0;
+
+/// A stage with what it will take.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExpectedStage {
+    /// The stage, in words.
+    pub name: String,
+    /// s; `None` if it is not known before the work begins.
+    pub seconds: Option<f64>,
+    /// What the stage has in memory at a time; `None` as well.
+    pub bytes: Option<f64>,
+}
+
+/// What a scene will take.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Forecast {
+    /// The number of points of the mesh.
+    pub points: usize,
+    /// How many cells each element has.
+    pub cells: BTreeMap<String, usize>,
+    /// Displacements that are not held under the first load.
+    pub unknowns: usize,
+    /// The stages in the order in which they run.
+    pub stages: Vec<ExpectedStage>,
+}
+
+impl Forecast {
+    /// The stages of a scene. The mesh is read or generated; each fit is tried on a few cells for 20 ms; the factor's size is found
+    /// from the mesh, and the time of a factorisation from that of a small dense one on this machine.
+    ///
+    /// # Errors
+    /// Those of a run before it begins: of the mesh, the material, the supports and the loads.
+    pub fn of(scene: &Scene) -> Result<Forecast> {
+        let worked_out = || {
+            let mesh = scene.build_mesh()?;
+            let material = scene.material_of(&mesh)?;
+            let (_, cases) = load_cases(scene, &mesh, material)?;
+            Forecast::of_body(scene, &mesh, material, &cases, scene.energy(material)?.as_ref())
+        };
+        worked_out().map_err(|e| scene.with_line(e))
+    }
+
+    /// The stages of a scene whose mesh is there.
+    pub(in crate::study) fn of_body(
+        scene: &Scene,
+        mesh: &Mesh,
+        material: Material,
+        cases: &[Case],
+        energy: Option<&Energy>,
+    ) -> Result<Forecast> {
+        let held = cases.first().map_or(0, |case| case.support.prescribed.iter().flatten().count());
+        let mut forecast = Forecast::of_fits(mesh, material, scene.fits(), energy);
+        forecast.unknowns -= held;
+        let later = [
+            (scene.motion().is_some(), "motion"),
+            (scene.output().frequencies > 0, "natural frequencies"),
+            (scene.output().moduli, "moduli of the networks"),
+        ];
+        if cases.is_empty() && !later.iter().any(|(asked, _)| *asked) {
+            return Ok(forecast);
+        }
+        let factor = factor_cost(mesh)?;
+        // The factors of the body and of one network are there at the same time.
+        let bytes = Some(BYTES * entries(mesh) + 2.0 * 8.0 * factor.entries);
+        let mut stage = |name: &str, seconds: Option<f64>| {
+            forecast.stages.push(ExpectedStage { name: name.into(), seconds, bytes });
+        };
+        if !cases.is_empty() {
+            let large = if energy.is_some() { " at large deformation" } else { "" };
+            let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+            let (loads, networks) = (counted(cases.len(), "load"), counted(scene.fits().len(), "network"));
+            let name = format!("{loads}{large} by finite elements and {networks}");
+            stage(&name, Some(of_loads(scene, mesh, factor, cases.len())));
+        }
+        later.iter().filter(|(asked, _)| *asked).for_each(|(_, name)| stage(name, None));
+        Ok(forecast)
+    }
+
+    /// The fits alone.
+    pub fn of_fits(mesh: &Mesh, material: Material, fits: &[NamedFit], energy: Option<&Energy>) -> Forecast {
+        let large = energy.map(|energy| LargeBody::at_rest(energy.clone(), material.state()));
+        // Threads start before the clock does.
+        rayon::broadcast(|_| ());
+        let stage = |fit: &NamedFit| {
+            let (seconds, bytes) = of_fit(mesh, material, large.as_ref(), fit).unzip();
+            ExpectedStage { name: format!("fit {}", fit.name), seconds, bytes }
+        };
+        Forecast {
+            points: mesh.point_count(),
+            cells: mesh.blocks.iter().map(|block| (block.element.name.clone(), block.cells().len())).collect(),
+            unknowns: mesh.points.len(),
+            stages: fits.iter().map(stage).collect(),
+        }
+    }
+
+    /// The time of all stages whose time is known, s.
+    pub fn seconds(&self) -> f64 {
+        self.stages.iter().filter_map(|stage| stage.seconds).sum()
+    }
+
+    /// The largest memory of a stage, bytes.
+    pub fn bytes(&self) -> f64 {
+        self.stages.iter().filter_map(|stage| stage.bytes).fold(0.0, f64::max)
+    }
+
+    /// The stages whose time is not known.
+    pub fn unknown(&self) -> impl Iterator<Item = &str> {
+        self.stages.iter().filter(|stage| stage.seconds.is_none()).map(|stage| stage.name.as_str())
+    }
+
+    /// A sentence for work that is expected to take more than ten seconds.
+    pub fn announcement(&self) -> Option<String> {
+        let seconds = self.seconds();
+        let longest =
+            self.stages.iter().max_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)))?;
+        let unknown: Vec<&str> = self.unknown().collect();
+        let more = if unknown.is_empty() { String::new() } else { format!(", without {}", unknown.join(", ")) };
+        (seconds > LONG).then(|| {
+            let (time, part) = (time_in_words(seconds), time_in_words(longest.seconds.unwrap_or(0.0)));
+            let memory = memory_in_words(self.bytes());
+            format!("about {time} and {memory} are expected{more}, {part} of it for {} (an estimate)", longest.name)
+        })
+    }
+}
+
+/// Entries of the stiffnesses of all cells.
+fn entries(mesh: &Mesh) -> f64 {
+    let of_block =
+        |block: &CellBlock| block.cells().len() as f64 * ((block.element.nodes() * mesh.dimension) as f64).powi(2);
+    mesh.blocks.iter().map(of_block).sum()
+}
+
+/// The seconds of a fit and the bytes of its network: it is made on more and more cells until that takes `TRIAL`, and all cells have the
+/// pace of the last trial. `None` of fits to the whole object and to states of loads, which are no sum over cells.
+fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<(f64, f64)> {
+    let kind = fit.recipe.kind();
+    let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
+    if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
+        return None;
+    }
+    let total = mesh.cell_count();
+    let reference = Reference { large, ..Reference::default() };
+    let mut count = 8;
+    loop {
+        let some = first_cells(mesh, count);
+        // What is wrong is reported where the fit is made.
+        let trial = || {
+            let start = Instant::now();
+            let fit = fit_mesh(&some, material, &reference, fit, &mut |_| {}).ok()?;
+            let (whole, sampling) = (start.elapsed().as_secs_f64(), fit.as_material.seconds);
+            Some((whole - sampling, sampling / fit.as_material.samples as f64, fit.network.len()))
+        };
+        // The first trial touches memory for the first time.
+        let ((first, ..), (second, sample, springs)) = (trial()?, trial()?);
+        let seconds = first.min(second);
+        let made = some.cell_count();
+        let share = total as f64 / made as f64;
+        // A trial of one chunk ran on one thread.
+        let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
+        let expected = seconds * share / threads as f64 + sample * most_samples(mesh) as f64;
+        if seconds > TRIAL || made >= total || expected < SHORT {
+            return Some((expected, SPRING * springs as f64 * share));
+        }
+        count *= 4;
+    }
+}
+
+/// The mesh of the first cells of each block, with their points.
+fn first_cells(mesh: &Mesh, count: usize) -> Mesh {
+    let mut places = HashMap::new();
+    let mut points = Vec::new();
+    let mut place = |point: usize| {
+        *places.entry(point).or_insert_with(|| {
+            points.extend_from_slice(mesh.point(point));
+            points.len() / mesh.dimension - 1
+        })
+    };
+    let mut first = |block: &CellBlock| {
+        let kept = count.min(block.cells().len()) * block.element.nodes();
+        let connectivity = block.connectivity[..kept].iter().map(|&point| place(point)).collect();
+        CellBlock { element: block.element.clone(), connectivity }
+    };
+    let blocks = mesh.blocks.iter().map(&mut first).collect();
+    Mesh {
+        dimension: mesh.dimension,
+        points,
+        blocks,
+        groups: BTreeMap::new(),
+        reversed: 0,
+        unused_points: 0,
+        numbering: None,
+        quality: mesh.quality.clone(),
+    }
+}
+
+/// The seconds of the loads with the finite elements and with each network.
+fn of_loads(scene: &Scene, mesh: &Mesh, factor: FactorCost, loads: usize) -> f64 {
+    let networks = scene.fits().len() as f64;
+    let models = 1.0 + networks;
+    let loads = loads as f64;
+    let assembly = ASSEMBLY * entries(mesh);
+    // A solution reads the factor forward and backward.
+    let solution = 2.0 * factor.entries / SOLUTIONS;
+    let iterations = ITERATIONS * scene.newton().steps as f64 * loads;
+    let factors = if scene.law().is_some() { models * iterations } else { models };
+    let operations = factors * factor.operations;
+    let factorisation = if operations < SLOWEST_RATE { 0.0 } else { operations / (SPARSE * dense_rate()) };
+    match scene.law() {
+        // Loads of one support share a factor; most do.
+        None => {
+            let solutions = networks * COMPARISONS + models * loads * REFINEMENTS;
+            factorisation + models * assembly + solutions * solution
+        }
+        Some(_) => factorisation + models * iterations * 2.0 * (assembly + solution),
+    }
+}

@@ -1,0 +1,52 @@
+//! `springfit groups`.
+
+use super::mesh_file::MeshOptions;
+use super::output::OutputOptions;
+use super::scene_file::{Settings, is_scene};
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::Result;
+use springfit::report::MeshRecord;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// List the groups of a mesh, with what they hold and where they are
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Groups {
+    /// The mesh: .msh, .vtu or .vtk; or a scene, whose mesh is read or generated
+    mesh: PathBuf,
+    #[command(flatten)]
+    options: MeshOptions,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit groups organ.msh
+  springfit groups organ.msh --scale mm   # a mesh in millimetres
+  springfit groups scene.toml             # those of a box: xmin, xmax, ...
+
+With --json: the keys mesh, points, elements, extent (m), groups with name, cells, sides, edges, points, from, to (m)";
+
+impl Groups {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let (name, mesh) = if is_scene(&self.mesh) {
+            self.options.expect_none()?;
+            let scene = self.settings.scene(&self.mesh)?;
+            (scene.title().to_string(), scene.build_mesh()?)
+        } else {
+            self.settings.expect_none()?;
+            (self.mesh.display().to_string(), self.options.mesh(&self.mesh)?)
+        };
+        let record = MeshRecord::of(name, &mesh);
+        match self.output.json {
+            true => terminal.print_json(&record)?,
+            false => terminal.print(&record.text())?,
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,81 @@
+//! Arguments that are meshes.
+
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::mesh::{Gate, Mesh, MeshSource};
+use springfit::quantity::Quantity;
+use springfit::range;
+use springfit::study::load_elements;
+use std::path::Path;
+
+/// How a mesh file is read.
+#[derive(Args)]
+#[command(next_help_heading = "Mesh")]
+pub struct MeshOptions {
+    /// Length of one mesh unit, such as mm or 0.001
+    #[arg(long, default_value = "1", allow_hyphen_values = true)]
+    scale: String,
+    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]. Cells that are flat or tangled,
+    /// that have the nodes of another or are folded over their neighbours are left out with skip and refused otherwise
+    #[arg(long)]
+    below: Option<String>,
+    /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
+    #[arg(long)]
+    least: Option<f64>,
+    /// An element file to look in before the shipped ones; may be repeated
+    #[arg(long)]
+    element: Vec<String>,
+}
+
+impl MeshOptions {
+    /// The element files.
+    pub fn elements(&self) -> &[String] {
+        &self.element
+    }
+
+    /// The length of one mesh unit as it is typed.
+    pub fn unit(&self) -> &str {
+        &self.scale
+    }
+
+    /// Metres per mesh unit.
+    ///
+    /// # Errors
+    /// It is no positive length.
+    pub fn scale(&self) -> Result<f64> {
+        let scale = Quantity::MeshUnit.parse(&self.scale).map_err(|e| e.under("--scale"))?;
+        range::positive("--scale", scale, "metres per mesh unit")
+    }
+
+    /// The mesh in the file.
+    ///
+    /// # Errors
+    /// An option or the file is wrong.
+    pub fn mesh(&self, file: &Path) -> Result<Mesh> {
+        let scale = self.scale()?;
+        let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
+        let source = MeshSource::read(file)?;
+        let asked = self.below.is_some() || self.least.is_some();
+        let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
+        Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))
+    }
+
+    /// That none is given with a scene, which has its own.
+    ///
+    /// # Errors
+    /// One is given.
+    pub fn expect_none(&self) -> Result<()> {
+        let given = [
+            ("--scale", self.scale != "1"),
+            ("--below", self.below.is_some()),
+            ("--least", self.least.is_some()),
+            ("--element", !self.element.is_empty()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            None => Ok(()),
+            Some((option, _)) => {
+                Err(Error::at(*option, "belongs to a mesh file, found it with a scene, which has keys for it"))
+            }
+        }
+    }
+}

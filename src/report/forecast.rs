@@ -1,0 +1,37 @@
+//! What would be done, with estimates of time and memory.
+
+use super::columns::{Heading, aligned};
+use crate::study::Forecast;
+use crate::text::{memory_in_words, printable, time_in_words};
+
+/// The sizes of the body, the stages with their estimates, and what is left out.
+pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option<String>)]) -> String {
+    let cells: Vec<String> = forecast.cells.iter().map(|(element, count)| format!("{count} {element}")).collect();
+    let mut text = format!(
+        "{}\n{} points, {}; {} unknowns\n\n",
+        printable(title),
+        forecast.points,
+        cells.join(", "),
+        forecast.unknowns
+    );
+    for (stage, left_out) in stages {
+        text += &match left_out {
+            None => format!("run       {}\n", printable(stage)),
+            Some(why) => format!("left out  {}: {why}\n", printable(stage)),
+        };
+    }
+    let header = [Heading::words("expected"), Heading::numbers("time"), Heading::numbers("memory")];
+    let words = |value: Option<f64>, words: fn(f64) -> String| value.map_or("unknown".into(), words);
+    let mut rows: Vec<Vec<String>> = forecast
+        .stages
+        .iter()
+        .map(|stage| vec![stage.name.clone(), words(stage.seconds, time_in_words), words(stage.bytes, memory_in_words)])
+        .collect();
+    rows.push(vec!["all".into(), time_in_words(forecast.seconds()), memory_in_words(forecast.bytes())]);
+    let unknown = if forecast.unknown().next().is_some() { "; \"all\" has the stages whose time is known" } else { "" };
+    let gap = if stages.is_empty() { "" } else { "\n" };
+    format!(
+        "{text}{gap}{}\nTimes and memory are estimates for this machine{unknown}. Nothing was run.\n",
+        aligned(&header, &rows)
+    )
+}

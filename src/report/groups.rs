@@ -1,0 +1,93 @@
+//! The named parts of a mesh.
+
+use super::columns::{Heading, aligned};
+use super::table::size;
+use crate::mesh::Mesh;
+use crate::study::extent;
+use serde::Serialize;
+
+/// A mesh in the JSON of `groups`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeshRecord {
+    /// The file, or the title of the scene.
+    pub mesh: String,
+    pub points: usize,
+    /// How many cells of each element.
+    pub elements: Vec<CellsRecord>,
+    /// The size of the box around the body along each axis, m.
+    pub extent: Vec<f64>,
+    pub groups: Vec<GroupRecord>,
+}
+
+/// The cells of one element.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CellsRecord {
+    pub element: String,
+    pub cells: usize,
+}
+
+/// A named part of the mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GroupRecord {
+    pub name: String,
+    pub cells: usize,
+    /// Faces of solids, edges of plane cells.
+    pub sides: usize,
+    /// Edges of a curve in a solid.
+    pub edges: usize,
+    pub points: usize,
+    /// The corners of the box around its points, m.
+    pub from: Vec<f64>,
+    pub to: Vec<f64>,
+}
+
+impl MeshRecord {
+    pub fn of(name: String, mesh: &Mesh) -> MeshRecord {
+        let group = |(name, group): (&String, &crate::mesh::Group)| {
+            let bound = |start: f64, pick: fn(f64, f64) -> f64| -> Vec<f64> {
+                let along = |k| group.points.iter().map(|&p| mesh.point(p)[k]).fold(start, pick);
+                (0..mesh.dimension).map(along).collect()
+            };
+            GroupRecord {
+                name: name.clone(),
+                cells: group.cells.len(),
+                sides: group.sides.len(),
+                edges: group.edges.len(),
+                points: group.points.len(),
+                from: bound(f64::INFINITY, f64::min),
+                to: bound(f64::NEG_INFINITY, f64::max),
+            }
+        };
+        let cells = |block: &crate::mesh::CellBlock| CellsRecord {
+            element: block.element.name.clone(),
+            cells: block.cells().len(),
+        };
+        MeshRecord {
+            mesh: name,
+            points: mesh.point_count(),
+            elements: mesh.blocks.iter().map(cells).collect(),
+            extent: extent(mesh),
+            groups: mesh.groups.iter().map(group).collect(),
+        }
+    }
+
+    /// The groups as a table under a line about the mesh.
+    pub fn text(&self) -> String {
+        let cells: Vec<String> = self.elements.iter().map(|e| format!("{} {}", e.cells, e.element)).collect();
+        let head = format!("{}: {} points, {}; {}\n", self.mesh, self.points, cells.join(", "), size(&self.extent));
+        if self.groups.is_empty() {
+            return head + "\nThe mesh has no groups; a condition such as where = \"z < 0.01\" selects a part of it.\n";
+        }
+        let mut header = vec![Heading::words("group")];
+        header.extend(["cells", "sides", "edges", "points", "from m", "to m"].map(Heading::numbers));
+        let corner = |x: &[f64]| x.iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(", ");
+        let row = |group: &GroupRecord| {
+            let counts = [group.cells, group.sides, group.edges, group.points].map(|n| n.to_string());
+            let mut row = vec![group.name.clone()];
+            row.extend(counts.into_iter().chain([corner(&group.from), corner(&group.to)]));
+            row
+        };
+        let rows: Vec<_> = self.groups.iter().map(row).collect();
+        format!("{head}\n{}", aligned(&header, &rows))
+    }
+}
