@@ -2,8 +2,8 @@
 
 use crate::error::raised;
 use pyo3::prelude::*;
-use springfit::error::Result;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use springfit::error::Result;
 use springfit::study::Event;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process;
