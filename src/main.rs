@@ -46,12 +46,13 @@ Examples:
   springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
 
 Results go to standard output; notes, progress and errors to standard error.
-Tables fit the terminal, or 120 columns where there is none; COLUMNS sets another width. NO_COLOR=1 or CLICOLOR=0 turns colours off.
+Tables fit the terminal, or 120 columns where there is none; COLUMNS sets another width.
+NO_COLOR=1 or CLICOLOR=0 turns colours off.
 
 Exit codes:
   0    done
   1    done, and a check failed: of an element (check), of an accuracy (stability)
-  2    an input or an option is wrong, or something cannot be read, written or solved; one line on standard error says what
+  2    an input is wrong, or something cannot be read, written or solved; a line says what
   130  interrupted";
 
 fn main() -> ExitCode {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Compare objectives and solvers, error against run time, on random shapes of an element or on a scene
+/// Compare objectives and solvers on random shapes of an element or on a scene
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Compare {

@@ -6,7 +6,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::report;
-use springfit::study::{self, Event, Scene};
+use springfit::study::{self, Event, Forecast, Scene, stages};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -24,6 +24,9 @@ pub struct Converge {
     /// A scene of the same body and loads whose finite elements give the truth, such as one of quadratic cells; its fits are not made [default: the scene itself]
     #[arg(long)]
     truth: Option<PathBuf>,
+    /// Print what would be done on each level, with estimates of time and memory, and stop
+    #[arg(long)]
+    explain: bool,
     /// Folder of the table and the plot [default: out/converge-NAME]
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
@@ -40,6 +43,21 @@ Examples:
 impl Converge {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let scene = self.settings.scene(&self.scene)?;
+        if self.explain {
+            let levels = study::refinements(&scene, self.levels).map_err(|e| e.placed(Error::of_option))?;
+            let forecasts = levels.iter().map(Forecast::of).collect::<Result<Vec<_>>>()?;
+            if self.output.json {
+                terminal.print_json(&forecasts)?;
+            } else {
+                let title = |level: usize| format!("{}, level {} of {}", scene.title(), level + 1, levels.len());
+                let text = forecasts.iter().enumerate().map(|(level, forecast)| {
+                    let stages = if level == 0 { stages(&levels[0]) } else { Vec::new() };
+                    report::forecast_text(&title(level), forecast, &stages)
+                });
+                terminal.print(&text.collect::<Vec<_>>().join("\n"))?;
+            }
+            return Ok(ExitCode::SUCCESS);
+        }
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
         let truth = self.truth.as_ref().map(|path| self.settings.reference(path)).transpose()?;

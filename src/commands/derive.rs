@@ -10,6 +10,7 @@ use springfit::material::Plane;
 use springfit::report::Derivation;
 use springfit::springs::Springs;
 use springfit::study::Event;
+use springfit::unknown;
 use std::process::ExitCode;
 
 /// Print the exact closed forms of an element's stiffness and spring constants
@@ -75,7 +76,7 @@ impl Derive {
             Some("offdiag") => Ok((false, vec![Weight::OffDiagonal])),
             Some(other) => {
                 let expected = "exact, frobenius or offdiag, which have closed forms";
-                Err(Error::expected("--objective", expected, format!("\"{other}\"")))
+                Err(unknown(expected, ["exact", "frobenius", "offdiag"], other).at_key("--objective"))
             }
         }
     }

@@ -26,6 +26,9 @@ use std::sync::Arc;
 pub struct Fit {
     /// The mesh: .msh, .vtu or .vtk
     mesh: PathBuf,
+    /// Print what would be done, with estimates of time and memory, and stop
+    #[arg(long)]
+    explain: bool,
     /// Young's modulus, such as 10kPa
     #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     young: String,
@@ -96,9 +99,6 @@ pub struct Fit {
     density: Option<String>,
     #[command(flatten)]
     options: MeshOptions,
-    /// Print what would be done, with estimates of time and memory, and stop
-    #[arg(long)]
-    explain: bool,
     /// Where the springs go: .vtu, .json or .csv
     #[arg(short, long, help_heading = "Output")]
     output: PathBuf,
@@ -109,16 +109,16 @@ pub struct Fit {
 const EXAMPLES: &str = "\
 Examples:
   springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
-  springfit fit organ.msh --scale mm --young 10kPa --poisson 0.3 --objective offdiag --nonnegative -o springs.json
-  springfit fit organ.msh --young 10kPa --poisson 0.3 --explain -o springs.csv      # estimates; nothing is run
+  springfit fit organ.msh --young 10kPa --poisson 0.3 --objective divergence -o springs.json
+  springfit fit organ.msh --scale mm --young 10kPa --poisson 0.3 -o springs.csv --explain
 
 Published methods, for --objective:
-  van-gelder, van-gelder-simple    Van Gelder (1998), triangles and tetrahedra
-  lloyd, lloyd-preserving          Lloyd, Székely, Harders (2007), triangles, quadrilaterals, tetrahedra
-  baudet, baudet-corrected         Baudet et al. (2007, 2009), rectangles and bricks
-  delingette-quadratic, delingette-biquadratic
-                                   Delingette (2008), triangles
-  maciel-uniform                   Maciel, Boulic, Thalmann (2003), any cell";
+  van-gelder, van-gelder-simple    Van Gelder (1998): triangles, tetrahedra
+  lloyd, lloyd-preserving          Lloyd et al. (2007): triangles, quadrilaterals, tetrahedra
+  baudet, baudet-corrected         Baudet et al. (2007, 2009): rectangles, bricks
+  delingette-quadratic             Delingette (2008): triangles
+  delingette-biquadratic           the same
+  maciel-uniform                   Maciel et al. (2003)";
 
 impl Fit {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {

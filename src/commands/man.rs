@@ -7,7 +7,7 @@ use springfit::error::{Error, Result};
 use springfit::unknown;
 use std::process::ExitCode;
 
-/// Write the manual page of the program, or of one of its commands, to standard output
+/// Write the manual page of the program or of a command to standard output
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Man {
@@ -33,7 +33,7 @@ impl Man {
                     return Err(unknown(expected, names.iter().map(String::as_str), name).at_key("COMMAND"));
                 };
                 let title = format!("springfit-{name}");
-                Page::new(command.clone().display_name(&title)).title(title.to_uppercase())
+                Page::new(command.clone().display_name(&title)).title(title)
             }
         };
         let mut text = Vec::new();

@@ -6,7 +6,7 @@ use springfit::error::Result;
 use springfit::{element, material, report, study};
 use std::process::ExitCode;
 
-/// Write the JSON Schema of scenes, elements, materials or reports, by which editors complete and check them
+/// Write the JSON Schema of scenes, elements, materials or reports, for editors
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Schema {

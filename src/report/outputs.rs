@@ -65,13 +65,24 @@ impl Stems {
     }
 }
 
+/// Characters of a stem, without the number that tells equal ones apart.
+const LONGEST_STEM: usize = 40;
+
 /// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
 pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut stems = vec!["mesh".to_string()];
     for name in names {
         let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
         let dashed: String = name.chars().map(kept).collect();
-        let stem = dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
+        let mut stem = String::new();
+        for part in dashed.split('-').filter(|part| !part.is_empty()) {
+            if !stem.is_empty() && stem.len() + part.len() >= LONGEST_STEM {
+                break;
+            }
+            stem += if stem.is_empty() { "" } else { "-" };
+            stem += part;
+        }
+        stem.truncate(LONGEST_STEM);
         let numbered = (2..).map(|i| format!("{stem}-{i}"));
         let free = std::iter::once(stem.clone()).chain(numbered).find(|s| !s.is_empty() && !stems.contains(s));
         stems.extend(free);

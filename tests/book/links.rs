@@ -48,3 +48,32 @@ fn links_of_the_book_stay_in_the_book() {
         }
     }
 }
+
+/// Sources name pages of the book by their titles.
+#[test]
+fn pages_that_the_sources_name_are_in_the_book() {
+    let titles: Vec<String> = pages()
+        .iter()
+        .map(|page| page.text.lines().next().unwrap_or("").trim_start_matches("# ").to_string())
+        .collect();
+    let mut named = 0;
+    let mut folders = vec![root().join("crates"), root().join("src")];
+    while let Some(folder) = folders.pop() {
+        // A published package holds its own sources alone.
+        for entry in std::fs::read_dir(&folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let Ok(text) = std::fs::read_to_string(&path) else { continue };
+            for line in text.lines().filter(|line| line.starts_with("//! Theory: page")) {
+                for title in line.split('*').skip(1).step_by(2) {
+                    assert!(titles.iter().any(|known| known == title), "{}: no page *{title}*", path.display());
+                    named += 1;
+                }
+            }
+        }
+    }
+    assert!(named > 0 || !root().join("crates").is_dir());
+}

@@ -172,7 +172,10 @@ fn no_source_names_a_shipped_element() {
     for source in sources().into_iter().filter(|source| source.path != "lib.rs") {
         for element in SHIPPED {
             let word = |w: &str| w == element.name;
-            let named = source.text.split(|c: char| !c.is_alphanumeric() && c != '_').any(word);
+            // The examples of help texts are typed by people, who know elements by name.
+            let examples = source.text.split_once("const EXAMPLES").and_then(|(_, rest)| rest.split_once("\";\n"));
+            let text = examples.map_or(source.text.clone(), |(examples, _)| source.text.replace(examples, ""));
+            let named = text.split(|c: char| !c.is_alphanumeric() && c != '_').any(word);
             assert!(!named, "{} names {}", source.name(), element.name);
         }
     }

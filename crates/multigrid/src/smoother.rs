@@ -116,13 +116,12 @@ impl<const N: usize> Smoother<N> {
 }
 
 pub(crate) fn scale<const N: usize>(inverse: &[Block<N, N>], x: &[[f64; N]], y: &mut [[f64; N]]) {
-    let scale = |((y, x), inverse): ((&mut [[f64; N]], &[[f64; N]]), &[Block<N, N>])| {
+    y.par_chunks_mut(PIECE).zip(x.par_chunks(PIECE)).zip(inverse.par_chunks(PIECE)).for_each(|((y, x), inverse)| {
         for ((y, x), inverse) in y.iter_mut().zip(x).zip(inverse) {
             *y = [0.0; N];
             add_product(y, inverse, x);
         }
-    };
-    y.par_chunks_mut(PIECE).zip(x.par_chunks(PIECE)).zip(inverse.par_chunks(PIECE)).for_each(scale);
+    });
 }
 
 /// The largest Ritz value of `D⁻¹ A` after some steps of Lanczos' method from a random vector, in the inner product of D.

@@ -3,7 +3,6 @@
 use super::affine::Affine;
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::places::Places;
-use super::quality::Quality;
 use crate::bound;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
@@ -40,16 +39,7 @@ impl BoxMesh {
         let d = self.element.dimension();
         self.check(d)?;
         let parts = parts(self.element.cell);
-        let mut mesh = Mesh {
-            dimension: d,
-            points: Vec::new(),
-            blocks: Vec::new(),
-            groups: BTreeMap::new(),
-            reversed: 0,
-            unused_points: 0,
-            numbering: None,
-            quality: Quality::default(),
-        };
+        let mut mesh = Mesh::of_points(d, Vec::new());
         let mut connectivity = Vec::new();
         // Points of neighbouring cells coincide; their positions are compared in units of 2⁻²⁰ of a cell.
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();

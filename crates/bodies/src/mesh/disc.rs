@@ -2,12 +2,10 @@
 
 use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::places::Places;
-use super::quality::Quality;
 use crate::bound;
 use crate::element::{Cell, Element};
 use crate::error::{Error, Result};
 use crate::range;
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -68,16 +66,8 @@ impl DiscMesh {
             2 => self.element.clone(),
             _ => Arc::new(Element::clone(&self.element).in_space(3)),
         };
-        let mut mesh = Mesh {
-            dimension,
-            points: self.points(dimension),
-            blocks: vec![CellBlock { element, connectivity: self.triangles() }],
-            groups: BTreeMap::new(),
-            reversed: 0,
-            unused_points: 0,
-            numbering: None,
-            quality: Quality::default(),
-        };
+        let mut mesh = Mesh::of_points(dimension, self.points(dimension));
+        mesh.blocks.push(CellBlock { element, connectivity: self.triangles() });
         let rim = self.rings[self.rings.len() - 1];
         let around: Vec<usize> = (total - rim..total).collect();
         let side = |i: usize| sorted(&[around[i], around[(i + 1) % rim]]);

@@ -75,6 +75,12 @@ impl CellBlock {
 }
 
 impl Mesh {
+    /// Points without cells, of which a mesh is built.
+    pub(super) fn of_points(dimension: usize, points: Vec<f64>) -> Mesh {
+        let (blocks, groups, quality) = Default::default();
+        Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, numbering: None, quality }
+    }
+
     /// The number of points.
     pub fn point_count(&self) -> usize {
         self.points.len() / self.dimension

@@ -5,6 +5,7 @@
 
 mod affine;
 mod alike;
+mod arrays;
 mod boxes;
 mod connection;
 mod disc;
@@ -28,11 +29,12 @@ mod selection;
 mod source;
 pub mod vtk;
 
+pub use arrays::MeshArrays;
 pub use boxes::BoxMesh;
 pub use disc::DiscMesh;
 pub use field::Field;
 pub use mesh::{CellBlock, CellIndex, Group, Mesh, SideIndex};
-pub use numbering::Numbering;
+pub use numbering::{NumberOrigin, Numbering};
 pub use quality::{Below, Gate, Quality, Worst};
 pub use selection::Selection;
 pub use source::{Format, MeshSource, SourceBlock};

@@ -1,22 +1,45 @@
-//! The numbers that a mesh file gives its nodes.
+//! The numbers that the nodes of a mesh have in its source.
 
 use super::source::Format;
 
-/// The numbers that the points of a mesh have in their file.
+/// The numbers that the points of a mesh have in the file or in the arrays that they come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbering {
-    /// The format of the file.
-    pub format: Format,
-    /// The numbers, `[points]`: tags in a Gmsh file, indices from 0 in a VTK file.
+    /// What the numbers mean.
+    pub origin: NumberOrigin,
+    /// The numbers, `[points]`.
     pub nodes: Vec<u64>,
+}
+
+/// The meaning of a node's number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NumberOrigin {
+    /// The tag of a node in a Gmsh file.
+    GmshTag,
+    /// The index of a point in a VTK file, from 0.
+    VtkPlace,
+    /// The index of a point in the caller's array, from 0.
+    ArrayPlace,
+}
+
+impl NumberOrigin {
+    /// The meaning of the numbers in a file of this format.
+    pub(super) fn of(format: Format) -> NumberOrigin {
+        match format {
+            Format::Gmsh => NumberOrigin::GmshTag,
+            Format::Vtk => NumberOrigin::VtkPlace,
+        }
+    }
 }
 
 impl Numbering {
     /// The kind of number, in words.
     pub fn title(&self) -> &'static str {
-        match self.format {
-            Format::Gmsh => "Gmsh node tags",
-            Format::Vtk => "places in the VTK file, from 0",
+        match self.origin {
+            NumberOrigin::GmshTag => "Gmsh node tags",
+            NumberOrigin::VtkPlace => "places in the VTK file, from 0",
+            NumberOrigin::ArrayPlace => "places in the array of points, from 0",
         }
     }
 

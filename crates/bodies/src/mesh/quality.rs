@@ -1,6 +1,7 @@
 //! The quality of the cells of a mesh, and what happens to poor cells.
 
 use crate::error::{Error, Result};
+use crate::named::unknown;
 
 /// What happens to cells below the least quality.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,7 +47,9 @@ impl Gate {
             Some("refuse") => Below::Refuse,
             Some("skip") => Below::Skip,
             Some(other) => {
-                return Err(Error::expected("below", "\"warn\", \"refuse\" or \"skip\"", format!("\"{other}\"")));
+                return Err(
+                    unknown("\"warn\", \"refuse\" or \"skip\"", ["warn", "refuse", "skip"], other).at_key("below")
+                );
             }
         };
         let least = least.unwrap_or(gate.least);

@@ -1,9 +1,9 @@
 //! Gives the cells of a file their elements.
 
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
-use super::numbering::Numbering;
+use super::numbering::{NumberOrigin, Numbering};
 use super::places::Places;
-use super::quality::{Below, Gate, Quality};
+use super::quality::{Below, Gate};
 use super::source::{Format, MeshSource, SourceBlock};
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
@@ -33,23 +33,9 @@ impl Mesh {
             return Err(Error::expected("cells", "lines, surface or solid cells", "none"));
         }
         let space = if dimension < 3 && in_one_plane(source) { 2 } else { 3 };
-        let lengths = || source.points.iter().flatten().map(|x| (x * scale).abs());
-        let largest = lengths().fold(0.0, f64::max);
-        if !range::contains(largest) {
-            let expected =
-                format!("coordinates of which the largest is between {:e} and {:e} m", range::LEAST, range::LARGEST);
-            return Err(Error::expected("points", expected, format!("{largest:?} m")));
-        }
-        let mut mesh = Mesh {
-            dimension: space,
-            points: source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect(),
-            blocks: Vec::new(),
-            groups: BTreeMap::new(),
-            reversed: 0,
-            unused_points: 0,
-            numbering: numbering(source),
-            quality: Quality::default(),
-        };
+        check_size(source.points.iter().flatten().map(|x| x * scale))?;
+        let points = source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect();
+        let mut mesh = Mesh { numbering: numbering(source), ..Mesh::of_points(space, points) };
         let mut served: BTreeMap<u32, usize> = BTreeMap::new();
         for block in source.blocks.iter().filter(|b| b.dimension == dimension) {
             let index = match served.get(&block.cell_type) {
@@ -78,19 +64,29 @@ impl Mesh {
                 }
             }
         }
-        mesh.drop_unused_points();
-        let skip = gate.is_some_and(|gate| gate.below == Below::Skip);
-        let places = Places::of(&mesh);
-        mesh.settle_duplicates(places.as_ref().map(|places| &places.first[..]), skip)?;
-        mesh.settle_orientation(skip)?;
-        mesh.pass(gate.unwrap_or_default())?;
-        // Removed cells have taken points with them.
-        let left_out = mesh.quality.skipped + mesh.quality.duplicates + mesh.quality.folded > 0;
-        let places = if left_out { Places::of(&mesh) } else { places };
-        mesh.quality.coincident = places.as_ref().map(Places::coincident);
-        mesh.quality.hanging = places.map(|places| mesh.hanging(&places));
-        mesh.quality.pieces = Some(mesh.pieces().len());
+        mesh.settle(gate.unwrap_or_default())?;
         Ok(mesh)
+    }
+
+    /// Proves the cells as they were given, leaves out what belongs to none, and measures the quality of what is kept.
+    ///
+    /// # Errors
+    /// A cell is tangled or flat, repeats another or is folded over its neighbours, unless the gate skips such cells; the gate
+    /// refuses a cell, or none is left.
+    pub(super) fn settle(&mut self, gate: Gate) -> Result<()> {
+        self.drop_unused_points();
+        let skip = gate.below == Below::Skip;
+        let places = Places::of(self);
+        self.settle_duplicates(places.as_ref().map(|places| &places.first[..]), skip)?;
+        self.settle_orientation(skip)?;
+        self.pass(gate)?;
+        // Removed cells have taken points with them.
+        let left_out = self.quality.skipped + self.quality.duplicates + self.quality.folded > 0;
+        let places = if left_out { Places::of(self) } else { places };
+        self.quality.coincident = places.as_ref().map(Places::coincident);
+        self.quality.hanging = places.map(|places| self.hanging(&places));
+        self.quality.pieces = Some(self.pieces().len());
+        Ok(())
     }
 
     fn add_cells(&mut self, index: usize, block: &SourceBlock, format: Format) {
@@ -189,10 +185,21 @@ impl Mesh {
     }
 }
 
+/// That the coordinates, m, are in the range in which the program computes.
+pub(super) fn check_size(coordinates: impl Iterator<Item = f64>) -> Result<()> {
+    let largest = coordinates.map(f64::abs).fold(0.0, f64::max);
+    if !range::contains(largest) {
+        let expected =
+            format!("coordinates of which the largest is between {:e} and {:e} m", range::LEAST, range::LARGEST);
+        return Err(Error::expected("points", expected, format!("{largest:?} m")));
+    }
+    Ok(())
+}
+
 /// The numbers of the points in the file, if there is one.
 fn numbering(source: &MeshSource) -> Option<Numbering> {
     let known = source.numbers.len() == source.points.len();
-    known.then(|| Numbering { format: source.format, nodes: source.numbers.clone() })
+    known.then(|| Numbering { origin: NumberOrigin::of(source.format), nodes: source.numbers.clone() })
 }
 
 fn entry(element: &Element, format: Format) -> Option<&FormatEntry> {

@@ -1,7 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::extent;
-use crate::mesh::{Group, Mesh};
+use crate::mesh::{CellBlock, Group, Mesh};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -51,9 +51,14 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
     }
     line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it");
     line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies\n");
+    let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
+    let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
+        true => ("least squares", "frobenius", "bent cells of a surface or curve have no exact network"),
+        false => ("exact", "exact", "springs and volume constraints that have the energy of the material"),
+    };
     line("[[fit]]");
-    line("name      = \"exact\"       # of your choice");
-    line("objective = \"exact\"       # springs and volume constraints that have the energy of the material\n");
+    line(&format!("name      = {:<13} # of your choice", quoted(fit)));
+    line(&format!("objective = {:<13} # {words}\n", quoted(objective)));
     line("[[fit]]");
     line("name        = \"classical springs, k >= 0\"");
     line("objective   = \"offdiag\"   # springs alone; `springfit compare --help` lists the objectives");
@@ -83,7 +88,7 @@ fn groups(mesh: &Mesh) -> Vec<String> {
             "# Groups of the mesh; conditions such as where = \"z < 0.01\" (x, y, z in m) select parts as well:".into(),
         );
     }
-    let longest = mesh.groups.keys().take(LISTED).map(|name| name.chars().count()).max().unwrap_or(0).min(30);
+    let longest = mesh.groups.keys().take(LISTED).map(|name| quoted(name).chars().count()).max().unwrap_or(0).min(30);
     for (name, group) in mesh.groups.iter().take(LISTED) {
         lines.push(format!("#   {:longest$}  {}", quoted(name), contents(group)));
     }

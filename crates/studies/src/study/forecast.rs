@@ -1,8 +1,10 @@
 //! What a scene will take, before it is run: its sizes, and estimates of time and memory.
 
 use super::body::{Case, LargeBody, load_cases};
-use super::fits::{NamedFit, Reference, Task};
+use super::fits::{NamedFit, Reference};
+use super::fitting::fit_mesh;
 use super::scene::Scene;
+use super::tensor::most_samples;
 use crate::error::Result;
 use crate::material::{Energy, Material};
 use crate::mesh::{CellBlock, Mesh};
@@ -10,6 +12,7 @@ use crate::model::BlockStiffness;
 use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
+use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
 
 /// Work that takes longer is announced, s.
@@ -21,8 +24,8 @@ const SHORT: f64 = 0.2;
 const CHUNK: usize = 512;
 /// Of the rate of a dense factor, the share that sparse ones reach; and the entries of a factor that a solution reads in a second.
 /// Measured on bodies of 10 000 to 100 000 unknowns.
-const SPARSE: f64 = 0.5;
-const SOLUTIONS: f64 = 6e8;
+const SPARSE: f64 = 0.8;
+const SOLUTIONS: f64 = 1e9;
 /// Work that is not measured at this rate takes no time.
 const SLOWEST_RATE: f64 = 1e8;
 /// Solutions while one network is compared with the body: Lanczos' steps.
@@ -38,6 +41,8 @@ const ITERATED: f64 = 6e-6;
 /// Seconds and bytes for each entry of the stiffnesses of all cells, while they are assembled.
 const ASSEMBLY: f64 = 6e-8;
 const BYTES: f64 = 70.0;
+/// Bytes of a spring of a network.
+const SPRING: f64 = 160.0;
 
 /// A stage with what it will take.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -55,8 +60,8 @@ pub struct ExpectedStage {
 pub struct Forecast {
     /// The number of points of the mesh.
     pub points: usize,
-    /// Elements, and how many cells each has.
-    pub cells: Vec<(String, usize)>,
+    /// How many cells each element has.
+    pub cells: BTreeMap<String, usize>,
     /// Displacements that are not held under the first load.
     pub unknowns: usize,
     /// The stages in the order in which they run.
@@ -115,7 +120,9 @@ impl Forecast {
         };
         if !cases.is_empty() {
             let large = if energy.is_some() { " at large deformation" } else { "" };
-            let name = format!("{} loads{large} by finite elements and {} networks", cases.len(), scene.fits().len());
+            let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+            let (loads, networks) = (counted(cases.len(), "load"), counted(scene.fits().len(), "network"));
+            let name = format!("{loads}{large} by finite elements and {networks}");
             stage(&name, Some(seconds));
         }
         later.iter().filter(|(asked, _)| *asked).for_each(|(_, name)| stage(name, None));
@@ -125,10 +132,11 @@ impl Forecast {
     /// The fits alone.
     pub fn of_fits(mesh: &Mesh, material: Material, fits: &[NamedFit], energy: Option<&Energy>) -> Forecast {
         let large = energy.map(|energy| LargeBody::at_rest(energy.clone(), material.state()));
-        let stage = |fit: &NamedFit| ExpectedStage {
-            name: format!("fit {}", fit.name),
-            seconds: of_fit(mesh, material, large.as_ref(), fit),
-            bytes: Some(BYTES * entries(mesh)),
+        // Threads start before the clock does.
+        rayon::broadcast(|_| ());
+        let stage = |fit: &NamedFit| {
+            let (seconds, bytes) = of_fit(mesh, material, large.as_ref(), fit).unzip();
+            ExpectedStage { name: format!("fit {}", fit.name), seconds, bytes }
         };
         Forecast {
             points: mesh.point_count(),
@@ -175,9 +183,9 @@ fn entries(mesh: &Mesh) -> f64 {
     mesh.blocks.iter().map(of_block).sum()
 }
 
-/// The seconds of a fit: it is made on more and more cells until that takes `TRIAL`, and all cells have the pace of the last trial.
-/// `None` of fits to the whole object and to states of loads, which are no sum over cells.
-fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<f64> {
+/// The seconds of a fit and the bytes of its network: it is made on more and more cells until that takes `TRIAL`, and all cells have the
+/// pace of the last trial. `None` of fits to the whole object and to states of loads, which are no sum over cells.
+fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<(f64, f64)> {
     let kind = fit.recipe.kind();
     let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
     if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
@@ -188,30 +196,54 @@ fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &Name
     let mut count = 8;
     loop {
         let some = first_cells(mesh, count);
-        let task =
-            Task { name: &fit.name, springs: fit.springs.as_deref(), mesh: &some, material, reference: &reference };
-        let start = Instant::now();
         // What is wrong is reported where the fit is made.
-        kind.fit(&task, &mut |_| {}).ok()?;
-        let seconds = start.elapsed().as_secs_f64();
+        let trial = || {
+            let start = Instant::now();
+            let fit = fit_mesh(&some, material, &reference, fit, &mut |_| {}).ok()?;
+            let (whole, sampling) = (start.elapsed().as_secs_f64(), fit.as_material.seconds);
+            Some((whole - sampling, sampling / fit.as_material.samples as f64, fit.network.len()))
+        };
+        // The first trial touches memory for the first time.
+        let ((first, ..), (second, sample, springs)) = (trial()?, trial()?);
+        let seconds = first.min(second);
         let made = some.cell_count();
+        let share = total as f64 / made as f64;
         // A trial of one chunk ran on one thread.
         let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
-        let expected = seconds * total as f64 / made as f64 / threads as f64;
+        let expected = seconds * share / threads as f64 + sample * most_samples(mesh) as f64;
         if seconds > TRIAL || made >= total || expected < SHORT {
-            return Some(expected);
+            return Some((expected, SPRING * springs as f64 * share));
         }
         count *= 4;
     }
 }
 
-/// The mesh with the first cells of each block.
+/// The mesh of the first cells of each block, with their points.
 fn first_cells(mesh: &Mesh, count: usize) -> Mesh {
-    let first = |block: &CellBlock| {
-        let kept = count.min(block.cells().len()) * block.element.nodes();
-        CellBlock { element: block.element.clone(), connectivity: block.connectivity[..kept].to_vec() }
+    let mut places = HashMap::new();
+    let mut points = Vec::new();
+    let mut place = |point: usize| {
+        *places.entry(point).or_insert_with(|| {
+            points.extend_from_slice(mesh.point(point));
+            points.len() / mesh.dimension - 1
+        })
     };
-    Mesh { blocks: mesh.blocks.iter().map(first).collect(), groups: Default::default(), ..mesh.clone() }
+    let mut first = |block: &CellBlock| {
+        let kept = count.min(block.cells().len()) * block.element.nodes();
+        let connectivity = block.connectivity[..kept].iter().map(|&point| place(point)).collect();
+        CellBlock { element: block.element.clone(), connectivity }
+    };
+    let blocks = mesh.blocks.iter().map(&mut first).collect();
+    Mesh {
+        dimension: mesh.dimension,
+        points,
+        blocks,
+        groups: BTreeMap::new(),
+        reversed: 0,
+        unused_points: 0,
+        numbering: None,
+        quality: mesh.quality.clone(),
+    }
 }
 
 /// The seconds of the loads with the finite elements and with each network.

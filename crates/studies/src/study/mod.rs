@@ -44,7 +44,7 @@ pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, compared, measure_recipes};
 pub use convergence::{
     Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
-    limit_of, most_unknowns, rates,
+    limit_of, most_unknowns, rates, refinements,
 };
 pub use draft::{contents, draft};
 pub use extent::extent;

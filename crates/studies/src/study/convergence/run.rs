@@ -34,15 +34,8 @@ const BODY: &str = "finite elements";
 /// `levels` is not from 2 to [`MOST_LEVELS`]; the finest mesh is too large; the scene has no loads; or a run on some
 /// level fails.
 pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -> Result<Convergence> {
-    if let Some(levels) = levels.filter(|levels| !(2..=MOST_LEVELS).contains(levels)) {
-        return Err(Error::expected("levels", format!("a number from 2 to {MOST_LEVELS}"), levels));
-    }
-    if scene.loads().is_empty() {
-        let problem = "expected at least one [[load]] to converge under, found none";
-        return Err(scene.placed(Error::at("load", problem)));
-    }
-    let scene = scene.clone().without_motion().without_gauge().with_output(Output::default());
-    let count = plan(&scene, levels, USUAL_LEVELS)?;
+    let scenes = refinements(scene, levels)?;
+    let (scene, count) = (&scenes[0], scenes.len());
     if levels.is_none() && count < USUAL_LEVELS {
         progress(Event::Note(&format!("{count} levels are run, for one more would take long; --levels asks for more")));
     }
@@ -58,10 +51,10 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
             Event::Note(_) => progress(event),
         };
         let in_level = |e: Error| e.followed_by(format!(" ({number})"));
-        let refined = scene.clone().halved(level as u32);
+        let refined = &scenes[level];
         let controls = Controls { announce: true, ..Controls::default() };
-        let outcome = run_with(&refined, &controls, &mut staged).map_err(in_level)?;
-        let steps = steps(&refined, &outcome).map_err(in_level)?;
+        let outcome = run_with(refined, &controls, &mut staged).map_err(in_level)?;
+        let steps = steps(refined, &outcome).map_err(in_level)?;
         for (load, steps) in steps.into_iter().enumerate() {
             if level == 0 {
                 let names = std::iter::once(BODY).chain(outcome.fits.iter().map(|fit| fit.fit.name.as_str()));
@@ -85,6 +78,23 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     let loads = scene.loads().iter().zip(models);
     convergence.loads = loads.map(|(load, models)| LoadConvergence::new(load.name.clone(), models)).collect();
     Ok(convergence)
+}
+
+/// The scenes of all levels: that of the scene, without motion, gauge and output, and others with cells of half the size each.
+///
+/// # Errors
+/// `levels` is not from 2 to [`MOST_LEVELS`] or the finest mesh is too large; the scene has no loads.
+pub fn refinements(scene: &Scene, levels: Option<usize>) -> Result<Vec<Scene>> {
+    if let Some(levels) = levels.filter(|levels| !(2..=MOST_LEVELS).contains(levels)) {
+        return Err(Error::expected("levels", format!("a number from 2 to {MOST_LEVELS}"), levels));
+    }
+    if scene.loads().is_empty() {
+        let problem = "expected at least one [[load]] to converge under, found none";
+        return Err(scene.placed(Error::at("load", problem)));
+    }
+    let scene = scene.clone().without_motion().without_gauge().with_output(Output::default());
+    let count = plan(&scene, levels, USUAL_LEVELS)?;
+    Ok((0..count).map(|level| scene.clone().halved(level as u32)).collect())
 }
 
 /// As [`converge`], with the limit from the finite elements of another scene of the same body and loads, for example

@@ -7,4 +7,5 @@ mod piece;
 mod relaxation;
 mod sample;
 
+pub(in crate::study) use network_material::most_samples;
 pub use network_material::{NetworkMaterial, network_material};

@@ -53,6 +53,11 @@ pub struct NetworkMaterial {
     pub seconds: f64,
 }
 
+/// The number of samples that a mesh has room for.
+pub(in crate::study) fn most_samples(mesh: &Mesh) -> usize {
+    SAMPLES.min(mesh.point_count().div_ceil(POINTS))
+}
+
 /// Measures a network that was fitted to `material`, at rest. `cells` has the springs of each block of cells. It is
 /// empty if the springs belong to no cell, as those of whole-object fits; each spring is then shared equally among the
 /// cells that have all of its points.
@@ -62,7 +67,7 @@ pub fn network_material(mesh: &Mesh, material: Material, cells: &[CellFits], net
     let start = Instant::now();
     let stars = Stars::of(mesh);
     let points = mesh.point_count();
-    let count = SAMPLES.min(points.div_ceil(POINTS));
+    let count = most_samples(mesh);
     let measure = |i: usize| {
         let seed = (2 * i + 1) * points / (2 * count);
         let single = || stars.single(stars.around(seed)[0]);

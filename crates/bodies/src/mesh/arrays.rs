@@ -1,0 +1,120 @@
+//! Meshes from the arrays of another program.
+
+use super::alike::Alike;
+use super::mesh::{CellBlock, Group, Mesh, SideIndex, sorted};
+use super::numbering::{NumberOrigin, Numbering};
+use super::quality::Gate;
+use super::resolution::check_size;
+use crate::element::Element;
+use crate::error::{Error, Result};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Points, cells and named points, as another program has them.
+#[derive(Debug, Clone)]
+pub struct MeshArrays {
+    /// Of the space: 1, 2 or 3.
+    pub dimension: usize,
+    /// `[points × dimension]`, m.
+    pub points: Vec<f64>,
+    /// Elements of one dimension, each with the nodes of its cells: `[cells × nodes]`, indices into `points` from 0, in the order of the
+    /// element's nodes.
+    pub blocks: Vec<(Arc<Element>, Vec<usize>)>,
+    /// Indices into `points`. A group has the sides on the boundary and the cells all of whose nodes it has.
+    pub groups: BTreeMap<String, Vec<usize>>,
+}
+
+impl MeshArrays {
+    /// The mesh, whose cells are proved as those of a file are. Its numbering has the indices of its points in the arrays.
+    ///
+    /// # Errors
+    /// A length, a place or a coordinate is wrong, the elements do not go together; a cell is tangled or flat, repeats another or is
+    /// folded over its neighbours, unless the gate skips such cells; the gate refuses a cell, or none is left.
+    pub fn build(self, gate: Gate) -> Result<Mesh> {
+        let count = self.check()?;
+        let MeshArrays { dimension, points, blocks, groups } = self;
+        let mut mesh = Mesh::of_points(dimension, points);
+        mesh.numbering = Some(Numbering { origin: NumberOrigin::ArrayPlace, nodes: (0..count as u64).collect() });
+        for (mut element, connectivity) in blocks {
+            if element.dimension() < dimension {
+                element = Arc::new(Element::clone(&element).in_space(dimension));
+            }
+            mesh.blocks.push(CellBlock { element, connectivity });
+        }
+        let boundary = if groups.is_empty() { Vec::new() } else { mesh.boundary() };
+        mesh.groups = groups.into_iter().map(|(name, points)| (name, mesh.group_of(&points, &boundary))).collect();
+        mesh.settle(gate)?;
+        Ok(mesh)
+    }
+
+    /// The number of points.
+    fn check(&self) -> Result<usize> {
+        let d = self.dimension;
+        if !(1..=3).contains(&d) {
+            return Err(Error::expected("dimension", "1, 2 or 3", d));
+        }
+        if self.points.is_empty() || !self.points.len().is_multiple_of(d) {
+            return Err(Error::expected("points", format!("points of {d} coordinates"), self.points.len()));
+        }
+        if let Some(place) = self.points.iter().position(|x| !x.is_finite()) {
+            let key = format!("points[{}]", place / d);
+            return Err(Error::expected(key, "finite coordinates", format!("{:?}", self.points[place])));
+        }
+        check_size(self.points.iter().copied())?;
+        let count = self.points.len() / d;
+        let outside = |list: &[usize]| list.iter().copied().find(|&p| p >= count);
+        let expected = || format!("indices of the {count} points, from 0");
+        let cells = self.blocks.first().map(|(element, _)| element.dimension());
+        let cells = cells.ok_or_else(|| Error::expected("cells", "cells of an element", "none"))?;
+        for (element, connectivity) in &self.blocks {
+            let (key, n) = (format!("cells of {}", element.name), element.nodes());
+            if element.dimension() != cells || cells > d {
+                let expected = format!("elements of one dimension, at most that of the points, {d}");
+                return Err(Error::expected(key, expected, format!("one of dimension {}", element.dimension())));
+            }
+            if connectivity.is_empty() || !connectivity.len().is_multiple_of(n) {
+                return Err(Error::expected(
+                    key,
+                    format!("cells of {n} nodes"),
+                    format!("{} nodes", connectivity.len()),
+                ));
+            }
+            if let Some(found) = outside(connectivity) {
+                return Err(Error::expected(key, expected(), found));
+            }
+        }
+        for (name, points) in &self.groups {
+            if let Some(found) = outside(points) {
+                return Err(Error::expected(format!("groups.{name}"), expected(), found));
+            }
+        }
+        Ok(count)
+    }
+}
+
+impl Mesh {
+    /// The points of each side that belongs to one cell alone.
+    fn boundary(&self) -> Vec<Vec<usize>> {
+        let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
+        let mut boundary = Vec::new();
+        Alike::of(self.side_indices(), points).each(points, |sides| {
+            if let [index] = sides {
+                boundary.push(sorted(&self.side_nodes(index)));
+            }
+        });
+        boundary
+    }
+
+    /// The group of these points, and of the sides on the boundary and the cells that have no others.
+    fn group_of(&self, points: &[usize], boundary: &[Vec<usize>]) -> Group {
+        let mut is_in = vec![false; self.point_count()];
+        points.iter().for_each(|&p| is_in[p] = true);
+        let has = |nodes: &[usize]| nodes.iter().all(|&p| is_in[p]);
+        Group {
+            points: (0..is_in.len()).filter(|&p| is_in[p]).collect(),
+            sides: boundary.iter().filter(|side| has(side)).cloned().collect(),
+            edges: Vec::new(),
+            cells: self.cell_indices().filter(|cell| has(self.cell_nodes(*cell))).collect(),
+        }
+    }
+}

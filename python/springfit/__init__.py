@@ -1,0 +1,32 @@
+"""Mass-spring models that answer like finite elements.
+
+>>> import numpy as np, springfit as sf
+>>> mesh = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[4, 4, 4])
+>>> net = sf.fit(mesh, sf.Material(young=1e4, poisson=0.3))
+>>> net.springs.shape[1], net.status
+(2, 'fitted')
+
+Lengths are in metres, forces in newtons, stresses in pascals, masses in kilograms.
+"""
+
+from ._core import Element, SpringfitError, __version__, shipped_elements
+from .material import Material
+from .mesh import Mesh
+from .network import Network, fit, stiffness
+from .report import Report, run
+from .sweep import sweep
+
+__all__ = [
+    "Element",
+    "Material",
+    "Mesh",
+    "Network",
+    "Report",
+    "SpringfitError",
+    "__version__",
+    "fit",
+    "run",
+    "shipped_elements",
+    "stiffness",
+    "sweep",
+]

@@ -1,0 +1,39 @@
+"""Progress of long work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import contextmanager
+from typing import Any
+
+
+@contextmanager
+def listener(progress: "bool | Callable[[str, int, int], Any]"):
+    """What is told of each step: nothing, the caller's function, or a bar of ``tqdm``; without that, nothing."""
+    if callable(progress):
+        yield progress
+        return
+    if not progress:
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        yield None
+        return
+    bar = None
+
+    def told(stage: str, done: int, total: int) -> None:
+        nonlocal bar
+        if bar is None or bar.desc.rstrip(": ") != stage:
+            if bar is not None:
+                bar.close()
+            bar = tqdm(total=total, desc=stage)
+        bar.total = total
+        bar.update(done - bar.n)
+
+    try:
+        yield told
+    finally:
+        if bar is not None:
+            bar.close()

@@ -1,0 +1,212 @@
+"""Fits, and the networks of springs that they give."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._progress import listener
+from .material import Material
+from .mesh import Mesh, failure, matrix
+
+
+def fit(
+    mesh: Mesh,
+    material: Material,
+    objective: str = "exact",
+    *,
+    springs: "list[str] | None" = None,
+    progress: "bool | Callable[[str, int, int], Any]" = False,
+    **keys: Any,
+) -> "Network":
+    """Fits the springs of every cell, and puts them together.
+
+    Args:
+        mesh: The body.
+        material: What it is made of.
+        objective: "exact" (the default: the network is the finite element), "frobenius", "offdiag", "modal", "spectral",
+            "divergence", "sampled", or a published method.
+        springs: Names of spring groups; all that are not optional, if None.
+        progress: True shows a bar (by ``tqdm`` where it is installed); or a function of (stage, done, total).
+        **keys: The other keys of a ``[[fit]]`` in a scene, such as ``nonnegative=True`` or ``volume="patches"``.
+
+    Returns:
+        The network, whose points are those of the mesh.
+
+    Raises:
+        SpringfitError: A key or a value is wrong, or a cell cannot be fitted.
+    """
+    entry = {"objective": objective, "springs": springs, **keys}
+    with listener(progress) as told:
+        return Network(_core.fit(mesh._core, material, entry, told), mesh)
+
+
+def stiffness(mesh: Mesh, material: Material):
+    """The stiffness matrix of the finite elements, N/m: a ``scipy.sparse.csr_matrix`` of shape (points·dimension, points·dimension).
+
+    The degree of freedom of point p along axis k has the number ``p * dimension + k``.
+    """
+    return _sparse(_core.finite_elements(mesh._core, material), mesh.points.size)
+
+
+def _sparse(triplets, size: int):
+    from scipy.sparse import csr_matrix
+
+    rows, columns, values = triplets
+    return csr_matrix((values, (rows, columns)), shape=(size, size))
+
+
+class Network:
+    """Springs on the points of a mesh, as :func:`fit` gives them."""
+
+    def __init__(self, core: "_core.Network", mesh: Mesh) -> None:
+        self._core, self.mesh = core, mesh
+
+    @property
+    def points(self) -> np.ndarray:
+        """Positions at rest, m, shape (points, dimension)."""
+        return self._core.points
+
+    @property
+    def springs(self) -> np.ndarray:
+        """The two points of each spring between two points, int32, shape (springs, 2)."""
+        return self._core.springs
+
+    @property
+    def constants(self) -> np.ndarray:
+        """k of each such spring, N/m: its energy is ``k (l - rest)²/2``."""
+        return self._core.constants
+
+    @property
+    def rest(self) -> np.ndarray:
+        """The length of each such spring where it does not pull, m; zero for springs of exact networks."""
+        return self._core.rest
+
+    @property
+    def contents(self) -> "list[dict]":
+        """The springs on areas, volumes, angles and other measures c of a few points, gathered by kind: a dictionary of ``kind``, ``points``
+        (springs, points of each), ``constants``, ``rest`` (energy ``k (c - rest)²/2``) and the ``unit`` of the constant. With a ``law``
+        of force its parameters are arrays, and the constant is the slope at rest. Measures at a quadrature point have ``weights`` and
+        ``gradients`` G (springs, points·columns): c is ``weight`` times the content of ``Σ x_a ⊗ G_a``. Patches have ``cells``: lists
+        of (nodes, share), nodes being places in the row of ``points``."""
+        return self._core.others
+
+    @property
+    def masses(self) -> "np.ndarray | None":
+        """kg, shape (points,); None where the material has no density."""
+        return self._core.masses
+
+    @property
+    def statistics(self) -> dict:
+        """Seconds, counts, and the mean and largest ‖R−K‖/‖R‖ of the cells in both norms."""
+        return self._core.statistics
+
+    @property
+    def status(self) -> str:
+        """One word for the state of the fit."""
+        return self._core.statistics["status"]
+
+    @property
+    def notes(self) -> "list[str]":
+        """What a reader must know before the figures are trusted."""
+        return self._core.notes
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def energy(self, x: Any = None) -> float:
+        """The energy at positions ``x`` (points, dimension), J; at rest if None."""
+        return self._core.energy(None if x is None else matrix("x", x, np.float64))
+
+    def forces(self, x: Any = None) -> np.ndarray:
+        """The forces of the springs on the points at positions ``x``, N: minus the gradient of :meth:`energy`."""
+        return self._core.forces(None if x is None else matrix("x", x, np.float64))
+
+    def stiffness(self, x: Any = None):
+        """The tangent stiffness at positions ``x`` (at rest if None), N/m, a ``scipy.sparse.csr_matrix``; numbered as in :func:`stiffness`."""
+        triplets = self._core.stiffness(None if x is None else matrix("x", x, np.float64))
+        return _sparse(triplets, self.points.size)
+
+    def solve(self, *, fix: Any, forces: Any = None, displacement: Any = None) -> np.ndarray:
+        """Small displacements of the network, m, shape (points, dimension).
+
+        Args:
+            fix: What is held: the name of a group, places of points, a flag for each point, or for each component (points, dimension).
+            forces: On the points, N, (points, dimension); none if None.
+            displacement: Of what is held, m, (points, dimension); zero if None.
+
+        Raises:
+            SpringfitError: A motion has no stiffness, or an array has a wrong shape.
+        """
+        shape = self.points.shape
+        held = self._held(fix, shape)
+        zero = np.zeros(shape)
+        given = [zero if array is None else matrix(key, array, np.float64)
+                 for key, array in (("forces", forces), ("displacement", displacement))]
+        u, left, is_stable = self._core.solve(given[0], held, given[1])
+        if not is_stable:
+            import warnings
+
+            warnings.warn("the network is indefinite with these supports: some motion releases energy", stacklevel=2)
+        if not left < 1e-6:
+            import warnings
+
+            warnings.warn(f"the solution leaves {left:.1e} of the forces: the network is nearly a mechanism", stacklevel=2)
+        return u
+
+    def _held(self, fix: Any, shape: tuple) -> np.ndarray:
+        held = np.zeros(shape, dtype=bool)
+        if isinstance(fix, str):
+            groups = self.mesh.groups
+            if fix not in groups:
+                raise failure("fix", "a group of the mesh: " + ", ".join(groups), f'"{fix}"')
+            fix = groups[fix]
+        fix = np.asarray(fix)
+        if fix.dtype == bool and fix.shape in (shape, shape[:1]):
+            held[fix] = True
+        elif fix.ndim == 1 and np.issubdtype(fix.dtype, np.integer) and (fix.size == 0 or 0 <= fix.min() <= fix.max() < shape[0]):
+            held[fix] = True
+        else:
+            expected = f"a group's name, places of points below {shape[0]}, or flags of shape {shape[:1]} or {shape}"
+            raise failure("fix", expected, f"values of type {fix.dtype}, shape {fix.shape}")
+        return held
+
+    def write(self, path: "str | os.PathLike") -> None:
+        """Writes the springs to a ``.vtu``, ``.json`` or ``.csv`` file; nothing is half written."""
+        self._core.write(os.fspath(path))
+
+    def to_pyvista(self):
+        """Lines with their constants and rest lengths, as ``pyvista.PolyData``."""
+        import pyvista
+
+        points = np.zeros((len(self.points), 3))
+        points[:, : self.mesh.dimension] = self.points
+        lines = np.column_stack([np.full(len(self.springs), 2), self.springs])
+        data = pyvista.PolyData(points, lines=lines.ravel())
+        data.cell_data["constant"], data.cell_data["rest"] = self.constants, self.rest
+        return data
+
+    def __repr__(self) -> str:
+        name = self.statistics["name"]
+        others = "".join(f", {len(kind['constants'])} {kind['kind']}" for kind in self.contents)
+        return f"<springfit.Network {name}: {len(self.points)} points, {len(self.springs)} springs{others}>"
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        statistics = self.statistics
+        rows = [("points", len(self.points)), ("springs between two points", len(self.springs))]
+        rows += [(f"{kind['kind']} springs", len(kind["constants"])) for kind in self.contents]
+        rows += [("constants below zero", statistics["negative"])]
+        for norm in ("frobenius", "spectral"):
+            if statistics[norm] is not None:
+                mean, largest = statistics[norm]
+                rows.append((f"‖R−K‖/‖R‖, {norm}: mean, largest", f"{mean:.3g}, {largest:.3g}"))
+        rows += [("fitted in", f"{statistics['seconds']:.3g} s"), ("status", statistics["status"])]
+        body = "".join(f"<tr><th style='text-align:left'>{escape(str(k))}</th><td>{escape(str(v))}</td></tr>" for k, v in rows)
+        notes = "".join(f"<li>{escape(note)}</li>" for note in self.notes)
+        return f"<table><caption>{escape(statistics['name'])}</caption>{body}</table><ul>{notes}</ul>"

@@ -1,0 +1,139 @@
+"""Whole studies: a scene, and what came out of it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._progress import listener
+
+#: The name of the finite elements among the models of a load.
+FINITE_ELEMENTS = ""
+
+
+@dataclass
+class Report:
+    """The outcome of a scene.
+
+    Attributes:
+        record: The report as ``report.json`` has it.
+        displacements: By load and by fit (the finite elements have the name ""), m, shape (points, dimension).
+        files: What was written.
+    """
+
+    record: dict
+    displacements: "dict[str, dict[str, np.ndarray]]" = field(repr=False)
+    files: "list[Path]" = field(default_factory=list)
+
+    @property
+    def notes(self) -> "list[str]":
+        """What a reader must know before the figures are trusted."""
+        return self.record["notes"]
+
+    @property
+    def fits(self):
+        """One row for each fit, a ``pandas.DataFrame``; what is a table itself is left out."""
+        import pandas
+
+        plain = lambda value: not isinstance(value, (dict, list))
+        return pandas.DataFrame([{k: v for k, v in fit.items() if plain(v)} for fit in self.record["fits"]])
+
+    @property
+    def loads(self):
+        """One row for each fit and load, a ``pandas.DataFrame``."""
+        import pandas
+
+        rows = []
+        for fit in self.record["fits"]:
+            for load in fit["loads"]:
+                rows.append({"fit": fit["name"], **{k: v for k, v in load.items() if not isinstance(v, (dict, list))}})
+        return pandas.DataFrame(rows)
+
+    @property
+    def frequencies(self):
+        """One row for each model, a ``pandas.DataFrame``; empty where none were asked for."""
+        import pandas
+
+        return pandas.DataFrame(self.record["frequencies"])
+
+    @property
+    def motion(self):
+        """One row for each model that moved, a ``pandas.DataFrame``; empty without a motion."""
+        import pandas
+
+        return pandas.DataFrame(self.record["motion"])
+
+
+def run(
+    scene: "str | os.PathLike | Mapping[str, Any]",
+    *,
+    set: "Mapping[str, Any] | None" = None,
+    folder: "str | os.PathLike | None" = None,
+    out: "str | os.PathLike | None" = None,
+    progress: "bool | Callable[[str, int, int], Any]" = False,
+) -> Report:
+    """Fits, solves and compares a scene.
+
+    Args:
+        scene: The path of a scene file, or its keys as a dictionary.
+        set: Keys that take the place of those of the scene, by their paths: ``{"material.poisson": 0.45, "fit[0].name": "a"}``.
+        folder: Where the files that a dictionary names are; the current folder if None.
+        out: Where the outputs of the scene are written; nothing is written if None.
+        progress: True shows a bar; or a function of (stage, done, total).
+
+    Raises:
+        SpringfitError: The scene or one of its files is wrong.
+    """
+    if set or isinstance(scene, Mapping):
+        keys, base = (dict(scene), Path(folder or ".")) if isinstance(scene, Mapping) else _read(scene)
+        for path, value in (set or {}).items():
+            keys = _with(keys, path, value)
+    else:
+        keys, base = Path(scene), Path(".")
+    with listener(progress) as told:
+        text, displacements, files = _core.run(keys, base, None if out is None else Path(out), told)
+    return Report(json.loads(text), displacements, [Path(path) for path in files])
+
+
+def _read(path: "str | os.PathLike") -> "tuple[dict, Path]":
+    try:
+        import tomllib
+    except ImportError:  # Python 3.10
+        import tomli as tomllib
+
+    path = Path(path)
+    with open(path, "rb") as file:
+        keys = tomllib.load(file)
+    keys.setdefault("title", path.stem)
+    return keys, path.parent
+
+
+def _with(keys: Any, path: str, value: Any) -> Any:
+    """A copy of nested dictionaries and lists in which the entry at a path is another."""
+    from .mesh import failure
+
+    steps: "list[str | int]" = []
+    for part in path.split("."):
+        name, *places = part.replace("]", "").split("[")
+        steps += ([name] if name else []) + [int(place) for place in places]
+
+    def placed(entry: Any, rest: "list[str | int]") -> Any:
+        if not rest:
+            return value
+        first, *rest = rest
+        if isinstance(first, int):
+            if not isinstance(entry, list) or not 0 <= first < len(entry):
+                raise failure(path, "a place in a list", f"[{first}]")
+            return [placed(e, rest) if i == first else e for i, e in enumerate(entry)]
+        if entry is not None and not isinstance(entry, Mapping):
+            raise failure(path, "a table of keys", type(entry).__name__)
+        return {**(entry or {}), first: placed((entry or {}).get(first), rest)}
+
+    return placed(keys, steps)

@@ -1,0 +1,69 @@
+//! `fit` and the finite elements of the same body.
+
+use crate::arrays::list;
+use crate::error::raised;
+use crate::mesh::Mesh;
+use crate::network::{Network, Triplets};
+use crate::progress::{self, apart};
+use crate::value::table;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use springfit::error::{Error, Result};
+use springfit::material::{Material, Plane};
+use springfit::model;
+use springfit::study::{BodyConstants, FitEntry, Reference, fit_mesh, point_masses};
+
+/// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²).
+#[derive(FromPyObject)]
+pub struct Constants {
+    young: f64,
+    poisson: f64,
+    plane: Option<String>,
+    thickness: Option<f64>,
+    area: Option<f64>,
+    density: Option<f64>,
+}
+
+impl Constants {
+    fn of(&self, mesh: &Mesh) -> Result<Material> {
+        let &Constants { young, poisson, thickness, area, .. } = self;
+        let plane = self.plane.as_deref().map(|name| match name {
+            "stress" => Ok(Plane::Stress),
+            "strain" => Ok(Plane::Strain),
+            other => Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
+        });
+        BodyConstants { young, poisson, plane: plane.transpose()?, thickness, area }.material(&mesh.0)
+    }
+}
+
+/// Fits the springs of every cell; `keys` are those of a `[[fit]]` of a scene.
+#[pyfunction]
+#[pyo3(signature = (mesh, material, keys, progress=None))]
+pub fn fit(
+    py: Python,
+    mesh: &Mesh,
+    material: Constants,
+    keys: &Bound<PyDict>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Network> {
+    let entry: FitEntry = table(keys)?
+        .try_into()
+        .map_err(|error: toml::de::Error| raised(py, Error::new(error.message().to_string())))?;
+    let (density, constants) = (material.density, material);
+    progress::run(py, progress, |told| {
+        entry.check()?;
+        let named = entry.fits(std::path::Path::new(""))?.remove(0);
+        let material = constants.of(mesh)?;
+        let fit = fit_mesh(&mesh.0, material, &Reference::default(), &named, told)?;
+        let masses = density.map(|density| point_masses(&mesh.0, density, material)).transpose()?;
+        Ok(Network::new(mesh.0.clone(), material, masses, fit))
+    })
+}
+
+/// The stiffness of the finite elements, in triplets of both triangles.
+#[pyfunction]
+pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: Constants) -> PyResult<Triplets<'py>> {
+    let entries = apart(py, || Ok(model::finite_elements(&mesh.0, material.of(mesh)?.moduli())));
+    let entries = entries.map_err(|error| raised(py, error))?;
+    Ok(crate::network::triplets(py, &entries, list))
+}

@@ -1,0 +1,27 @@
+//! The module `springfit._core`: what Python calls. Everything that needs no other program's types is in the Python files beside it.
+
+mod arrays;
+mod element;
+mod error;
+mod fit;
+mod mesh;
+mod network;
+mod progress;
+mod study;
+mod value;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _core(module: &Bound<PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("SpringfitError", module.py().get_type::<error::SpringfitError>())?;
+    module.add_class::<element::Element>()?;
+    module.add_class::<mesh::Mesh>()?;
+    module.add_class::<network::Network>()?;
+    module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
+    module.add_function(wrap_pyfunction!(study::run, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,251 @@
+//! `Network`.
+
+use crate::arrays::{list, matrix, vectors};
+use crate::error::{invalid, raised};
+use crate::progress::apart;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use springfit::element::SpringKind;
+use springfit::fit::Spread;
+use springfit::material::Material;
+use springfit::mesh::Mesh;
+use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
+use springfit::report::{self, NetworkFile, NetworkFormat};
+use springfit::solve::System;
+use springfit::springs::Measure;
+use springfit::study::{FitOutcome, Outcome};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The springs of a fit on the points of its mesh.
+#[pyclass(frozen, module = "springfit._core")]
+pub struct Network {
+    mesh: Arc<Mesh>,
+    outcome: Outcome,
+}
+
+/// Rows, columns and values of a matrix.
+pub type Triplets<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
+
+impl Network {
+    pub fn new(mesh: Arc<Mesh>, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Network {
+        let outcome = Outcome::of_fit(String::new(), Mesh::clone(&mesh), material, masses, fit);
+        Network { mesh, outcome }
+    }
+
+    fn fit(&self) -> &FitOutcome {
+        &self.outcome.fits[0]
+    }
+
+    fn network(&self) -> &model::Network {
+        &self.fit().network
+    }
+
+    /// The positions that are given, or those at rest.
+    fn positions(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Vec<f64>> {
+        let shape = [self.mesh.point_count(), self.mesh.dimension];
+        x.map_or_else(|| Ok(self.mesh.points.clone()), |x| vectors(py, "x", &x, shape))
+    }
+}
+
+#[pymethods]
+impl Network {
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        matrix(py, self.mesh.points.clone(), self.mesh.dimension)
+    }
+
+    #[getter]
+    fn springs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        matrix(py, self.network().lengths.iter().flat_map(|s| s.points.map(|p| p as i32)).collect(), 2)
+    }
+
+    #[getter]
+    fn constants<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        list(py, self.network().lengths.iter().map(|s| s.constant).collect())
+    }
+
+    #[getter]
+    fn rest<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        list(py, self.network().lengths.iter().map(|s| s.rest).collect())
+    }
+
+    #[getter]
+    fn masses<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.outcome.masses.clone().map(|masses| list(py, masses))
+    }
+
+    /// The springs on other measures than lengths, gathered by kind, number of points and law.
+    #[getter]
+    fn others<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let mut lists: BTreeMap<(&str, usize, Option<&str>), Vec<&MeasureSpring>> = BTreeMap::new();
+        for spring in &self.network().others {
+            let law = spring.law.as_deref().map(|law| &law.text[..]);
+            lists.entry((spring.kind.name(), spring.points.len(), law)).or_default().push(spring);
+        }
+        lists.into_values().map(|springs| record(py, &springs, self.mesh.dimension)).collect()
+    }
+
+    /// The energy at positions `x`, J.
+    #[pyo3(signature = (x=None))]
+    fn energy(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<f64> {
+        let x = self.positions(py, x)?;
+        let energy = apart(py, || self.network().energy(&x));
+        energy.ok_or_else(|| invalid(py, "x", "positions where the springs have an energy", "others"))
+    }
+
+    /// The forces of the springs on the points at positions `x`, N.
+    #[pyo3(signature = (x=None))]
+    fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let x = self.positions(py, x)?;
+        let mut slopes = vec![0.0; x.len()];
+        if !apart(py, || self.network().forces(&x, &mut slopes)) {
+            return Err(invalid(py, "x", "positions where the springs have a force", "others"));
+        }
+        // The springs pull against the energy's slope.
+        slopes.iter_mut().for_each(|slope| *slope = 0.0 - *slope);
+        Ok(matrix(py, slopes, self.mesh.dimension))
+    }
+
+    /// The tangent stiffness at positions `x`, in triplets of both triangles.
+    #[pyo3(signature = (x=None))]
+    fn stiffness<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Triplets<'py>> {
+        let at_rest = x.is_none();
+        let x = self.positions(py, x)?;
+        let entries = apart(py, || match at_rest {
+            true => Some(self.network().stiffness(&x)),
+            false => self.network().respond(&x).map(|response| response.tangent),
+        });
+        let entries =
+            entries.ok_or_else(|| invalid(py, "x", "positions where the springs have a tangent", "others"))?;
+        Ok(triplets(py, &entries, list))
+    }
+
+    /// Small displacements under `forces`, where `held` says which components are `prescribed`; and what is left of the forces.
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        forces: PyReadonlyArray2<f64>,
+        held: PyReadonlyArray2<bool>,
+        prescribed: PyReadonlyArray2<f64>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64, bool)> {
+        let shape = [self.mesh.point_count(), self.mesh.dimension];
+        let forces = vectors(py, "forces", &forces, shape)?;
+        let prescribed = vectors(py, "displacement", &prescribed, shape)?;
+        if held.shape() != shape {
+            return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
+        }
+        let held = held.as_array();
+        let support = Support { prescribed: held.iter().zip(prescribed).map(|(held, u)| held.then_some(u)).collect() };
+        if !model::unheld_bodies(&self.mesh, &support).is_empty() {
+            return Err(invalid(py, "fix", "supports that hold every piece of the mesh", "one that can move as it is"));
+        }
+        let solved = apart(py, || {
+            let system = System::new(&self.network().stiffness(&self.mesh.points), &support)?;
+            let factor = system.factorize()?;
+            Ok(factor.map(|factor| (system.solve(&factor, &forces), factor.is_positive_definite())))
+        });
+        let solved = solved.map_err(|error| raised(py, error))?;
+        let expected = "supports that hold the network, and springs that resist every motion";
+        let ((u, left), is_stable) =
+            solved.ok_or_else(|| invalid(py, "fix", expected, "a motion without stiffness"))?;
+        Ok((matrix(py, u, self.mesh.dimension), left, is_stable))
+    }
+
+    /// Writes the springs: .vtu, .json or .csv.
+    fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
+        let written = apart(py, || {
+            let format = NetworkFormat::of(&path)?;
+            springfit::check_file(&path)?;
+            let notes = report::notes(&self.outcome);
+            let masses = self.outcome.masses.as_deref();
+            let file = NetworkFile { mesh: &self.mesh, masses, fit: self.fit(), loads: &[], notes: &notes };
+            format.write(&path, &file)
+        });
+        written.map_err(|error| raised(py, error))
+    }
+
+    /// What is said of the fit: one sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        report::notes(&self.outcome)
+    }
+
+    /// What the fit cost and how far its matrices are from those of the finite elements.
+    #[getter]
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (fit, record) = (self.fit(), PyDict::new(py));
+        record.set_item("name", &fit.fit.name)?;
+        record.set_item("status", fit.status())?;
+        record.set_item("seconds", fit.seconds)?;
+        record.set_item("seconds_assembly", fit.seconds_assembly)?;
+        record.set_item("undetermined_cells", fit.deficient)?;
+        record.set_item("unreached_cells", fit.unreached)?;
+        record.set_item("reused_cells", fit.reused)?;
+        record.set_item("negative", fit.network.negative())?;
+        for (key, spread) in [("frobenius", &fit.frobenius), ("spectral", &fit.spectral)] {
+            let pair = |spread: &Spread| (spread.mean, spread.max);
+            record.set_item(key, spread.as_ref().map(pair))?;
+        }
+        Ok(record)
+    }
+
+    fn __len__(&self) -> usize {
+        self.network().len()
+    }
+}
+
+/// Both triangles of entries of the lower one.
+pub fn triplets<'py>(
+    py: Python<'py>,
+    entries: &Entries,
+    list: impl Fn(Python<'py>, Vec<i64>) -> Bound<'py, PyArray1<i64>>,
+) -> Triplets<'py> {
+    let across = || entries.iter().filter(|entry| entry.row != entry.col);
+    let rows = entries.iter().map(|e| e.row as i64).chain(across().map(|e| e.col as i64)).collect();
+    let columns = entries.iter().map(|e| e.col as i64).chain(across().map(|e| e.row as i64)).collect();
+    let values = entries.iter().map(|e| e.val).chain(across().map(|e| e.val)).collect();
+    (list(py, rows), list(py, columns), crate::arrays::list(py, values))
+}
+
+/// Springs of one kind with as many points each.
+fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyResult<Bound<'py, PyDict>> {
+    let (record, n) = (PyDict::new(py), springs[0].points.len());
+    record.set_item("kind", springs[0].kind.name())?;
+    record.set_item("unit", SpringKind::properties(springs[0].kind).unit)?;
+    record
+        .set_item("points", matrix(py, springs.iter().flat_map(|s| s.points.iter().map(|&p| p as i32)).collect(), n))?;
+    record.set_item("constants", list(py, springs.iter().map(|s| s.constant).collect()))?;
+    record.set_item("rest", list(py, springs.iter().map(|s| s.rest).collect()))?;
+    if let Some(law) = &springs[0].law {
+        record.set_item("law", &law.text)?;
+        for (i, name) in law.parameters.iter().enumerate() {
+            record.set_item(name, list(py, springs.iter().map(|s| s.parameters[i]).collect()))?;
+        }
+    }
+    let of_point = |spring: &MeasureSpring| match &spring.measure {
+        Measure::PointContent(element, q) => Some((element.tabulation.clone(), *q)),
+        Measure::Span(table) => Some((springfit::element::Tabulation::clone(table), 0)),
+        _ => None,
+    };
+    if of_point(springs[0]).is_some() {
+        let tables: Vec<_> = springs.iter().filter_map(|spring| of_point(spring)).collect();
+        let own = tables.first().map_or(d, |(table, _)| table.dimension);
+        let gradients = tables.iter().flat_map(|(t, q)| {
+            let size = t.nodes * t.dimension;
+            t.gradients[q * size..(q + 1) * size].to_vec()
+        });
+        record.set_item("gradients", matrix(py, gradients.collect(), n * own))?;
+        record.set_item("weights", list(py, tables.iter().map(|(t, q)| t.point_weight(*q)).collect()))?;
+    }
+    if let Measure::Patch(_) = &springs[0].measure {
+        let cells = springs.iter().map(|spring| match &spring.measure {
+            Measure::Patch(patch) => patch.cells.clone(),
+            _ => Vec::new(),
+        });
+        record.set_item("cells", cells.collect::<Vec<_>>())?;
+    }
+    Ok(record)
+}

@@ -1,0 +1,158 @@
+"""Meshes from arrays, files and other packages, and what is refused."""
+
+import numpy as np
+import pytest
+
+import springfit as sf
+
+SOLIDS = ["tet4", "tet10", "hex8", "hex20", "hex27", "wedge6", "wedge15", "pyramid5", "pyramid13"]
+PLANES = ["tri3", "tri6", "quad4", "quad8", "quad9"]
+
+
+def box(name):
+    d = sf.Element(name).dimension
+    return sf.Mesh.box(name, size=[1.0, 0.8, 0.7][:d], cells=[3, 2, 2][:d])
+
+
+def fitted(mesh, **keys):
+    return sf.fit(mesh, sf.Material(young=1e4, poisson=0.3), **keys)
+
+
+@pytest.mark.parametrize("name", SOLIDS + PLANES)
+def test_arrays_give_the_mesh_again(name):
+    mesh = box(name)
+    again = sf.Mesh(mesh.points, dict(mesh.cells), mesh.groups)
+    assert np.array_equal(again.points, mesh.points)
+    assert all(np.array_equal(a, b) for (_, a), (_, b) in zip(again.cells, mesh.cells))
+    assert {k: v.tolist() for k, v in again.groups.items()} == {k: v.tolist() for k, v in mesh.groups.items()}
+    assert np.array_equal(fitted(again).constants, fitted(mesh).constants)
+
+
+@pytest.mark.parametrize("name", SOLIDS + PLANES)
+def test_meshio_has_the_same_cells(name):
+    meshio = pytest.importorskip("meshio")
+    mesh, element = box(name), sf.Element(name)
+    number, order = element.vtk
+    kind = {v: k for k, v in sf._convert._MESHIO.items()}[number]
+    nodes = np.empty_like(mesh.cells[0][1])
+    nodes[:, order] = mesh.cells[0][1]
+    points = np.zeros((len(mesh.points), 3))
+    points[:, : mesh.dimension] = mesh.points
+    if kind not in meshio._common.num_nodes_per_cell or kind not in meshio._mesh.topological_dimension:
+        pytest.skip(f"meshio holds no {kind}")
+    other = meshio.Mesh(points, [(kind, nodes)], point_sets={"held": np.arange(4)})
+    again = sf.Mesh.from_meshio(other)
+    assert np.array_equal(again.cells[0][1], mesh.cells[0][1])
+    assert again.dimension == mesh.dimension and again.groups["held"].tolist() == [0, 1, 2, 3]
+
+
+def test_meshio_reads_the_groups_of_gmsh(scenes):
+    meshio = pytest.importorskip("meshio")
+    own = sf.Mesh.read(scenes / "meshes" / "cube_tet.msh")
+    other = sf.Mesh.from_meshio(meshio.read(scenes / "meshes" / "cube_tet.msh"))
+    assert set(other.groups) == set(own.groups) and len(own.groups) > 1
+    assert len(other.points) == len(own.points)
+    for name, points in own.groups.items():
+        places = {tuple(p) for p in own.points[points]}
+        assert {tuple(p) for p in other.points[other.groups[name]]} == places
+
+
+@pytest.mark.parametrize("kind", ["MeshTri1", "MeshQuad1", "MeshTet1", "MeshHex1"])
+def test_stiffness_equals_scikit_fem(kind):
+    skfem = pytest.importorskip("skfem")
+    from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+    rng = np.random.default_rng(1)
+    mesh = getattr(skfem, kind)().refined(2)
+    # No cell is a box; those of planes and bricks stay what they are.
+    inner = mesh.interior_nodes()
+    p = mesh.p.copy()
+    p[:, inner] += 0.04 * rng.uniform(-1, 1, p[:, inner].shape)
+    mesh = getattr(skfem, kind)(p, mesh.t)
+    element = {"MeshTri1": "ElementTriP1", "MeshQuad1": "ElementQuad1", "MeshTet1": "ElementTetP1", "MeshHex1": "ElementHex1"}[kind]
+    # The same rule: two points along each direction of a brick.
+    basis = skfem.Basis(mesh, skfem.ElementVector(getattr(skfem, element)()), intorder=3)
+    young, poisson = 1e4, 0.3
+    lam, mu = lame_parameters(young, poisson)
+    theirs = linear_elasticity(lam, mu).assemble(basis)
+    ours_mesh = sf.Mesh.from_skfem(mesh)
+    plane = "strain" if mesh.dim() == 2 else None
+    ours = sf.stiffness(ours_mesh, sf.Material(young, poisson, plane=plane))
+    # Both number degrees of freedom node by node.
+    order = basis.nodal_dofs.T.ravel()
+    theirs = theirs[order][:, order]
+    assert abs(ours - theirs).max() <= 1e-12 * abs(theirs).max()
+
+
+def test_trimesh_is_a_membrane():
+    trimesh = pytest.importorskip("trimesh")
+    mesh = sf.Mesh.from_trimesh(trimesh.creation.icosphere(subdivisions=2))
+    with pytest.raises(sf.SpringfitError) as error:
+        fitted(mesh)
+    assert error.value.key == "thickness"
+    net = sf.fit(mesh, sf.Material(1e4, 0.3, thickness=1e-3))
+    assert len(net.springs) > 0 and net.points.shape[1] == 3
+
+
+def test_pyvista_both_ways():
+    pyvista = pytest.importorskip("pyvista")
+    grid = pyvista.ImageData(dimensions=(4, 3, 3)).cast_to_unstructured_grid()
+    grid = grid.cast_to_unstructured_grid().triangulate()
+    mesh = sf.Mesh.from_pyvista(grid)
+    assert mesh.cells[0][0] == "tet4"
+    lines = fitted(mesh).to_pyvista()
+    assert lines.n_lines == len(fitted(mesh).springs) and "constant" in lines.cell_data
+
+
+def test_points_without_a_cell_keep_numbers():
+    points = [[9, 9, 9], [0, 0, 0], [1, 0, 0], [0, 1, 0], [8, 8, 8], [0, 0, 1]]
+    mesh = sf.Mesh(points, {"tet4": [[1, 2, 3, 5]]}, {"a": [0, 5]})
+    assert mesh.numbers.tolist() == [1, 2, 3, 5] and mesh.groups["a"].tolist() == [3]
+    assert mesh.quality["unused_points"] == 2
+
+
+TET = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+
+
+@pytest.mark.parametrize(
+    "points, cells, groups, key",
+    [
+        (TET, {"tet4": [[0, 1, 2]]}, {}, "cells of tet4"),
+        (TET, {"tet4": [0, 1, 2, 3]}, {}, "cells of tet4"),
+        (TET, {"tet4": [[0, 1, 2, 4]]}, {}, "cells of tet4"),
+        (TET, {"tet4": [[0, 1, 2, -1]]}, {}, "cells of tet4"),
+        (TET, {"tet4": [[0.0, 1, 2, 3]]}, {}, "cells of tet4"),
+        (TET, {"tet4": np.zeros((0, 4), int)}, {}, "cells of tet4"),
+        (TET, {"tri3": [[0, 1, 2]], "tet4": [[0, 1, 2, 3]]}, {}, "cells of tet4"),
+        (TET, {}, {}, "cells"),
+        (TET, {"tet5": [[0, 1, 2, 3]]}, {}, "element"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": [4]}, "groups.a"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": [-1]}, "groups.a"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": [[0]]}, "groups.a"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": ["x"]}, "groups.a"),
+        (np.full((4, 3), np.nan), {"tet4": [[0, 1, 2, 3]]}, {}, "points[0]"),
+        (np.full((4, 3), 1e300), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (np.ones(12), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (np.ones((4, 4)), {"tet4": [[0, 1, 2, 3]]}, {}, "dimension"),
+        (np.array(TET, dtype=complex), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (np.array(TET, dtype=object), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (np.zeros((4, 3)), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (TET, {"tet4": [[0, 1, 2, 2]]}, {}, "tet4 cell 1 at [0.0, 0.0, 0.0] m"),
+        (TET, {"tet4": [[0, 1, 2, 3], [1, 0, 2, 3]]}, {}, "cells"),
+    ],
+)
+def test_wrong_arrays_are_named(points, cells, groups, key):
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.Mesh(points, cells, groups)
+    assert error.value.key == key and error.value.kind in {"invalid", "io", "unsupported"}, str(error.value)
+
+
+@pytest.mark.parametrize("dtype", [np.int32, np.int64, np.uint8, np.uint64])
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_types_and_orders_of_arrays_do_not_matter(dtype, order):
+    mesh = box("hex8")
+    cells = np.array(mesh.cells[0][1], dtype=dtype, order=order)
+    points = np.array(mesh.points, order=order)
+    assert np.array_equal(fitted(sf.Mesh(points, {"hex8": cells})).constants, fitted(mesh).constants)
+    single = sf.Mesh(points.astype(np.float32), {"hex8": cells})
+    assert np.array_equal(single.points, points.astype(np.float32).astype(float))

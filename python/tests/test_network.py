@@ -1,0 +1,182 @@
+"""Networks: their arrays are the energy, its slope and its curvature."""
+
+import numpy as np
+import pytest
+
+import springfit as sf
+
+MATERIAL = sf.Material(young=1e4, poisson=0.3, density=1000.0)
+
+
+def networks():
+    for name, keys in [
+        ("tet4", {}),
+        ("hex8", {}),
+        ("tri3", {}),
+        ("quad4", {"objective": "divergence"}),
+        ("tet4", {"objective": "frobenius"}),
+        ("hex8", {"objective": "offdiag", "nonnegative": True}),
+        ("tet4", {"volume": "patches"}),
+    ]:
+        d = sf.Element(name).dimension
+        mesh = sf.Mesh.box(name, size=[1.0, 0.8, 0.7][:d], cells=[3, 2, 2][:d])
+        yield f"{name} {keys}", sf.fit(mesh, MATERIAL, **keys)
+
+
+@pytest.mark.parametrize("title, net", list(networks()))
+def test_forces_and_stiffness_are_derivatives(title, net):
+    rng = np.random.default_rng(2)
+    x = net.points + 0.02 * rng.uniform(-1, 1, net.points.shape)
+    step = 1e-6
+    for _ in range(3):
+        v = rng.uniform(-1, 1, x.shape)
+        slope = (net.energy(x + step * v) - net.energy(x - step * v)) / (2 * step)
+        assert slope == pytest.approx(-np.sum(net.forces(x) * v), rel=1e-6, abs=1e-6 * abs(net.forces(x)).max())
+        bent = -(net.forces(x + step * v) - net.forces(x - step * v)) / (2 * step)
+        assert np.allclose(net.stiffness(x) @ v.ravel(), bent.ravel(), rtol=1e-5, atol=1e-5 * abs(bent).max())
+
+
+@pytest.mark.parametrize("title, net", list(networks()))
+def test_arrays_hold_the_energy(title, net):
+    """The energy from the arrays alone, as a program that reads them would reckon it."""
+    rng = np.random.default_rng(3)
+    x = net.points + 0.05 * rng.uniform(-1, 1, net.points.shape)
+    length = np.linalg.norm(x[net.springs[:, 1]] - x[net.springs[:, 0]], axis=1)
+    energy = np.sum(net.constants * (length - net.rest) ** 2 / 2)
+    for kind in net.contents:
+        corners = x[kind["points"]]
+        if "gradients" in kind:
+            g = kind["gradients"].reshape(*kind["points"].shape, -1)
+            c = kind["weights"] * np.linalg.det(np.einsum("sak,sal->skl", corners, g))
+        elif "cells" in kind:
+            content = lambda nodes, row: abs(np.linalg.det(x[row[nodes[1:]]] - x[row[nodes[0]]])) / [1, 1, 2, 6][len(nodes) - 1]
+            c = np.array([sum(s * content(list(n), row) for n, s in cells) for cells, row in zip(kind["cells"], kind["points"])])
+        else:
+            edges = corners[:, 1:] - corners[:, :1]
+            c = np.linalg.det(edges) / [1, 1, 2, 6][edges.shape[1]] if kind["kind"] != "angle" else None
+            if kind["kind"] in ("area", "volume") and kind["points"].shape[1] != edges.shape[2] + 1:
+                pytest.skip("the content of a cell that is no simplex needs its quadrature")
+        # Linear springs on content; those of exact networks have a force at rest that balances the others.
+        if "law" in kind:
+            pytest.skip(f"a law of force: {kind['law']}")
+        energy += np.sum(kind["constants"] * (c - kind["rest"]) ** 2 / 2)
+    assert energy == pytest.approx(net.energy(x), rel=1e-12)
+
+
+def test_an_exact_network_is_the_finite_element():
+    rng = np.random.default_rng(4)
+    mesh = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[4, 4, 4])
+    x = mesh.points + 0.03 * rng.uniform(-1, 1, mesh.points.shape)
+    mesh = sf.Mesh(x, dict(mesh.cells), mesh.groups)
+    net, R = sf.fit(mesh, MATERIAL), sf.stiffness(mesh, MATERIAL)
+    assert abs(net.stiffness() - R).max() <= 1e-13 * abs(R).max()
+    assert np.abs(net.forces()).max() <= 1e-12 * abs(R).max()
+    f = np.zeros_like(net.points)
+    f[mesh.groups["zmax"], 2] = 1.0
+    u = net.solve(fix="zmin", forces=f)
+    from scipy.sparse.linalg import spsolve
+
+    free = np.ones(f.shape, bool)
+    free[mesh.groups["zmin"]] = False
+    free = free.ravel()
+    known = spsolve(R.tocsc()[free][:, free], f.ravel()[free])
+    assert np.allclose(u.ravel()[free], known, rtol=1e-9, atol=1e-12 * abs(known).max())
+    edges = x[mesh.cells[0][1]]
+    volume = np.sum(np.linalg.det(edges[:, 1:] - edges[:, :1])) / 6
+    assert net.masses.sum() == pytest.approx(1000.0 * volume)
+
+
+def test_files_and_records(tmp_path):
+    import json
+
+    net = sf.fit(sf.Mesh.box("tet4", size=[1, 1, 1], cells=[2, 2, 2]), MATERIAL, "offdiag")
+    net.write(tmp_path / "net.json")
+    record = json.loads((tmp_path / "net.json").read_text())
+    assert [s["constant"] for s in record["springs"]] == net.constants.tolist()
+    assert [s["points"] for s in record["springs"]] == net.springs.tolist()
+    assert "offdiag" in net._repr_html_() and "springs" in repr(net)
+    with pytest.raises(sf.SpringfitError) as error:
+        net.write(tmp_path / "net.xyz")
+    assert error.value.kind == "unsupported" and not (tmp_path / "net.xyz").exists()
+
+
+@pytest.mark.parametrize(
+    "keys, key",
+    [
+        ({"objective": "exakt"}, "objective"),
+        ({"objective": "frobenius", "higher": 0.5}, "higher"),
+        ({"objective": "exact", "volume": "everywhere"}, "volume"),
+        ({"objective": "exact", "volumes": "points"}, "volumes"),
+        ({"objective": "offdiag", "springs": ["edge", "diagonal"]}, "springs"),
+        ({"objective": "offdiag", "tied": object()}, "tied"),
+        ({"objective": "offdiag", "tied": 2**70}, "tied"),
+        ({"objective": "whole"}, None),
+        ({"objective": "sampled"}, None),
+    ],
+)
+def test_wrong_keys_are_named(keys, key):
+    mesh = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1])
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.fit(mesh, MATERIAL, **keys)
+    assert key is None or key in str(error.value.key), str(error.value)
+
+
+@pytest.mark.parametrize(
+    "material", [sf.Material(-1, 0.3), sf.Material(1e4, 1.1), sf.Material(1e4, float("nan")), sf.Material(1e4, 0.3, plane="both")]
+)
+def test_wrong_materials_are_refused(material):
+    with pytest.raises(sf.SpringfitError):
+        sf.fit(sf.Mesh.box("quad4", size=[1, 1], cells=[1, 1]), material)
+
+
+def test_wrong_positions_and_supports_are_refused():
+    net = sf.fit(sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1]), MATERIAL)
+    for call, key in [
+        (lambda: net.energy(np.zeros((3, 3))), "x"),
+        (lambda: net.forces(np.full(net.points.shape, np.inf)), "x[0]"),
+        (lambda: net.solve(fix="left"), "fix"),
+        (lambda: net.solve(fix=[99]), "fix"),
+        (lambda: net.solve(fix=[0]), "fix"),
+        (lambda: net.solve(fix="zmin", forces=np.zeros(3)), "forces"),
+    ]:
+        with pytest.raises(sf.SpringfitError) as error:
+            call()
+        assert error.value.key == key, str(error.value)
+
+
+def test_progress_is_told_and_may_end_the_work():
+    mesh = sf.Mesh.box("hex8", size=[1, 1, 1], cells=[30, 30, 30])
+    x = mesh.points + 0.005 * np.random.default_rng(5).uniform(-1, 1, mesh.points.shape)
+    mesh = sf.Mesh(x, dict(mesh.cells))
+    seen = []
+    sf.fit(mesh, MATERIAL, "offdiag", progress=lambda *step: seen.append(step))
+    assert seen and all(0 <= done <= total for _, done, total in seen)
+
+    def stop(*step):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sf.fit(mesh, MATERIAL, "offdiag", progress=stop)
+    # The module works as before.
+    assert len(sf.fit(mesh, MATERIAL, "offdiag")) > 0
+
+
+def test_the_lock_is_released():
+    import threading
+    import time
+
+    mesh = sf.Mesh.box("hex8", size=[1, 1, 1], cells=[12, 12, 12])
+    x = mesh.points + 0.01 * np.random.default_rng(6).uniform(-1, 1, mesh.points.shape)
+    mesh, ticks, done = sf.Mesh(x, dict(mesh.cells)), [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    sf.fit(mesh, MATERIAL, "spectral")
+    done.set()
+    thread.join()
+    assert len(ticks) > 10
