@@ -66,7 +66,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     whole.cases = &cases;
     whole.displacements = match (&large, &body) {
         (Some(large), _) => large.complete().collect(),
-        (None, Some(body)) => body.displacements.iter().map(Some).collect(),
+        (None, Some(body)) => body.displacements().map(Some).collect(),
         (None, None) => Vec::new(),
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
@@ -105,7 +105,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
                 let answers = body.compare(&mesh, &cases, &fit.network, compared, progress).map_err(in_scene)?;
                 (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
             }
-            (body.displacements, vec![None; cases.len()], None)
+            (body.into_displacements(), vec![None; cases.len()], None)
         }
     };
     let is_linear = energy.is_none();

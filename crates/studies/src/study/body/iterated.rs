@@ -1,8 +1,8 @@
 //! The loads of a scene at small deformation where the equations are too large for a factor: conjugate gradients with multigrid.
 
+use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
-use super::linear::{NetworkAnswer, not_definite, shared};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::material::Moduli;
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
@@ -16,14 +16,6 @@ pub(super) struct Iterated {
     pub systems: Vec<Levels>,
     /// Of each load, into these.
     pub system_of: Vec<usize>,
-}
-
-/// The answer of the finite elements to one load.
-pub(super) struct BodyAnswer {
-    pub displacement: Vec<f64>,
-    pub work: Option<f64>,
-    pub seconds: f64,
-    pub solved: Solved,
 }
 
 /// Steps into which the progress of a solution is divided.
@@ -151,10 +143,6 @@ fn solution(
         progress(Event::stage(stage, PARTS * load + (part * (PARTS - 1) as f64) as usize, PARTS * loads));
     };
     let (u, solved) = levels.solve(&case.forces, solver, &mut share).map_err(|e| e.at_key("mesh"))?;
-    if !(solved.residual <= SOLVED) {
-        let expected = format!("equations that can be solved to {SOLVED:.0e} of the forces");
-        let found = format!("{:.1e} left under load \"{}\"", solved.residual, case.name);
-        return Err(Error::expected("mesh", expected, found).of_kind(crate::error::ErrorKind::Limit));
-    }
+    check_residual(solved.residual, case)?;
     Ok((u, solved))
 }
