@@ -7,6 +7,7 @@ mod elements;
 mod expressions;
 mod fits;
 mod inputs;
+mod lines;
 mod meshes;
 mod message;
 mod options;
