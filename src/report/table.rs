@@ -184,10 +184,11 @@ fn times(outcome: &Outcome) -> String {
         return String::new();
     }
     let mean = |seconds: &dyn Fn(&LoadOutcome) -> f64| {
-        1e3 * loads.iter().map(|l| seconds(l)).sum::<f64>() / loads.len() as f64
+        let mean = loads.iter().map(|l| seconds(l)).sum::<f64>() / loads.len() as f64;
+        if mean < 1.0 { format!("{:.2} ms", 1e3 * mean) } else { format!("{mean:.2} s") }
     };
     format!(
-        "One load, assembled and solved: {:.2} ms with finite elements, {:.2} ms with springs (means).\n",
+        "One load, assembled and solved: {} with finite elements, {} with springs (means).\n",
         mean(&|l| l.seconds_fem),
         mean(&|l| l.seconds_lem)
     ) + &iterations(&loads)
