@@ -46,14 +46,16 @@ fn assert_refused(output: &Output, place: &str, words: &[&str]) {
 #[test]
 fn what_does_not_fit_into_memory_is_refused_with_its_figures() {
     let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("scene.toml"), scene(30, "", "")).unwrap();
-    let run = |limit: u64| {
+    let run = |method: &str, limit: u64| {
+        let text = scene(30, "", &format!("[solver]\nmethod = \"{method}\""));
+        fs::write(folder.path().join("scene.toml"), text).unwrap();
         let limit = format!("export RAYON_NUM_THREADS=1; ulimit -v {}", limit * 1000);
         program(folder.path(), &limit, &["run", "scene.toml", "--out", "out"])
     };
-    assert_refused(&run(600), "scene.toml:2: mesh: the stiffness", &[" GB of memory", " GB is left", "fewer points"]);
-    let found = run(1500);
-    assert_refused(&found, "scene.toml:2: mesh: the factor", &[" GB of memory", " GB is left", "fewer points"]);
+    let figures = [" GB of memory", " GB is left", "fewer points"];
+    assert_refused(&run("cholesky", 600), "scene.toml:2: mesh: the stiffness", &figures);
+    assert_refused(&run("cholesky", 1500), "scene.toml:2: mesh: the factor", &figures);
+    assert_refused(&run("multigrid", 200), "scene.toml:2: mesh: the stiffness", &figures);
 }
 
 /// Where no estimate saw it coming, the program ends as with every other error.

@@ -32,6 +32,7 @@ mod limits;
 mod linear_theory;
 mod locking;
 mod material;
+mod matrix_errors;
 mod measures;
 mod mesh_files;
 mod messages;

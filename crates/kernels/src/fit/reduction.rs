@@ -7,7 +7,7 @@ use super::weight::MotionWeight;
 use crate::material::Moduli;
 use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
-use crate::stiffness::Geometry;
+use crate::stiffness::{Geometry, add_isotropic};
 
 /// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`, one unknown κ_I per spring, or per group if
 /// tied.
@@ -154,23 +154,7 @@ impl<T: Real> Reduced<T> {
         for (grad, v, w) in geometry.each_point() {
             mixed(&self.mix, grad.as_chunks::<D>().0, differences);
             let (lambda, mu) = (w.clone().scaled(&moduli.lambda), v.clone().scaled(&moduli.mu));
-            for a in 0..n - 1 {
-                let ga = &differences[a];
-                let (lambda_a, mu_a): ([T; D], [T; D]) =
-                    (plus_multiple(&zeros(&zero), &lambda, ga), plus_multiple(&zeros(&zero), &mu, ga));
-                for b in 0..=a {
-                    let gb = &differences[b];
-                    let diagonal = dot(&mu_a, gb);
-                    for k in 0..D {
-                        let row = &mut r[(a * D + k) * full + b * D..(a * D + k) * full + b * D + D];
-                        for l in 0..D {
-                            let entry = row[l].clone().plus_product(&lambda_a[k], &gb[l]);
-                            row[l] = entry.plus_product(&mu_a[l], &gb[k]);
-                        }
-                        row[k] = row[k].clone() + &diagonal;
-                    }
-                }
-            }
+            add_isotropic(r, differences, &lambda, &mu);
         }
     }
 

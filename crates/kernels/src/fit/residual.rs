@@ -1,16 +1,17 @@
 //! The difference between the stiffness of the springs of an element and that of the finite element.
 
 use super::cells::{CHUNK, CellFits};
+use super::difference::Differences;
+use super::extremes::Extremes;
 use super::input::{check_fit, check_length};
-use super::visit::each_cell;
+use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::Moduli;
-use crate::springs::{Force, Measure};
-use nalgebra::{DMatrix, DVectorView};
+use crate::scalar::{Packed, PackedWork, widest};
+use crate::stiffness::Fault;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::sync::Arc;
 
 /// Mean and maximum of a number over the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -65,26 +66,10 @@ pub fn element_errors(
     fits.force.check(fits.springs.names.len())?;
     let parameters = fits.force.places(&fits.springs).last().map_or(0, |count| cells * count);
     check_length("parameters", fits.parameters.len(), parameters)?;
-    let (n, size) = (element.nodes(), element.nodes() * element.dimension());
-    let m = fits.springs.len();
-    let pulls = Pulls::of(element, fits);
+    let n = element.nodes();
     let chunk = |(i, nodes): (usize, &[usize])| {
-        let first = i * CHUNK;
-        let mut errors = ElementErrors::default();
-        let mut g = Vec::new();
-        each_cell(element, points, nodes, first, |cell, x, geometry| {
-            let r = geometry.stiffness(moduli);
-            let mut difference = r.clone();
-            fits.springs.gradients(x, geometry, &mut g);
-            for (g, k) in g.chunks_exact(size).zip(&fits.constants[(first + cell) * m..]) {
-                let g = DVectorView::from_slice(g, size);
-                difference.ger(-k, &g, &g, 1.0);
-            }
-            pulls.subtract(fits, first + cell, x, &mut difference);
-            errors.frobenius.push(difference.norm() / r.norm());
-            errors.spectral.push(spectral_norm(difference) / spectral_norm(r));
-        })?;
-        Ok(errors)
+        let batch = ErrorBatch { element, points, connectivity: nodes, moduli, fits, first: i * CHUNK };
+        widest(batch).map_err(|(cell, fault)| cell_fault(element, i * CHUNK + cell, fault))
     };
     let chunks: Vec<Result<ElementErrors>> = connectivity.par_chunks(CHUNK * n).enumerate().map(chunk).collect();
     let mut all = ElementErrors::default();
@@ -94,45 +79,51 @@ pub fn element_errors(
     Ok(all)
 }
 
-/// The part of K that comes from springs that pull at rest: `Σ T_s ∇∇c_s`.
-struct Pulls {
-    measures: Vec<(Vec<usize>, Measure)>,
-    places: Vec<usize>,
-    dimension: usize,
+/// Cells of one block, of which the first has the number `first`.
+struct ErrorBatch<'a> {
+    element: &'a Element,
+    points: &'a [f64],
+    connectivity: &'a [usize],
+    moduli: Moduli,
+    fits: &'a CellFits,
+    first: usize,
 }
 
-impl Pulls {
-    /// Linear springs, which do not pull at rest, have no such part.
-    fn of(element: &Element, fits: &CellFits) -> Pulls {
-        let measures = match fits.force {
-            Force::Linear => Vec::new(),
-            _ => fits.springs.measures(&Arc::new(element.clone())),
-        };
-        Pulls { measures, places: fits.force.places(&fits.springs), dimension: element.dimension() }
-    }
+impl PackedWork for ErrorBatch<'_> {
+    type Output = std::result::Result<ElementErrors, (usize, Fault)>;
 
-    fn subtract(&self, fits: &CellFits, cell: usize, x: &[f64], difference: &mut DMatrix<f64>) {
-        let (d, count) = (self.dimension, self.places.last().copied().unwrap_or(0));
-        for (s, (nodes, measure)) in self.measures.iter().enumerate() {
-            let dofs: Vec<usize> = nodes.iter().flat_map(|&a| a * d..(a + 1) * d).collect();
-            let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
-            let rest = measure.value(&at, d);
-            let own = &fits.parameters[cell * count..][self.places[s]..self.places[s + 1]];
-            let constant = fits.constants[cell * self.measures.len() + s];
-            let pull = fits.force.tension(&fits.springs, s, constant, own, [rest, rest]);
-            if pull == 0.0 {
-                continue;
-            }
-            let hessian = measure.jet(&at, d).hessian;
-            for (a, &row) in dofs.iter().enumerate() {
-                for (b, &column) in dofs.iter().enumerate() {
-                    difference[(row, column)] -= pull * hessian[a * dofs.len() + b];
+    fn run<T: Packed>(self, zero: T) -> Self::Output {
+        let n = self.element.nodes();
+        let size = n * self.element.dimension();
+        let mut both = Differences::new(&zero, self.element, self.points, self.moduli, self.fits);
+        let mut extremes = Extremes::like(&zero, size);
+        let mut errors = ElementErrors::default();
+        for (i, nodes) in self.connectivity.chunks(T::COUNT * n).enumerate() {
+            let done = i * T::COUNT;
+            both.update(self.first + done, nodes).map_err(|(lane, fault)| (done + lane, fault))?;
+            let frobenius = (frobenius_square(&both.left, size) / &frobenius_square(&both.stiffness, size)).sqrt();
+            let spectral = extremes.norm(&mut both.left) / &extremes.norm(&mut both.stiffness);
+            let cells = nodes.len() / n;
+            errors.frobenius.extend_from_slice(&frobenius.as_slice()[..cells]);
+            errors.spectral.extend_from_slice(&spectral.as_slice()[..cells]);
+        }
+        Ok(errors)
+    }
+}
+
+/// The squared Frobenius norm of a symmetric matrix from its lower triangle.
+fn frobenius_square<T: Packed>(a: &[T], size: usize) -> T {
+    a[0].vectorize(
+        #[inline(always)]
+        || {
+            let (mut diagonal, mut below) = (a[0].zero(), a[0].zero());
+            for (i, row) in a.chunks_exact(size).enumerate() {
+                diagonal = diagonal.plus_product(&row[i], &row[i]);
+                for entry in &row[..i] {
+                    below = below.plus_product(entry, entry);
                 }
             }
-        }
-    }
-}
-
-fn spectral_norm(symmetric: DMatrix<f64>) -> f64 {
-    symmetric.symmetric_eigenvalues().amax()
+            diagonal + &below.scaled(&2.0)
+        },
+    )
 }

@@ -12,7 +12,7 @@ pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;
 use crate::material::Moduli;
-use crate::scalar::{Scalar, adjugate, multiple};
+use crate::scalar::{Scalar, adjugate, dot, multiple, plus_multiple, zeros};
 use nalgebra::DMatrix;
 
 /// Gradients of the shape functions and volumes at the quadrature points, of one element or of one per SIMD lane.
@@ -236,6 +236,27 @@ impl Geometry {
         }
         r.fill_upper_triangle_with_lower_triangle();
         r
+    }
+}
+
+/// Adds `λ g_a g_bᵀ + μ (g_b g_aᵀ + g_a·g_b I)` for all b ≤ a to r, `[nodes·D × nodes·D]`; blocks above the diagonal stay.
+#[inline(always)]
+pub(crate) fn add_isotropic<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], lambda: &T, mu: &T) {
+    let (zero, size) = (lambda.zero(), g.len() * D);
+    for (a, ga) in g.iter().enumerate() {
+        let (lambda_a, mu_a): ([T; D], [T; D]) =
+            (plus_multiple(&zeros(&zero), lambda, ga), plus_multiple(&zeros(&zero), mu, ga));
+        for (b, gb) in g[..a + 1].iter().enumerate() {
+            let diagonal = dot(&mu_a, gb);
+            for k in 0..D {
+                let row = &mut r[(a * D + k) * size + b * D..(a * D + k) * size + b * D + D];
+                for l in 0..D {
+                    let entry = row[l].clone().plus_product(&lambda_a[k], &gb[l]);
+                    row[l] = entry.plus_product(&mu_a[l], &gb[k]);
+                }
+                row[k] = row[k].clone() + &diagonal;
+            }
+        }
     }
 }
 

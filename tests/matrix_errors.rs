@@ -1,0 +1,118 @@
+//! The matrix errors of cells, computed side by side, are those of the matrices.
+
+use crate::shapes::{Random, distorted, elements, materials};
+use nalgebra::DMatrix;
+use springfit::element::Element;
+use springfit::fit::{
+    CellFits, ExactEnergy, ExactFit, Fit, Objective, Rest, VolumeSprings, Weight, element_errors, fit_cells, fit_exact,
+};
+use springfit::material::Material;
+use springfit::mesh::{CellBlock, Mesh};
+use springfit::model::{Entries, Network, finite_elements};
+use springfit::springs::Springs;
+use springfit::stiffness::Geometry;
+use std::sync::Arc;
+
+/// More than lanes, and not a multiple of them.
+const CELLS: usize = 11;
+
+fn dense(size: usize, entries: &Entries) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(size, size);
+    for entry in entries {
+        matrix[(entry.row, entry.col)] += entry.val;
+        if entry.row != entry.col {
+            matrix[(entry.col, entry.row)] += entry.val;
+        }
+    }
+    matrix
+}
+
+/// Cells without common nodes; the fourth is so thin that it is computed alone.
+fn cells(element: &Element, random: &mut Random) -> Vec<f64> {
+    let (d, mut points) = (element.dimension(), Vec::new());
+    for cell in 0..CELLS {
+        let x = loop {
+            let mut x = distorted(element, random);
+            if cell == 3 && d > 1 {
+                x.iter_mut().skip(1).step_by(d).for_each(|y| *y *= 1e-4);
+            }
+            if Geometry::new(&element.tabulation).set(&element.tabulation, &x).is_ok() {
+                break x;
+            }
+        };
+        points.extend(x);
+    }
+    points
+}
+
+fn fits(element: &Element, points: &[f64], nodes: &[usize], material: Material) -> Vec<(String, CellFits)> {
+    let plain = Springs::select(element, None).unwrap();
+    let groups: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
+    let all = Springs::select(element, Some(&groups)).unwrap();
+    let mut found = Vec::new();
+    for (name, springs, rest) in
+        [("plain", &plain, Rest::Mesh), ("all groups", &all, Rest::Mesh), ("free rest", &plain, Rest::Free)]
+    {
+        let fit = Fit { rest, ..Fit::new(Objective::Frobenius(Weight::None)) };
+        // Some elements have too few springs for rest lengths of their own, some groups too many for a thin cell.
+        if let Ok(fits) = fit_cells(element, springs, points, nodes, material.moduli(), &fit, &mut |_| {}) {
+            found.push((name.to_string(), fits));
+        }
+    }
+    for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::StableMooneyRivlin { share: 0.3 }] {
+        for volume in [VolumeSprings::Points, VolumeSprings::Cells] {
+            let exact = ExactFit { energy, volume, large: false };
+            if let Ok(fits) = fit_exact(element, points, nodes, material, &exact, &mut |_| {}) {
+                found.push((format!("{energy:?} {volume:?}"), fits));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn errors_of_cells_side_by_side_are_those_of_their_matrices() {
+    let mut random = Random(77);
+    let mut compared = 0;
+    for element in elements() {
+        let element = Arc::new(element);
+        let (n, d) = (element.nodes(), element.dimension());
+        let points = cells(&element, &mut random);
+        let nodes: Vec<usize> = (0..CELLS * n).collect();
+        for material in materials(d) {
+            for (name, fits) in fits(&element, &points, &nodes, material) {
+                let errors = element_errors(&element, &points, &nodes, material.moduli(), &fits).unwrap();
+                let what = format!("{} {name} {material:?}", element.name);
+                let mesh = Mesh {
+                    dimension: d,
+                    points: points.clone(),
+                    blocks: vec![CellBlock { element: element.clone(), connectivity: nodes.clone() }],
+                    groups: Default::default(),
+                    reversed: 0,
+                    unused_points: 0,
+                    numbering: None,
+                    quality: Default::default(),
+                };
+                let size = points.len();
+                let r = dense(size, &finite_elements(&mesh, material.moduli()));
+                let k = dense(size, &Network::assemble(&mesh, std::slice::from_ref(&fits)).stiffness(&points));
+                for cell in 0..CELLS {
+                    let of =
+                        |matrix: &DMatrix<f64>| matrix.view((cell * n * d, cell * n * d), (n * d, n * d)).into_owned();
+                    let (r, left) = (of(&r), of(&r) - of(&k));
+                    let spectral =
+                        left.clone().symmetric_eigenvalues().amax() / r.clone().symmetric_eigenvalues().amax();
+                    let frobenius = left.norm() / r.norm();
+                    for (found, known) in [(errors.spectral[cell], spectral), (errors.frobenius[cell], frobenius)] {
+                        // A thin cell's matrices have six digits less.
+                        let bound = if cell == 3 { 1e-6 } else { 1e-11 } * (1.0 + known);
+                        assert!((found - known).abs() < bound, "{what}, cell {cell}: {found:e} and {known:e}");
+                        compared += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!("{compared} errors");
+    assert!(compared > 5000);
+}
