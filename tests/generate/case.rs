@@ -2,10 +2,11 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::Element;
-use springfit::fit::{ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
+use springfit::fit::{ExactFit, Fit, Objective, VolumeSprings, fit_cells, fit_exact};
 use springfit::generate::{Program, Recipe, language};
 use springfit::material::Material;
 use springfit::springs::{Force, Springs};
+use springfit::stiffness::Geometry;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -130,7 +131,9 @@ impl Case {
 
     fn sample(&self, random: &mut Random) -> Option<Sample> {
         let (element, d) = (&self.element, self.element.dimension());
-        let x = distorted(element, random);
+        // Those of high order tangle easily.
+        let is_upright = |x: &Vec<f64>| Geometry::new(&element.tabulation).set(&element.tabulation, x).is_ok();
+        let x = std::iter::repeat_with(|| distorted(element, random)).find(is_upright)?;
         let materials = materials(d);
         let pick = (random.next().abs() * materials.len() as f64) as usize % materials.len();
         let material = materials[pick];
@@ -183,12 +186,5 @@ impl Case {
             }
         }
         Some(sample)
-    }
-}
-
-impl Case {
-    /// Whether the objective is modal.
-    pub fn is_modal(&self) -> bool {
-        matches!(self.recipe, Recipe::Frobenius(Weight::Modal(_)))
     }
 }

@@ -67,7 +67,10 @@ fn c_program(cases: &[Case], language: &str, real: &str, folder: &Path) -> Vec<S
     let (mut main, mut calls) = (String::new(), String::new());
     for (i, case) in cases.iter().enumerate() {
         let (m, size) = (case.springs.len(), case.element.nodes() * case.element.dimension());
-        let (text, prefix) = (case.text(language).unwrap(), case.prefix());
+        let (mut text, prefix) = (case.text(language).unwrap(), case.prefix());
+        for kind in ["int", "float", "void"] {
+            text = text.replace(&format!("\n{kind} {prefix}"), &format!("\nstatic {kind} {prefix}"));
+        }
         let mut code = format!("#include <math.h>\n#include <stdio.h>\n{WORDS}\n{text}\n");
         write!(
             code,

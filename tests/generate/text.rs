@@ -27,6 +27,9 @@ fn every_language_lists_the_springs() {
 fn no_operation_is_computed_twice() {
     for case in every(|case| case.element.nodes() <= 4 && case.element.tabulation.points() == 1) {
         let text = case.text("c").unwrap();
+        if text.contains("for (") {
+            continue;
+        }
         for function in text.split("static inline ").skip(1) {
             let mut known = std::collections::BTreeSet::new();
             for line in function.lines().filter_map(|line| line.trim().strip_prefix("const double ")) {

@@ -71,5 +71,7 @@ pub fn exact(cell: &Cell, volume: VolumeSprings, lambda: &Value, mu: &Value) -> 
 fn content(shares: [f64; 2], content: &Value, volumes: [&Value; 2], lambda: &Value, mu: &Value) -> [Value; 2] {
     let pull = &(mu * volumes[0]) * &content.like(shares[0]);
     let slope = &pull + &(&(lambda * volumes[1]) * &content.like(shares[1]));
-    [&slope / &content.clone().squared(), content + &(&(&pull * content) / &slope)]
+    // Where nothing pulls at rest the division would be by zero if λ is zero.
+    let longer = if pull.as_number() == Some(0.0) { pull } else { &(&pull * content) / &slope };
+    [&slope / &content.clone().squared(), content + &longer]
 }

@@ -129,7 +129,7 @@ pub fn least_squares(cell: &Cell, weight: LeastSquares, lambda: &Value, mu: &Val
             let entry = match (weight, &linear, &spread) {
                 // Springs between the same two nodes alone: shared = ±2.
                 (LeastSquares::Blocks, ..) => {
-                    let more = body.number(1.0).select(&shared.squared(), &zero, &one);
+                    let more = shared.squared().select(&one, &one, &zero);
                     &(&more + &more) * &cosine
                 }
                 (_, Some(linear), Some(spread)) => {

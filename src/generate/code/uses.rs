@@ -90,9 +90,4 @@ impl Uses {
     pub fn is_named(&self, value: usize) -> bool {
         self.named[value]
     }
-
-    /// Whether the value is used at all.
-    pub fn is_used(&self, value: usize) -> bool {
-        self.counts[value] > 0
-    }
 }

@@ -70,7 +70,7 @@ impl Syntax for Rust {
             Result::Value(_) => " -> f64",
             Result::Nothing => "",
         };
-        let allow = "#[allow(clippy::all, clippy::pedantic)]".to_string();
+        let allow = "#[allow(unused_parens, clippy::all, clippy::pedantic)]".to_string();
         vec![allow, format!("pub fn {}({arguments}){result} {{", function.name)]
     }
 
