@@ -18,7 +18,7 @@ pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<Stri
         format!("x          positions of the nodes in m, [{n} nodes x {d}], node by node"),
         format!("lambda, mu moduli of sigma = lambda tr(eps) I + 2 mu eps in Pa; {}", moduli_unit(d)),
         format!(
-            "constants  spring constants, [{}]: k in N/m; of a spring on a {} in J per square of it",
+            "constants  spring constants, [{}]: k in N/m; of a spring on {} in J per square of it",
             springs.len(),
             content(d)
         ),
@@ -28,11 +28,9 @@ pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<Stri
     lines.extend(match recipe {
         Recipe::Exact(_) => vec![
             "The energy of a spring between nodes is k/2 |x_j - x_i|^2: its rest length is zero.".into(),
-            format!(
-                "That of a spring on the {0} is k/2 (c - rest)^2, with c = w |J| at its quadrature point",
-                content(d)
-            ),
-            "(group points) or the sum over all points (group content).".into(),
+            format!("That of a spring on {} is k/2 (c - rest)^2, with c = w |J| at its quadrature point", content(d)),
+            "(group points) or the sum over all points (group content). At rest the energy is not zero:".into(),
+            "differences of energies have a meaning.".into(),
         ],
         Recipe::Frobenius(_) => {
             vec!["The energy of a spring is k/2 (c - rest)^2, with c what it measures.".to_string()]
@@ -50,7 +48,7 @@ pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<Stri
 }
 
 fn content(dimension: usize) -> &'static str {
-    ["length", "area", "volume"][dimension - 1]
+    ["lengths", "areas", "volumes"][dimension - 1]
 }
 
 fn moduli_unit(dimension: usize) -> &'static str {

@@ -115,29 +115,41 @@ fn c_program(cases: &[Case], language: &str, real: &str, folder: &Path) -> Vec<S
 /// Nothing in C; the words of GLSL where they are defined.
 const WORDS: &str = "#ifdef SINGLE\n#define in const\n#define inout\n#define sqrt sqrtf\n#define abs fabsf\n#endif";
 
+/// Compiles the files of a C program, several at once, and runs it; none without a compiler.
+fn compiled(folder: &Path, options: &[&str], names: &[String]) -> Option<Output> {
+    let compile = |names: &[String]| {
+        let arguments: Vec<&str> =
+            options.iter().copied().chain(["-c"]).chain(names.iter().map(String::as_str)).collect();
+        run(folder, "cc", &arguments).is_some()
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let parts = names.chunks(names.len().div_ceil(threads));
+    let done = std::thread::scope(|scope| {
+        let parts: Vec<_> = parts.map(|names| scope.spawn(move || compile(names))).collect();
+        parts.into_iter().all(|part| part.join().expect("the code compiles"))
+    });
+    let objects: Vec<String> = names.iter().map(|name| name.replace(".c", ".o")).collect();
+    let arguments: Vec<&str> =
+        ["-o", "program"].into_iter().chain(objects.iter().map(String::as_str)).chain(["-lm"]).collect();
+    done.then(|| run(folder, "cc", &arguments)).flatten()?;
+    run(folder, "./program", &[])
+}
+
 /// C; none without a compiler.
 pub fn c(cases: &[Case], options: &[&str]) -> Option<Vec<Outcome>> {
     let folder = TempDir::new().unwrap();
     let names = c_program(cases, "c", "double", folder.path());
-    let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-unused-function", "-O0", "-o", "program"];
-    let mut arguments: Vec<&str> = strict.iter().chain(options).copied().collect();
-    arguments.extend(names.iter().map(String::as_str));
-    arguments.push("-lm");
-    run(folder.path(), "cc", &arguments)?;
-    let output = run(folder.path(), "./program", &[])?;
-    Some(read(cases, &output))
+    let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O0"];
+    let options: Vec<&str> = strict.iter().chain(options).copied().collect();
+    Some(read(cases, &compiled(folder.path(), &options, &names)?))
 }
 
 /// GLSL as C in single precision.
 pub fn single(cases: &[Case]) -> Option<Vec<Outcome>> {
     let folder = TempDir::new().unwrap();
     let names = c_program(cases, "glsl", "float", folder.path());
-    let mut arguments = vec!["-std=gnu99", "-w", "-DSINGLE", "-fsingle-precision-constant", "-o", "program"];
-    arguments.extend(names.iter().map(String::as_str));
-    arguments.push("-lm");
-    run(folder.path(), "cc", &arguments)?;
-    let output = run(folder.path(), "./program", &[])?;
-    Some(read(cases, &output))
+    let options = ["-std=gnu99", "-w", "-DSINGLE", "-fsingle-precision-constant"];
+    Some(read(cases, &compiled(folder.path(), &options, &names)?))
 }
 
 /// Rust, by the compiler that compiles the tests.
@@ -217,28 +229,39 @@ impl Tool {
     /// Checks the files of all cases that the language has room for; their number, or none without the tool.
     pub fn check(self, cases: &[Case]) -> Option<usize> {
         let folder = TempDir::new().unwrap();
-        let mut count = 0;
+        let mut paths = Vec::new();
         for (i, case) in cases.iter().enumerate() {
-            let (language, program, first, last, name) = match self {
-                Tool::Naga => ("wgsl", "naga", "", "", "code.wgsl"),
+            let (language, first, last, name) = match self {
+                Tool::Naga => ("wgsl", "", "", "code.wgsl"),
                 Tool::Glslang => {
                     let main = "layout(local_size_x = 1) in;\nvoid main() {}\n";
-                    ("glsl", "glslangValidator", "#version 450\n", main, "code.comp")
+                    ("glsl", "#version 450\n", main, "code.comp")
                 }
-                Tool::Cuda => ("cuda", "c++", "#define __device__\n#define __forceinline__ inline\n", "", "code.cc"),
+                Tool::Cuda => ("cuda", "#define __device__\n#define __forceinline__ inline\n", "", "code.cc"),
             };
             let Some(text) = case.text(language) else { continue };
             let path = folder.path().join(format!("{i}_{name}"));
             fs::write(&path, format!("{first}{text}\n{last}")).unwrap();
-            let path = path.to_str().unwrap();
-            match self {
-                Tool::Cuda => {
-                    run(folder.path(), program, &["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused", path])?
-                }
-                Tool::Naga | Tool::Glslang => run(folder.path(), program, &[path])?,
-            };
-            count += 1;
+            paths.push(path.to_str().unwrap().to_string());
         }
-        Some(count)
+        let program = match self {
+            Tool::Naga => "naga",
+            Tool::Glslang => "glslangValidator",
+            Tool::Cuda => "c++",
+        };
+        let strict = ["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused"];
+        match self {
+            Tool::Cuda | Tool::Glslang => {
+                let options = if self == Tool::Cuda { &strict[..] } else { &[] };
+                let arguments: Vec<&str> = options.iter().copied().chain(paths.iter().map(String::as_str)).collect();
+                run(folder.path(), program, &arguments)?;
+            }
+            Tool::Naga => {
+                for path in &paths {
+                    run(folder.path(), program, &[path])?;
+                }
+            }
+        }
+        Some(paths.len())
     }
 }

@@ -29,10 +29,8 @@ impl Cell<'_> {
             let edge = self.edge(i, j);
             visit(s, &dot(&edge, &edge).root());
         });
-        let mut s = springs.pairs().len();
-        for function in springs.functions() {
+        for (s, function) in (springs.pairs().len()..).zip(springs.functions()) {
             visit(&s.into(), &self.function(function).0);
-            s += 1;
         }
         if springs.content().is_some() {
             visit(&(springs.len() - 1).into(), &self.content(false).0);
@@ -132,9 +130,9 @@ pub fn forces(cell: &Cell, is_exact: bool) {
         }
     });
     shares.iter().for_each(|(place, share)| sums.add(body, *place, share));
-    for (o, function) in cell.springs.functions().iter().enumerate() {
+    for (s, function) in (cell.springs.pairs().len()..).zip(cell.springs.functions()) {
         let (measure, gradient) = cell.function(function);
-        let tension = tension(&(cell.springs.pairs().len() + o).into(), &measure);
+        let tension = tension(&s.into(), &measure);
         pull(&mut sums, &tension, &gradient);
     }
     cell.each_point_spring(|s, content, gradient| pull(&mut sums, &tension(s, content), gradient));

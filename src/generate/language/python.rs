@@ -81,7 +81,7 @@ impl Syntax for Python {
 
     fn table(&self, name: &str, _: usize, _: bool, entries: &[String]) -> Vec<String> {
         let lines = entries.iter().map(|line| format!("    {line}"));
-        std::iter::once(format!("{name} = (")).chain(lines.map(|l| l)).chain([",)".into()]).collect()
+        std::iter::once(format!("{name} = (")).chain(lines).chain([",)".into()]).collect()
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {
