@@ -60,6 +60,7 @@
 //! | [`dynamics`] | motion in time |
 //! | [`whole`] | spring constants from the displacements of the whole body |
 //! | [`study`] | scenes, and the studies that are made from them |
+//! | `generate` | code that computes the springs of a cell at run time (feature `cli`) |
 //! | `report` | tables, JSON, CSV, SVG and VTU files of the results (feature `cli`) |
 //! | [`prelude`] | the names that most programs need |
 //!
@@ -84,6 +85,8 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "cli")]
+pub mod generate;
 pub mod prelude;
 // The records of a report state their fields in the reference of report.json.
 #[cfg(feature = "cli")]

@@ -23,6 +23,7 @@ mod extremes;
 mod fields;
 mod fits;
 mod fraction;
+mod generate;
 mod golden;
 mod integrals;
 mod large;

@@ -7,6 +7,7 @@ mod converge;
 mod derive;
 mod elements;
 mod fit;
+mod generate;
 mod groups;
 mod interrupt;
 mod man;
@@ -54,6 +55,7 @@ commands! {
     Fit: Box<fit::Fit>,
     Check: check::Check,
     Derive: derive::Derive,
+    Generate: generate::Generate,
     Compare: compare::Compare,
     Converge: converge::Converge,
     Paper: paper::Paper,

@@ -35,6 +35,7 @@ const LAYERS: [&str; 27] = [
     "dynamics",
     "whole",
     "study",
+    "generate",
     "prelude",
     "report",
     "program",
