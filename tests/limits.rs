@@ -2,7 +2,7 @@
 
 use springfit::error::ErrorKind;
 use springfit::model::Network;
-use springfit::report::{check_scene_outputs, network_csv, network_json};
+use springfit::report::{NetworkFile, check_scene_outputs, network_csv, network_json};
 use springfit::study::{Scene, run};
 use std::fs;
 use std::io::{self, Write};
@@ -119,7 +119,7 @@ fn networks_are_written_record_by_record() {
         let outcome = run(&scene, &mut |_| {}).unwrap();
         let network: &Network = &outcome.fits[0].network;
         let (mut json, mut csv) = (Pieces::default(), Pieces::default());
-        network_json(&outcome.mesh, None, network, &[], &mut json).unwrap();
+        network_json(&NetworkFile::of(&outcome, &outcome.fits[0]), &mut json).unwrap();
         network_csv(&outcome.mesh, network, &mut csv).unwrap();
         let file: serde_json::Value = serde_json::from_slice(&json.0).unwrap();
         assert_eq!(file["springs"].as_array().unwrap().len(), network.len());

@@ -40,6 +40,7 @@ mod moduli;
 mod motion;
 mod mutations;
 mod names;
+mod networks;
 mod nonlinear;
 mod nonnegative;
 mod numbering;

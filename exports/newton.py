@@ -1,0 +1,100 @@
+"""A springfit network in Newton (pip install newton numpy).
+
+    python run.py            half a second of motion, then where the points are
+    python run.py 2          two seconds
+    python run.py --rest F   comes to rest and writes the positions to the file F
+
+What was converted: springs are springs, with their constants, rest lengths and dampers. A spring of constant K on the volume V of a
+tetrahedron is a tetrahedron without shear modulus (k_mu = 0): its rest pose is enlarged to the rest volume V0 of the spring, and
+k_lambda = K V0. Points that are held have no mass. The solver is explicit: its step is 0.5 of the longest stable one at rest.
+"""
+import sys
+from pathlib import Path
+
+import newton
+import numpy as np
+import warp as wp
+
+folder = Path(__file__).parent
+net = np.load(folder / "network.npz")
+points, masses, springs, k, rest = (net[name] for name in ["points", "masses", "springs", "k", "rest"])
+volumes, k_volume, rest_volume = (net[name] for name in ["volumes", "k_volume", "rest_volume"])
+step = 0.5 * float(net["dt_max"])  # s
+
+
+def model():
+    builder = newton.ModelBuilder(gravity=0.0)
+    mass = masses.copy()
+    mass[net["fixed"]] = 0.0
+    count = len(points)
+    builder.add_particles([tuple(x) for x in points], [(0.0, 0.0, 0.0)] * count, mass.tolist(), [1e-5] * count)
+    builder.spring_indices.extend(springs.ravel().tolist())
+    builder.spring_rest_length.extend(rest.tolist())
+    builder.spring_stiffness.extend(k.tolist())
+    builder.spring_damping.extend(net["damper"].tolist())
+    builder.spring_control.extend([0.0] * len(springs))
+    for corners, constant, at_rest in zip(volumes, k_volume, rest_volume):
+        x = points[corners]
+        edges = (x[1:] - x[0]).T
+        scale = (at_rest / (np.linalg.det(edges) / 6)) ** (1 / 3)
+        builder.tet_indices.append(tuple(corners.tolist()))
+        builder.tet_poses.append(np.linalg.inv(scale * edges).tolist())
+        builder.tet_activations.append(0.0)
+        builder.tet_materials.append((0.0, constant * at_rest, 0.0))
+    made = builder.finalize()
+    made.set_gravity(tuple(net["gravity"].tolist()))
+    return made
+
+
+def move(steps, damping=0.0, until=None):
+    """Positions after so many steps; `damping` is a force of every mass against its velocity, 1/s."""
+    made = model()
+    solver = newton.solvers.SolverSemiImplicit(made)
+    now, after = made.state(), made.state()
+    control = made.control()
+    keep = float(np.exp(-damping * step))
+
+    def one():
+        nonlocal now, after
+        now.clear_forces()
+        solver.step(now, after, control, None, step)
+        if damping > 0:
+            wp.launch(slow, dim=len(points), inputs=[after.particle_qd, keep])
+        now, after = after, now
+
+    for i in range(steps):
+        one()
+        if until and i % 200 == 199:
+            speed = np.abs(now.particle_qd.numpy()).max()
+            if not np.isfinite(speed):
+                sys.exit("the motion has diverged")
+            if until(speed):
+                break
+    return now.particle_q.numpy().astype(float)
+
+
+@wp.kernel
+def slow(v: wp.array(dtype=wp.vec3), keep: float):
+    i = wp.tid()
+    v[i] = v[i] * keep
+
+
+def come_to_rest():
+    """Positions at rest: damped at about the lowest frequency, until nothing moves any more."""
+    fastest = [0.0]
+
+    def until(speed):
+        fastest[0] = max(fastest[0], speed)
+        return speed < 1e-6 * fastest[0]
+
+    return move(60000, damping=80.0, until=until)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--rest"]:
+        np.save(sys.argv[2], come_to_rest())
+    else:
+        duration = float((sys.argv[1:] or [0.5])[0])
+        x = move(round(duration / step))
+        moved = np.linalg.norm(x - points, axis=1)
+        print(f"{len(points)} points, {duration:g} s: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}")
