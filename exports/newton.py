@@ -13,7 +13,6 @@ from pathlib import Path
 
 import newton
 import numpy as np
-import warp as wp
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -23,7 +22,7 @@ step = 0.5 * float(net["dt_max"])  # s
 
 
 def model():
-    builder = newton.ModelBuilder(gravity=0.0)
+    builder = newton.ModelBuilder(gravity=tuple(net["gravity"].tolist()))
     mass = masses.copy()
     mass[net["fixed"]] = 0.0
     count = len(points)
@@ -41,53 +40,46 @@ def model():
         builder.tet_poses.append(np.linalg.inv(scale * edges).tolist())
         builder.tet_activations.append(0.0)
         builder.tet_materials.append((0.0, constant * at_rest, 0.0))
-    made = builder.finalize()
-    made.set_gravity(tuple(net["gravity"].tolist()))
-    return made
+    return builder.finalize()
 
 
-def move(steps, damping=0.0, until=None):
-    """Positions after so many steps; `damping` is a force of every mass against its velocity, 1/s."""
+def move(steps, after_step=None):
+    """Positions after so many steps, or when `after_step` says so."""
     made = model()
     solver = newton.solvers.SolverSemiImplicit(made)
     now, after = made.state(), made.state()
     control = made.control()
-    keep = float(np.exp(-damping * step))
-
-    def one():
-        nonlocal now, after
+    for _ in range(steps):
         now.clear_forces()
         solver.step(now, after, control, None, step)
-        if damping > 0:
-            wp.launch(slow, dim=len(points), inputs=[after.particle_qd, keep])
         now, after = after, now
-
-    for i in range(steps):
-        one()
-        if until and i % 200 == 199:
-            speed = np.abs(now.particle_qd.numpy()).max()
-            if not np.isfinite(speed):
-                sys.exit("the motion has diverged")
-            if until(speed):
-                break
+        if after_step and after_step(now.particle_qd):
+            break
     return now.particle_q.numpy().astype(float)
 
 
-@wp.kernel
-def slow(v: wp.array(dtype=wp.vec3), keep: float):
-    i = wp.tid()
-    v[i] = v[i] * keep
-
-
 def come_to_rest():
-    """Positions at rest: damped at about the lowest frequency, until nothing moves any more."""
-    fastest = [0.0]
+    """Positions at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on all
+    velocities are damped so that this motion hardly swings, for 120 times as long."""
+    weight = masses.copy()
+    weight[net["fixed"]] = 0.0
+    highest = quarter = count = 0
 
-    def until(speed):
-        fastest[0] = max(fastest[0], speed)
-        return speed < 1e-6 * fastest[0]
+    def damp(velocity):
+        nonlocal highest, quarter, count
+        v = velocity.numpy().astype(float)
+        energy = float(weight @ np.sum(v**2, axis=1))
+        if not np.isfinite(energy):
+            sys.exit("the motion has diverged")
+        count += 1
+        if not quarter and energy >= highest:
+            highest = energy
+            return False
+        quarter = quarter or count
+        velocity.assign(v * np.exp(-np.pi / quarter))
+        return count > 120 * quarter
 
-    return move(60000, damping=80.0, until=until)
+    return move(1000000, damp)
 
 
 if __name__ == "__main__":

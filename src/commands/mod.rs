@@ -6,6 +6,7 @@ mod completions;
 mod converge;
 mod derive;
 mod elements;
+mod export;
 mod fit;
 mod groups;
 mod interrupt;
@@ -53,6 +54,7 @@ commands! {
     Run: run::Run,
     Fit: Box<fit::Fit>,
     Check: check::Check,
+    Export: export::Export,
     Derive: derive::Derive,
     Compare: compare::Compare,
     Converge: converge::Converge,

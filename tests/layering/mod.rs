@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 26] = [
+const LAYERS: [&str; 27] = [
     "shipped",
     "text",
     "error",
@@ -36,6 +36,7 @@ const LAYERS: [&str; 26] = [
     "study",
     "prelude",
     "report",
+    "export",
     "program",
 ];
 
