@@ -3,6 +3,7 @@
     python run.py            two seconds of motion, then where the points are
     python run.py 5          five seconds
     python run.py --rest F   comes to rest and writes the positions to the file F
+    python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
 
 What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoCo's energy of a tetrahedron is
 1/4 sum_ab M_ab e_a e_b over its six edges, with e = l^2 - L^2, l the length of an edge and L that at rest. A spring of constant k
@@ -53,8 +54,9 @@ def volume_by_edges(x):
     return volume, slope, bend, {frozenset(pair): a for a, pair in enumerate(pairs)}
 
 
-def model():
-    """The model, with the stiffness that MuJoCo's own materials do not give."""
+def model(material=None):
+    """The model, with the stiffness of the springs; or MuJoCo's own finite elements of the same tetrahedra, of material (E, nu)."""
+    young, poisson = material or (1.0, 0.0)
     text = lambda values: " ".join(map(repr, np.asarray(values).ravel().tolist()))
     gravity = text(net["gravity"])
     pins = f'<pin id="{text(net["fixed"])}"/>' if len(net["fixed"]) else ""
@@ -68,7 +70,7 @@ def model():
         <flexcomp name="network" type="direct" dim="3" radius="1e-5" mass="{float(masses.sum())!r}" rgba=".8 .4 .3 1"
             point="{text(points)}" element="{text(tets)}">
           <contact contype="0" conaffinity="0" selfcollide="none"/>
-          <elasticity young="1" poisson="0"/>
+          <elasticity young="{young!r}" poisson="{poisson!r}"/>
           {pins}
         </flexcomp>
       </worldbody>
@@ -79,6 +81,8 @@ def model():
     m.body_mass[body[free]] = masses[free]
     mujoco.mj_setConst(m, mujoco.MjData(m))
     m.dof_damping[:] = float(net["damping"]) * m.body_mass[m.dof_bodyid]
+    if material:
+        return m
     elements = m.flex_elem.reshape(-1, 4)
     ends = m.flex_edge[m.flex_elemedge.reshape(-1, 6)]
     place = {}
@@ -109,10 +113,10 @@ def positions(m, d):
     return d.flexvert_xpos.copy()
 
 
-def come_to_rest():
+def come_to_rest(material=None):
     """Positions at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on all
     velocities are damped so that this motion hardly swings, for 40 times as long."""
-    m = model()
+    m = model(material)
     d = mujoco.MjData(m)
     weight = m.body_mass[m.dof_bodyid]
     highest = quarter = count = 0
@@ -133,7 +137,7 @@ def come_to_rest():
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--rest"]:
-        np.save(sys.argv[2], come_to_rest())
+        np.save(sys.argv[2], come_to_rest(tuple(map(float, sys.argv[3:])) or None))
     else:
         m = model()
         d = mujoco.MjData(m)

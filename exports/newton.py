@@ -3,6 +3,7 @@
     python run.py            half a second of motion, then where the points are
     python run.py 2          two seconds
     python run.py --rest F   comes to rest and writes the positions to the file F
+    python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
 
 What was converted: springs are springs, with their constants, rest lengths and dampers. A spring of constant K on the volume V of a
 tetrahedron is a tetrahedron without shear modulus (k_mu = 0): its rest pose is enlarged to the rest volume V0 of the spring, and
@@ -21,12 +22,19 @@ volumes, k_volume, rest_volume = (net[name] for name in ["volumes", "k_volume", 
 step = 0.5 * float(net["dt_max"])  # s
 
 
-def model():
+def model(material=None):
+    """The model; or Newton's own finite elements of the same tetrahedra, of material (E, nu)."""
     builder = newton.ModelBuilder(gravity=tuple(net["gravity"].tolist()))
     mass = masses.copy()
     mass[net["fixed"]] = 0.0
     count = len(points)
     builder.add_particles([tuple(x) for x in points], [(0.0, 0.0, 0.0)] * count, mass.tolist(), [1e-5] * count)
+    if material:
+        young, poisson = material
+        mu, lam = young / (2 + 2 * poisson), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
+        for corners in net["tets"].tolist():
+            builder.add_tetrahedron(*corners, mu, lam, 0.0)
+        return builder.finalize()
     builder.spring_indices.extend(springs.ravel().tolist())
     builder.spring_rest_length.extend(rest.tolist())
     builder.spring_stiffness.extend(k.tolist())
@@ -43,9 +51,9 @@ def model():
     return builder.finalize()
 
 
-def move(steps, after_step=None):
+def move(steps, after_step=None, material=None):
     """Positions after so many steps, or when `after_step` says so."""
-    made = model()
+    made = model(material)
     solver = newton.solvers.SolverSemiImplicit(made)
     now, after = made.state(), made.state()
     control = made.control()
@@ -58,7 +66,7 @@ def move(steps, after_step=None):
     return now.particle_q.numpy().astype(float)
 
 
-def come_to_rest():
+def come_to_rest(material=None):
     """Positions at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on all
     velocities are damped so that this motion hardly swings, for 120 times as long."""
     weight = masses.copy()
@@ -79,12 +87,12 @@ def come_to_rest():
         velocity.assign(v * np.exp(-np.pi / quarter))
         return count > 120 * quarter
 
-    return move(1000000, damp)
+    return move(1000000, damp, material)
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--rest"]:
-        np.save(sys.argv[2], come_to_rest())
+        np.save(sys.argv[2], come_to_rest(tuple(map(float, sys.argv[3:])) or None))
     else:
         duration = float((sys.argv[1:] or [0.5])[0])
         x = move(round(duration / step))

@@ -61,6 +61,7 @@
 //! | [`whole`] | spring constants from the displacements of the whole body |
 //! | [`study`] | scenes, and the studies that are made from them |
 //! | `report` | tables, JSON, CSV, SVG and VTU files of the results (feature `cli`) |
+//! | `export` | networks as files and scripts of other programs (feature `cli`) |
 //! | [`prelude`] | the names that most programs need |
 //!
 //! Lengths are in m, moduli in Pa, forces in N, masses in kg and times in s. Arrays are row by row; their shapes are

@@ -162,7 +162,7 @@ fn outputs_that_cannot_be_written_are_found_before_the_work() {
     let made = TempDir::new().unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let written = springfit::report::write_outputs(&outcome, scene.output(), made.path()).unwrap();
-    assert_eq!(written.len(), 8, "{written:?}");
+    assert_eq!(written.len(), 10, "{written:?}");
     for path in written {
         let folder = TempDir::new().unwrap();
         let place = folder.path().join(path.file_name().unwrap());

@@ -19,6 +19,7 @@ mod elements;
 mod energies;
 mod errors;
 mod exact;
+mod exports;
 mod extremes;
 mod fields;
 mod fits;

@@ -168,7 +168,7 @@ fn a_network_says_how_it_is_held_loaded_and_moved() {
     let masses: f64 = network.masses.iter().flatten().sum();
     assert!((masses - 1000.0).abs() < 1e-9);
     let motion = network.motion.unwrap();
-    assert_eq!(motion.forces[0].force, "(1/10)*sin(3*t)");
+    assert_eq!(motion.forces[0].force, "1/10*sin(3*t)");
     assert!((motion.forces[0].shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
     assert_eq!(network.gravity, Some(vec![0.0, 0.0, -9.81]));
     assert!(network.damping.ratio == 0.1 && network.springs.iter().any(|spring| spring.damper > 0.0));

@@ -5,7 +5,7 @@ use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::export::Target;
+use springfit::export::{target_list, target_named};
 use springfit::report::{NetworkFile, NetworkRecord, check_outputs, read_network};
 use springfit::study::{Controls, run_with};
 use springfit::unknown;
@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 /// Write a network as the files and scripts of another program
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("{EXAMPLES}\n{}What a program does not hold is refused, with a fit that it holds", target_list()))]
 pub struct Export {
     /// A network in JSON, as run and fit write it; or a scene, which is run first
     network: PathBuf,
@@ -40,16 +40,11 @@ Examples:
   springfit export organ.toml --to mujoco --fit exact --out mj
   springfit export classical.json --to lammps --gravity \"0 0 -1\"
 
-Programs:
-  mujoco, newton, jolt   a script, with the network beside it
-  lammps                 a data file and an input script
-  sofa                   a file of the format Xsp, and a scene
-  npz, vtu               arrays of NumPy; a picture for ParaView
-What a program does not hold is refused, with a fit that it holds";
+Programs:";
 
 impl Export {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let target = Target::named(&self.to)?;
+        let target = target_named(&self.to)?;
         let stem = self.network.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{}", target.name)));
         let gravity = self.gravity.as_deref().map(numbers).transpose()?;

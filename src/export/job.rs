@@ -42,7 +42,7 @@ pub struct Job<'a> {
     pub step: f64,
 }
 
-/// A sum of tensions at rest below this share of their sizes is a rounding error.
+/// A sum of tensions at rest below this share of what they would be if the springs had no rest measures is a rounding error.
 const BALANCED: f64 = 1e-9;
 
 impl<'a> Job<'a> {
@@ -159,20 +159,21 @@ impl<'a> Job<'a> {
     /// `K (V − V₀) ∂V/∂(ℓ²)` of a volume, has to vanish.
     fn check_balance(&self, program: &str) -> Result<()> {
         let mut sums: std::collections::HashMap<[usize; 2], [f64; 2]> = std::collections::HashMap::new();
-        let mut add = |edge: [usize; 2], slope: f64| {
+        let mut add = |edge: [usize; 2], slope: f64, size: f64| {
             let sum = sums.entry(edge).or_default();
             sum[0] += slope;
-            sum[1] += slope.abs();
+            sum[1] += size.abs();
         };
         for spring in &self.parts.lengths {
             let [a, b] = spring.points;
             let length = distance(self.place(a), self.place(b));
-            add(ordered(a, b), spring.constant * (length - spring.rest) / (2.0 * length));
+            add(ordered(a, b), spring.constant * (length - spring.rest) / (2.0 * length), spring.constant / 2.0);
         }
         for part in &self.parts.contents {
             let (volume, slopes) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
             for ([a, b], slope) in slopes {
-                add(ordered(part.points[a], part.points[b]), part.constant * (volume - part.rest) * slope);
+                let size = part.constant * volume * slope;
+                add(ordered(part.points[a], part.points[b]), size * (1.0 - part.rest / volume), size);
             }
         }
         let largest = sums.values().map(|sum| sum[1]).fold(0.0, f64::max);

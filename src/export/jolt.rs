@@ -1,7 +1,7 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
 use super::job::{Holds, Job, Tension};
-use super::{Content, NamedFile, Target, dampers};
+use super::target::{Content, NamedFile, Target, dampers};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! LAMMPS: a data file with one bond type per spring, and its input script.
 
 use super::job::{Holds, Job, Tension};
-use super::{Content, NamedFile, Target, dampers};
+use super::target::{Content, NamedFile, Target, dampers};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use std::fmt::Write;

@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, nothing};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 

@@ -1,7 +1,7 @@
 //! Arrays of NumPy.
 
 use super::job::Job;
-use super::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, nothing};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
 

@@ -1,7 +1,7 @@
 //! SOFA: a mass-spring file of the format Xsp 3.0.
 
 use super::job::{Holds, Job, Tension};
-use super::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, nothing};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use std::fmt::Write;

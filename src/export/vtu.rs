@@ -1,6 +1,6 @@
 //! VTU: a picture of the network for ParaView.
 
-use super::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, nothing};
 use crate::error::Result;
 use crate::mesh::vtk::{Array, Grid};
 use crate::report::NetworkRecord;

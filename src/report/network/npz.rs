@@ -19,6 +19,7 @@ use zip::write::SimpleFileOptions;
 /// | `fixed` | i32 | points that are held in all directions |
 /// | `held` | n × 3, f64 | prescribed displacements, m; NaN where a point is free |
 /// | `gravity` | 3, f64 | m/s²; zero where there is none |
+/// | `damping` | f64 | Rayleigh's α, 1/s |
 /// | `dt_max` | f64 | the longest explicit step, s; NaN without masses |
 ///
 /// # Errors
@@ -54,6 +55,7 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -
     file.real("held", &[network.points.len(), 3], held.into_iter().flatten())?;
     let gravity = network.gravity.as_deref().unwrap_or_default();
     file.real("gravity", &[3], spatial(gravity))?;
+    file.real("damping", &[], [network.damping.mass])?;
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
     to.write_all(&file.file.finish()?.into_inner())
 }
