@@ -6,6 +6,7 @@ mod completions;
 mod converge;
 mod derive;
 mod elements;
+mod export;
 mod fit;
 mod generate;
 mod groups;
@@ -54,6 +55,7 @@ commands! {
     Run: run::Run,
     Fit: Box<fit::Fit>,
     Check: check::Check,
+    Export: export::Export,
     Derive: derive::Derive,
     Generate: generate::Generate,
     Compare: compare::Compare,

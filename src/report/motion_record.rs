@@ -88,7 +88,7 @@ impl From<&MotionOutcome> for MotionOptionsRecord {
             gravity: recipe.gravity.clone(),
             rayleigh,
             damping_ratio,
-            watched_points: motion.watched,
+            watched_points: motion.watched.len(),
         }
     }
 }

@@ -274,3 +274,34 @@ fn the_page_of_meshes_has_the_units_that_are_read() {
         units.iter().for_each(|unit| assert!(quantity.parse(&format!("2 {unit}")).is_ok(), "{unit}"));
     }
 }
+
+#[test]
+fn the_page_of_outputs_has_every_key_of_a_network() {
+    let schema = springfit::report::network_schema();
+    let tables = columns(&page("docs/src/reference/outputs.md"));
+    let keys = |table: &Value| -> Names { table["properties"].as_object().unwrap().keys().cloned().collect() };
+    compare("network", &tables["network"], &keys(&schema));
+    let records = [
+        ("springs", "SpringRecord"),
+        ("measures", "MeasureRecord"),
+        ("cells", "CellBlockRecord"),
+        ("groups", "OriginRecord"),
+        ("held", "HeldRecord"),
+        ("loads", "NodalLoadRecord"),
+        ("damping", "NetworkDampingRecord"),
+        ("motion", "DriveRecord"),
+        ("provenance", "ProvenanceRecord"),
+    ];
+    for (heading, record) in records {
+        compare(heading, &tables[heading], &keys(&schema["$defs"][record]));
+    }
+    let kinds: Names = SpringKind::all().map(|kind| kind.name().to_string()).collect();
+    compare("kinds", &tables["What a spring does"], &kinds);
+}
+
+#[test]
+fn the_page_of_exports_has_every_program() {
+    let tables = columns(&page("docs/src/reference/exports.md"));
+    let known = springfit::export::TARGETS.iter().map(|target| target.name.to_string()).collect();
+    compare("programs", &tables["Networks in other programs"], &known);
+}

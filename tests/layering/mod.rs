@@ -38,6 +38,7 @@ const LAYERS: [&str; 27] = [
     "generate",
     "prelude",
     "report",
+    "export",
     "program",
 ];
 
