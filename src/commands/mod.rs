@@ -20,6 +20,7 @@ mod scene_file;
 mod schema;
 mod stability;
 mod state;
+mod sweep;
 
 use crate::terminal::Terminal;
 use clap::Subcommand;
@@ -56,6 +57,7 @@ commands! {
     Derive: derive::Derive,
     Compare: compare::Compare,
     Converge: converge::Converge,
+    Sweep: sweep::Sweep,
     Paper: paper::Paper,
     Stability: stability::Stability,
     Elements: elements::Elements,

@@ -13,6 +13,7 @@ use crate::material::{Material, Plane};
 use crate::range;
 use crate::solve::Newton;
 use crate::study::fits::FitEntry;
+use crate::study::sweep::SweepEntry;
 use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 
@@ -33,6 +34,8 @@ pub struct SceneFile {
     pub motion: Option<MotionEntry>,
     #[serde(default)]
     pub output: Output,
+    /// What `springfit sweep` runs; other commands run the scene as it is.
+    pub sweep: Option<SweepEntry>,
 }
 
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
