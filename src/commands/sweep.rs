@@ -8,6 +8,7 @@ use springfit::error::{Error, Result};
 use springfit::report::{self, Shard, StudyLines, StudyRecord, StudyTable};
 use springfit::study::{Event, Sweep as Studies};
 use springfit::write_whole;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -68,17 +69,18 @@ impl Sweep {
         let name = shard.file_name("table", "csv");
         report::check_outputs(&folder, &[&name], &[self.scene.clone()])?;
         let mut lines = StudyLines::open(&folder, shard, self.resume, &sweep)?;
+        let own: HashSet<&str> =
+            (0..marks.len()).filter(|place| shard.has(*place)).map(|place| marks[place].as_str()).collect();
         let table = |lines: &StudyLines| {
-            let of_shard = |mark: &str| lines.record(mark);
+            let of_shard = |mark: &str| lines.record(mark).filter(|_| own.contains(mark));
             StudyTable::of(sweep.keys(), sweep.studies(), of_shard)
         };
         let path = folder.join(name);
         // Each is run once, also where the design has it twice.
-        let mut places: Vec<usize> = Vec::new();
-        let mut known = std::collections::HashSet::new();
-        let own = (0..marks.len()).filter(|place| shard.has(*place));
-        let total = own.clone().map(|place| &marks[place]).collect::<std::collections::HashSet<_>>().len();
-        places.extend(own.filter(|place| lines.record(&marks[*place]).is_none() && known.insert(&marks[*place])));
+        let mut known = HashSet::new();
+        let mut is_left = |mark| lines.record(mark).is_none() && own.contains(mark) && known.insert(mark);
+        let places: Vec<usize> = (0..marks.len()).filter(|place| is_left(marks[*place].as_str())).collect();
+        let total = own.len();
         let mut done = total - places.len();
         if done > 0 {
             terminal.note(&format!("{done} of {total} studies are there already"));

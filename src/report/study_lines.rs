@@ -64,6 +64,15 @@ impl StudyLines {
     pub fn open(folder: &Path, shard: Shard, resume: bool, sweep: &Sweep) -> Result<StudyLines> {
         create_folder(folder)?;
         let path = folder.join(shard.file_name("studies", "jsonl"));
+        let others = if resume { files_in(folder, "jsonl")? } else { Vec::new() };
+        StudyLines::open_file(path, &others, resume, sweep)
+    }
+
+    /// Opens one file, with what `others` have as well.
+    ///
+    /// # Errors
+    /// Those of [`StudyLines::open`].
+    pub fn open_file(path: PathBuf, others: &[PathBuf], resume: bool, sweep: &Sweep) -> Result<StudyLines> {
         let failed = |what: &str, e| Error::io(what, e).in_file(&path);
         let opened = File::options().read(true).append(true).create(true).open(&path);
         let mut file = opened.map_err(|e| failed("cannot be written", e))?;
@@ -84,18 +93,15 @@ impl StudyLines {
         let mut lines = StudyLines { file, path, records: HashMap::new() };
         let expected: HashMap<String, usize> =
             sweep.studies().iter().enumerate().map(|(i, study)| (StudyRecord::mark(&study.values()), i)).collect();
-        if resume {
-            let own = |other: &PathBuf| *other == lines.path;
-            let others: Vec<PathBuf> = files_in(folder, "jsonl")?.into_iter().filter(|other| !own(other)).collect();
-            for other in others {
-                let text = read_text(&other)?;
-                lines.take(&text, &other, sweep, &expected)?;
-            }
+        let own = lines.path.clone();
+        for other in others.iter().filter(|other| **other != own) {
+            let text = read_text(other)?;
+            lines.take(&text, other, sweep, &expected)?;
         }
         // What a kill has left of a line is cut off.
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let kept = String::from_utf8_lossy(&text[..whole]).into_owned();
-        lines.take(&kept, &lines.path.clone(), sweep, &expected)?;
+        lines.take(&kept, &own, sweep, &expected)?;
         if whole < text.len() {
             let cut = lines.file.set_len(whole as u64).and_then(|()| lines.file.seek(SeekFrom::End(0)));
             cut.map_err(|e| Error::io("cannot be written", e).in_file(&lines.path))?;

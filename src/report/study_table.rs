@@ -9,6 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Studies that are printed at most.
 const PRINTED: usize = 40;
+/// Studies whose errors are printed at most.
+const FAULTS: usize = 10;
+/// The columns after the values that are set, in this order where there are any; the others follow by name.
+const LEADING: [&str; 9] = ["error", "fit", "load", "e_rms", "e_max", "e_tip", "e_energy", "springs", "status"];
 /// What the report says of the whole body that a row has as well.
 const OF_BODY: [&str; 2] = ["nodes", "elements"];
 
@@ -35,9 +39,8 @@ impl StudyTable {
                 rows.push((first.clone(), row));
             }
         }
-        let leading = ["error", "fit", "load"];
-        let named = leading.iter().map(ToString::to_string).filter(|name| *name != "error" || figures.contains(name));
-        let others = figures.iter().filter(|name| !leading.contains(&name.as_str())).cloned();
+        let named = LEADING.iter().map(ToString::to_string).filter(|name| figures.contains(name));
+        let others = figures.iter().filter(|name| !LEADING.contains(&name.as_str())).cloned();
         let figures: Vec<String> = named.chain(others).collect();
         let columns = std::iter::once("study".to_string()).chain(keys.iter().cloned()).chain(figures.iter().cloned());
         let complete = |(mut first, row): (Vec<Value>, BTreeMap<String, Value>)| {
@@ -150,10 +153,6 @@ pub fn studies_text<'a>(
     header.extend(keys.iter().map(Heading::numbers));
     header.extend(names.iter().map(|name| Heading::numbers(format!("{name}\n%e_rms"))));
     let done: Vec<_> = studies.iter().enumerate().filter_map(|(i, study)| Some((i, study, found(study)?))).collect();
-    let failed = done.iter().any(|(_, _, record)| record.error.is_some());
-    if failed {
-        header.push(Heading::words("error"));
-    }
     let row = |(place, study, record): &(usize, &Study, &'a StudyRecord)| {
         let values = study.values();
         let mut row = vec![(place + 1).to_string()];
@@ -162,11 +161,22 @@ pub fn studies_text<'a>(
             let fit = fits(record).iter().find(|fit| fit["name"] == **name);
             fit.and_then(rms).map_or("-".into(), |error| format!("{error:.2}"))
         }));
-        row.extend(failed.then(|| record.error.clone().unwrap_or_default()));
         row
     };
     let rows: Vec<Vec<String>> = done.iter().take(PRINTED).map(row).collect();
-    aligned(&header, &rows) + &rest(done.len())
+    let mut text = aligned(&header, &rows) + &rest(done.len());
+    let failed: Vec<_> =
+        done.iter().filter_map(|(place, _, record)| Some((place + 1, record.error.as_ref()?))).collect();
+    for (number, error) in failed.iter().take(FAULTS) {
+        text += &format!("\nstudy {number} failed: {error}");
+    }
+    if failed.len() > FAULTS {
+        text += &format!("\nand {} more failed", failed.len() - FAULTS);
+    }
+    if !failed.is_empty() {
+        text += "\n";
+    }
+    text
 }
 
 /// A value in a printed table: numbers with at most six digits.

@@ -84,8 +84,9 @@ impl Range {
 
 fn range(table: &Table) -> Result<Values> {
     if let Some(unknown) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-        let expected = format!("the keys of a range: {}", KEYS.join(", "));
-        return Err(Error::expected(unknown, expected, format!("\"{unknown}\"")));
+        let known: Vec<String> = KEYS.iter().map(|key| format!("\"{key}\"")).collect();
+        let problem = format!("unknown field \"{unknown}\", expected one of {}", known.join(", "));
+        return Err(Error::at(unknown, problem));
     }
     let required = |key: &str| {
         let value = table.get(key).ok_or_else(|| Error::expected(key, "a number, for a range has two ends", "none"))?;

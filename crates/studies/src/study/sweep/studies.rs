@@ -16,6 +16,7 @@ pub struct Sweep {
     text: String,
     path: PathBuf,
     title: String,
+    /// Those beside the studies' own.
     settings: Vec<Setting>,
     keys: Vec<String>,
     studies: Vec<Study>,
@@ -57,26 +58,32 @@ impl Sweep {
             return Err(scene.placed(Error::expected("sweep", expected, "none")));
         };
         let studies = studies_of(entry).map_err(|e| scene.at("sweep", e))?;
+        let sweep = Sweep { title: scene.title().into(), ..Sweep::of_studies(text, path, settings, studies) };
+        // A fault in every study is one of the sweep.
+        let mut faults = sweep.studies.iter().map(|study| sweep.scene(study).err());
+        match faults.next().flatten() {
+            Some(first) if faults.all(|fault| fault.is_some()) => Err(first),
+            _ => Ok(sweep),
+        }
+    }
+
+    /// A sweep of these studies, whatever `[sweep]` says; nothing is checked before they run.
+    pub fn of_studies(text: &str, path: &Path, settings: &[Setting], studies: Vec<Study>) -> Sweep {
         let mut keys: Vec<String> = Vec::new();
         for setting in studies.iter().flat_map(|study| &study.settings) {
             if !keys.iter().any(|key| key == setting.key()) {
                 keys.push(setting.key().into());
             }
         }
-        let sweep = Sweep {
+        let others = settings.iter().filter(|setting| setting.first() != "sweep");
+        Sweep {
             text: text.into(),
             path: path.into(),
-            title: scene.title().into(),
-            settings: settings.to_vec(),
+            title: String::new(),
+            settings: others.cloned().collect(),
             keys,
             studies,
             sums: Mutex::default(),
-        };
-        // A fault in every study is one of the sweep.
-        let mut faults = sweep.studies.iter().map(|study| sweep.scene(study).err());
-        match faults.next().flatten() {
-            Some(first) if faults.all(|fault| fault.is_some()) => Err(first),
-            _ => Ok(sweep),
         }
     }
 
@@ -109,7 +116,7 @@ impl Sweep {
         let mut sum = Sum::new();
         sum.write(env!("CARGO_PKG_VERSION").as_bytes());
         sum.write(without_sweep(&self.text).as_bytes());
-        for setting in self.settings.iter().filter(|setting| setting.first() != "sweep") {
+        for setting in &self.settings {
             sum.write(format!("\n{setting}").as_bytes());
         }
         for (key, value) in study.values() {
