@@ -53,7 +53,8 @@ class Report:
         rows = []
         for fit in self.record["fits"]:
             for load in fit["loads"]:
-                rows.append({"fit": fit["name"], **{k: v for k, v in load.items() if not isinstance(v, (dict, list))}})
+                plain = {k: v for k, v in load.items() if k != "name" and not isinstance(v, (dict, list))}
+                rows.append({"fit": fit["name"], "load": load["name"], **plain})
         return pandas.DataFrame(rows)
 
     @property
