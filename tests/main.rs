@@ -67,5 +67,6 @@ mod small_loads;
 mod springs;
 mod stability;
 mod sums;
+mod sweeps;
 mod symmetry;
 mod whole;

@@ -22,6 +22,7 @@ mod scene_file;
 mod schema;
 mod stability;
 mod state;
+mod sweep;
 
 use crate::terminal::Terminal;
 use clap::Subcommand;
@@ -60,6 +61,7 @@ commands! {
     Generate: generate::Generate,
     Compare: compare::Compare,
     Converge: converge::Converge,
+    Sweep: sweep::Sweep,
     Paper: paper::Paper,
     Stability: stability::Stability,
     Elements: elements::Elements,

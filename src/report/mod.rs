@@ -30,6 +30,9 @@ mod rows;
 mod series;
 mod stability;
 mod stretches;
+mod study_lines;
+mod study_record;
+mod study_table;
 mod surface;
 mod table;
 
@@ -57,6 +60,9 @@ pub use pictures::{displacement_grid, network_grid};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_text, write_stability};
 pub use stretches::{STRETCHES_FILES, stretches_text, write_stretches};
+pub use study_lines::{Shard, StudyLines};
+pub use study_record::StudyRecord;
+pub use study_table::{StudyTable, planned_text, studies_text};
 pub use table::{notes, summary, table};
 
 use crate::error::Result;

@@ -69,6 +69,8 @@ fn scene_with(table: &str) -> String {
             rest = format!("[motion]\nduration = 1\nstep = 1\n[[motion.{}]]\nzzz = 1\n", &table[7..]);
         }
         "fix" | "load" => rest = format!("[[{table}]]\n{zzz}"),
+        "sweep" => rest = format!("[sweep]\nover = {{}}\n{zzz}"),
+        "sweep range" => rest = "[sweep.over]\nmaterial.young = { from = 1, to = 2, zzz = 1 }\n".into(),
         "newton" | "solver" | "gauge" | "output" => rest = format!("[{table}]\n{zzz}"),
         other => panic!("{other}"),
     }
@@ -89,7 +91,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 24);
+    assert_eq!(tables.len(), 26);
 }
 
 #[test]
