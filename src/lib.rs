@@ -89,12 +89,9 @@
 #[cfg(feature = "cli")]
 pub mod generate;
 pub mod prelude;
-// The records of a report state their fields in the reference of report.json.
 #[cfg(feature = "cli")]
-#[allow(missing_docs)]
 pub mod export;
 #[cfg(feature = "cli")]
-#[allow(missing_docs)]
 pub mod report;
 
 // The examples of the README and of the book are compiled and run with those of this page.

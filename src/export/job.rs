@@ -32,7 +32,9 @@ pub enum Tension {
 
 /// A network that a program holds.
 pub struct Job<'a> {
+    /// The network as it is in its file.
     pub network: &'a NetworkRecord,
+    /// Its springs by what they measure.
     pub parts: Parts,
     /// m/s², with z = 0 in the plane.
     pub gravity: [f64; 3],

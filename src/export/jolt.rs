@@ -10,6 +10,7 @@ use serde::Serialize;
 const HOLDS: Holds =
     Holds { volumes: true, negative: false, tension: Tension::Any, partial: false, plane: true, off_edges: true };
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "jolt",
     title: "a Node script for Jolt: edge and volume constraints of a soft body",

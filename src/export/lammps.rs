@@ -9,6 +9,7 @@ use std::fmt::Write;
 const HOLDS: Holds =
     Holds { volumes: false, negative: true, tension: Tension::Any, partial: true, plane: true, off_edges: true };
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "lammps",
     title: "a data file and an input script for LAMMPS: harmonic bonds",

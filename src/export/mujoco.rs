@@ -10,6 +10,7 @@ use crate::report::NetworkRecord;
 const HOLDS: Holds =
     Holds { volumes: true, negative: true, tension: Tension::Balanced, partial: false, plane: false, off_edges: false };
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "mujoco",
     title: "a Python script for MuJoCo: a flex of tetrahedra with the stiffness of the springs",

@@ -9,6 +9,7 @@ use crate::report::NetworkRecord;
 const HOLDS: Holds =
     Holds { volumes: true, negative: true, tension: Tension::Any, partial: false, plane: true, off_edges: true };
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "newton",
     title: "a Python script for Newton (Warp): springs with dampers, and volume springs",

@@ -5,6 +5,7 @@ use super::target::{Content, NamedFile, Target, nothing};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target =
     Target { name: "npz", title: "arrays of NumPy, for scripts of your own", command: "", leaves_out: nothing, write };
 

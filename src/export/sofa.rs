@@ -9,6 +9,7 @@ use std::fmt::Write;
 const HOLDS: Holds =
     Holds { volumes: false, negative: true, tension: Tension::Any, partial: false, plane: true, off_edges: true };
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "sofa",
     title: "a file of the format Xsp for SOFA: masses and springs with dampers",

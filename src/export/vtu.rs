@@ -8,6 +8,7 @@ use crate::report::NetworkRecord;
 const LINE: u8 = 3;
 const POINTS: u8 = 2;
 
+/// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "vtu",
     title: "springs as lines with their constants, for ParaView",

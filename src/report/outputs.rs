@@ -56,7 +56,9 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
 
 /// The files' names without their endings.
 pub(super) struct Stems {
+    /// Files of the networks.
     pub fits: Vec<String>,
+    /// Files of the motions.
     pub motions: Vec<String>,
 }
 

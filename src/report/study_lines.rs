@@ -12,7 +12,9 @@ use std::path::{Path, PathBuf};
 /// One of several parts of a sweep that are run apart from each other, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
+    /// The number of the part, from 1.
     pub number: usize,
+    /// The number of parts.
     pub count: usize,
 }
 
@@ -145,6 +147,7 @@ impl StudyLines {
         Ok(())
     }
 
+    /// The file.
     pub fn path(&self) -> &Path {
         &self.path
     }

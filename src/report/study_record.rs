@@ -21,6 +21,7 @@ pub struct StudyRecord {
 }
 
 impl StudyRecord {
+    /// The record of a study of this sweep.
     pub fn of(sweep: &Sweep, study: &Study, outcome: &Result<Outcome>) -> StudyRecord {
         let report = |outcome: &Outcome| serde_json::to_value(Report::of(outcome)).expect("keys are text");
         StudyRecord {

@@ -20,7 +20,9 @@ const OF_BODY: [&str; 2] = ["nodes", "elements"];
 /// the same however it was made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyTable {
+    /// The names of the columns.
     pub columns: Vec<String>,
+    /// The rows, with a value for each column.
     pub rows: Vec<Vec<Value>>,
 }
 

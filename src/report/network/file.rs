@@ -22,8 +22,11 @@ use std::collections::BTreeMap;
 /// A network on the points of its mesh, and the study that it comes from, if there is one.
 #[derive(Debug, Clone, Copy)]
 pub struct NetworkFile<'a> {
+    /// The mesh of the network.
     pub mesh: &'a Mesh,
+    /// The network.
     pub network: &'a Network,
+    /// The run and the fit from which the network comes.
     pub study: Option<(&'a Outcome, &'a FitOutcome)>,
 }
 
@@ -194,6 +197,7 @@ impl NetworkRecord<SpringList<'_>> {
 }
 
 impl SpringList<'_> {
+    /// The springs one after the other, as they are written.
     pub fn iter(&self) -> impl Iterator<Item = SpringRecord> {
         let count = self.network.lengths.len();
         let lengths = self.network.lengths.iter().enumerate().map(|(s, spring)| SpringRecord {

@@ -13,6 +13,7 @@ use std::path::Path;
 
 /// A format, known by the ending of its files.
 pub struct NetworkFormat {
+    /// The ending of its files, without a dot.
     pub ending: &'static str,
     write: fn(&Path, &NetworkFile) -> Result<()>,
 }

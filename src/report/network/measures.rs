@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 /// The measures of a network, and the place of that of each spring in the list.
 pub struct Measures {
+    /// The measures.
     pub records: Vec<MeasureRecord>,
     /// `[springs that are not on lengths alone]`.
     pub places: Vec<usize>,

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 /// The groups, and those of each spring.
 #[derive(Default)]
 pub struct Origins {
+    /// The elements and groups.
     pub records: Vec<OriginRecord>,
     lengths: HashMap<[usize; 2], Vec<usize>>,
     others: HashMap<(SpringKind, Vec<usize>), Vec<usize>>,

@@ -6,6 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// A linear spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LengthPart {
+    /// The two points that it joins.
     pub points: [usize; 2],
     /// N/m.
     pub constant: f64,
@@ -29,7 +30,9 @@ pub struct ContentPart {
 /// A network of linear springs on lengths and on the contents of simplices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Parts {
+    /// Springs on lengths.
     pub lengths: Vec<LengthPart>,
+    /// Springs on contents.
     pub contents: Vec<ContentPart>,
 }
 

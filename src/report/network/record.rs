@@ -18,7 +18,9 @@ pub const NETWORK_VERSION: u32 = 1;
 pub struct NetworkRecord<S = Vec<SpringRecord>> {
     /// `springfit network`.
     pub format: String,
+    /// The version of the format.
     pub version: u32,
+    /// Where the network comes from.
     pub provenance: ProvenanceRecord,
     /// The number of coordinates of a point.
     pub dimension: usize,
@@ -42,6 +44,7 @@ pub struct NetworkRecord<S = Vec<SpringRecord>> {
     pub loads: Vec<NodalLoadRecord>,
     /// m/s², `[dimension]`; null where the scene says nothing of it.
     pub gravity: Option<Vec<f64>>,
+    /// The damping of the motion.
     pub damping: NetworkDampingRecord,
     /// The motion of the scene.
     pub motion: Option<DriveRecord>,
@@ -53,6 +56,7 @@ pub struct NetworkRecord<S = Vec<SpringRecord>> {
     pub measures: Vec<MeasureRecord>,
     /// What a reader must know of the fit, one sentence each.
     pub notes: Vec<String>,
+    /// The springs.
     pub springs: S,
 }
 
@@ -72,7 +76,9 @@ pub struct ProvenanceRecord {
     pub mesh: Option<String>,
     /// CRC-32 of the points as little-endian numbers of 64 bits, followed by the cells as integers of 32 bits; eight hexadecimal digits.
     pub mesh_checksum: String,
+    /// The material that was fitted.
     pub material: Option<MaterialDataRecord>,
+    /// The fit with its errors.
     pub fit: Option<FitSummaryRecord>,
 }
 
@@ -82,6 +88,7 @@ pub struct ProvenanceRecord {
 pub struct MaterialDataRecord {
     /// Pa.
     pub young: f64,
+    /// Poisson's ratio.
     pub poisson: f64,
     /// `solid`, `plane stress`, `plane strain` or `rod`.
     pub state: String,
@@ -97,6 +104,7 @@ pub struct MaterialDataRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FitSummaryRecord {
+    /// The name of the fit.
     pub name: String,
     /// The objective.
     pub objective: String,
@@ -104,11 +112,13 @@ pub struct FitSummaryRecord {
     pub settings: BTreeMap<String, serde_json::Value>,
     /// `fitted`, `stable`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
     pub status: String,
+    /// Springs with a constant below zero.
     pub negative_springs: usize,
     /// `‖R − K‖/‖R‖` of the elements, mean and largest; null where springs belong to no element.
     pub relative_frobenius: Option<[f64; 2]>,
     /// `‖C − C₀‖/‖C₀‖` of the elasticity tensor.
     pub relative_tensor: Option<f64>,
+    /// The errors under each load of the scene.
     pub loads: Vec<LoadErrorsRecord>,
 }
 
@@ -116,10 +126,13 @@ pub struct FitSummaryRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadErrorsRecord {
+    /// The name of the load.
     pub name: String,
     /// Percent of the largest displacement, as the two that follow.
     pub e_rms: Option<f64>,
+    /// The largest error, percent of the largest displacement.
     pub e_max: Option<f64>,
+    /// The error at the point that moves most, percent of the largest displacement.
     pub e_tip: Option<f64>,
     /// Percent.
     pub e_energy: Option<f64>,
@@ -129,6 +142,7 @@ pub struct LoadErrorsRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellBlockRecord {
+    /// The name of the element.
     pub element: String,
     /// The type of the cells in VTK; null if the element names none.
     pub vtk: Option<u32>,
@@ -140,6 +154,7 @@ pub struct CellBlockRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeldRecord {
+    /// The point, from 0.
     pub point: usize,
     /// m, `[dimension]`; null in directions in which the point is free.
     pub displacement: Vec<Option<f64>>,
@@ -149,7 +164,9 @@ pub struct HeldRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodalLoadRecord {
+    /// The name of the load.
     pub name: String,
+    /// The forces on its points.
     pub forces: Vec<NodalForceRecord>,
     /// All points that are held under this load, with prescribed displacements.
     pub held: Vec<HeldRecord>,
@@ -159,6 +176,7 @@ pub struct NodalLoadRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodalForceRecord {
+    /// The point, from 0.
     pub point: usize,
     /// N, `[dimension]`.
     pub force: Vec<f64>,
@@ -182,16 +200,21 @@ pub struct NetworkDampingRecord {
 pub struct DriveRecord {
     /// s, as the two that follow.
     pub duration: f64,
+    /// The time step, s.
     pub step: f64,
     /// Between the states that are written.
     pub every: f64,
+    /// The number of time steps.
     pub steps: usize,
+    /// The name of the integrator.
     pub integrator: String,
     /// Whether springs keep their directions, as in linear finite elements.
     pub linear: bool,
     /// Points whose mean displacement is written.
     pub watched: Vec<usize>,
+    /// Forces that act for a time.
     pub forces: Vec<TimedForceRecord>,
+    /// Points that are moved for a time.
     pub pulls: Vec<TimedPullRecord>,
 }
 
@@ -203,6 +226,7 @@ pub struct TimedForceRecord {
     pub axis: usize,
     /// N, an expression in t.
     pub force: String,
+    /// The points on which it acts, from 0.
     pub points: Vec<usize>,
     /// The share of each point, by which the force is multiplied.
     pub shares: Vec<f64>,
@@ -216,6 +240,7 @@ pub struct TimedPullRecord {
     pub axis: usize,
     /// m, an expression in t and in the x, y, z of the point at rest.
     pub displacement: String,
+    /// The points that are moved, from 0.
     pub points: Vec<usize>,
 }
 
@@ -223,7 +248,9 @@ pub struct TimedPullRecord {
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OriginRecord {
+    /// The name of the element.
     pub element: String,
+    /// The name of the group of its springs.
     pub group: String,
 }
 
@@ -231,11 +258,13 @@ pub struct OriginRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasureRecord {
+    /// What is measured.
     pub kind: MeasureKind,
     /// Of a content: the element whose shape functions have these gradients; null of fibres.
     pub element: Option<String>,
     /// Of a content: `Σ_cells share · Σ_terms weight · |Σ_a x_a ⊗ gradients_a|`, with the points of the cells.
     pub terms: Vec<TermRecord>,
+    /// The cells whose contents are summed, with their shares.
     pub cells: Vec<ShareRecord>,
     /// Of an expression: a function of `x0, y0, z0, x1, …`, the coordinates of the points of the spring.
     pub expression: Option<String>,
@@ -257,6 +286,7 @@ pub enum MeasureKind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TermRecord {
+    /// The weight of the term in the sum.
     pub weight: f64,
     /// `[nodes][columns]`.
     pub gradients: Vec<Vec<f64>>,
@@ -268,6 +298,7 @@ pub struct TermRecord {
 pub struct ShareRecord {
     /// Places in the points of the spring.
     pub nodes: Vec<usize>,
+    /// The share of the content of the cell.
     pub share: f64,
 }
 
@@ -275,7 +306,9 @@ pub struct ShareRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringRecord {
+    /// What the spring measures.
     pub kind: String,
+    /// The points of which it is a function, from 0.
     pub points: Vec<usize>,
     /// In the unit of the kind; with a law the slope of its force at rest.
     pub constant: f64,
