@@ -60,7 +60,9 @@
 //! | [`dynamics`] | motion in time |
 //! | [`whole`] | spring constants from the displacements of the whole body |
 //! | [`study`] | scenes, and the studies that are made from them |
+//! | `generate` | code that computes the springs of a cell at run time (feature `cli`) |
 //! | `report` | tables, JSON, CSV, SVG and VTU files of the results (feature `cli`) |
+//! | `export` | networks as files and scripts of other programs (feature `cli`) |
 //! | [`prelude`] | the names that most programs need |
 //!
 //! Lengths are in m, moduli in Pa, forces in N, masses in kg and times in s. Arrays are row by row; their shapes are
@@ -84,10 +86,12 @@
 
 #![forbid(unsafe_code)]
 
-pub mod prelude;
-// The records of a report state their fields in the reference of report.json.
 #[cfg(feature = "cli")]
-#[allow(missing_docs)]
+pub mod generate;
+pub mod prelude;
+#[cfg(feature = "cli")]
+pub mod export;
+#[cfg(feature = "cli")]
 pub mod report;
 
 // The examples of the README and of the book are compiled and run with those of this page.

@@ -12,7 +12,7 @@ use springfit::model::{LengthSpring, Network, Support};
 use springfit::scalar::{DoubleDouble, Real};
 use springfit::solve::System;
 use springfit::springs::Springs;
-use springfit::study::{Verdict, sweep};
+use springfit::study::{Verdict, stability};
 use springfit::symbolic::{Differentiable, Jet, Scope};
 use std::path::Path;
 
@@ -161,7 +161,7 @@ fn coupled_springs_keep_their_digits() {
         Element::load(path.to_str().unwrap()).unwrap()
     };
     for name in ["tri3_coupled.toml", "tet4_coupled.toml"] {
-        let rows = sweep(Some(own(name)), &mut |_| {}).unwrap().rows;
+        let rows = stability(Some(own(name)), &mut |_| {}).unwrap().rows;
         let lost = rows.iter().filter(|row| row.verdict == Verdict::Lost);
         let lost: Vec<String> = lost.map(|row| format!("{}, {}: {:?}", row.case, row.method, row.error)).collect();
         assert!(lost.is_empty() && rows.len() > 600, "{name}: {lost:#?}");

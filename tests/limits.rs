@@ -2,7 +2,7 @@
 
 use springfit::error::ErrorKind;
 use springfit::model::Network;
-use springfit::report::{check_scene_outputs, network_csv, network_json};
+use springfit::report::{NetworkFile, check_scene_outputs, network_csv, network_json};
 use springfit::study::{Scene, run};
 use std::fs;
 use std::io::{self, Write};
@@ -121,7 +121,7 @@ fn networks_are_written_record_by_record() {
         let outcome = run(&scene, &mut |_| {}).unwrap();
         let network: &Network = &outcome.fits[0].network;
         let (mut json, mut csv) = (Pieces::default(), Pieces::default());
-        network_json(&outcome.mesh, None, network, &[], &mut json).unwrap();
+        network_json(&NetworkFile::of(&outcome, &outcome.fits[0]), &mut json).unwrap();
         network_csv(&outcome.mesh, network, &mut csv).unwrap();
         let file: serde_json::Value = serde_json::from_slice(&json.0).unwrap();
         assert_eq!(file["springs"].as_array().unwrap().len(), network.len());
@@ -164,7 +164,7 @@ fn outputs_that_cannot_be_written_are_found_before_the_work() {
     let made = TempDir::new().unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let written = springfit::report::write_outputs(&outcome, scene.output(), made.path()).unwrap();
-    assert_eq!(written.len(), 8, "{written:?}");
+    assert_eq!(written.len(), 10, "{written:?}");
     for path in written {
         let folder = TempDir::new().unwrap();
         let place = folder.path().join(path.file_name().unwrap());

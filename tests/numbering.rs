@@ -4,7 +4,7 @@ use crate::shapes::Random;
 use serde_json::Value;
 use springfit::mesh::{Mesh, MeshSource};
 use springfit::model::Network;
-use springfit::report::{Report, network_csv, network_grid, network_json, report, summary};
+use springfit::report::{NetworkFile, Report, network_csv, network_grid, network_json, report, summary};
 use springfit::study::{Outcome, Scene, run};
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,16 +32,16 @@ fn csv(mesh: &Mesh, network: &Network) -> String {
 
 fn json(mesh: &Mesh, network: &Network) -> Value {
     let mut text = Vec::new();
-    network_json(mesh, None, network, &[], &mut text).unwrap();
+    network_json(&NetworkFile::bare(mesh, network), &mut text).unwrap();
     serde_json::from_slice(&text).unwrap()
 }
 
 /// The constants of the springs by the numbers of their points.
 fn springs(csv: &str) -> BTreeMap<Vec<u64>, String> {
     let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
-    assert_eq!(rows[0], ["kind", "points", "constant", "rest", "nodes"]);
+    assert_eq!(rows[0], ["kind", "points", "constant", "rest", "unit", "nodes"]);
     let row = |row: &Vec<&str>| {
-        let mut nodes: Vec<u64> = row[4].split(' ').map(|n| n.parse().unwrap()).collect();
+        let mut nodes: Vec<u64> = row[5].split(' ').map(|n| n.parse().unwrap()).collect();
         nodes.sort_unstable();
         (nodes, row[2].to_string())
     };
@@ -74,7 +74,7 @@ fn exports_have_the_numbers_of_the_file() {
         assert!(springs(&csv).keys().eq(lengths.keys()), "{csv}");
         for line in csv.lines().skip(1) {
             let row: Vec<&str> = line.split(',').collect();
-            let mut nodes: Vec<u64> = row[4].split(' ').map(|n| n.parse().unwrap()).collect();
+            let mut nodes: Vec<u64> = row[5].split(' ').map(|n| n.parse().unwrap()).collect();
             nodes.sort_unstable();
             assert!((row[3].parse::<f64>().unwrap() - lengths[&nodes]).abs() < 1e-12, "{line}");
         }
@@ -82,7 +82,7 @@ fn exports_have_the_numbers_of_the_file() {
         assert_eq!(json["nodes"], serde_json::json!(numbers));
         assert_eq!(json["numbering"], title);
         assert_eq!(json["points"].as_array().unwrap().len(), 4);
-        let grid = network_grid(mesh, None, &outcome.fits[0], &outcome.loads);
+        let grid = network_grid(&NetworkFile::of(&outcome, &outcome.fits[0]));
         let array = grid.point_data.iter().find(|array| array.name == "node").unwrap();
         assert!(array.values.iter().map(|n| *n as u64).eq(numbers), "{:?}", array.values);
         let words = summary(&outcome);
@@ -91,7 +91,7 @@ fn exports_have_the_numbers_of_the_file() {
     // What is generated has no numbers of a file.
     let outcome = outcome("box = { element = \"tri3\", size = [1, 1], cells = [1, 1] }");
     let csv = csv(&outcome.mesh, &outcome.fits[0].network);
-    assert!(csv.starts_with("kind,points,constant,rest\n"), "{csv}");
+    assert!(csv.starts_with("kind,points,constant,rest,unit\n"), "{csv}");
     let json = json(&outcome.mesh, &outcome.fits[0].network);
     assert!(json["nodes"].is_null() && json["numbering"].is_null());
 }

@@ -12,6 +12,7 @@ poisson = 0.3
 plane = "strain"
 [output]
 csv = true
+json = false
 report = false
 "#;
 
@@ -24,5 +25,5 @@ fn each_fit_has_a_file_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let written = write_outputs(&outcome, scene.output(), folder.path()).unwrap();
     let written: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!(written, ["modal-0.1-bulk.csv", "modal-0.1-bulk-2.csv", "mesh-2.csv", "-2.csv"]);
+    assert_eq!(written, ["modal-0.1-bulk.csv", "modal-0.1-bulk-2.csv", "mesh-2.csv", "-2.csv", "points.csv"]);
 }

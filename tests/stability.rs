@@ -3,14 +3,14 @@
 use crate::messages::reads;
 use springfit::element::Element;
 use springfit::report;
-use springfit::study::{Family, Scene, StabilityRow, Verdict, sweep, sweep_scene};
+use springfit::study::{Family, Scene, StabilityRow, Verdict, stability, stability_of_scene};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
 fn swept(name: &str) -> Vec<StabilityRow> {
-    sweep(Some(Element::load(name).unwrap()), &mut |_| {}).unwrap().rows
+    stability(Some(Element::load(name).unwrap()), &mut |_| {}).unwrap().rows
 }
 
 fn program(folder: &Path, arguments: &[&str]) -> Output {
@@ -73,7 +73,7 @@ fn a_scene_gives_the_same_errors_in_all_units() {
                 poisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n[[fit]]\nobjective = \"frobenius\"\n[[fix]]\n\
                 group = \"zmin\"\n[[load]]\ngroup = \"zmax\"\ntraction = [10, 0, 10]\n";
     fs::write(&path, text).unwrap();
-    let outcome = sweep_scene(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+    let outcome = stability_of_scene(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
     assert_eq!(outcome.lost().count(), 0, "{}", report::stability_text(&outcome));
     let same = outcome.rows.iter().filter(|row| matches!(row.family, Family::Young | Family::Size));
     assert_eq!(same.clone().count(), 22);

@@ -53,7 +53,8 @@ class Report:
         rows = []
         for fit in self.record["fits"]:
             for load in fit["loads"]:
-                rows.append({"fit": fit["name"], **{k: v for k, v in load.items() if not isinstance(v, (dict, list))}})
+                plain = {k: v for k, v in load.items() if k != "name" and not isinstance(v, (dict, list))}
+                rows.append({"fit": fit["name"], "load": load["name"], **plain})
         return pandas.DataFrame(rows)
 
     @property
@@ -91,49 +92,14 @@ def run(
     Raises:
         SpringfitError: The scene or one of its files is wrong.
     """
-    if set or isinstance(scene, Mapping):
-        keys, base = (dict(scene), Path(folder or ".")) if isinstance(scene, Mapping) else _read(scene)
-        for path, value in (set or {}).items():
-            keys = _with(keys, path, value)
-    else:
-        keys, base = Path(scene), Path(".")
+    scene, base = given(scene, folder)
     with listener(progress) as told:
-        text, displacements, files = _core.run(keys, base, None if out is None else Path(out), told)
+        text, displacements, files = _core.run(scene, base, dict(set or {}), None if out is None else Path(out), told)
     return Report(json.loads(text), displacements, [Path(path) for path in files])
 
 
-def _read(path: "str | os.PathLike") -> "tuple[dict, Path]":
-    try:
-        import tomllib
-    except ImportError:  # Python 3.10
-        import tomli as tomllib
-
-    path = Path(path)
-    with open(path, "rb") as file:
-        keys = tomllib.load(file)
-    keys.setdefault("title", path.stem)
-    return keys, path.parent
-
-
-def _with(keys: Any, path: str, value: Any) -> Any:
-    """A copy of nested dictionaries and lists in which the entry at a path is another."""
-    from .mesh import failure
-
-    steps: "list[str | int]" = []
-    for part in path.split("."):
-        name, *places = part.replace("]", "").split("[")
-        steps += ([name] if name else []) + [int(place) for place in places]
-
-    def placed(entry: Any, rest: "list[str | int]") -> Any:
-        if not rest:
-            return value
-        first, *rest = rest
-        if isinstance(first, int):
-            if not isinstance(entry, list) or not 0 <= first < len(entry):
-                raise failure(path, "a place in a list", f"[{first}]")
-            return [placed(e, rest) if i == first else e for i, e in enumerate(entry)]
-        if entry is not None and not isinstance(entry, Mapping):
-            raise failure(path, "a table of keys", type(entry).__name__)
-        return {**(entry or {}), first: placed((entry or {}).get(first), rest)}
-
-    return placed(keys, steps)
+def given(scene: "str | os.PathLike | Mapping[str, Any]", folder: "str | os.PathLike | None") -> "tuple[dict | Path, Path]":
+    """A scene as the library takes it, and the folder of the files that a dictionary names."""
+    if isinstance(scene, Mapping):
+        return dict(scene), Path(folder or ".")
+    return Path(scene), Path(".")

@@ -2,125 +2,136 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
-from collections.abc import Iterable, Mapping
+import queue
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+from . import _core
+from ._core import SpringfitError
+from ._progress import listener
 from .mesh import failure
-from .report import _read, run
+from .report import given
 
 
 def sweep(
     scene: "str | os.PathLike | Mapping[str, Any]",
-    over: "Mapping[str, Iterable] | Iterable[Mapping[str, Any]]",
+    over: "Mapping[str, Any] | Iterable[Mapping[str, Any]] | None" = None,
     *,
+    design: Literal["grid", "random", "sobol"] | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    set: "Mapping[str, Any] | None" = None,
     executor: Any = None,
     folder: "str | os.PathLike | None" = None,
     records: "str | os.PathLike | None" = None,
+    progress: "bool | Callable[[str, int, int], Any]" = False,
 ):
-    """Runs a scene for every combination of some keys' values.
+    """Runs a scene for many values of its keys. The command ``springfit sweep`` gives the same rows.
 
     Args:
         scene: The path of a scene file, or its keys as a dictionary.
-        over: By the path of a key, its values: every combination is a study, the last key running fastest. Or a list of dictionaries,
-            each a study.
-        executor: What has ``submit(function, *arguments)`` that returns a future: ``concurrent.futures`` executors, Dask clients. A
-            function ``executor.remote`` is not required. None runs one study after the other.
+        over: By the path of a key, its values: a list, or a range as a dictionary such as ``{"from": 0.1, "to": 0.4, "count": 4}``. Or a
+            list of dictionaries, each a study. None takes all of ``[sweep]`` of the scene.
+        design: "grid" (the default) makes a study of every combination, the last key running fastest; "random" and "sobol" sample
+            ranges and lists.
+        samples: The number of studies of a random or Sobol design.
+        seed: Another one gives other samples. A Sobol design without a seed starts at the lower ends of the ranges.
+        set: Keys that have another value than in the scene, in all studies.
+        executor: Who runs the studies: an executor of ``concurrent.futures`` or a Dask client (what has ``submit``), the module ``ray``,
+            or a ``multiprocessing.Pool`` (what has ``imap_unordered``). None runs one study after the other.
         folder: Where the files that a dictionary names are.
-        records: A file of one JSON line for each study. Studies that it has are not run again, so that a sweep which was killed goes on.
+        records: A file of one JSON line for each study, as the command writes it. Studies that it has are not run again, so that a sweep
+            goes on after it was killed. It can be read at any time.
+        progress: True shows a bar; or a function of (stage, done, total).
 
     Returns:
-        A ``pandas.DataFrame`` with one row for each study, fit and load: the keys of the study, and the figures. A study that failed is
-        one row with its ``error``. The rows are in the order of the studies, whatever finished first.
+        A ``pandas.DataFrame`` with one row for each study, fit and load: the number of the study from 1, its values, and the figures. A
+        study that failed is one row with its ``error``. The rows are in the order of the studies, whatever finished first.
+
+    Raises:
+        SpringfitError: The scene, its sweep or the records are wrong, or the executor takes no work.
     """
     import pandas
 
-    studies = list(_studies(over))
-    keys, base = (dict(scene), Path(folder or ".")) if isinstance(scene, Mapping) else _read(scene)
-    base = base.resolve()
-    done = _known(records)
-    marks = [json.dumps(study, sort_keys=True, default=_plain) for study in studies]
-    waiting = [i for i, mark in enumerate(marks) if mark not in done]
-    for mark, rows in _results(executor, keys, base, [(marks[i], studies[i]) for i in waiting]):
-        done[mark] = rows
-        if records is not None:
-            with open(records, "a", encoding="utf-8") as file:
-                file.write(json.dumps({"study": json.loads(mark), "rows": rows}) + "\n")
-    rows = [{**json.loads(mark), **row} for mark in marks for row in done[mark]]
-    return pandas.DataFrame(rows)
-
-
-def _studies(over):
-    if isinstance(over, Mapping):
-        lists = [list(values) for values in over.values()]
-        for values in itertools.product(*lists):
-            yield dict(zip(over, values))
-        return
-    for study in over:
-        if not isinstance(study, Mapping):
-            raise failure("over", "dictionaries of keys", type(study).__name__)
-        yield dict(study)
+    scene, base = given(scene, folder)
+    settings = dict(set or {})
+    plan = None
+    if over is not None:
+        over = _plain(dict(over) if isinstance(over, Mapping) else list(over))
+        plan = {"over": over, "design": design, "samples": samples, "seed": seed}
+    elif not (design is None and samples is None and seed is None):
+        settings |= {f"sweep.{k}": v for k, v in {"design": design, "samples": samples, "seed": seed}.items() if v is not None}
+    core = _core.Sweep(scene, base.resolve(), settings, plan)
+    settings = {key: value for key, value in settings.items() if not key.startswith("sweep.")}
+    with tempfile.TemporaryDirectory() as scratch, listener(progress) as told:
+        lines = _core.Studies(Path(records or Path(scratch, "studies.jsonl")), core)
+        text, path = core.scene
+        marks = list(dict.fromkeys(core.marks))
+        waiting = [(text, Path(path).resolve(), settings, mark) for mark in marks if mark not in lines]
+        done = len(marks) - len(waiting)
+        for line in _results(executor, waiting):
+            lines.push(line)
+            done += 1
+            if told is not None:
+                told("studies", done, len(marks))
+        columns, rows = core.table(lines)
+        del lines
+    return pandas.DataFrame(json.loads(rows), columns=columns)
 
 
 def _plain(value: Any) -> Any:
-    return value.tolist() if hasattr(value, "tolist") else os.fspath(value)
+    """Without the types of NumPy and iterators, which have no place in TOML."""
+    if isinstance(value, Mapping):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Iterable) and not isinstance(value, (str, bytes)):
+        return [_plain(entry) for entry in value]
+    return value
 
 
-def _known(records) -> dict:
-    """The rows of each study that a file has. A last line that was cut short is left out, and cut off."""
-    if records is None or not os.path.exists(records):
-        return {}
-    known, whole = {}, 0
-    with open(records, "rb") as file:
-        for number, line in enumerate(file, 1):
-            if not line.endswith(b"\n"):
-                break
-            try:
-                entry = json.loads(line)
-                known[json.dumps(entry["study"], sort_keys=True)] = entry["rows"]
-            except (ValueError, KeyError, TypeError):
-                raise failure("records", f"JSON lines of an earlier sweep in {records}", f"line {number}") from None
-            whole += len(line)
-    os.truncate(records, whole)
-    return known
+def _study(task: "tuple[str, Path, dict, str]") -> str:
+    """The line of one study; runs in the threads and processes of an executor."""
+    return _core.study_line(*task)
 
 
-def _results(executor, keys, base, studies):
-    """Marks and rows, as they become ready."""
+def _results(executor: Any, tasks: list) -> "Iterator[str]":
+    """The lines of the studies as they become ready."""
     if executor is None:
-        for mark, study in studies:
-            yield mark, _study(keys, base, study)
-        return
-    from concurrent.futures import FIRST_COMPLETED, Future, wait
-
-    futures = {}
-    for mark, study in studies:
-        futures[executor.submit(_study, keys, base, study)] = mark
-    if all(isinstance(future, Future) for future in futures):
-        left = set(futures)
+        yield from map(_study, tasks)
+    elif hasattr(executor, "submit"):
+        yield from _submitted(executor, tasks)
+    elif hasattr(executor, "imap_unordered"):
+        yield from executor.imap_unordered(_study, tasks)
+    elif hasattr(executor, "remote") and hasattr(executor, "wait"):
+        study = executor.remote(_study)
+        left = [study.remote(task) for task in tasks]
         while left:
-            ready, left = wait(left, return_when=FIRST_COMPLETED)
-            for future in ready:
-                yield futures[future], future.result()
-        return
-    for future, mark in futures.items():
-        yield mark, future.result()
+            ready, left = executor.wait(left, num_returns=1)
+            yield from executor.get(ready)
+    else:
+        expected = "an executor with submit, a pool with imap_unordered, or the module ray"
+        raise failure("executor", expected, type(executor).__name__)
 
 
-def _study(keys: dict, base: Path, study: dict) -> "list[dict]":
-    """The rows of one study."""
+def _submitted(executor: Any, tasks: list) -> "Iterator[str]":
+    ready: "queue.SimpleQueue" = queue.SimpleQueue()
+    futures = []
     try:
-        report = run(keys, set=study, folder=base)
-    except ValueError as error:
-        return [{"error": str(error)}]
-    rows = []
-    plain = lambda entry: {k: v for k, v in entry.items() if not isinstance(v, (dict, list))}
-    for fit in report.record["fits"]:
-        own = plain(fit)
-        own["fit"] = own.pop("name")
-        loads = [{"load": load["name"], **{k: v for k, v in plain(load).items() if k != "name"}} for load in fit["loads"]]
-        rows += [{**own, **load} for load in loads] or [own]
-    return rows
+        for task in tasks:
+            future = executor.submit(_study, task)
+            futures.append(future)
+            future.add_done_callback(ready.put)
+        for _ in tasks:
+            yield ready.get().result()
+    except SpringfitError:
+        raise
+    except Exception as error:  # of the executor: it is closed, or one of its processes has ended
+        raise failure("executor", "one that takes work and brings it to its end", f"{type(error).__name__}: {error}") from error
+    finally:
+        for future in futures:
+            future.cancel()

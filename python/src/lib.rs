@@ -8,6 +8,7 @@ mod mesh;
 mod network;
 mod progress;
 mod study;
+mod sweep;
 mod value;
 
 use pyo3::prelude::*;
@@ -19,9 +20,12 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_class::<element::Element>()?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<network::Network>()?;
+    module.add_class::<sweep::Sweep>()?;
+    module.add_class::<sweep::Studies>()?;
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::study_line, module)?)?;
     Ok(())
 }

@@ -159,10 +159,7 @@ impl Network {
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
             springfit::check_file(&path)?;
-            let notes = report::notes(&self.outcome);
-            let masses = self.outcome.masses.as_deref();
-            let file = NetworkFile { mesh: &self.mesh, masses, fit: self.fit(), loads: &[], notes: &notes };
-            format.write(&path, &file)
+            format.write(&path, &NetworkFile::of(&self.outcome, self.fit()))
         });
         written.map_err(|error| raised(py, error))
     }

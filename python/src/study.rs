@@ -7,33 +7,30 @@ use crate::value::{table, text};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use springfit::error::{Error, Result};
 use springfit::report;
-use springfit::study::{Controls, Outcome, Scene, run_with};
+use springfit::study::{Controls, Outcome, Scene, Setting, run_with};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The report as JSON, displacements by load and model, and the files that were written.
 type Ran<'py> = (String, BTreeMap<String, BTreeMap<String, Bound<'py, PyArray2<f64>>>>, Vec<PathBuf>);
 
-/// Runs a scene: a path, or a dictionary of its keys whose files are relative to `folder`. With `out` its outputs are written there.
+/// Runs a scene: a path, or a dictionary of its keys whose files are relative to `folder`; `settings` are values of keys in place of
+/// those of the scene. With `out` its outputs are written there.
 #[pyfunction]
-#[pyo3(signature = (scene, folder, out=None, progress=None))]
+#[pyo3(signature = (scene, folder, settings, out=None, progress=None))]
 pub fn run<'py>(
     py: Python<'py>,
     scene: &Bound<'py, PyAny>,
     folder: PathBuf,
+    settings: &Bound<'py, PyDict>,
     out: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ran<'py>> {
-    let scene = match scene.cast::<PyDict>() {
-        Ok(keys) => {
-            let text = text(&table(keys)?);
-            // The name that a scene without a title gets.
-            Scene::parse(&text, &folder.join("scene.toml"))
-        }
-        Err(_) => Scene::load(Path::new(&scene.extract::<PathBuf>()?)),
-    };
-    let scene = scene.map_err(|error| raised(py, error))?;
+    let (text, path) = text_of(py, scene, &folder)?;
+    let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
+    let scene = scene.map_err(|error| raised(py, keyless(error)))?;
     let (outcome, written) = progress::run(py, progress, |told| {
         if let Some(out) = &out {
             report::check_scene_outputs(&scene, out, &[])?;
@@ -43,6 +40,33 @@ pub fn run<'py>(
         Ok((outcome, written.unwrap_or_default()))
     })?;
     Ok((report::report(&outcome), displacements(py, &outcome), written))
+}
+
+/// The text of a scene, and its path: of a file, or of a dictionary as if it were in `folder`.
+pub fn text_of(py: Python, scene: &Bound<PyAny>, folder: &Path) -> PyResult<(String, PathBuf)> {
+    match scene.cast::<PyDict>() {
+        // The name is the title of a scene without one.
+        Ok(keys) => Ok((text(&table(keys)?), folder.join("scene.toml"))),
+        Err(_) => {
+            let path: PathBuf = scene.extract()?;
+            let read = std::fs::read_to_string(&path);
+            Ok((read.map_err(|e| raised(py, Error::io("cannot be read", e).in_file(&path)))?, path))
+        }
+    }
+}
+
+/// The values of keys, by their paths.
+pub fn settings_of(py: Python, values: &Bound<PyDict>) -> PyResult<Vec<Setting>> {
+    let settings = table(values)?.iter().map(|(key, value)| Setting::of(key, value)).collect::<Result<_>>();
+    settings.map_err(|error| raised(py, error))
+}
+
+/// The error of a value that the command would have by an option.
+pub fn keyless(error: Error) -> Error {
+    match error.key().and_then(|key| key.strip_prefix("--set ")).map(String::from) {
+        Some(key) => error.at_key(key),
+        None => error,
+    }
 }
 
 /// By load, of the finite elements (`""`) and of each fit that has an answer.

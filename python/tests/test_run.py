@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -74,47 +73,9 @@ def test_wrong_scenes_are_named(change, key):
 
 
 def test_wrong_paths_of_keys_are_named():
-    for path in ["fit[7].name", "material.young.value"]:
+    for path in ["fit[7].name", "material.young.value", "a b", "fit[x]"]:
         with pytest.raises(sf.SpringfitError):
             sf.run(SCENE, set={path: 1})
-
-
-def sweep(**options):
-    over = {"material.poisson": [0.0, 0.2, 0.4, 0.6], "mesh.box.cells": [[2, 2], [3, 3]]}
-    table = sf.sweep(SCENE, over, **options)
-    return table[[column for column in table if "seconds" not in column]]
-
-
-def test_a_sweep_is_the_same_however_it_is_run():
-    alone = sweep()
-    # Six studies of two fits, and two that fail.
-    assert len(alone) == 6 * 2 + 2 and alone["error"].notna().sum() == 2
-    with ThreadPoolExecutor(2) as threads:
-        assert sweep(executor=threads).equals(alone)
-    with ProcessPoolExecutor(2) as processes:
-        assert sweep(executor=processes).equals(alone)
-
-
-def test_a_sweep_on_dask():
-    distributed = pytest.importorskip("distributed")
-    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
-        assert sweep(executor=client).equals(sweep())
-
-
-def test_a_sweep_goes_on_where_it_was_killed(tmp_path):
-    records = tmp_path / "sweep.jsonl"
-    whole = sweep(records=records)
-    lines = records.read_text().splitlines(keepends=True)
-    assert len(lines) == 8
-    # Killed in the middle of a line.
-    records.write_text("".join(lines[:3]) + lines[3][:20])
-    assert sweep(records=records).equals(whole)
-    assert len(records.read_text().splitlines()) == 8
-    before = records.read_text()
-    assert sweep(records=records).equals(whole) and records.read_text() == before
-    records.write_text("not a sweep\n")
-    with pytest.raises(sf.SpringfitError):
-        sweep(records=records)
 
 
 def test_ctrl_c_ends_a_long_run():

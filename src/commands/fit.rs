@@ -2,7 +2,7 @@
 
 use super::interrupt::end_early;
 use super::mesh_file::MeshOptions;
-use super::output::OutputOptions;
+use super::output::{OutputOptions, command};
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
@@ -99,7 +99,7 @@ pub struct Fit {
     density: Option<String>,
     #[command(flatten)]
     options: MeshOptions,
-    /// Where the springs go: .vtu, .json or .csv
+    /// Where the springs go: .json with all that is known of them, .npz, .csv or .vtu
     #[arg(short, long, help_heading = "Output")]
     output: PathBuf,
     #[command(flatten)]
@@ -180,11 +180,9 @@ impl Fit {
         let fit = fit.map_err(|e| e.placed(of_option))?;
         let masses = density.map(|density| point_masses(&mesh, density, material)).transpose().map_err(of_option)?;
         let outcome = Outcome::of_fit(self.mesh.display().to_string(), mesh, material, masses, fit);
-        let outcome = Outcome { assumed, ..outcome };
-        let (masses, notes) = (outcome.masses.as_deref(), report::notes(&outcome));
+        let outcome = Outcome { assumed, density, command: Some(command()), ..outcome };
         // The file first: who reads the table may have gone away.
-        let file = NetworkFile { mesh: &outcome.mesh, masses, fit: &outcome.fits[0], loads: &[], notes: &notes };
-        format.write(&self.output, &file)?;
+        format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
         terminal.print_outcome(&outcome, self.format.json)?;
         terminal.written(std::slice::from_ref(&self.output))?;
         Ok(ExitCode::SUCCESS)

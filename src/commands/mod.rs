@@ -6,7 +6,9 @@ mod completions;
 mod converge;
 mod derive;
 mod elements;
+mod export;
 mod fit;
+mod generate;
 mod groups;
 mod interrupt;
 mod man;
@@ -20,6 +22,7 @@ mod scene_file;
 mod schema;
 mod stability;
 mod state;
+mod sweep;
 
 use crate::terminal::Terminal;
 use clap::Subcommand;
@@ -53,9 +56,12 @@ commands! {
     Run: run::Run,
     Fit: Box<fit::Fit>,
     Check: check::Check,
+    Export: export::Export,
     Derive: derive::Derive,
+    Generate: generate::Generate,
     Compare: compare::Compare,
     Converge: converge::Converge,
+    Sweep: sweep::Sweep,
     Paper: paper::Paper,
     Stability: stability::Stability,
     Elements: elements::Elements,

@@ -10,3 +10,12 @@ pub struct OutputOptions {
     #[arg(long)]
     pub json: bool,
 }
+
+/// The command as it was typed, for files that say where they come from.
+pub fn command() -> String {
+    let words = std::env::args().skip(1).map(|word| match word.chars().any(|c| c.is_whitespace() || c == '"') {
+        true => format!("{word:?}"),
+        false => word,
+    });
+    std::iter::once("springfit".to_string()).chain(words).collect::<Vec<_>>().join(" ")
+}

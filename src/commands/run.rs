@@ -1,7 +1,7 @@
 //! `springfit run`.
 
 use super::interrupt::end_early;
-use super::output::OutputOptions;
+use super::output::{OutputOptions, command};
 use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
@@ -26,7 +26,7 @@ pub struct Run {
     /// Print what would be done, with estimates of time and memory, and stop
     #[arg(long)]
     explain: bool,
-    /// Folder of report.json and of the files that [output] asks for [default: out/NAME of the scene]
+    /// Folder of report.json, of the networks and of the files that [output] asks for [default: out/NAME of the scene]
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -65,7 +65,8 @@ impl Run {
                 "belongs to fits whose objective is \"whole\", found none in the scene",
             ));
         }
-        let outcome = run_with(&scene, &controls, &mut |event| terminal.show(event))?;
+        let mut outcome = run_with(&scene, &controls, &mut |event| terminal.show(event))?;
+        outcome.command = Some(command());
         // Files first: who reads the table may have gone away.
         let paths = report::write_outputs(&outcome, scene.output(), &folder);
         terminal.print_outcome(&outcome, self.output.json)?;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::study::{Scene, Setting};
+use springfit::study::{Scene, Setting, Sweep};
 use std::path::Path;
 
 /// The option `--set` of a command that reads a scene.
@@ -21,6 +21,14 @@ impl Settings {
     /// A setting is no `KEY=VALUE`; the file or a setting is wrong.
     pub fn scene(&self, path: &Path) -> Result<Scene> {
         Scene::load_with(path, &self.read()?)
+    }
+
+    /// The sweep of the scene with what is set.
+    ///
+    /// # Errors
+    /// As there; or the scene has no sweep.
+    pub fn sweep(&self, path: &Path) -> Result<Sweep> {
+        Sweep::load(path, &self.read()?)
     }
 
     /// The reference of a convergence study, which has the material, supports and loads of the scene and a mesh of its own.

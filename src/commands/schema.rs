@@ -6,7 +6,7 @@ use springfit::error::Result;
 use springfit::{element, material, report, study};
 use std::process::ExitCode;
 
-/// Write the JSON Schema of scenes, elements, materials or reports, for editors
+/// Write the JSON Schema of scenes, elements, materials, networks or reports, for editors
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Schema {
@@ -23,6 +23,8 @@ enum Kind {
     Element,
     /// Material files, in TOML
     Material,
+    /// Networks in JSON, as run and fit write them
+    Network,
     /// report.json, and what run and fit print with --json
     Report,
 }
@@ -39,6 +41,7 @@ impl Schema {
             Kind::Scene => study::scene_schema(),
             Kind::Element => element::schema(),
             Kind::Material => material::schema(),
+            Kind::Network => report::network_schema(),
             Kind::Report => report::schema(),
         };
         terminal.print_json(&schema)?;

@@ -48,11 +48,11 @@ impl Stability {
             Some(path) if is_scene(Path::new(path)) => {
                 let scene = self.settings.scene(Path::new(path))?;
                 report::check_outputs(&folder, &report::STABILITY_FILES, &scene.inputs())?;
-                study::sweep_scene(&scene, &mut progress)?
+                study::stability_of_scene(&scene, &mut progress)?
             }
             _ => {
                 self.settings.expect_none()?;
-                study::sweep(what.map(Element::load).transpose()?, &mut progress)?
+                study::stability(what.map(Element::load).transpose()?, &mut progress)?
             }
         };
         let paths = report::write_stability(&outcome, &folder);

@@ -5,6 +5,7 @@ use crate::study::{FitOutcome, Outcome, Start, ValidationRecipe, WholeRecipe};
 /// Whole-object fits that differ in their start alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
+    /// The names of the fits that are compared.
     pub fits: Vec<String>,
     /// The held-out load under which the errors differ most.
     pub load: String,

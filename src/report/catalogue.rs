@@ -9,9 +9,13 @@ use std::collections::BTreeMap;
 /// An element in the JSON of `elements`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ElementRecord {
+    /// The name by which scenes and commands select it.
     pub name: String,
+    /// What the element is.
     pub title: String,
+    /// The shape of its cell.
     pub cell: Cell,
+    /// The number of nodes.
     pub nodes: usize,
     /// The groups of springs, in the order of the file.
     pub springs: Vec<SpringGroupRecord>,
@@ -26,6 +30,7 @@ pub struct ElementRecord {
 /// A group of springs of an element.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpringGroupRecord {
+    /// The name by which fits select it.
     pub name: String,
     /// What a spring measures.
     pub kind: String,
@@ -38,7 +43,9 @@ pub struct SpringGroupRecord {
 /// A material in the JSON of `materials`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MaterialRecord {
+    /// The name by which scenes select the energy.
     pub name: String,
+    /// What the energy is.
     pub title: String,
     /// The numbers of the energy beside the moduli, with their defaults.
     pub parameters: BTreeMap<String, f64>,

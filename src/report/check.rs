@@ -22,18 +22,24 @@ pub fn check_text(inspection: &Inspection) -> String {
 pub struct InspectionRecord {
     /// The file, or the name of a shipped element.
     pub file: String,
+    /// What was checked: a file, or a shipped element.
     pub title: String,
+    /// Whether each property holds.
     pub passes: bool,
+    /// The properties in the order in which they are checked.
     pub properties: Vec<PropertyRecord>,
 }
 
 /// A property of a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PropertyRecord {
+    /// What is checked.
     pub property: String,
     /// `ok`, `FAIL` or `-`.
     pub mark: String,
+    /// What was found, in words.
     pub finding: String,
+    /// The number that decides, where there is one.
     pub value: Option<f64>,
 }
 

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The heading of a column, and to which side its entries are aligned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heading {
+    /// The name of the column.
     pub text: String,
     alignment: Alignment,
 }

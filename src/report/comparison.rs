@@ -16,10 +16,13 @@ pub const COMPARISON_FILES: [&str; 2] = ["table.csv", "plot.svg"];
 /// Rows of text under headings: those of a table and of its CSV file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
+    /// The element, the shapes and the material.
     pub title: String,
     /// What is compared, under the title of the table.
     pub about: Option<String>,
+    /// The headings.
     pub columns: Vec<Heading>,
+    /// The cells of the table, one row per fit and solver.
     pub rows: Vec<Vec<String>>,
     /// What the plot shows: a name per point, seconds per element, and the error.
     pub points: Vec<(String, f64, f64)>,
@@ -124,11 +127,13 @@ impl Comparison {
         Comparison { title, about, columns, rows, points, error }
     }
 
+    /// The table as text.
     pub fn table(&self) -> String {
         let about = self.about.as_ref().map_or(String::new(), |about| format!("{about}\n"));
         format!("{}\n{about}\n{}", self.title, aligned(&self.columns, &self.rows))
     }
 
+    /// The table as CSV.
     pub fn csv(&self) -> String {
         csv(&texts(&self.columns), &self.rows)
     }

@@ -11,10 +11,13 @@ use std::fmt::Write;
 /// What is printed of a closed form.
 #[derive(Debug)]
 pub struct Derivation<'a> {
+    /// The element.
     pub element: &'a Element,
+    /// Its stiffness and springs as formulas.
     pub form: &'a ClosedForm,
     /// The exact network, where it is asked for.
     pub exact: Option<&'a ExactForm>,
+    /// The fits, each with its constants as formulas or the reason why there are none.
     pub fits: &'a [Result<ClosedFit>],
     /// Of plane elements: what E and ν mean.
     pub plane: Option<Plane>,

@@ -13,22 +13,30 @@ use serde::{Deserialize, Serialize};
 /// A fit: the settings of its kind, its network and its errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FitRecord {
+    /// The kind of fit with its settings.
     #[serde(flatten)]
     pub kind: KindRecord,
+    /// The name in tables and files.
     pub name: String,
     /// The spring groups, if not all that are not optional.
     pub groups: Option<Vec<String>>,
     /// `fitted`, `stable`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
     pub status: String,
+    /// The number of springs of the network.
     pub springs: usize,
     /// For the constants, without assembly.
     pub seconds: f64,
+    /// Time of the fit for each element, s.
     pub seconds_per_element: f64,
+    /// Time to sum the springs of the cells into the network, s.
     pub seconds_assembly: f64,
     /// `‖R − K‖/‖R‖` of the elements; null for whole-object fits.
     pub relative_frobenius: SpreadRecord,
+    /// `‖R − K‖/‖R‖` in the induced 2-norm over the elements.
     pub relative_spectral: SpreadRecord,
+    /// Springs with a constant below zero.
     pub negative_springs: usize,
+    /// Elements whose equations do not determine all constants.
     pub undetermined_elements: usize,
     /// The least and the largest energy of the network over the body's; of exact networks with volume springs on cells or patches,
     /// over that of finite elements with λ at most 2 μ, which do not lock.
@@ -43,13 +51,17 @@ pub struct FitRecord {
     pub ambiguous_elements: usize,
     /// Elements whose iteration stopped short of the optimum.
     pub unreached_elements: usize,
+    /// A bound of the error of the energy of every motion, from the worst element; null where there is none.
     pub energy_error_bound: Option<f64>,
     /// What the network is as a material, at rest.
     pub as_material: NetworkMaterialRecord,
     /// Of the whole network, where the scene asks for `moduli`; Pa.
     pub effective_young: Option<f64>,
+    /// Poisson's ratio of the network where it was measured (`[output] moduli`).
     pub effective_poisson: Option<f64>,
+    /// Zener's ratio of anisotropy where it was measured.
     pub zener: Option<f64>,
+    /// The errors under each load.
     pub loads: Vec<LoadRecord>,
     /// Of a published method.
     pub unmet: Option<PublishedOutcomeRecord>,

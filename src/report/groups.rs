@@ -11,37 +11,46 @@ use serde::Serialize;
 pub struct MeshRecord {
     /// The file, or the title of the scene.
     pub mesh: String,
+    /// The number of points.
     pub points: usize,
     /// How many cells of each element.
     pub elements: Vec<CellsRecord>,
     /// The size of the box around the body along each axis, m.
     pub extent: Vec<f64>,
+    /// The groups of the file.
     pub groups: Vec<GroupRecord>,
 }
 
 /// The cells of one element.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellsRecord {
+    /// The name of the element.
     pub element: String,
+    /// How many cells have it.
     pub cells: usize,
 }
 
 /// A named part of the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupRecord {
+    /// The name by which scenes select the group.
     pub name: String,
+    /// Cells of the dimension of the mesh.
     pub cells: usize,
     /// Faces of solids, edges of plane cells.
     pub sides: usize,
     /// Edges of a curve in a solid.
     pub edges: usize,
+    /// The points of these parts.
     pub points: usize,
     /// The corners of the box around its points, m.
     pub from: Vec<f64>,
+    /// The greatest coordinates of its points, m.
     pub to: Vec<f64>,
 }
 
 impl MeshRecord {
+    /// What the mesh under this name has.
     pub fn of(name: String, mesh: &Mesh) -> MeshRecord {
         let group = |(name, group): (&String, &crate::mesh::Group)| {
             let bound = |start: f64, pick: fn(f64, f64) -> f64| -> Vec<f64> {

@@ -29,17 +29,23 @@ pub struct Report {
     pub extent: Vec<f64>,
     /// What was assumed because no input says it, as a sentence.
     pub assumed: Option<String>,
+    /// The number of points of the mesh.
     pub nodes: usize,
+    /// The number of cells.
     pub elements: usize,
+    /// The names of the elements of the mesh.
     pub element_types: Vec<String>,
     /// Elements whose nodes were numbered the other way round.
     pub turned_elements: usize,
+    /// Points of the file that no cell uses.
     pub unused_nodes: usize,
+    /// What is known of the shapes of the cells.
     pub quality: QualityRecord,
     /// Of the largest network.
     pub springs: Option<usize>,
     /// Pa.
     pub young: f64,
+    /// Poisson's ratio.
     pub poisson: f64,
     /// The title of the material's law.
     pub law: Option<String>,
@@ -55,10 +61,13 @@ pub struct Report {
     pub gauge: Vec<Option<ReadingRecord>>,
     /// Whole-object fits that differ in their start alone.
     pub starts: Vec<AgreementRecord>,
+    /// The lowest natural frequencies.
     pub frequencies: Vec<FrequencyRecord>,
+    /// How motions were computed; null without `[motion]`.
     pub motion_options: Option<MotionOptionsRecord>,
     /// Of each model that moved.
     pub motion: Vec<MotionRecord>,
+    /// The fits in the order of the scene.
     pub fits: Vec<FitRecord>,
     /// What a reader must know before trusting a figure, one sentence each.
     pub notes: Vec<String>,
@@ -69,6 +78,7 @@ pub struct Report {
 pub struct QualityRecord {
     /// From 0, flat, to 1, right angles.
     pub worst: Option<f64>,
+    /// The element and number of the cell with the least quality.
     pub worst_cell: Option<String>,
     /// Null if the quality was not measured, as that of a mesh that is generated.
     pub poor_elements: Option<usize>,
@@ -89,11 +99,13 @@ pub struct QualityRecord {
 /// Whether whole-object fits from several starts give the same errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AgreementRecord {
+    /// The names of the fits that start differently.
     pub fits: Vec<String>,
     /// The held-out load under which the errors differ most.
     pub load: String,
     /// As a share of the least error.
     pub difference: Option<f64>,
+    /// Whether the errors differ by no more than a fifth.
     pub agree: bool,
 }
 
@@ -108,6 +120,7 @@ pub fn report(outcome: &Outcome) -> String {
 }
 
 impl Report {
+    /// The report of a run.
     pub fn of(outcome: &Outcome) -> Report {
         let Outcome { mesh, material, .. } = outcome;
         let gauge = |load: &BodyLoad| load.gauge.map(GaugeResult::reading);

@@ -9,42 +9,52 @@ use serde::{Deserialize, Serialize};
 /// Young's modulus, Pa, and Poisson's ratio as a gauge measures them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReadingRecord {
+    /// Young's modulus, Pa.
     pub young: f64,
+    /// Poisson's ratio.
     pub poisson: f64,
 }
 
 /// A load under which displacements were measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasuredRecord {
+    /// The name of the load.
     pub load: String,
+    /// The number of points with a measured displacement.
     pub points: usize,
     /// Of the finite elements, percent.
     pub fem_e_rms: Option<f64>,
+    /// As `fem_e_rms`, the largest error.
     pub fem_e_max: Option<f64>,
 }
 
 /// How far an equilibrium was followed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FollowedRecord {
+    /// Whether the whole load was reached.
     pub converged: bool,
     /// The share of the load that was reached.
     pub load: Option<f64>,
     /// Relative to the forces that act.
     pub residual: Option<f64>,
+    /// Newton's iterations of all steps.
     pub iterations: usize,
     /// Iterations whose tangent was shifted.
     pub shifted: usize,
     /// Whether the forces balance to their rounding only, which is more than the tolerance.
     pub rounded: bool,
+    /// Elements that are inverted at the end.
     pub inverted_elements: usize,
 }
 
 /// The answer of a network to a load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LoadRecord {
+    /// The name of the load.
     pub name: String,
     /// Percent of the largest displacement.
     pub e_rms: Option<f64>,
+    /// The largest error, percent of the largest displacement.
     pub e_max: Option<f64>,
     /// Percent of the largest displacement, at the point that moves most in the finite elements.
     pub e_tip: Option<f64>,
@@ -52,12 +62,15 @@ pub struct LoadRecord {
     pub e_energy: Option<f64>,
     /// To assemble, factorise and solve, each as if this were the only load.
     pub seconds_fem: f64,
+    /// As `seconds_fem`, with the network.
     pub seconds_lem: f64,
     /// Null at large deformation.
     pub solver_fem: Option<SolvedRecord>,
     /// Null where the network has no answer.
     pub solver_lem: Option<SolvedRecord>,
+    /// How the load was followed at large deformation.
     pub followed: Option<FollowedRecord>,
+    /// The reading of the gauge; null without `[gauge]`.
     pub gauge: Option<ReadingRecord>,
 }
 
@@ -66,6 +79,7 @@ pub struct LoadRecord {
 pub struct SolvedRecord {
     /// `cholesky` or `lu`; `multigrid`, or `minres` with it where a network is not positive definite.
     pub method: String,
+    /// Displacements that are not held.
     pub unknowns: usize,
     /// Null with a factor.
     pub iterations: Option<usize>,

@@ -21,6 +21,7 @@ pub struct NetworkMaterialRecord {
     /// The mean of the samples' tensors, in Kelvin's notation, Pa; in the plane times the thickness, of a rod times its
     /// cross-section. Rows of the stresses xx, yy, (zz,) √2 xy, (√2 xz, √2 yz).
     pub stiffness: Vec<Vec<Option<f64>>>,
+    /// Cells or patches that were measured.
     pub samples: usize,
     /// For this.
     pub seconds: f64,

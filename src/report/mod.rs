@@ -22,7 +22,6 @@ mod materials;
 mod motion;
 mod motion_record;
 mod network;
-mod network_format;
 mod number;
 mod outputs;
 mod paper;
@@ -31,6 +30,9 @@ mod rows;
 mod series;
 mod stability;
 mod stretches;
+mod study_lines;
+mod study_record;
+mod study_table;
 mod surface;
 mod table;
 
@@ -51,14 +53,16 @@ pub use load_record::{FollowedRecord, LoadRecord, MeasuredRecord, ReadingRecord}
 pub use material_record::NetworkMaterialRecord;
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
-pub use network::{network_csv, network_json};
-pub use network_format::{NETWORK_FORMATS, NetworkFile, NetworkFormat};
+pub use network::*;
 pub use outputs::{check_outputs, check_scene_outputs};
 pub use paper::{PAPER_FILES, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_text, write_stability};
 pub use stretches::{STRETCHES_FILES, stretches_text, write_stretches};
+pub use study_lines::{Shard, StudyLines};
+pub use study_record::StudyRecord;
+pub use study_table::{StudyTable, planned_text, studies_text};
 pub use table::{notes, summary, table};
 
 use crate::error::Result;
@@ -66,7 +70,7 @@ use crate::file::{create_folder, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
 use crate::text::printable_lines;
-use outputs::Stems;
+use outputs::{POINTS, Stems};
 use std::path::{Path, PathBuf};
 
 /// Writes what `output` asks for into `folder`, and returns the paths.
@@ -81,12 +85,23 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     let mut written = Vec::new();
     let reports = output.report != Some(false);
     let tables = output.csv && !outcome.fits.is_empty();
-    if tables || moved().next().is_some() || output.vtu || reports {
+    let networks = output.json != Some(false) && !outcome.fits.is_empty();
+    if tables || networks || moved().next().is_some() || output.vtu || reports {
         create_folder(folder)?;
     }
     for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| tables) {
         let path = folder.join(format!("{stem}.csv"));
         write_with(&path, |to| network_csv(&outcome.mesh, &fit.network, to))?;
+        written.push(path);
+    }
+    if let Some(fit) = outcome.fits.first().filter(|_| tables) {
+        let path = folder.join(POINTS);
+        write_with(&path, |to| points_csv(&NetworkFile::of(outcome, fit), to))?;
+        written.push(path);
+    }
+    for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| networks) {
+        let path = folder.join(format!("{stem}.json"));
+        write_with(&path, |to| network_json(&NetworkFile::of(outcome, fit), to))?;
         written.push(path);
     }
     for (model, stem) in moved() {
@@ -100,7 +115,7 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         written.push(mesh);
         for (fit, stem) in outcome.fits.iter().zip(&stems) {
             let path = folder.join(format!("{stem}.vtu"));
-            vtk::write(&path, &network_grid(&outcome.mesh, outcome.masses.as_deref(), fit, &outcome.loads))?;
+            vtk::write(&path, &network_grid(&NetworkFile::of(outcome, fit)))?;
             written.push(path);
         }
         for (model, stem) in moved().filter(|(model, _)| !model.states.is_empty()) {

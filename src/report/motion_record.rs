@@ -13,11 +13,15 @@ pub struct MotionOptionsRecord {
     pub duration: f64,
     /// s.
     pub step: f64,
+    /// The number of time steps.
     pub steps: usize,
+    /// The name of the integrator.
     pub integrator: String,
+    /// Whether forces are linear in the displacements.
     pub linear: bool,
     /// Of Newton's method; null where it is not used, as `tolerance`.
     pub iterations: Option<usize>,
+    /// Of the equations of implicit steps.
     pub tolerance: Option<f64>,
     /// s between the states that are written.
     pub every: f64,
@@ -25,7 +29,9 @@ pub struct MotionOptionsRecord {
     pub gravity: Vec<f64>,
     /// α, 1/s, and β, s.
     pub rayleigh: Option<[f64; 2]>,
+    /// The damping ratio of each spring, where damping is given so.
     pub damping_ratio: Option<f64>,
+    /// The number of points whose path is written.
     pub watched_points: usize,
 }
 
@@ -34,13 +40,17 @@ pub struct MotionOptionsRecord {
 pub struct MotionRecord {
     /// Of the fit, or "finite elements".
     pub name: String,
+    /// The steps that were computed.
     pub steps: usize,
+    /// Time of the computation, s.
     pub seconds: f64,
+    /// Steps in a second of computation.
     pub steps_per_second: Option<f64>,
     /// `complete`, `no response`, `ran away` or `not begun`.
     pub ended: String,
     /// Why the motion was not begun.
     pub reason: Option<String>,
+    /// Implicit steps whose equations were not solved to the tolerance.
     pub unsolved_steps: usize,
     /// How fast the fastest motion grows at rest, 1/s, in a network that releases energy.
     pub growth: Option<f64>,
@@ -48,22 +58,29 @@ pub struct MotionRecord {
     pub time: Vec<Option<f64>>,
     /// J, as the three that follow.
     pub kinetic: Vec<Option<f64>>,
+    /// Elastic energy at the recorded times, J.
     pub elastic: Vec<Option<f64>>,
+    /// Work of the forces until then, J.
     pub work: Vec<Option<f64>>,
+    /// Energy that the damping has taken, J.
     pub dissipated: Vec<Option<f64>>,
     /// As a share of the largest energy.
     pub drift: Vec<Option<f64>>,
     /// kg m/s, `[states][axes]`.
     pub momentum: Vec<Vec<Option<f64>>>,
+    /// Angular momentum about the origin, kg m²/s.
     pub angular_momentum: Vec<Vec<Option<f64>>>,
     /// Mean displacement of the watched points, m.
     pub watched: Vec<Vec<Option<f64>>>,
     /// Percent of the largest displacement of the finite elements in the whole motion.
     pub e_rms: Vec<Option<f64>>,
+    /// Mean over time of the root mean square error, percent of the largest displacement.
     pub e_rms_mean: Option<f64>,
+    /// The largest of these errors.
     pub e_rms_max: Option<f64>,
     /// The same with springs that do not turn, where they turn beside linear finite elements: what of the error is the fit's.
     pub linear_e_rms_mean: Option<f64>,
+    /// As `linear_e_rms_mean`, the largest.
     pub linear_e_rms_max: Option<f64>,
 }
 
@@ -88,7 +105,7 @@ impl From<&MotionOutcome> for MotionOptionsRecord {
             gravity: recipe.gravity.clone(),
             rayleigh,
             damping_ratio,
-            watched_points: motion.watched,
+            watched_points: motion.watched.len(),
         }
     }
 }

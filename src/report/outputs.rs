@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// What the finite elements are called among the models that move.
 const BODY: &str = "finite elements";
+/// The table of the points, which all networks of a run have in common.
+pub(super) const POINTS: &str = "points.csv";
 
 /// Checks that these files can be written into `folder`, which need not exist yet, and that no file is also an input.
 ///
@@ -34,6 +36,10 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
     let mut names: Vec<String> = motions.iter().map(|stem| format!("{stem}.csv")).collect();
     if output.csv {
         names.extend(fits.iter().map(|stem| format!("{stem}.csv")));
+        names.push(POINTS.into());
+    }
+    if output.json != Some(false) {
+        names.extend(fits.iter().map(|stem| format!("{stem}.json")));
     }
     if output.vtu {
         names.push("mesh.vtu".into());
@@ -50,7 +56,9 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
 
 /// The files' names without their endings.
 pub(super) struct Stems {
+    /// Files of the networks.
     pub fits: Vec<String>,
+    /// Files of the motions.
     pub motions: Vec<String>,
 }
 
@@ -70,7 +78,8 @@ const LONGEST_STEM: usize = 40;
 
 /// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
 pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut stems = vec!["mesh".to_string()];
+    let reserved = ["mesh", "points", "report"];
+    let mut stems: Vec<String> = reserved.map(String::from).into();
     for name in names {
         let kept = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
         let dashed: String = name.chars().map(kept).collect();
@@ -87,5 +96,5 @@ pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String
         let free = std::iter::once(stem.clone()).chain(numbered).find(|s| !s.is_empty() && !stems.contains(s));
         stems.extend(free);
     }
-    stems.split_off(1)
+    stems.split_off(reserved.len())
 }

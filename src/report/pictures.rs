@@ -1,9 +1,10 @@
 //! Grids for ParaView.
 
+use super::network::NetworkFile;
 use crate::mesh::vtk::{Array, Grid};
 use crate::mesh::{Mesh, Numbering};
 use crate::model::{LengthSpring, MeasureSpring, Network, smoothed_pressure};
-use crate::study::{BodyLoad, FitOutcome, Outcome};
+use crate::study::Outcome;
 
 const LINE: u8 = 3;
 const POINTS: u8 = 2;
@@ -64,13 +65,15 @@ pub(super) fn spring_grid(mesh: &Mesh, network: &Network, x: &[f64]) -> Grid {
 }
 
 /// The springs with the displacements of both models, and as `node` the numbers of the points in the file.
-pub fn network_grid(mesh: &Mesh, masses: Option<&[f64]>, fit: &FitOutcome, loads: &[BodyLoad]) -> Grid {
-    let mut grid = spring_grid(mesh, &fit.network, &mesh.points);
+pub fn network_grid(file: &NetworkFile) -> Grid {
+    let mesh = file.mesh;
+    let mut grid = spring_grid(mesh, file.network, &mesh.points);
     grid.point_data.extend(nodes(mesh));
-    if let Some(masses) = masses {
+    if let Some(masses) = file.masses() {
         grid.point_data.push(scalar("mass (kg)", masses.to_vec()));
     }
-    for (load, body) in fit.loads.iter().zip(loads) {
+    let answers = file.study.iter().flat_map(|(outcome, fit)| fit.loads.iter().zip(&outcome.loads));
+    for (load, body) in answers {
         grid.point_data.push(vectors(format!("u fem {} (m)", body.name), &body.fem, mesh.dimension));
         if let Some(u) = &load.displacement {
             grid.point_data.push(vectors(format!("u {} (m)", load.name), u, mesh.dimension));

@@ -69,6 +69,8 @@ fn scene_with(table: &str) -> String {
             rest = format!("[motion]\nduration = 1\nstep = 1\n[[motion.{}]]\nzzz = 1\n", &table[7..]);
         }
         "fix" | "load" => rest = format!("[[{table}]]\n{zzz}"),
+        "sweep" => rest = format!("[sweep]\nover = {{}}\n{zzz}"),
+        "sweep range" => rest = "[sweep.over]\nmaterial.young = { from = 1, to = 2, zzz = 1 }\n".into(),
         "newton" | "solver" | "gauge" | "output" => rest = format!("[{table}]\n{zzz}"),
         other => panic!("{other}"),
     }
@@ -89,7 +91,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 24);
+    assert_eq!(tables.len(), 26);
 }
 
 #[test]
@@ -273,4 +275,35 @@ fn the_page_of_meshes_has_the_units_that_are_read() {
         assert!(units.len() > 1);
         units.iter().for_each(|unit| assert!(quantity.parse(&format!("2 {unit}")).is_ok(), "{unit}"));
     }
+}
+
+#[test]
+fn the_page_of_outputs_has_every_key_of_a_network() {
+    let schema = springfit::report::network_schema();
+    let tables = columns(&page("docs/src/reference/outputs.md"));
+    let keys = |table: &Value| -> Names { table["properties"].as_object().unwrap().keys().cloned().collect() };
+    compare("network", &tables["network"], &keys(&schema));
+    let records = [
+        ("springs", "SpringRecord"),
+        ("measures", "MeasureRecord"),
+        ("cells", "CellBlockRecord"),
+        ("groups", "OriginRecord"),
+        ("held", "HeldRecord"),
+        ("loads", "NodalLoadRecord"),
+        ("damping", "NetworkDampingRecord"),
+        ("motion", "DriveRecord"),
+        ("provenance", "ProvenanceRecord"),
+    ];
+    for (heading, record) in records {
+        compare(heading, &tables[heading], &keys(&schema["$defs"][record]));
+    }
+    let kinds: Names = SpringKind::all().map(|kind| kind.name().to_string()).collect();
+    compare("kinds", &tables["What a spring does"], &kinds);
+}
+
+#[test]
+fn the_page_of_exports_has_every_program() {
+    let tables = columns(&page("docs/src/reference/exports.md"));
+    let known = springfit::export::TARGETS.iter().map(|target| target.name.to_string()).collect();
+    compare("programs", &tables["Networks in other programs"], &known);
 }

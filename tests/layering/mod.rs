@@ -35,8 +35,10 @@ const LAYERS: [&str; 27] = [
     "dynamics",
     "whole",
     "study",
+    "generate",
     "prelude",
     "report",
+    "export",
     "program",
 ];
 

@@ -24,6 +24,8 @@ pub const MODES: u64 = 1_000;
 pub const STEPS: u64 = 1_000_000_000;
 /// Rows of the table of a motion over time. The table is kept in memory.
 pub const STATES: u64 = 1_000_000;
+/// Studies of a sweep. Each has a row of its own.
+pub const STUDIES: u64 = 1_000_000;
 /// Cells of a generated mesh, and its nodes. A finer mesh has to come from a file.
 pub const CELLS: u64 = 2_000_000;
 

@@ -1,7 +1,7 @@
 //! What the sweep finds, by family.
 
 use super::markdown;
-use springfit::study::{Family, StabilityRow, Verdict, sweep};
+use springfit::study::{Family, StabilityRow, Verdict, stability};
 
 /// Three groups of objectives, of free constants.
 fn group(method: &str) -> Option<usize> {
@@ -41,7 +41,7 @@ fn cell(rows: &[&StabilityRow]) -> String {
 }
 
 pub fn table() -> String {
-    let outcome = sweep(None, &mut |_| {}).unwrap();
+    let outcome = stability(None, &mut |_| {}).unwrap();
     assert_eq!(outcome.lost().count(), 0);
     let row = |family: &Family| {
         let of = |own: usize| -> Vec<&StabilityRow> {

@@ -64,10 +64,8 @@ impl Dampers {
         support: &Support,
         ratio: f64,
     ) -> Result<Dampers> {
-        if !(ratio >= 0.0 && ratio.is_finite()) {
-            return Err(Error::expected("ratio", "a damping ratio that is not negative", ratio));
-        }
         let d = network.dimension;
+        let coefficients = Dampers::coefficients_of_ratio(network, points, masses, support, ratio)?;
         let mut dampers = Dampers {
             dimension: d,
             points: masses.len(),
@@ -76,32 +74,57 @@ impl Dampers {
             starts: vec![0],
             dofs: Vec::new(),
         };
-        let lengths = network.lengths.iter().map(|s| (&s.points[..], Measure::Length, s.constant));
-        let others = network.others.iter().map(|s| {
-            let mut x = vec![0.0; s.points.len() * d];
-            gather(points, d, &s.points, &mut x);
-            (&s.points[..], s.measure.clone(), s.pull(s.measure.value(&x, d))[2])
-        });
-        for (nodes, measure, slope) in lengths.chain(others) {
+        let lengths = network.lengths.iter().map(|s| (&s.points[..], Measure::Length));
+        let others = network.others.iter().map(|s| (&s.points[..], s.measure.clone()));
+        for ((nodes, measure), c) in lengths.chain(others).zip(coefficients).filter(|(_, c)| *c > 0.0) {
+            dampers.dofs.extend(nodes.iter().flat_map(|p| p * d..(p + 1) * d));
+            dampers.starts.push(dampers.dofs.len());
+            dampers.measures.push(measure);
+            dampers.coefficients.push(c);
+        }
+        Ok(dampers)
+    }
+
+    /// The coefficients c_s of [`Dampers::of_ratio`], `[springs]`, length springs first; zero for springs without
+    /// resistance at rest.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn coefficients_of_ratio(
+        network: &Network,
+        points: &[f64],
+        masses: &[f64],
+        support: &Support,
+        ratio: f64,
+    ) -> Result<Vec<f64>> {
+        if !(ratio >= 0.0 && ratio.is_finite()) {
+            return Err(Error::expected("ratio", "a damping ratio that is not negative", ratio));
+        }
+        let d = network.dimension;
+        let place = |nodes: &[usize]| {
             let mut x = vec![0.0; nodes.len() * d];
             gather(points, d, nodes, &mut x);
-            let dofs = || nodes.iter().flat_map(|p| p * d..(p + 1) * d);
+            x
+        };
+        let of = |nodes: &[usize], measure: &Measure, x: &[f64], slope: f64| {
             let mut inverse = 0.0;
-            for (dof, g) in dofs().zip(measure.gradient(&x, d)).filter(|(dof, _)| !support.is_fixed(*dof)) {
+            let dofs = nodes.iter().flat_map(|p| p * d..(p + 1) * d);
+            for (dof, g) in dofs.zip(measure.gradient(x, d)).filter(|(dof, _)| !support.is_fixed(*dof)) {
                 if !(masses[dof / d] > 0.0) {
                     let expected = format!("a mass above zero at point {}", dof / d + 1);
                     return Err(Error::expected("masses", expected, masses[dof / d]));
                 }
                 inverse += g * g / masses[dof / d];
             }
-            if slope > 0.0 && inverse > 0.0 && ratio > 0.0 {
-                dampers.dofs.extend(dofs());
-                dampers.starts.push(dampers.dofs.len());
-                dampers.measures.push(measure);
-                dampers.coefficients.push(2.0 * ratio * (slope / inverse).sqrt());
-            }
-        }
-        Ok(dampers)
+            let damps = slope > 0.0 && inverse > 0.0;
+            Ok(if damps { 2.0 * ratio * (slope / inverse).sqrt() } else { 0.0 })
+        };
+        let lengths = network.lengths.iter().map(|s| of(&s.points, &Measure::Length, &place(&s.points), s.constant));
+        let others = network.others.iter().map(|s| {
+            let x = place(&s.points);
+            of(&s.points, &s.measure, &x, s.pull(s.measure.value(&x, d))[2])
+        });
+        lengths.chain(others).collect()
     }
 
     /// The positions of the entries of `Σ c_s ∇c_s ∇c_sᵀ` in its lower triangle.

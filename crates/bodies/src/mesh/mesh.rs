@@ -106,6 +106,15 @@ impl Mesh {
         self.numbering.as_ref().map_or(index as u64 + 1, |numbering| numbering.nodes[index])
     }
 
+    /// CRC-32 of the points as little-endian numbers of 64 bits, followed by the cells as integers of 32 bits.
+    pub fn checksum(&self) -> u32 {
+        let mut crc = flate2::Crc::new();
+        self.points.iter().for_each(|x| crc.update(&x.to_le_bytes()));
+        let points = self.blocks.iter().flat_map(|block| &block.connectivity);
+        points.for_each(|&p| crc.update(&(p as u32).to_le_bytes()));
+        crc.sum()
+    }
+
     /// The points of one cell, in the node order of its element.
     pub(super) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
         let n = self.blocks[block].element.nodes();

@@ -27,6 +27,7 @@ mod refinement;
 mod resolution;
 mod selection;
 mod source;
+mod surface;
 pub mod vtk;
 
 pub use arrays::MeshArrays;

@@ -23,6 +23,9 @@ use rayon::prelude::*;
 pub(super) const CHUNK: usize = 512;
 /// The number of cells between two reports of progress.
 pub(super) const ROUND: usize = 64 * CHUNK;
+/// The number of cells that one thread fits at a time where each takes a good part of a second: whole lanes, and few enough that
+/// progress is reported, and a caller can end the work, every few seconds.
+const COSTLY_CHUNK: usize = 8;
 
 /// The constants of all cells of one element type.
 #[derive(Debug, Clone, PartialEq)]
@@ -193,18 +196,22 @@ impl CellFits {
             check_constants(element, first, m, constants)?;
             Ok(tally)
         };
-        let rounds = connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m));
+        let (size, round_size) = match fit.is_costly() {
+            true => (COSTLY_CHUNK, 2 * COSTLY_CHUNK * rayon::current_num_threads()),
+            false => (CHUNK, ROUND),
+        };
+        let rounds = connectivity.chunks(round_size * n).zip(constants.chunks_mut(round_size * m));
         for (round, (nodes, constants)) in rounds.enumerate() {
-            let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m)).enumerate();
+            let chunks = nodes.par_chunks(size * n).zip(constants.par_chunks_mut(size * m)).enumerate();
             let results: Vec<Result<Tally>> =
-                chunks.map(|(i, (nodes, constants))| chunk(round * ROUND + i * CHUNK, nodes, constants)).collect();
+                chunks.map(|(i, (nodes, constants))| chunk(round * round_size + i * size, nodes, constants)).collect();
             for tally in results {
                 let tally = tally?;
                 self.deficient += tally.deficient;
                 self.unreached += tally.unreached;
                 self.certificates.extend(tally.certificates);
             }
-            progress(((round + 1) * ROUND).min(cells));
+            progress(((round + 1) * round_size).min(cells));
         }
         Ok(())
     }

@@ -40,6 +40,7 @@ pub fn fit_mesh(
         reused: fitted.cells.iter().map(|cells| cells.reused).sum(),
         frobenius: spread(&errors.frobenius),
         spectral: spread(&errors.spectral),
+        springs: fitted.springs,
         network: fitted.network,
         kind: fitted.kind,
         as_material,

@@ -3,7 +3,7 @@
 //! [`Scene`] reads and checks a scene file, and [`run`](run()) fits its springs, solves its loads with both models and
 //! compares them; the result is an [`Outcome`]. The other studies use the same parts: [`compare_element`] and
 //! [`compare_scene`] compare objectives and solvers, [`converge`] refines the mesh, [`compare_stretches`] pulls to
-//! large deformation, [`sweep`] tries extreme cases, [`inspect`] proves an element file, and [`run_paper`] repeats the
+//! large deformation, [`stability`](stability()) tries extreme cases, [`Sweep`] runs a scene for many values of its keys, [`inspect`] proves an element file, and [`run_paper`] repeats the
 //! experiments of a paper.
 //!
 //! Studies are silent; they report through a [`Progress`] callback.
@@ -34,6 +34,7 @@ mod shapes;
 mod stability;
 mod stages;
 mod stretches;
+mod sweep;
 mod tensor;
 mod time;
 
@@ -62,7 +63,7 @@ pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, Measured, ModelMotion, MotionEnding,
-    MotionOutcome, Outcome, Reading, Record,
+    MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull,
 };
 pub use paper::{
     Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,
@@ -74,7 +75,8 @@ pub use scene::{
     PrescribedMotion, Scene, Setting, load_elements, scene_schema,
 };
 pub use shapes::random_shapes;
-pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, sweep, sweep_scene};
+pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
+pub use sweep::{Study, Sweep, SweepEntry};
 pub use tensor::{NetworkMaterial, network_material};

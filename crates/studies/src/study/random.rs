@@ -9,6 +9,11 @@ impl Random {
         Random(seed)
     }
 
+    /// The next number in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (self.symmetric() + 1.0) / 2.0
+    }
+
     /// The next number in [−1, 1).
     pub fn symmetric(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);

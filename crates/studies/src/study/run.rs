@@ -112,6 +112,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let answers = cases.iter().zip(fem).zip(followed).enumerate();
     let loads = answers.map(|(i, ((case, fem), followed))| BodyLoad {
         name: case.name.clone(),
+        support: case.support.clone(),
+        forces: case.forces.clone(),
         gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
         measured: case.measured(&fem, mesh.dimension),
         deformation: is_linear.then(|| Deformation::largest(&mesh, &fem)),
@@ -125,10 +127,14 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let mut outcome = Outcome {
         scene: scene.title().into(),
         settings: scene.settings().iter().map(|setting| setting.to_string()).collect(),
+        command: None,
+        source: scene.mesh().title(),
         assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
         material,
+        density: scene.density(),
+        support: Some(support),
         masses,
         law,
         loads,

@@ -9,6 +9,7 @@ use crate::fit::{CellFits, VolumeSprings};
 use crate::material::{Material, Moduli};
 use crate::mesh::Mesh;
 use crate::model::Network;
+use crate::springs::Springs;
 use std::time::Instant;
 
 /// The springs of a fit.
@@ -16,6 +17,8 @@ use std::time::Instant;
 pub struct Fitted {
     /// The springs of each block of cells; empty if springs belong to no cell.
     pub cells: Vec<CellFits>,
+    /// The springs that each block of cells was fitted with, which may have no constants of their own in the network.
+    pub springs: Vec<Springs>,
     /// The assembled network.
     pub network: Network,
     /// The time for the constants without assembly, s.
@@ -46,7 +49,15 @@ impl Fitted {
     pub fn assembled(mesh: &Mesh, cells: Vec<CellFits>, seconds: f64, kind: FittedKind) -> Fitted {
         let start = Instant::now();
         let network = Network::assemble(mesh, &cells);
-        Fitted { cells, network, seconds, seconds_assembly: start.elapsed().as_secs_f64(), kind }
+        let springs = Fitted::springs_of(&cells);
+        Fitted { cells, springs, network, seconds, seconds_assembly: start.elapsed().as_secs_f64(), kind }
+    }
+}
+
+impl Fitted {
+    /// The springs of each block of cells.
+    pub fn springs_of(cells: &[CellFits]) -> Vec<Springs> {
+        cells.iter().map(|cells| cells.springs.clone()).collect()
     }
 }
 

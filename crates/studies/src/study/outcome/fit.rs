@@ -4,6 +4,7 @@ use super::load::LoadOutcome;
 use crate::fit::Spread;
 use crate::model::Network;
 use crate::solve::{Ending, Stability, Standing};
+use crate::springs::Springs;
 use crate::study::fits::{FittedKind, NamedFit};
 use crate::study::moduli::EffectiveModuli;
 use crate::study::tensor::NetworkMaterial;
@@ -14,6 +15,8 @@ use crate::study::tensor::NetworkMaterial;
 pub struct FitOutcome {
     /// The fit.
     pub fit: NamedFit,
+    /// The springs of each block of cells, with their groups.
+    pub springs: Vec<Springs>,
     /// The network.
     pub network: Network,
     /// The time for the constants of all cells without assembly, s.

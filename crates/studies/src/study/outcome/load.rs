@@ -1,7 +1,7 @@
 //! The results of the body and of its networks under a load.
 
 use super::gauge::{GaugeResult, Reading};
-use crate::model::Deformation;
+use crate::model::{Deformation, Support};
 use crate::solve::{Ending, Solved};
 use crate::study::metrics::DisplacementError;
 
@@ -11,6 +11,10 @@ use crate::study::metrics::DisplacementError;
 pub struct BodyLoad {
     /// The name of the load.
     pub name: String,
+    /// The support under the load, with the displacements that it prescribes.
+    pub support: Support,
+    /// The nodal forces, `[points · dimension]`, N.
+    pub forces: Vec<f64>,
     /// The displacements of the finite elements, `[points · dimension]`, m.
     pub fem: Vec<f64>,
     /// At large deformation, how the load was applied to the finite elements.

@@ -11,5 +11,5 @@ pub use fit::FitOutcome;
 pub use frequencies::FrequencyOutcome;
 pub use gauge::{GaugeResult, Reading};
 pub use load::{BodyLoad, Followed, LoadOutcome, Measured};
-pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record, mean_and_largest};
+pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record, TimedForce, TimedPull, mean_and_largest};
 pub use scene::Outcome;

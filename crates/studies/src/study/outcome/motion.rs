@@ -1,7 +1,7 @@
 //! The results of the motion of a scene.
 
 use crate::dynamics::Account;
-use crate::model::Deformation;
+use crate::model::{Deformation, Support};
 use crate::study::scene::MotionRecipe;
 
 /// The motion of the models of a scene.
@@ -10,10 +10,40 @@ use crate::study::scene::MotionRecipe;
 pub struct MotionOutcome {
     /// The settings of the motion.
     pub recipe: MotionRecipe,
-    /// The number of watched points.
-    pub watched: usize,
+    /// The watched points.
+    pub watched: Vec<usize>,
+    /// The masses, `[points]`, kg.
+    pub masses: Vec<f64>,
+    /// The support of `[[fix]]`, and what is moved.
+    pub support: Support,
+    /// The forces over time.
+    pub forces: Vec<TimedForce>,
+    /// The displacements over time.
+    pub pulls: Vec<TimedPull>,
     /// The finite elements, if they move, then the networks.
     pub models: Vec<ModelMotion>,
+}
+
+/// A force over time in one direction, N: the curve is multiplied by the share of each point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedForce {
+    /// The direction, from 0.
+    pub axis: usize,
+    /// An expression in t.
+    pub curve: String,
+    /// Points with their shares; the shares of a force that is given in all add up to 1.
+    pub shares: Vec<(usize, f64)>,
+}
+
+/// A displacement over time in one direction, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedPull {
+    /// The direction, from 0.
+    pub axis: usize,
+    /// An expression in t, and in the x, y, z of the point at rest.
+    pub curve: String,
+    /// The points.
+    pub points: Vec<usize>,
 }
 
 /// The motion of one model.

@@ -6,6 +6,7 @@ use super::load::BodyLoad;
 use super::motion::MotionOutcome;
 use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::model::Support;
 
 /// The results of a scene.
 #[derive(Debug)]
@@ -14,12 +15,20 @@ pub struct Outcome {
     pub scene: String,
     /// What was given in place of values of the scene's file, as `KEY=VALUE`.
     pub settings: Vec<String>,
+    /// The command that was given, if there was one.
+    pub command: Option<String>,
+    /// Where the mesh comes from, in words.
+    pub source: String,
     /// A sentence about what was assumed because no input gives it.
     pub assumed: Option<String>,
     /// The mesh.
     pub mesh: Mesh,
     /// The material.
     pub material: Material,
+    /// The density, kg/m³, if it is given.
+    pub density: Option<f64>,
+    /// The support of `[[fix]]`; `None` if there is no scene.
+    pub support: Option<Support>,
     /// The masses, `[points]`, kg; `None` if the scene gives no density.
     pub masses: Option<Vec<f64>>,
     /// The title of the material's law; `None` at small deformation.
@@ -39,14 +48,18 @@ pub struct Outcome {
 impl Outcome {
     /// The outcome of one fit without loads.
     pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
-        let (settings, law, loads, motion, frequencies, left_out) = Default::default();
-        let assumed = None;
+        let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
+        let (assumed, density, support) = Default::default();
         Outcome {
+            source: name.clone(),
             scene: name,
             settings,
+            command,
             assumed,
             mesh,
             material,
+            density,
+            support,
             masses,
             law,
             loads,

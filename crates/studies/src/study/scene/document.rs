@@ -19,6 +19,7 @@ use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::{BodyConstants, assumed};
 use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
 use crate::study::own_name::expect_own_name;
+use crate::study::sweep::SweepEntry;
 use std::path::{Path, PathBuf};
 
 /// A mesh, a material, fits, supports and loads, checked as far as possible without reading the mesh.
@@ -37,6 +38,7 @@ pub struct Scene {
     gauge: Option<Gauge>,
     motion: Option<MotionRecipe>,
     output: Output,
+    sweep: Option<SweepEntry>,
 }
 
 impl Scene {
@@ -110,6 +112,9 @@ impl Scene {
             let expected = format!("a name other than {}", RESERVED.join(", "));
             return Err(Error::expected(format!("load[{i}].name"), expected, format!("\"{}\"", loads[i].name)));
         }
+        if let Some(sweep) = &entry.sweep {
+            sweep.check().map_err(|e| e.under("sweep"))?;
+        }
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Scene {
             source,
@@ -124,6 +129,7 @@ impl Scene {
             gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
             motion,
             output: entry.output,
+            sweep: entry.sweep,
         })
     }
 
@@ -185,6 +191,11 @@ impl Scene {
     /// What is written and computed besides the table.
     pub fn output(&self) -> &Output {
         &self.output
+    }
+
+    /// Which studies a sweep makes of the scene, if it says so.
+    pub fn sweep(&self) -> Option<&SweepEntry> {
+        self.sweep.as_ref()
     }
 
     /// The same scene with other fits.

@@ -14,6 +14,7 @@ use crate::range;
 use crate::solve::{Newton, StaticMethod, StaticSolver};
 use crate::study::choice::choice;
 use crate::study::fits::FitEntry;
+use crate::study::sweep::SweepEntry;
 use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 
@@ -39,6 +40,8 @@ pub struct SceneFile {
     pub motion: Option<MotionEntry>,
     #[serde(default)]
     pub output: Output,
+    /// What `springfit sweep` runs; other commands run the scene as it is.
+    pub sweep: Option<SweepEntry>,
 }
 
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

@@ -11,6 +11,8 @@ pub struct Output {
     pub vtu: bool,
     /// Whether the springs are written as a CSV file.
     pub csv: bool,
+    /// Whether the networks are written whole as JSON files; they are unless switched off.
+    pub json: Option<bool>,
     /// Whether each network is measured as a material: Young's modulus, Poisson's ratio, Zener's ratio.
     pub moduli: bool,
     /// The number of natural frequencies of each model, besides those of rigid motions.

@@ -40,6 +40,27 @@ impl Setting {
         Ok(Setting { key: key.into(), steps, value: read, text: value.into() })
     }
 
+    /// The setting of a key to a value, as `KEY=VALUE` would have it.
+    ///
+    /// # Errors
+    /// The key is no such path.
+    pub fn of(key: &str, value: &Value) -> Result<Setting> {
+        let Some(steps) = steps(key) else {
+            return Err(Error::expected(
+                key,
+                "a key such as material.poisson or load[0].traction",
+                format!("\"{key}\""),
+            ));
+        };
+        let text = serde_json::to_value(value).map_or_else(|_| String::new(), |value| value.to_string());
+        Ok(Setting { key: key.into(), steps, value: value.clone(), text })
+    }
+
+    /// The value; null where JSON has none.
+    pub fn value(&self) -> serde_json::Value {
+        serde_json::to_value(&self.value).unwrap_or_default()
+    }
+
     /// The path of the key, as errors name it.
     pub fn key(&self) -> &str {
         &self.key

@@ -9,8 +9,8 @@ mod motions;
 mod outcome;
 mod scenes;
 mod shapes;
-mod sweep;
+mod usual;
 
 pub use outcome::{Family, StabilityOutcome, StabilityRow, Verdict};
-pub use scenes::sweep_scene;
-pub use sweep::sweep;
+pub use scenes::stability_of_scene;
+pub use usual::stability;

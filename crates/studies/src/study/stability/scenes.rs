@@ -29,7 +29,7 @@ const DENSITY: f64 = 1000.0;
 ///
 /// # Errors
 /// The scene itself does not run, has a law, or has no fit of single cells.
-pub fn sweep_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOutcome> {
+pub fn stability_of_scene(scene: &Scene, progress: &mut Progress) -> Result<StabilityOutcome> {
     let start = Instant::now();
     if scene.law().is_some() {
         let expected = "a scene at small deformation, whose answers know no unit";

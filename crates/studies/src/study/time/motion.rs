@@ -7,7 +7,9 @@ use crate::material::Energy;
 use crate::mesh::Mesh;
 use crate::model::{Body, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements};
 use crate::scalar::{norm, scaled_norm};
-use crate::study::outcome::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, mean_and_largest};
+use crate::study::outcome::{
+    ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
+};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, MotionRecipe};
 use std::time::Instant;
@@ -26,6 +28,9 @@ pub struct Planned {
     pub drive: Drive,
     /// The masses, `[points]`, kg.
     pub masses: Vec<f64>,
+    /// What `drive` is made of.
+    pub forces: Vec<TimedForce>,
+    pub pulls: Vec<TimedPull>,
     /// The points whose mean displacement is written.
     pub watched: Vec<usize>,
     /// The steps at whose end a state is written.
@@ -112,7 +117,15 @@ pub fn move_models(
         }
         models.push(made);
     }
-    Ok(MotionOutcome { recipe: planned.recipe.clone(), watched: planned.watched.len(), models })
+    Ok(MotionOutcome {
+        recipe: planned.recipe.clone(),
+        watched: planned.watched.clone(),
+        masses: planned.masses.clone(),
+        support: planned.support.clone(),
+        forces: planned.forces.clone(),
+        pulls: planned.pulls.clone(),
+        models,
+    })
 }
 
 fn square(u: &[f64]) -> f64 {

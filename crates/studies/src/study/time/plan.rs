@@ -8,7 +8,7 @@ use crate::material::{Energy, Material};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
 use crate::range;
-use crate::study::outcome::Outcome;
+use crate::study::outcome::{Outcome, TimedForce, TimedPull};
 use crate::study::progress::Progress;
 use crate::study::scene::{AppliedForce, MotionRecipe, Part, PrescribedMotion, Scene};
 use crate::symbolic::{Expr, Program};
@@ -77,6 +77,8 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
         support: fixed.clone(),
         drive: Drive::default().gravity(&recipe.gravity),
         masses: lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), recipe.lumping),
+        forces: Vec::new(),
+        pulls: Vec::new(),
         watched: Vec::new(),
         written,
         draws: scene.output().vtu,
@@ -141,6 +143,7 @@ fn add_prescribed_motion(
         let varies = (1..=d).any(|k| expression.uses(k));
         let program = Program::of(expression);
         let mut shared: Option<Curve> = None;
+        let mut moved = Vec::new();
         for &p in &points {
             let dof = p * d + k;
             let moves = |by: &str| {
@@ -174,9 +177,12 @@ fn add_prescribed_motion(
                     curve
                 }
             };
+            moved.push(p);
             planned.support.prescribed[dof] = Some(0.0);
             planned.drive = std::mem::take(&mut planned.drive).displacement(dof, curve);
         }
+        let curve = expression.text(&["t", "x", "y", "z"]);
+        planned.pulls.push(TimedPull { axis: k, curve, points: moved });
     }
     range::largest("displacement", [largest], "m")
 }
@@ -204,6 +210,8 @@ fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<
                     nodal_forces(mesh, &selection, &Action::Force(unit), 1.0).map_err(|e| Error::new(e.problem()))?;
             }
         }
+        let shares = (0..mesh.point_count()).map(|p| (p, forces[p * d + k])).filter(|(_, share)| *share != 0.0);
+        planned.forces.push(TimedForce { axis: k, curve: expression.text(&["t"]), shares: shares.collect() });
         felt |= forces.iter().enumerate().any(|(dof, f)| *f != 0.0 && !planned.support.is_fixed(dof));
         planned.drive = std::mem::take(&mut planned.drive).forces(&forces, curve);
     }

@@ -52,6 +52,7 @@ impl FitKind for ExactRecipe {
         }
         let mut seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
+        let springs = Fitted::springs_of(&cells);
         let mut network = Network::assemble(mesh, &cells);
         let mut outcome = ExactOutcome {
             energy: fit.energy,
@@ -77,7 +78,7 @@ impl FitKind for ExactRecipe {
             (network, outcome.positive) = (nearest, Some(found));
             seconds += start.elapsed().as_secs_f64();
         }
-        Ok(Fitted { cells, network, seconds, seconds_assembly, kind: FittedKind::Exact(outcome) })
+        Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind: FittedKind::Exact(outcome) })
     }
 
     fn cell_method(&self) -> Option<&dyn CellMethod> {

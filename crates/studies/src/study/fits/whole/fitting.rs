@@ -47,6 +47,7 @@ impl FitKind for WholeRecipe {
         let seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         raise_idle(&mut cells);
+        let springs = Fitted::springs_of(&cells);
         let network = Network::assemble(task.mesh, &cells);
         let seconds_assembly = start.elapsed().as_secs_f64();
         let start = Instant::now();
@@ -54,7 +55,8 @@ impl FitKind for WholeRecipe {
         let body = task.reference.whole.ok_or_else(missing)?;
         let (network, outcome) = body.fit((task.name, task.springs), self, &cells, &network, progress)?;
         let seconds = seconds + start.elapsed().as_secs_f64();
-        Ok(Fitted { cells: Vec::new(), network, seconds, seconds_assembly, kind: FittedKind::Whole(outcome) })
+        let (cells, kind) = (Vec::new(), FittedKind::Whole(outcome));
+        Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind })
     }
 
     fn sampled(&self) -> Option<&SampledRecipe> {

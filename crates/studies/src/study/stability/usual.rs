@@ -16,7 +16,7 @@ const NODES: usize = 10;
 ///
 /// # Errors
 /// An element has no valid shape.
-pub fn sweep(element: Option<Element>, progress: &mut Progress) -> Result<StabilityOutcome> {
+pub fn stability(element: Option<Element>, progress: &mut Progress) -> Result<StabilityOutcome> {
     let start = Instant::now();
     let everything = element.is_none();
     let elements = element.map_or_else(shipped, |own| Ok(vec![own]))?;

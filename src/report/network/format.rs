@@ -1,46 +1,38 @@
 //! The file formats that networks are written in.
 
-use super::network::{network_csv, network_json};
-use super::pictures::network_grid;
+use super::csv::network_csv;
+use super::file::NetworkFile;
+use super::json::network_json;
+use super::npz::network_npz;
+use super::parts::Parts;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::write_with;
-use crate::mesh::{Mesh, vtk};
-use crate::study::{BodyLoad, FitOutcome};
+use crate::mesh::vtk;
+use crate::report::pictures::network_grid;
 use std::path::Path;
-
-/// A fitted network and what belongs to it.
-pub struct NetworkFile<'a> {
-    pub mesh: &'a Mesh,
-    /// `[points]`, kg.
-    pub masses: Option<&'a [f64]>,
-    pub fit: &'a FitOutcome,
-    /// The loads whose displacements are written, where the format holds them.
-    pub loads: &'a [BodyLoad],
-    /// What a reader must know of the fit, where the format holds it.
-    pub notes: &'a [String],
-}
 
 /// A format, known by the ending of its files.
 pub struct NetworkFormat {
+    /// The ending of its files, without a dot.
     pub ending: &'static str,
     write: fn(&Path, &NetworkFile) -> Result<()>,
 }
 
 /// A new format is a row here.
-pub const NETWORK_FORMATS: [NetworkFormat; 3] = [
-    NetworkFormat {
-        ending: "vtu",
-        write: |path, file| vtk::write(path, &network_grid(file.mesh, file.masses, file.fit, file.loads)),
-    },
-    NetworkFormat {
-        ending: "json",
-        write: |path, file| {
-            write_with(path, |to| network_json(file.mesh, file.masses, &file.fit.network, file.notes, to))
-        },
-    },
+pub const NETWORK_FORMATS: [NetworkFormat; 4] = [
+    NetworkFormat { ending: "vtu", write: |path, file| vtk::write(path, &network_grid(file)) },
+    NetworkFormat { ending: "json", write: |path, file| write_with(path, |to| network_json(file, to)) },
     NetworkFormat {
         ending: "csv",
-        write: |path, file| write_with(path, |to| network_csv(file.mesh, &file.fit.network, to)),
+        write: |path, file| write_with(path, |to| network_csv(file.mesh, file.network, to)),
+    },
+    NetworkFormat {
+        ending: "npz",
+        write: |path, file| {
+            let record = file.record();
+            let parts = Parts::of(&record).map_err(|e| e.in_file(path))?;
+            write_with(path, |to| network_npz(&record, &parts, to))
+        },
     },
 ];
 
@@ -66,7 +58,7 @@ impl NetworkFormat {
     /// Writes the network.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or the format does not hold all springs of the network.
     pub fn write(&self, path: &Path, file: &NetworkFile) -> Result<()> {
         (self.write)(path, file)
     }

@@ -1,0 +1,189 @@
+//! The studies of a sweep, each a scene with other values of some keys.
+
+use super::entry::SweepEntry;
+use crate::error::{Error, Result};
+use crate::file;
+use crate::study::scene::{Scene, Setting};
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
+use std::hash::Hasher;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// A scene, and the values that its keys take in each study.
+#[derive(Debug)]
+pub struct Sweep {
+    text: String,
+    path: PathBuf,
+    title: String,
+    /// Those beside the studies' own.
+    settings: Vec<Setting>,
+    keys: Vec<String>,
+    studies: Vec<Study>,
+    /// The sums of files that studies read, by their paths.
+    sums: Mutex<HashMap<PathBuf, u64>>,
+}
+
+/// One study: what is set in the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// In the order of `[sweep]`.
+    pub settings: Vec<Setting>,
+}
+
+impl Study {
+    /// The values by their keys.
+    pub fn values(&self) -> BTreeMap<String, Value> {
+        self.settings.iter().map(|setting| (setting.key().to_string(), setting.value())).collect()
+    }
+}
+
+impl Sweep {
+    /// The sweep of a scene file that has `[sweep]`, with other values of some keys.
+    ///
+    /// # Errors
+    /// The scene or its `[sweep]` is wrong, or it has none; the scene is wrong in every study.
+    pub fn load(path: &Path, settings: &[Setting]) -> Result<Sweep> {
+        Sweep::parse(&file::read_text(path)?, path, settings)
+    }
+
+    /// The same of the text of a scene that is at `path`, to which other files are relative.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn parse(text: &str, path: &Path, settings: &[Setting]) -> Result<Sweep> {
+        let scene = Scene::parse_with(text, path, settings)?;
+        let Some(entry) = scene.sweep() else {
+            let expected = "a table [sweep] whose \"over\" gives keys of the scene and their values";
+            return Err(scene.placed(Error::expected("sweep", expected, "none")));
+        };
+        let studies = studies_of(entry).map_err(|e| scene.at("sweep", e))?;
+        let sweep = Sweep { title: scene.title().into(), ..Sweep::of_studies(text, path, settings, studies) };
+        // A fault in every study is one of the sweep.
+        let mut faults = sweep.studies.iter().map(|study| sweep.scene(study).err());
+        match faults.next().flatten() {
+            Some(first) if faults.all(|fault| fault.is_some()) => Err(first),
+            _ => Ok(sweep),
+        }
+    }
+
+    /// A sweep of these studies, whatever `[sweep]` says; nothing is checked before they run.
+    pub fn of_studies(text: &str, path: &Path, settings: &[Setting], studies: Vec<Study>) -> Sweep {
+        let mut keys: Vec<String> = Vec::new();
+        for setting in studies.iter().flat_map(|study| &study.settings) {
+            if !keys.iter().any(|key| key == setting.key()) {
+                keys.push(setting.key().into());
+            }
+        }
+        let others = settings.iter().filter(|setting| setting.first() != "sweep");
+        Sweep {
+            text: text.into(),
+            path: path.into(),
+            title: String::new(),
+            settings: others.cloned().collect(),
+            keys,
+            studies,
+            sums: Mutex::default(),
+        }
+    }
+
+    /// The title of the scene.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The keys that any study sets, in the order of `[sweep]`.
+    pub fn keys(&self) -> &[String] {
+        &self.keys
+    }
+
+    /// The studies in their order.
+    pub fn studies(&self) -> &[Study] {
+        &self.studies
+    }
+
+    /// The scene of a study.
+    ///
+    /// # Errors
+    /// It is wrong with these values; the key is that of the scene.
+    pub fn scene(&self, study: &Study) -> Result<Scene> {
+        let settings: Vec<Setting> = self.settings.iter().chain(&study.settings).cloned().collect();
+        Scene::parse_with(&self.text, &self.path, &settings).map_err(|error| of_study(error, study))
+    }
+
+    /// A sum of all that a study depends on: the values, the scene and the files that it names. Files are read once.
+    pub fn sum(&self, study: &Study) -> u64 {
+        let mut sum = Sum::new();
+        sum.write(env!("CARGO_PKG_VERSION").as_bytes());
+        sum.write(without_sweep(&self.text).as_bytes());
+        for setting in &self.settings {
+            sum.write(format!("\n{setting}").as_bytes());
+        }
+        for (key, value) in study.values() {
+            sum.write(format!("\n{key}={value}").as_bytes());
+        }
+        // The scene file itself has been taken without its sweep.
+        let files = self.scene(study).map(|scene| scene.inputs()).unwrap_or_default();
+        for path in files.into_iter().skip(1) {
+            let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+            let of_file = sums.entry(path).or_insert_with_key(|path| {
+                let mut sum = Sum::new();
+                // A file that cannot be read fails in the study.
+                sum.write(&file::read(path).unwrap_or_default());
+                sum.finish()
+            });
+            sum.write(&of_file.to_le_bytes());
+        }
+        sum.finish()
+    }
+}
+
+fn studies_of(entry: &SweepEntry) -> Result<Vec<Study>> {
+    let studies = entry.check()?.studies()?;
+    let outside = |setting: &Setting| setting.first() != "sweep";
+    if let Some(inside) = studies.iter().flatten().find(|setting| !outside(setting)) {
+        return Err(Error::expected("over", "keys outside of [sweep]", format!("\"{}\"", inside.key())));
+    }
+    Ok(studies.into_iter().map(|settings| Study { settings }).collect())
+}
+
+/// The fault of a value names the key of the scene, which no option of the command line has set.
+pub(super) fn of_study(error: Error, study: &Study) -> Error {
+    let key = error.key().and_then(|key| key.strip_prefix("--set ")).map(String::from);
+    match key.filter(|key| study.settings.iter().any(|setting| key.starts_with(setting.key()))) {
+        Some(key) => error.at_key(key),
+        None => error,
+    }
+}
+
+/// The scene's entries without `[sweep]`, so that a sweep can be extended: as text of the parsed tables.
+fn without_sweep(text: &str) -> String {
+    match text.parse::<toml::Table>() {
+        Ok(mut table) => {
+            table.remove("sweep");
+            serde_json::to_string(&table).unwrap_or_default()
+        }
+        Err(_) => text.into(),
+    }
+}
+
+/// FNV-1a, which is the same on every machine.
+struct Sum(u64);
+
+impl Sum {
+    fn new() -> Sum {
+        Sum(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hasher for Sum {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}

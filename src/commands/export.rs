@@ -1,0 +1,116 @@
+//! `springfit export`.
+
+use super::output::command;
+use super::scene_file::Settings;
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::export::{target_list, target_named};
+use springfit::report::{NetworkFile, NetworkRecord, check_outputs, read_network};
+use springfit::study::{Controls, run_with};
+use springfit::unknown;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Write a network as the files and scripts of another program
+#[derive(Args)]
+#[command(after_help = format!("{EXAMPLES}\n{}What a program does not hold is refused, with a fit that it holds", target_list()))]
+pub struct Export {
+    /// A network in JSON, as run and fit write it; or a scene, which is run first
+    network: PathBuf,
+    /// The program; they are listed below
+    #[arg(long, value_name = "PROGRAM")]
+    to: String,
+    /// The fit of a scene whose network is taken [default: the first]
+    #[arg(long)]
+    fit: Option<String>,
+    /// Acceleration of gravity in m/s², such as "0 0 -1" [default: that of the network, or 9.81 against the last axis]
+    #[arg(long, allow_hyphen_values = true)]
+    gravity: Option<String>,
+    #[command(flatten)]
+    settings: Settings,
+    /// Folder of the files [default: NAME-PROGRAM]
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit export out/organ/exact.json --to newton
+  springfit export organ.toml --to mujoco --fit exact --out mj
+  springfit export classical.json --to lammps --gravity \"0 0 -1\"
+
+Programs:";
+
+impl Export {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let target = target_named(&self.to)?;
+        let stem = self.network.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{}", target.name)));
+        let gravity = self.gravity.as_deref().map(numbers).transpose()?;
+        let is_network = self.network.extension().is_some_and(|ending| ending == "json");
+        let network = if is_network { self.read()? } else { self.fitted(terminal)? };
+        let files = target.files(&network, gravity.as_deref()).map_err(|e| {
+            let file = if e.key() == Some("--gravity") { None } else { Some(&self.network) };
+            file.map_or_else(|| e.clone(), |file| e.clone().in_file(file))
+        })?;
+        let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+        check_outputs(&folder, &names, std::slice::from_ref(&self.network))?;
+        std::fs::create_dir_all(&folder).map_err(|e| Error::io("the folder cannot be created", e).in_file(&folder))?;
+        let mut written = Vec::new();
+        for (name, content) in &files {
+            let path = folder.join(name);
+            content.write(&path)?;
+            written.push(path);
+        }
+        terminal.print(&summary(&network))?;
+        (target.leaves_out)(&network).iter().for_each(|words| terminal.note(words));
+        if !target.command.is_empty() {
+            terminal.print(&format!("run it: cd {} && {}\n", folder.display(), target.command))?;
+        }
+        terminal.written(&written)?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn read(&self) -> Result<NetworkRecord> {
+        self.settings.expect_none()?;
+        if let Some(fit) = &self.fit {
+            return Err(Error::at("--fit", format!("belongs to a scene, found \"{fit}\" with a network")));
+        }
+        read_network(&self.network)
+    }
+
+    /// The network of one fit of a scene.
+    fn fitted(&self, terminal: &mut Terminal) -> Result<NetworkRecord> {
+        let scene = self.settings.scene(&self.network)?;
+        let names = || scene.fits().iter().map(|fit| fit.name.as_str());
+        let chosen = match &self.fit {
+            None => &scene.fits()[0],
+            Some(name) => scene.fits().iter().find(|fit| fit.name == *name).ok_or_else(|| {
+                let quoted: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
+                unknown(format!("one of {}", quoted.join(", ")), names(), name).at_key("--fit")
+            })?,
+        };
+        let fits = vec![chosen.clone()];
+        let scene = scene.with_fits(fits);
+        let mut outcome = run_with(&scene, &Controls::default(), &mut |event| terminal.show(event))?;
+        outcome.command = Some(command());
+        Ok(NetworkFile::of(&outcome, &outcome.fits[0]).record())
+    }
+}
+
+/// One line about a network.
+fn summary(network: &NetworkRecord) -> String {
+    let (points, springs) = (network.points.len(), network.springs.len());
+    let step = network.largest_step.map_or(String::new(), |step| format!(", longest explicit step {step:.2e} s"));
+    let name = network.provenance.fit.as_ref().map_or("network", |fit| &fit.name);
+    format!("{name}: {points} points, {springs} springs, {} points held{step}\n", network.held.len())
+}
+
+fn numbers(text: &str) -> Result<Vec<f64>> {
+    let words = text.split([' ', ',']).filter(|word| !word.is_empty());
+    words
+        .map(|word| word.parse::<f64>().ok().filter(|g| g.is_finite()))
+        .collect::<Option<Vec<f64>>>()
+        .ok_or_else(|| Error::expected("--gravity", "numbers in m/s², such as \"0 0 -9.81\"", format!("\"{text}\"")))
+}

@@ -1,0 +1,71 @@
+//! `springfit generate`.
+
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::element::Element;
+use springfit::error::Result;
+use springfit::generate::{LANGUAGES, Program, Recipe, language};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Write code that computes the springs of a cell at run time, for programs that cut, remesh or adapt
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Generate {
+    /// A shipped element's name, or an element file
+    element: String,
+    /// exact, offdiag, frobenius or modal, which have direct solutions
+    #[arg(long, default_value = "exact")]
+    objective: String,
+    /// c, cuda, rust, python, wgsl, glsl or latex [default: by the ending of the file, otherwise c]
+    #[arg(long)]
+    language: Option<String>,
+    /// Where volumes are measured: points or cells [default: points] (exact only)
+    #[arg(long)]
+    volume: Option<String>,
+    /// Scale of what is beyond constant strain (modal only)
+    #[arg(long)]
+    higher: Option<f64>,
+    /// Spring groups to use, separated by commas [default: all that are not optional] (not with exact)
+    #[arg(long, value_delimiter = ',')]
+    springs: Option<Vec<String>>,
+    /// Where the code goes [default: standard output]
+    #[arg(short, long, help_heading = "Output")]
+    output: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit generate tet4 -o tet4_exact.h
+  springfit generate hex8 --objective offdiag --language rust -o hex8_offdiag.rs
+  springfit generate tri3 --objective modal --springs edge,bulk --language python
+  springfit generate tet4 --language wgsl -o tet4_exact.wgsl
+
+The file needs no other. Its functions give the moduli from Young's modulus and Poisson's ratio, the spring
+constants from the positions of the nodes and the moduli, and the energy and the forces of the network. WGSL and
+GLSL have single precision. The language is that of the ending: .h .cuh .rs .py .wgsl .glsl .tex.";
+
+impl Generate {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let ending = self.output.as_ref().and_then(|path| path.extension()).and_then(|ending| ending.to_str());
+        let language = match (self.language.as_deref(), ending) {
+            (Some(name), _) => language(name).map_err(|e| e.of_option())?,
+            (None, Some(ending)) => LANGUAGES.iter().find(|row| row.ending == ending).unwrap_or(&LANGUAGES[0]),
+            (None, None) => &LANGUAGES[0],
+        };
+        let recipe = Recipe::named(&self.objective, self.volume.as_deref(), self.higher).map_err(|e| e.of_option())?;
+        if let Some(output) = &self.output {
+            let inputs: Vec<PathBuf> = vec![self.element.clone().into()];
+            springfit::check_apart(std::slice::from_ref(output), &inputs)?;
+            springfit::check_file(output)?;
+        }
+        let element = Element::load(&self.element)?;
+        let program = Program::new(&element, self.springs.as_deref(), recipe).map_err(|e| e.of_option())?;
+        let text = program.print(language).map_err(|e| e.of_option())?;
+        match &self.output {
+            Some(path) => springfit::write_whole(path, text.as_bytes())?,
+            None => terminal.print(&text)?,
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

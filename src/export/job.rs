@@ -1,0 +1,240 @@
+//! A network on its way to another program, checked against what that program holds.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::report::{NetworkRecord, Parts};
+use std::collections::HashSet;
+
+/// What a program holds besides springs between two points with masses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Holds {
+    /// Springs on the volumes of tetrahedra.
+    pub volumes: bool,
+    /// Constants below zero.
+    pub negative: bool,
+    /// Springs that pull at rest.
+    pub tension: Tension,
+    /// Points that are held along some axes only.
+    pub partial: bool,
+    /// Networks in the plane.
+    pub plane: bool,
+    /// Springs elsewhere than along the edges of tetrahedra.
+    pub off_edges: bool,
+}
+
+/// Springs that pull at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tension {
+    /// Any.
+    Any,
+    /// Those that balance edge by edge, as in exact networks on tetrahedra.
+    Balanced,
+}
+
+/// A network that a program holds.
+pub struct Job<'a> {
+    /// The network as it is in its file.
+    pub network: &'a NetworkRecord,
+    /// Its springs by what they measure.
+    pub parts: Parts,
+    /// m/s², with z = 0 in the plane.
+    pub gravity: [f64; 3],
+    /// `[points]`, kg.
+    pub masses: &'a [f64],
+    /// The longest explicit step, s.
+    pub step: f64,
+}
+
+/// A sum of tensions at rest below this share of what they would be if the springs had no rest measures is a rounding error.
+const BALANCED: f64 = 1e-9;
+
+impl<'a> Job<'a> {
+    /// The network with the gravity that is asked for, that of the network, or 9.81 m/s² against the last axis.
+    ///
+    /// # Errors
+    /// The program does not hold the network, or masses are missing; the error says which fit it holds.
+    pub fn new(network: &'a NetworkRecord, gravity: Option<&[f64]>, program: &str, holds: &Holds) -> Result<Job<'a>> {
+        let d = network.dimension;
+        let unsupported = |key: String, expected: &str, found: String, advice: &str| {
+            let error = Error::expected(key, format!("{expected}, which {program} holds"), found);
+            Err(error.followed_by(format!("; {advice}")).of_kind(ErrorKind::Unsupported))
+        };
+        if !(d == 3 || d == 2 && holds.plane) {
+            let expected = if holds.plane { "2 or 3" } else { "3" };
+            return unsupported("dimension".into(), expected, d.to_string(), "take a solid body");
+        }
+        let masses = network.masses.as_deref().ok_or_else(|| {
+            let expected = "a mass of each point";
+            Error::expected("masses", expected, "none")
+                .followed_by("; give the fit a density (density in [material], or --density)")
+        })?;
+        let free = free_points(network);
+        if let Some(p) = (0..masses.len()).find(|&p| !(masses[p] > 0.0)) {
+            let advice = "row sums of quadratic cells have such masses: mass = \"hrz\" in [motion] has none";
+            return unsupported(format!("masses[{p}]"), "masses above zero", format!("{:e} kg", masses[p]), advice);
+        }
+        let step = network.largest_step.ok_or_else(|| Error::expected("largest_step", "a step in s", "none"))?;
+        let parts = Parts::of(network)?;
+        if let (Some(part), false) = (parts.contents.first(), holds.volumes && d == 3) {
+            let found = format!("a spring on the content of points {:?}", part.points);
+            let advice = "objective = \"offdiag\" with nonnegative = true has springs between two points alone, and so has \"divergence\"";
+            return unsupported("springs".into(), "springs between two points", found, advice);
+        }
+        let negative = parts.lengths.iter().filter(|spring| spring.constant < 0.0).count();
+        if negative > 0 && !holds.negative {
+            let advice = "nonnegative = true (--nonnegative) has none";
+            let found = format!("{negative} of {} below zero", parts.lengths.len());
+            return unsupported("springs".into(), "constants above zero", found, advice);
+        }
+        if let Some(part) = parts.contents.iter().find(|part| part.constant <= 0.0 || part.rest <= 0.0) {
+            let found = format!("{:e} N/m⁵ and {:e} m³ at points {:?}", part.constant, part.rest, part.points);
+            return unsupported(
+                "springs".into(),
+                "volume springs with constants and rest volumes above zero",
+                found,
+                "another fit has them",
+            );
+        }
+        for held in network.held.iter().filter(|_| !holds.partial) {
+            if held.displacement.iter().any(Option::is_none) {
+                let found = format!("point {} held along some axes", held.point);
+                let advice = "hold it along all axes, or none";
+                return unsupported("held".into(), "points that are held in all directions", found, advice);
+            }
+        }
+        if let Some(held) = network.held.iter().find(|held| held.displacement.iter().flatten().any(|u| *u != 0.0)) {
+            let found = format!("point {} moved", held.point);
+            return unsupported("held".into(), "supports at rest", found, "move it in the program");
+        }
+        let job = Job { network, parts, gravity: spatial(gravity, network)?, masses, step };
+        if !holds.off_edges {
+            job.check_edges(program)?;
+        }
+        if holds.tension == Tension::Balanced {
+            job.check_balance(program)?;
+        }
+        if free == 0 {
+            return Err(Error::expected("held", "a point that is free to move", "none"));
+        }
+        Ok(job)
+    }
+
+    /// The tetrahedra of the mesh.
+    pub fn tetrahedra(&self) -> impl Iterator<Item = &'a [usize]> {
+        let blocks = self.network.cells.iter();
+        blocks.flat_map(|block| &block.points).filter(|points| points.len() == 4).map(Vec::as_slice)
+    }
+
+    /// Points that are held along each axis.
+    pub fn held_along(&self, axis: usize) -> Vec<usize> {
+        let held = self.network.held.iter().filter(|held| held.displacement.get(axis).is_some_and(Option::is_some));
+        held.map(|held| held.point).collect()
+    }
+
+    /// The coordinates of a point, with z = 0 in the plane.
+    pub fn place(&self, p: usize) -> [f64; 3] {
+        let x = &self.network.points[p];
+        [0, 1, 2].map(|k| x.get(k).copied().unwrap_or(0.0))
+    }
+
+    fn check_edges(&self, program: &str) -> Result<()> {
+        let mut edges = HashSet::new();
+        let corners: HashSet<Vec<usize>> = self.tetrahedra().map(sorted).collect();
+        for points in self.tetrahedra() {
+            edges.extend((0..4).flat_map(|a| (0..a).map(move |b| ordered(points[a], points[b]))));
+        }
+        let expected = format!("springs along the edges of tetrahedra and on their volumes, which {program} holds");
+        let advice = "; take a mesh of linear tetrahedra, and for springs between cells leave `across` out";
+        let error = |points: String| {
+            let found = format!("one of points {points}");
+            Error::expected("springs", &expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported)
+        };
+        if let Some(spring) = self.parts.lengths.iter().find(|s| !edges.contains(&ordered(s.points[0], s.points[1]))) {
+            return Err(error(format!("{:?}", spring.points)));
+        }
+        match self.parts.contents.iter().find(|part| !corners.contains(&sorted(&part.points))) {
+            Some(part) => Err(error(format!("{:?}", part.points))),
+            None => Ok(()),
+        }
+    }
+
+    /// The derivative of the energy by the squared length of each edge at rest, `T/(2 ℓ)` of a spring and
+    /// `K (V − V₀) ∂V/∂(ℓ²)` of a volume, has to vanish.
+    fn check_balance(&self, program: &str) -> Result<()> {
+        let mut sums: std::collections::HashMap<[usize; 2], [f64; 2]> = std::collections::HashMap::new();
+        let mut add = |edge: [usize; 2], slope: f64, size: f64| {
+            let sum = sums.entry(edge).or_default();
+            sum[0] += slope;
+            sum[1] += size.abs();
+        };
+        for spring in &self.parts.lengths {
+            let [a, b] = spring.points;
+            let length = distance(self.place(a), self.place(b));
+            add(ordered(a, b), spring.constant * (length - spring.rest) / (2.0 * length), spring.constant / 2.0);
+        }
+        for part in &self.parts.contents {
+            let (volume, slopes) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
+            for ([a, b], slope) in slopes {
+                let size = part.constant * volume * slope;
+                add(ordered(part.points[a], part.points[b]), size * (1.0 - part.rest / volume), size);
+            }
+        }
+        let largest = sums.values().map(|sum| sum[1]).fold(0.0, f64::max);
+        match sums.iter().find(|(_, sum)| sum[0].abs() > BALANCED * largest) {
+            None => Ok(()),
+            Some((edge, _)) => {
+                let expected =
+                    format!("springs that do not pull at rest, or balance edge by edge, which {program} holds");
+                let advice =
+                    "; objective = \"exact\" without nonnegative balances, and fits with rest = \"mesh\" do not pull";
+                let error = Error::expected("springs", expected, format!("tension along the edge {edge:?}"));
+                Err(error.followed_by(advice).of_kind(ErrorKind::Unsupported))
+            }
+        }
+    }
+}
+
+fn free_points(network: &NetworkRecord) -> usize {
+    let held = network.held.iter().filter(|held| held.displacement.iter().all(Option::is_some)).count();
+    network.points.len() - held
+}
+
+fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> Result<[f64; 3]> {
+    let d = network.dimension;
+    if let Some(asked) = asked.filter(|asked| asked.len() != d) {
+        return Err(Error::expected("--gravity", format!("{d} numbers in m/s²"), asked.len()));
+    }
+    let usual = if d == 2 { [0.0, -9.81, 0.0] } else { [0.0, 0.0, -9.81] };
+    let given = asked.or(network.gravity.as_deref());
+    Ok(given.map_or(usual, |given| [0, 1, 2].map(|k| given.get(k).copied().unwrap_or(0.0))))
+}
+
+fn ordered(a: usize, b: usize) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+fn sorted(points: &[usize]) -> Vec<usize> {
+    let mut points = points.to_vec();
+    points.sort_unstable();
+    points
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The volume V of a tetrahedron, and `∂V/∂(ℓ²)` of its edges: `∇V` at node a is `Σ_b 2 ∂V/∂(ℓ_ab²) (x_a − x_b)`, so that with the
+/// gradients G of its shape functions the derivative is `−V G_a·G_b/2`.
+fn volume_by_edges(x: [[f64; 3]; 4]) -> (f64, Vec<([usize; 2], f64)>) {
+    let edge = |a: usize| [0, 1, 2].map(|k| x[a][k] - x[0][k]);
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let [u, v, w] = [edge(1), edge(2), edge(3)];
+    let six = dot(u, cross(v, w));
+    let ahead = [cross(v, w), cross(w, u), cross(u, v)].map(|g| g.map(|g| g / six));
+    let first = [0, 1, 2].map(|k| -(ahead[0][k] + ahead[1][k] + ahead[2][k]));
+    let gradients = [first, ahead[0], ahead[1], ahead[2]];
+    let volume = six / 6.0;
+    let slope = |[a, b]: [usize; 2]| ([a, b], -volume * dot(gradients[a], gradients[b]) / 2.0);
+    (volume, (0..4).flat_map(|a| (0..a).map(move |b| [b, a])).map(slope).collect())
+}

@@ -1,0 +1,52 @@
+//! Jolt: the edge and volume constraints of a soft body.
+
+use super::job::{Holds, Job, Tension};
+use super::target::{Content, NamedFile, Target, dampers};
+use crate::error::Result;
+use crate::report::NetworkRecord;
+use serde::Serialize;
+
+/// A constraint has a compliance, the inverse of a constant above zero.
+const HOLDS: Holds =
+    Holds { volumes: true, negative: false, tension: Tension::Any, partial: false, plane: true, off_edges: true };
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target = Target {
+    name: "jolt",
+    title: "a Node script for Jolt: edge and volume constraints of a soft body",
+    command: "npm install jolt-physics@1.1.0 && node run.mjs",
+    leaves_out: dampers,
+    write,
+};
+
+/// What the script reads.
+#[derive(Serialize)]
+struct SoftBody {
+    points: Vec<[f64; 3]>,
+    masses: Vec<f64>,
+    held: Vec<usize>,
+    gravity: [f64; 3],
+    /// Ends, constant, rest length.
+    edges: Vec<(usize, usize, f64, f64)>,
+    /// Corners, constant, rest volume.
+    volumes: Vec<(Vec<usize>, f64, f64)>,
+    surface: Vec<[usize; 3]>,
+}
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let job = Job::new(network, gravity, "Jolt", &HOLDS)?;
+    let body = SoftBody {
+        points: (0..network.points.len()).map(|p| job.place(p)).collect(),
+        masses: job.masses.to_vec(),
+        held: job.held_along(0),
+        gravity: job.gravity,
+        edges: job.parts.lengths.iter().map(|s| (s.points[0], s.points[1], s.constant, s.rest)).collect(),
+        volumes: job.parts.contents.iter().map(|s| (s.points.clone(), s.constant, s.rest)).collect(),
+        surface: network.surface.clone(),
+    };
+    let text = serde_json::to_vec(&body).expect("keys are text");
+    Ok(vec![
+        ("network.json", Content::Bytes(text)),
+        ("run.mjs", Content::Bytes(include_bytes!("../../exports/jolt.mjs").to_vec())),
+    ])
+}

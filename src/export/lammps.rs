@@ -1,0 +1,139 @@
+//! LAMMPS: a data file with one bond type per spring, and its input script.
+
+use super::job::{Holds, Job, Tension};
+use super::target::{Content, NamedFile, Target, dampers};
+use crate::error::Result;
+use crate::report::NetworkRecord;
+use std::fmt::Write;
+
+const HOLDS: Holds =
+    Holds { volumes: false, negative: true, tension: Tension::Any, partial: true, plane: true, off_edges: true };
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target = Target {
+    name: "lammps",
+    title: "a data file and an input script for LAMMPS: harmonic bonds",
+    command: "lmp -in in.network",
+    leaves_out: dampers,
+    write,
+};
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let job = Job::new(network, gravity, "LAMMPS", &HOLDS)?;
+    Ok(vec![
+        ("network.data", Content::Bytes(data(&job).into_bytes())),
+        ("in.network", Content::Bytes(input(&job).into_bytes())),
+    ])
+}
+
+/// Atoms and bonds count from 1. Atoms of equal mass share a type.
+fn data(job: &Job) -> String {
+    let mut masses = job.masses.to_vec();
+    masses.sort_by(f64::total_cmp);
+    masses.dedup();
+    let kind = |mass: f64| masses.partition_point(|other| *other < mass) + 1;
+    let (atoms, bonds) = (job.masses.len(), job.parts.lengths.len());
+    let mut text = String::from("springfit network: K of a bond is half of the spring constant, units si\n\n");
+    let mut line = |words: std::fmt::Arguments| writeln!(text, "{words}").expect("a String grows");
+    line(format_args!("{atoms} atoms\n{bonds} bonds\n{} atom types\n{bonds} bond types\n", masses.len()));
+    for (k, axis) in ["x", "y", "z"].iter().enumerate() {
+        let along = || (0..atoms).map(|p| job.place(p)[k]);
+        let (low, high) = (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
+        // In the plane the box has a thickness, which LAMMPS asks for and does not use.
+        let room = if high > low { high - low } else { 1.0 };
+        line(format_args!("{:e} {:e} {axis}lo {axis}hi", low - room, high + room));
+    }
+    line(format_args!("\nMasses\n"));
+    masses.iter().enumerate().for_each(|(i, mass)| line(format_args!("{} {mass:e}", i + 1)));
+    line(format_args!("\nBond Coeffs # harmonic\n"));
+    let springs = || job.parts.lengths.iter().enumerate().map(|(i, spring)| (i + 1, spring));
+    springs().for_each(|(i, s)| line(format_args!("{i} {:e} {:e}", s.constant / 2.0, s.rest)));
+    line(format_args!("\nAtoms # bond\n"));
+    for p in 0..atoms {
+        let [x, y, z] = job.place(p);
+        line(format_args!("{} 1 {} {x:e} {y:e} {z:e}", p + 1, kind(job.masses[p])));
+    }
+    line(format_args!("\nBonds\n"));
+    springs().for_each(|(i, s)| line(format_args!("{i} {i} {} {}", s.points[0] + 1, s.points[1] + 1)));
+    text
+}
+
+fn input(job: &Job) -> String {
+    let d = job.network.dimension;
+    let mut neighbours = vec![0usize; job.masses.len()];
+    job.parts.lengths.iter().flat_map(|s| s.points).for_each(|p| neighbours[p] += 1);
+    let most = neighbours.iter().max().copied().unwrap_or(0);
+    let longest = job.parts.lengths.iter().map(|s| {
+        let [a, b] = s.points.map(|p| job.place(p));
+        a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    });
+    let longest = longest.fold(0.0, f64::max);
+    let [gx, gy, gz] = job.gravity;
+    let mut held = String::new();
+    for (k, axis) in ["x", "y", "z"].iter().enumerate().take(d) {
+        let points: Vec<String> = job.held_along(k).iter().map(|p| (p + 1).to_string()).collect();
+        if !points.is_empty() {
+            let zero = ["0 NULL NULL", "NULL 0 NULL", "NULL NULL 0"][k];
+            // A line of input may not be too long.
+            for (i, some) in points.chunks(500).enumerate() {
+                writeln!(held, "group held{axis}{i} id {}", some.join(" ")).expect("a String grows");
+                writeln!(held, "fix held{axis}{i} held{axis}{i} setforce {zero}").expect("a String grows");
+            }
+        }
+    }
+    let (boundary, plane) = if d == 2 { ("s s p", "fix plane all enforce2d\n") } else { ("s s s", "") };
+    let (longest_step, step) = (job.step, 0.2 * job.step);
+    let (reach, special, dmax) = (1.5 * longest, most * (most + 1) * 4 + 8, 0.1 * longest);
+    let damping = job.network.damping.mass;
+    let drag = match damping > 0.0 {
+        false => String::new(),
+        true => {
+            let along =
+                ["x", "y", "z"].map(|axis| format!("  \"variable d{axis} atom -{damping:e}*mass*v{axis}\" &\n"));
+            along.concat() + "  \"fix drag all addforce v_dx v_dy v_dz\" &\n"
+        }
+    };
+    format!(
+        "# A springfit network in LAMMPS (package MOLECULE).
+#
+#   lmp -in in.network                    half a second of motion
+#   lmp -in in.network -var seconds 2     two seconds
+#   lmp -in in.network -var mode rest     comes to rest
+#
+# Both write the positions to positions.txt, by id; point p of the network is atom p + 1.
+#
+# What was converted: springs are harmonic bonds with K = k/2, one type each; supports are forces set to zero; gravity is a force on
+# each atom. The step is 0.2 of the longest stable one at rest, {longest_step:e} s.
+
+variable mode index move
+variable seconds index 0.5
+units si
+dimension {d}
+boundary {boundary}
+atom_style bond
+atom_modify map array sort 0 0
+bond_style harmonic
+comm_modify cutoff {reach:e}
+neighbor {reach:e} bin
+read_data network.data extra/special/per/atom {special}
+special_bonds lj/coul 1 1 1
+variable wx atom mass*({gx:e})
+variable wy atom mass*({gy:e})
+variable wz atom mass*({gz:e})
+variable height atom -mass*(({gx:e})*x+({gy:e})*y+({gz:e})*z)
+fix weight all addforce v_wx v_wy v_wz energy v_height
+fix_modify weight energy yes
+{held}{plane}thermo 1000
+if \"${{mode}} == rest\" then &
+  \"min_style cg\" &
+  \"min_modify dmax {dmax:e} line quadratic\" &
+  \"minimize 0 1e-18 100000 1000000\" &
+else &
+  \"fix nve all nve\" &
+{drag}  \"timestep {step:e}\" &
+  \"variable steps equal round(${{seconds}}/{step:e})\" &
+  \"run ${{steps}}\"
+write_dump all custom positions.txt id x y z modify sort id format float %.17g
+"
+    )
+}

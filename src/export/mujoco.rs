@@ -1,0 +1,28 @@
+//! MuJoCo: a flex of tetrahedra whose stiffness is that of the springs.
+
+use super::job::{Holds, Job, Tension};
+use super::npz::arrays;
+use super::target::{Content, NamedFile, Target, dampers};
+use crate::error::Result;
+use crate::report::NetworkRecord;
+
+/// A flex has the quadratic energy of its squared edge lengths: no tension edge by edge, and no springs elsewhere.
+const HOLDS: Holds =
+    Holds { volumes: true, negative: true, tension: Tension::Balanced, partial: false, plane: false, off_edges: false };
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target = Target {
+    name: "mujoco",
+    title: "a Python script for MuJoCo: a flex of tetrahedra with the stiffness of the springs",
+    command: "python run.py",
+    leaves_out: dampers,
+    write,
+};
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let job = Job::new(network, gravity, "MuJoCo", &HOLDS)?;
+    Ok(vec![
+        ("network.npz", Content::Bytes(arrays(&job))),
+        ("run.py", Content::Bytes(include_bytes!("../../exports/mujoco.py").to_vec())),
+    ])
+}

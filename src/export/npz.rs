@@ -1,0 +1,27 @@
+//! Arrays of NumPy.
+
+use super::job::Job;
+use super::target::{Content, NamedFile, Target, nothing};
+use crate::error::Result;
+use crate::report::{NetworkRecord, Parts, network_npz};
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target =
+    Target { name: "npz", title: "arrays of NumPy, for scripts of your own", command: "", leaves_out: nothing, write };
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let mut network = network.clone();
+    network.gravity = gravity.map(<[f64]>::to_vec).or(network.gravity);
+    let mut bytes = Vec::new();
+    network_npz(&network, &Parts::of(&network)?, &mut bytes).expect("a Vec grows");
+    Ok(vec![("network.npz", Content::Bytes(bytes))])
+}
+
+/// The arrays of a job, with its gravity.
+pub fn arrays(job: &Job) -> Vec<u8> {
+    let d = job.network.dimension;
+    let network = NetworkRecord { gravity: Some(job.gravity[..d].to_vec()), ..job.network.clone() };
+    let mut bytes = Vec::new();
+    network_npz(&network, &job.parts, &mut bytes).expect("a Vec grows");
+    bytes
+}

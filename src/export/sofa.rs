@@ -1,0 +1,72 @@
+//! SOFA: a mass-spring file of the format Xsp 3.0.
+
+use super::job::{Holds, Job, Tension};
+use super::target::{Content, NamedFile, Target, nothing};
+use crate::error::Result;
+use crate::report::NetworkRecord;
+use std::fmt::Write;
+
+const HOLDS: Holds =
+    Holds { volumes: false, negative: true, tension: Tension::Any, partial: false, plane: true, off_edges: true };
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target = Target {
+    name: "sofa",
+    title: "a file of the format Xsp for SOFA: masses and springs with dampers",
+    command: "",
+    leaves_out: nothing,
+    write,
+};
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let job = Job::new(network, gravity, "SOFA", &HOLDS)?;
+    Ok(vec![
+        ("network.xs3", Content::Bytes(text(&job).into_bytes())),
+        ("network.scn", Content::Bytes(scene(&job).into_bytes())),
+    ])
+}
+
+/// Points count from 1, a held point has a negative mass, and a spring has its rest length as a length.
+fn text(job: &Job) -> String {
+    let held = job.held_along(0);
+    let mut text = String::from("Xsp 3.0\n");
+    let mut line = |words: std::fmt::Arguments| writeln!(text, "{words}").expect("a String grows");
+    line(format_args!("numm {}", job.masses.len()));
+    line(format_args!("nums {}", job.parts.lengths.len()));
+    let [gx, gy, gz] = job.gravity;
+    line(format_args!("grav {gx:e} {gy:e} {gz:e}"));
+    for (p, mass) in job.masses.iter().enumerate() {
+        let [x, y, z] = job.place(p);
+        let mass = if held.binary_search(&p).is_ok() { -mass } else { *mass };
+        line(format_args!("mass {} {x:e} {y:e} {z:e} 0 0 0 {mass:e} 0", p + 1));
+    }
+    for (i, s) in job.parts.lengths.iter().enumerate() {
+        let [a, b] = s.points;
+        line(format_args!("lspg {} {} {} {:e} {:e} {:e}", i + 1, a + 1, b + 1, s.constant, s.damper, s.rest));
+    }
+    text
+}
+
+fn scene(job: &Job) -> String {
+    let [gx, gy, gz] = job.gravity;
+    format!(
+        "<?xml version=\"1.0\"?>
+<!-- A springfit network in SOFA. Springs are springs, with their constants, dampers and rest lengths; a point that is held has a
+     negative mass in network.xs3. The solver is implicit; the longest stable step of an explicit one is {:e} s. -->
+<Node name=\"root\" dt=\"0.002\" gravity=\"{gx:e} {gy:e} {gz:e}\">
+  <RequiredPlugin pluginName=\"Sofa.Component\"/>
+  <DefaultAnimationLoop/>
+  <Node name=\"network\">
+    <EulerImplicitSolver rayleighStiffness=\"0\" rayleighMass=\"0\"/>
+    <CGLinearSolver iterations=\"200\" tolerance=\"1e-12\" threshold=\"1e-18\"/>
+    <MassSpringLoader filename=\"network.xs3\"/>
+    <MechanicalObject/>
+    <DiagonalMass/>
+    <FixedConstraint/>
+    <SpringForceField/>
+  </Node>
+</Node>
+",
+        job.step
+    )
+}

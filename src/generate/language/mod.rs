@@ -1,0 +1,62 @@
+//! The languages in which functions are printed: one file and one row of [`LANGUAGES`] for each.
+
+mod c;
+mod cuda;
+mod glsl;
+mod latex;
+mod printer;
+mod python;
+mod rust;
+mod syntax;
+mod wgsl;
+
+use super::code::Function;
+use crate::error::Result;
+use crate::unknown;
+use printer::Printer;
+use syntax::Syntax;
+
+/// A language.
+#[derive(Debug)]
+pub struct LanguageRow {
+    /// The name in options.
+    pub name: &'static str,
+    /// The ending of its files.
+    pub ending: &'static str,
+    /// The largest working memory of a function, in numbers.
+    pub most_work: usize,
+    syntax: &'static dyn Syntax,
+}
+
+/// Memory of a thread on common systems: 1 MiB of doubles in C and Rust, as little as 512 kB on a device.
+const STACK: usize = 131_072;
+const DEVICE: usize = 65_536;
+/// Memory of an invocation of a shader.
+const SHADER: usize = 4_096;
+
+/// The languages.
+pub const LANGUAGES: &[LanguageRow] = &[
+    LanguageRow { name: "c", ending: "h", most_work: STACK, syntax: &c::C },
+    LanguageRow { name: "cuda", ending: "cuh", most_work: DEVICE, syntax: &cuda::Cuda },
+    LanguageRow { name: "rust", ending: "rs", most_work: STACK, syntax: &rust::Rust },
+    LanguageRow { name: "python", ending: "py", most_work: usize::MAX, syntax: &python::Python },
+    LanguageRow { name: "wgsl", ending: "wgsl", most_work: SHADER, syntax: &wgsl::Wgsl },
+    LanguageRow { name: "glsl", ending: "glsl", most_work: SHADER, syntax: &glsl::Glsl },
+    LanguageRow { name: "latex", ending: "tex", most_work: usize::MAX, syntax: &latex::Latex },
+];
+
+/// The language with this name.
+///
+/// # Errors
+/// There is none.
+pub fn language(name: &str) -> Result<&'static LanguageRow> {
+    LANGUAGES.iter().find(|language| language.name == name).ok_or_else(|| {
+        let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
+        unknown(format!("one of {}", names.join(", ")), names, name).at_key("language")
+    })
+}
+
+/// The file with these functions.
+pub fn print(language: &LanguageRow, prefix: &str, heading: &[String], functions: &[Function]) -> String {
+    Printer::new(language.syntax, prefix).file(heading, functions)
+}

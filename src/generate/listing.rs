@@ -1,0 +1,110 @@
+//! The comments of generated files: what the functions compute, and the springs in their order.
+
+use super::code::Status;
+use super::{Recipe, nodes_of};
+use crate::element::Element;
+use crate::springs::Springs;
+
+/// The width of a line of comment.
+const WIDTH: usize = 100;
+
+/// The heading of a file.
+pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<String> {
+    let (n, d) = (element.nodes(), element.dimension());
+    let mut lines = vec![
+        format!("{}: {}; objective {}.", element.name, element.title, recipe.title()),
+        format!("Written by springfit {}: springfit generate. This file needs no other.", env!("CARGO_PKG_VERSION")),
+        String::new(),
+        format!("x          positions of the nodes in m, [{n} nodes x {d}], node by node"),
+        format!("lambda, mu moduli of sigma = lambda tr(eps) I + 2 mu eps in Pa; {}", moduli_unit(d)),
+        format!(
+            "constants  spring constants, [{}]: k in N/m; of a spring on {} in J per square of it",
+            springs.len(),
+            content(d)
+        ),
+        "rests      rest measures, in the same order: lengths in m, contents in m, m2 or m3".into(),
+        String::new(),
+    ];
+    lines.extend(match recipe {
+        Recipe::Exact(_) => vec![
+            "The energy of a spring between nodes is k/2 |x_j - x_i|^2: its rest length is zero.".into(),
+            format!("That of a spring on {} is k/2 (c - rest)^2, with c = w |J| at its quadrature point", content(d)),
+            "(group points) or the sum over all points (group content). At rest the energy is not zero:".into(),
+            "differences of energies have a meaning.".into(),
+        ],
+        Recipe::Frobenius(_) => {
+            vec!["The energy of a spring is k/2 (c - rest)^2, with c what it measures.".to_string()]
+        }
+    });
+    lines.push("Constants may be negative.".into());
+    lines.push(String::new());
+    lines.push("status     0, or".into());
+    lines.extend(Status::ALL.iter().map(|(status, what)| format!("  {} {what}", status.code())));
+    lines.push("           Then nothing is written to the results.".into());
+    lines.push(String::new());
+    lines.push("The springs in their order, by group, as the nodes that they join:".into());
+    lines.extend(groups(springs));
+    lines
+}
+
+fn content(dimension: usize) -> &'static str {
+    ["lengths", "areas", "volumes"][dimension - 1]
+}
+
+fn moduli_unit(dimension: usize) -> &'static str {
+    match dimension {
+        1 => "of a rod times its cross-section, lambda + 2 mu = E A, in N",
+        2 => "those of the plane, times the thickness, in N/m",
+        _ => "those of a solid",
+    }
+}
+
+/// One paragraph for each group.
+fn groups(springs: &Springs) -> Vec<String> {
+    let every = nodes_of(springs);
+    let mut lines = Vec::new();
+    let mut first = 0;
+    while first < every.len() {
+        let group = every[first].0;
+        let last = (first..every.len()).find(|&s| every[s].0 != group).unwrap_or(every.len());
+        let mut line = if last - first == 1 {
+            format!("  {first} {group}:")
+        } else {
+            format!("  {first} to {} {group}:", last - 1)
+        };
+        for (_, nodes) in &every[first..last] {
+            let word = nodes.iter().map(usize::to_string).collect::<Vec<_>>().join("-");
+            if word.is_empty() {
+                line += if last - first == 1 { " the cell" } else { " the quadrature points" };
+                break;
+            }
+            if line.len() + word.len() >= WIDTH {
+                lines.push(std::mem::replace(&mut line, "     ".into()));
+            }
+            line = format!("{line} {word}");
+        }
+        lines.push(line);
+        first = last;
+    }
+    lines
+}
+
+/// What is said of the function of the moduli.
+pub fn moduli(what: &str) -> Vec<String> {
+    vec![format!("lambda and mu from Young's modulus (Pa) and Poisson's ratio: {what}.")]
+}
+
+/// What is said of the function of the constants.
+pub fn constants() -> Vec<String> {
+    vec!["The constants and rest measures of the springs of the cell whose nodes are at rest at x.".into()]
+}
+
+/// What is said of the function of the energy.
+pub fn energy() -> Vec<String> {
+    vec!["The energy of the network of the cell in J, with its nodes at x.".into()]
+}
+
+/// What is said of the function of the forces.
+pub fn forces() -> Vec<String> {
+    vec!["The forces of the network of the cell on its nodes at x in N, [nodes x dimension].".into()]
+}

@@ -1,0 +1,92 @@
+//! Networks as arrays of NumPy: a ZIP file of `.npy` files.
+
+use super::parts::Parts;
+use super::record::NetworkRecord;
+use std::io::{self, Cursor, Write};
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+/// Arrays of a network of springs on lengths and on the contents of simplices, with n points, m springs, c contents and t triangles:
+///
+/// | array | shape and type | what |
+/// |---|---|---|
+/// | `points` | n × 3, f64 | m; in the plane z is zero |
+/// | `masses` | n, f64 | kg; empty without a density |
+/// | `springs`, `k`, `rest`, `damper` | m × 2, i32; m, f64; m, f64; m, f64 | ends; N/m; m; kg/s |
+/// | `volumes`, `k_volume`, `rest_volume` | c × 4, i32; c, f64; c, f64 | corners; N/m⁵; m³. In the plane triangles, N/m³ and m² |
+/// | `tets` | i32 | the corners of the cells that are simplices |
+/// | `surface` | t × 3, i32 | triangles |
+/// | `fixed` | i32 | points that are held in all directions |
+/// | `held` | n × 3, f64 | prescribed displacements, m; NaN where a point is free |
+/// | `gravity` | 3, f64 | m/s²; zero where there is none |
+/// | `damping` | f64 | Rayleigh's α, 1/s |
+/// | `dt_max` | f64 | the longest explicit step, s; NaN without masses |
+///
+/// # Errors
+/// The writer fails.
+pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -> io::Result<()> {
+    let d = network.dimension;
+    let spatial = |x: &[f64]| [0, 1, 2].map(|k| x.get(k).copied().unwrap_or(0.0));
+    let free = vec![[f64::NAN; 3]; network.points.len()];
+    let held = network.held.iter().fold(free, |mut held, given| {
+        let values = given.displacement.iter().map(|u| u.unwrap_or(f64::NAN));
+        held[given.point].iter_mut().zip(values).for_each(|(held, value)| *held = value);
+        held
+    });
+    let fixed = network.held.iter().filter(|given| given.displacement.iter().all(Option::is_some));
+    let simplices = network.cells.iter().flat_map(|block| &block.points).filter(|points| points.len() == d + 1);
+    let corners = d + 1;
+    let mut file = Arrays { file: ZipWriter::new(Cursor::new(Vec::new())) };
+    file.real("points", &[network.points.len(), 3], network.points.iter().flat_map(|x| spatial(x)))?;
+    let masses = network.masses.iter().flatten();
+    file.real("masses", &[masses.clone().count()], masses.copied())?;
+    let springs = &parts.lengths;
+    file.whole("springs", &[springs.len(), 2], springs.iter().flat_map(|s| s.points))?;
+    file.real("k", &[springs.len()], springs.iter().map(|s| s.constant))?;
+    file.real("rest", &[springs.len()], springs.iter().map(|s| s.rest))?;
+    file.real("damper", &[springs.len()], springs.iter().map(|s| s.damper))?;
+    let contents = &parts.contents;
+    file.whole("volumes", &[contents.len(), corners], contents.iter().flat_map(|s| s.points.iter().copied()))?;
+    file.real("k_volume", &[contents.len()], contents.iter().map(|s| s.constant))?;
+    file.real("rest_volume", &[contents.len()], contents.iter().map(|s| s.rest))?;
+    file.whole("tets", &[simplices.clone().count(), corners], simplices.flatten().copied())?;
+    file.whole("surface", &[network.surface.len(), 3], network.surface.iter().flatten().copied())?;
+    file.whole("fixed", &[fixed.clone().count()], fixed.map(|given| given.point))?;
+    file.real("held", &[network.points.len(), 3], held.into_iter().flatten())?;
+    let gravity = network.gravity.as_deref().unwrap_or_default();
+    file.real("gravity", &[3], spatial(gravity))?;
+    file.real("damping", &[], [network.damping.mass])?;
+    file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
+    to.write_all(&file.file.finish()?.into_inner())
+}
+
+struct Arrays {
+    file: ZipWriter<Cursor<Vec<u8>>>,
+}
+
+impl Arrays {
+    fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
+        self.array(name, "<f8", shape, values.into_iter().flat_map(f64::to_le_bytes).collect())
+    }
+
+    fn whole(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = usize>) -> io::Result<()> {
+        self.array(name, "<i4", shape, values.into_iter().flat_map(|value| (value as i32).to_le_bytes()).collect())
+    }
+
+    /// One file of version 1.0 of the format: a header that is a Python dictionary, padded to 64 bytes, and the numbers.
+    fn array(&mut self, name: &str, kind: &str, shape: &[usize], bytes: Vec<u8>) -> io::Result<()> {
+        let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
+        let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
+        // The preamble has ten bytes, and the header ends with a new line.
+        header += &" ".repeat(63 - (header.len() + 10) % 64);
+        header.push('\n');
+        self.file.start_file(
+            format!("{name}.npy"),
+            SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored),
+        )?;
+        self.file.write_all(b"\x93NUMPY\x01\x00")?;
+        self.file.write_all(&(header.len() as u16).to_le_bytes())?;
+        self.file.write_all(header.as_bytes())?;
+        self.file.write_all(&bytes)
+    }
+}

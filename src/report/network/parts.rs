@@ -1,0 +1,112 @@
+//! The springs of a network that programs with springs between two points and volume springs hold.
+
+use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord};
+use crate::error::{Error, ErrorKind, Result};
+
+/// A linear spring between two points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LengthPart {
+    /// The two points that it joins.
+    pub points: [usize; 2],
+    /// N/m.
+    pub constant: f64,
+    /// m.
+    pub rest: f64,
+    /// kg/s.
+    pub damper: f64,
+}
+
+/// A linear spring on the content of a simplex: the area of a triangle in the plane, the volume of a tetrahedron in space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContentPart {
+    /// As many as dimensions, and one more; their content is positive in this order.
+    pub points: Vec<usize>,
+    /// N/m⁵; in the plane N/m³.
+    pub constant: f64,
+    /// m³; in the plane m².
+    pub rest: f64,
+}
+
+/// A network of linear springs on lengths and on the contents of simplices.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Parts {
+    /// Springs on lengths.
+    pub lengths: Vec<LengthPart>,
+    /// Springs on contents.
+    pub contents: Vec<ContentPart>,
+}
+
+impl Parts {
+    /// # Errors
+    /// A spring has a law or measures something else; kind `Unsupported`, and the key is the place of the spring.
+    pub fn of(network: &NetworkRecord) -> Result<Parts> {
+        let mut parts = Parts::default();
+        let simplices: Vec<Option<(f64, bool)>> =
+            network.measures.iter().map(|measure| simplex(measure, network.dimension)).collect();
+        for (i, spring) in network.springs.iter().enumerate() {
+            let measure = &network.measures[spring.measure];
+            let refused = |found: String| {
+                let expected = "linear springs on lengths and on the contents of triangles or tetrahedra";
+                let error = Error::expected(format!("springs[{i}]"), expected, found);
+                error.followed_by(format!("; {}", advice(spring, measure))).of_kind(ErrorKind::Unsupported)
+            };
+            if let Some(law) = &spring.law {
+                return Err(refused(format!("the law {law}")));
+            }
+            match (measure.kind, simplices[spring.measure]) {
+                (MeasureKind::Length, _) => parts.lengths.push(LengthPart {
+                    points: [spring.points[0], spring.points[1]],
+                    constant: spring.constant,
+                    rest: spring.rest,
+                    damper: spring.damper,
+                }),
+                (MeasureKind::Content, Some((scale, is_turned))) => {
+                    let mut points = spring.points.clone();
+                    if is_turned {
+                        points.swap(0, 1);
+                    }
+                    parts.contents.push(ContentPart {
+                        points,
+                        constant: spring.constant * scale * scale,
+                        rest: spring.rest / scale,
+                    });
+                }
+                _ => return Err(refused(format!("one of the kind {}", spring.kind))),
+            }
+        }
+        Ok(parts)
+    }
+}
+
+/// The fit that has springs of the right kind.
+fn advice(spring: &SpringRecord, measure: &MeasureRecord) -> &'static str {
+    match (measure.cells.len(), &spring.law) {
+        (_, Some(_)) => "objective = \"exact\" with energy = \"stable-neo-hookean\" has linear springs alone",
+        (2.., None) => "volume = \"points\" has springs on single cells",
+        (_, None) => {
+            "objective = \"exact\" on a mesh of linear tetrahedra has these, and objective = \"offdiag\" with nonnegative = true \
+             has springs on lengths on any mesh"
+        }
+    }
+}
+
+/// If the measure is the content of the simplex of its points times a number: that number, and whether the points are to be turned.
+fn simplex(measure: &MeasureRecord, d: usize) -> Option<(f64, bool)> {
+    let ([term], [cell]) = (&measure.terms[..], &measure.cells[..]) else { return None };
+    let is_whole = cell.nodes.iter().enumerate().all(|(i, node)| i == *node);
+    let is_simplex = term.gradients.len() == d + 1 && term.gradients.iter().all(|g| g.len() == d);
+    if d < 2 || !is_whole || !is_simplex {
+        return None;
+    }
+    // x = Σ_a x_a ⊗ g_a = (x_1 − x_0, …) G with the rows g_1, …, because the g_a add up to zero.
+    let g = |i: usize, j: usize| term.gradients[i + 1][j];
+    let determinant = match d {
+        2 => g(0, 0) * g(1, 1) - g(0, 1) * g(1, 0),
+        _ => (0..3)
+            .map(|k| g(0, k) * (g(1, (k + 1) % 3) * g(2, (k + 2) % 3) - g(1, (k + 2) % 3) * g(2, (k + 1) % 3)))
+            .sum(),
+    };
+    let factorial = if d == 2 { 2.0 } else { 6.0 };
+    let scale: f64 = cell.share * term.weight * determinant * factorial;
+    (scale != 0.0 && scale.is_finite()).then_some((scale.abs(), scale < 0.0))
+}

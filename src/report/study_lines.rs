@@ -1,0 +1,154 @@
+//! Files of one line for each study, which grow while a sweep runs and which it goes on from.
+
+use super::study_record::StudyRecord;
+use crate::error::{Error, ErrorKind, Result};
+use crate::file::{create_folder, files_in, read_text};
+use crate::study::Sweep;
+use std::collections::HashMap;
+use std::fs::{File, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// One of several parts of a sweep that are run apart from each other, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// The number of the part, from 1.
+    pub number: usize,
+    /// The number of parts.
+    pub count: usize,
+}
+
+/// The records of the studies that are done, in the folder of a sweep.
+pub struct StudyLines {
+    file: File,
+    path: PathBuf,
+    /// By [`StudyRecord::mark`].
+    records: HashMap<String, StudyRecord>,
+}
+
+impl Shard {
+    /// The whole sweep.
+    pub const WHOLE: Shard = Shard { number: 1, count: 1 };
+
+    /// `2/5` is the second of five.
+    ///
+    /// # Errors
+    /// The text is no such pair.
+    pub fn parse(text: &str) -> Result<Shard> {
+        let pair = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+        match pair {
+            Some((number, count)) if (1..=count).contains(&number) => Ok(Shard { number, count }),
+            _ => Err(Error::expected("--shard", "NUMBER/COUNT such as 2/5, counted from 1", format!("\"{text}\""))),
+        }
+    }
+
+    /// Whether the study at a place, counted from 0, belongs to it.
+    pub fn has(self, place: usize) -> bool {
+        place % self.count == self.number - 1
+    }
+
+    /// A file's name with the shard, if there is more than one: `studies-2-of-5.jsonl`.
+    pub fn file_name(self, stem: &str, ending: &str) -> String {
+        match self.count {
+            1 => format!("{stem}.{ending}"),
+            count => format!("{stem}-{}-of-{count}.{ending}", self.number),
+        }
+    }
+}
+
+impl StudyLines {
+    /// Opens the file of a shard in `folder`, which is made. With `resume` the studies are known that any file there has; without,
+    /// the file must have none.
+    ///
+    /// # Errors
+    /// The file cannot be written, or another process writes it; it has studies already; or one of them is of another scene, or of this
+    /// one before a change.
+    pub fn open(folder: &Path, shard: Shard, resume: bool, sweep: &Sweep) -> Result<StudyLines> {
+        create_folder(folder)?;
+        let path = folder.join(shard.file_name("studies", "jsonl"));
+        let others = if resume { files_in(folder, "jsonl")? } else { Vec::new() };
+        StudyLines::open_file(path, &others, resume, sweep)
+    }
+
+    /// Opens one file, with what `others` have as well.
+    ///
+    /// # Errors
+    /// Those of [`StudyLines::open`].
+    pub fn open_file(path: PathBuf, others: &[PathBuf], resume: bool, sweep: &Sweep) -> Result<StudyLines> {
+        let failed = |what: &str, e| Error::io(what, e).in_file(&path);
+        let opened = File::options().read(true).append(true).create(true).open(&path);
+        let mut file = opened.map_err(|e| failed("cannot be written", e))?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(Error::new("another process is writing to it: is the same sweep running?")
+                .of_kind(ErrorKind::Io)
+                .in_file(&path));
+        }
+        let mut text = Vec::new();
+        file.read_to_end(&mut text).map_err(|e| failed("cannot be read", e))?;
+        let found = text.iter().filter(|byte| **byte == b'\n').count();
+        if found > 0 && !resume {
+            let words = format!(
+                "expected a file without studies, found {found}: --resume goes on from them, --out names another folder"
+            );
+            return Err(Error::new(words).in_file(&path));
+        }
+        let mut lines = StudyLines { file, path, records: HashMap::new() };
+        let expected: HashMap<String, usize> =
+            sweep.studies().iter().enumerate().map(|(i, study)| (StudyRecord::mark(&study.values()), i)).collect();
+        let own = lines.path.clone();
+        for other in others.iter().filter(|other| **other != own) {
+            let text = read_text(other)?;
+            lines.take(&text, other, sweep, &expected)?;
+        }
+        // What a kill has left of a line is cut off.
+        let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        let kept = String::from_utf8_lossy(&text[..whole]).into_owned();
+        lines.take(&kept, &own, sweep, &expected)?;
+        if whole < text.len() {
+            let cut = lines.file.set_len(whole as u64).and_then(|()| lines.file.seek(SeekFrom::End(0)));
+            cut.map_err(|e| Error::io("cannot be written", e).in_file(&lines.path))?;
+        }
+        Ok(lines)
+    }
+
+    /// Takes over the complete lines of a file.
+    fn take(&mut self, text: &str, path: &Path, sweep: &Sweep, expected: &HashMap<String, usize>) -> Result<()> {
+        let complete = text.rfind('\n').map_or("", |end| &text[..end]);
+        for (number, line) in complete.lines().enumerate() {
+            let fault = |words: String| Error::new(words).on_line(number + 1).in_file(path);
+            let record: StudyRecord = serde_json::from_str(line)
+                .map_err(|e| fault(format!("expected a study of a sweep, found something else: {e}")))?;
+            let mark = StudyRecord::mark(&record.settings);
+            // Studies that the sweep no longer has stay in the file.
+            let Some(&place) = expected.get(&mark) else { continue };
+            if record.inputs != format!("{:016x}", sweep.sum(&sweep.studies()[place])) {
+                let words = "expected a study of this scene and its files, found one of others, or of these before a change or by \
+                             another version: choose another folder";
+                return Err(fault(words.into()));
+            }
+            self.records.insert(mark, record);
+        }
+        Ok(())
+    }
+
+    /// The record of the study of these values.
+    pub fn record(&self, mark: &str) -> Option<&StudyRecord> {
+        self.records.get(mark)
+    }
+
+    /// Adds a line.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn push(&mut self, record: StudyRecord) -> Result<()> {
+        let written = self.file.write_all(record.line().as_bytes()).and_then(|()| self.file.flush());
+        written.map_err(|e| Error::io("cannot be written", e).in_file(&self.path))?;
+        self.records.insert(StudyRecord::mark(&record.settings), record);
+        Ok(())
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}

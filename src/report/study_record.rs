@@ -1,0 +1,44 @@
+//! The record of one study of a sweep: a line of `studies.jsonl`.
+
+use super::json::Report;
+use crate::error::Result;
+use crate::study::{Outcome, Study, Sweep};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// What came out of one study of a sweep.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StudyRecord {
+    /// The values that were set, by their keys.
+    pub settings: BTreeMap<String, Value>,
+    /// A sum of the scene, of the files that it names and of the values: where it differs, the figures are those of something else.
+    pub inputs: String,
+    /// The report of a run with these values; null if the study failed.
+    pub report: Option<Value>,
+    /// Why it failed.
+    pub error: Option<String>,
+}
+
+impl StudyRecord {
+    /// The record of a study of this sweep.
+    pub fn of(sweep: &Sweep, study: &Study, outcome: &Result<Outcome>) -> StudyRecord {
+        let report = |outcome: &Outcome| serde_json::to_value(Report::of(outcome)).expect("keys are text");
+        StudyRecord {
+            settings: study.values(),
+            inputs: format!("{:016x}", sweep.sum(study)),
+            report: outcome.as_ref().ok().map(report),
+            error: outcome.as_ref().err().map(|error| error.to_string()),
+        }
+    }
+
+    /// The record on one line, with its end.
+    pub fn line(&self) -> String {
+        serde_json::to_string(self).expect("keys are text") + "\n"
+    }
+
+    /// What tells a study from others of its sweep.
+    pub fn mark(settings: &BTreeMap<String, Value>) -> String {
+        serde_json::to_string(settings).expect("keys are text")
+    }
+}

@@ -1,0 +1,193 @@
+//! The table of a sweep: a row for each study, fit and load.
+
+use super::columns::{Heading, aligned};
+use super::rows::csv;
+use super::study_record::StudyRecord;
+use crate::study::Study;
+use serde_json::{Map, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Studies that are printed at most.
+const PRINTED: usize = 40;
+/// Studies whose errors are printed at most.
+const FAULTS: usize = 10;
+/// The columns after the values that are set, in this order where there are any; the others follow by name.
+const LEADING: [&str; 9] = ["error", "fit", "load", "e_rms", "e_max", "e_tip", "e_energy", "springs", "status"];
+/// What the report says of the whole body that a row has as well.
+const OF_BODY: [&str; 2] = ["nodes", "elements"];
+
+/// The rows of a sweep in the order of its studies, and the columns that have a value anywhere. Times are left out, so that a table is
+/// the same however it was made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyTable {
+    /// The names of the columns.
+    pub columns: Vec<String>,
+    /// The rows, with a value for each column.
+    pub rows: Vec<Vec<Value>>,
+}
+
+impl StudyTable {
+    /// Of the studies that have a record; `keys` are those of the sweep, and studies are counted from 1.
+    pub fn of<'a>(keys: &[String], studies: &[Study], record: impl Fn(&str) -> Option<&'a StudyRecord>) -> StudyTable {
+        let mut figures = BTreeSet::new();
+        let mut rows: Vec<(Vec<Value>, BTreeMap<String, Value>)> = Vec::new();
+        for (place, study) in studies.iter().enumerate() {
+            let values = study.values();
+            let Some(record) = record(&StudyRecord::mark(&values)) else { continue };
+            let set = keys.iter().map(|key| values.get(key).cloned().unwrap_or_default());
+            let first: Vec<Value> = std::iter::once(Value::from(place + 1)).chain(set).collect();
+            for row in rows_of(record) {
+                figures.extend(row.iter().filter(|(_, value)| !value.is_null()).map(|(name, _)| name.clone()));
+                rows.push((first.clone(), row));
+            }
+        }
+        let named = LEADING.iter().map(ToString::to_string).filter(|name| figures.contains(name));
+        let others = figures.iter().filter(|name| !LEADING.contains(&name.as_str())).cloned();
+        let figures: Vec<String> = named.chain(others).collect();
+        let columns = std::iter::once("study".to_string()).chain(keys.iter().cloned()).chain(figures.iter().cloned());
+        let complete = |(mut first, row): (Vec<Value>, BTreeMap<String, Value>)| {
+            first.extend(figures.iter().map(|name| row.get(name).cloned().unwrap_or_default()));
+            first
+        };
+        StudyTable { columns: columns.collect(), rows: rows.into_iter().map(complete).collect() }
+    }
+
+    /// As CSV; a value that is missing is an empty cell.
+    pub fn csv(&self) -> String {
+        csv(&self.columns, &self.rows.iter().map(|row| row.iter().map(cell).collect()).collect::<Vec<_>>())
+    }
+
+    /// As a list of objects, in JSON.
+    pub fn json(&self) -> Value {
+        let object = |row: &Vec<Value>| {
+            Value::Object(self.columns.iter().cloned().zip(row.iter().cloned()).collect::<Map<_, _>>())
+        };
+        Value::Array(self.rows.iter().map(object).collect())
+    }
+}
+
+/// The cells of one study: for each fit and load, or with the error alone.
+fn rows_of(record: &StudyRecord) -> Vec<BTreeMap<String, Value>> {
+    let Some(report) = &record.report else {
+        return vec![BTreeMap::from([("error".into(), record.error.clone().into())])];
+    };
+    let mut rows = Vec::new();
+    for fit in report["fits"].as_array().into_iter().flatten() {
+        let mut own: BTreeMap<String, Value> =
+            OF_BODY.iter().map(|name| (name.to_string(), report[*name].clone())).collect();
+        leaves("", fit, &mut own);
+        own.remove("name");
+        own.insert("fit".into(), fit["name"].clone());
+        let loads = fit["loads"].as_array().into_iter().flatten();
+        let before = rows.len();
+        rows.extend(loads.map(|load| {
+            let mut row = own.clone();
+            leaves("", load, &mut row);
+            row.remove("name");
+            row.insert("load".into(), load["name"].clone());
+            row
+        }));
+        if rows.len() == before {
+            rows.push(own);
+        }
+    }
+    rows
+}
+
+/// Numbers, texts and flags of an object and those inside it, by their paths; without lists, and without times.
+fn leaves(parent: &str, object: &Value, found: &mut BTreeMap<String, Value>) {
+    for (key, value) in object.as_object().into_iter().flatten() {
+        let path = if parent.is_empty() { key.clone() } else { format!("{parent}.{key}") };
+        match value {
+            Value::Object(_) => leaves(&path, value, found),
+            Value::Array(_) => {}
+            _ if key.starts_with("seconds") => {}
+            Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => _ = found.insert(path, value.clone()),
+        }
+    }
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Bool(_) | Value::Number(_) | Value::Array(_) | Value::Object(_) => value.to_string(),
+    }
+}
+
+/// What each study sets.
+pub fn planned_text(keys: &[String], studies: &[Study]) -> String {
+    let mut header = vec![Heading::words("study")];
+    header.extend(keys.iter().map(Heading::numbers));
+    let row = |(place, study): (usize, &Study)| {
+        let values = study.values();
+        let set = keys.iter().map(|key| values.get(key).map_or_else(String::new, shown));
+        std::iter::once((place + 1).to_string()).chain(set).collect()
+    };
+    let rows: Vec<Vec<String>> = studies.iter().enumerate().take(PRINTED).map(row).collect();
+    aligned(&header, &rows) + &rest(studies.len())
+}
+
+/// How many rows are not printed.
+fn rest(count: usize) -> String {
+    let more = count.saturating_sub(PRINTED);
+    if more > 0 { format!("and {more} more\n") } else { String::new() }
+}
+
+/// One row for each study: the values that were set, the largest error of each fit under any load, and what went wrong.
+pub fn studies_text<'a>(
+    keys: &[String],
+    studies: &[Study],
+    record: impl Fn(&str) -> Option<&'a StudyRecord>,
+) -> String {
+    let found = |study: &Study| record(&StudyRecord::mark(&study.values()));
+    let rms = |fit: &Value| fit["loads"].as_array()?.iter().filter_map(|load| load["e_rms"].as_f64()).reduce(f64::max);
+    let fits = |record: &'a StudyRecord| -> &'a [Value] {
+        record.report.as_ref().and_then(|report| report["fits"].as_array()).map_or(&[], Vec::as_slice)
+    };
+    let mut names: Vec<&str> = Vec::new();
+    for name in studies.iter().filter_map(found).flat_map(fits).filter_map(|fit| fit["name"].as_str()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let mut header = vec![Heading::words("study")];
+    header.extend(keys.iter().map(Heading::numbers));
+    header.extend(names.iter().map(|name| Heading::numbers(format!("{name}\n%e_rms"))));
+    let done: Vec<_> = studies.iter().enumerate().filter_map(|(i, study)| Some((i, study, found(study)?))).collect();
+    let row = |(place, study, record): &(usize, &Study, &'a StudyRecord)| {
+        let values = study.values();
+        let mut row = vec![(place + 1).to_string()];
+        row.extend(keys.iter().map(|key| values.get(key).map_or_else(String::new, shown)));
+        row.extend(names.iter().map(|name| {
+            let fit = fits(record).iter().find(|fit| fit["name"] == **name);
+            fit.and_then(rms).map_or("-".into(), |error| format!("{error:.2}"))
+        }));
+        row
+    };
+    let rows: Vec<Vec<String>> = done.iter().take(PRINTED).map(row).collect();
+    let mut text = aligned(&header, &rows) + &rest(done.len());
+    let failed: Vec<_> =
+        done.iter().filter_map(|(place, _, record)| Some((place + 1, record.error.as_ref()?))).collect();
+    for (number, error) in failed.iter().take(FAULTS) {
+        text += &format!("\nstudy {number} failed: {error}");
+    }
+    if failed.len() > FAULTS {
+        text += &format!("\nand {} more failed", failed.len() - FAULTS);
+    }
+    if !failed.is_empty() {
+        text += "\n";
+    }
+    text
+}
+
+/// A value in a printed table: numbers with at most six digits.
+fn shown(value: &Value) -> String {
+    match value.as_f64() {
+        Some(number) if value.is_f64() => {
+            let short: f64 = format!("{number:.5e}").parse().unwrap_or(number);
+            if short == 0.0 || (1e-4..1e7).contains(&short.abs()) { short.to_string() } else { format!("{short:e}") }
+        }
+        _ => cell(value),
+    }
+}

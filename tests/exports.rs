@@ -1,0 +1,197 @@
+//! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
+
+use springfit::error::ErrorKind;
+use springfit::export::{Content, TARGETS, target_named};
+use springfit::report::{NetworkFile, NetworkRecord};
+use springfit::study::{Outcome, Scene, run};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+const SCENE: &str = "
+[mesh]
+box = { element = \"tet4\", size = [1, 1, 1], cells = [2, 2, 2] }
+[material]
+young = 1e4
+poisson = 0.3
+density = 1000
+[[fit]]
+objective = \"exact\"
+[[fit]]
+name = \"classical\"
+objective = \"offdiag\"
+nonnegative = true
+[[fit]]
+name = \"patches\"
+objective = \"exact\"
+volume = \"patches\"
+[[fit]]
+name = \"free\"
+objective = \"frobenius\"
+[[fix]]
+group = \"zmin\"
+";
+
+fn outcome(text: &str) -> Outcome {
+    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+}
+
+fn networks(text: &str) -> BTreeMap<String, NetworkRecord> {
+    let outcome = outcome(text);
+    outcome.fits.iter().map(|fit| (fit.fit.name.clone(), NetworkFile::of(&outcome, fit).record())).collect()
+}
+
+fn texts(target: &str, network: &NetworkRecord) -> BTreeMap<&'static str, Vec<u8>> {
+    let files = target_named(target).unwrap().files(network, None).unwrap();
+    let bytes = |content| match content {
+        Content::Bytes(bytes) => bytes,
+        Content::Grid(grid) => format!("{} points", grid.points.len()).into_bytes(),
+    };
+    files.into_iter().map(|(name, content)| (name, bytes(content))).collect()
+}
+
+#[test]
+fn each_program_takes_the_fits_that_it_holds_and_names_one_for_the_others() {
+    let networks = networks(SCENE);
+    let negative = networks["free"].springs.iter().any(|spring| spring.constant < 0.0);
+    for target in &TARGETS {
+        for (name, network) in &networks {
+            let held = match (target.name, name.as_str()) {
+                ("vtu", _) => true,
+                (_, "patches") => false,
+                ("lammps" | "sofa", "exact") => false,
+                ("jolt", "free") => !negative,
+                _ => true,
+            };
+            match target.files(network, None) {
+                Ok(files) => {
+                    assert!(held, "{} takes {name}", target.name);
+                    assert!(!files.is_empty());
+                }
+                Err(error) => {
+                    assert!(!held, "{} refuses {name}: {error}", target.name);
+                    assert_eq!(error.kind(), ErrorKind::Unsupported);
+                    let text = error.to_string();
+                    assert!(text.contains("expected") && text.contains("found") && text.contains(';'), "{text}");
+                    assert!(["objective", "volume", "nonnegative"].iter().any(|key| text.contains(key)), "{text}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_network_that_lacks_something_is_refused() {
+    let without = |line: &str| networks(&SCENE.replace(line, ""));
+    let light = without("density = 1000\n");
+    let error = |target: &str, network: &NetworkRecord, gravity: Option<&[f64]>| -> String {
+        target_named(target).unwrap().files(network, gravity).err().unwrap().to_string()
+    };
+    assert!(error("newton", &light["exact"], None).contains("masses: expected a mass of each point, found none; give"));
+    let all = networks(SCENE);
+    assert!(error("newton", &all["exact"], Some(&[0.0, 1.0])).contains("--gravity: expected 3 numbers"));
+    let sliding = networks(&SCENE.replace("group = \"zmin\"", "group = \"zmin\"\naxes = [\"z\"]"));
+    assert!(error("mujoco", &sliding["classical"], None).contains("held in all directions"));
+    assert!(target_named("lammps").unwrap().files(&sliding["classical"], None).is_ok());
+    let plane = SCENE
+        .replace("tet4", "tri3")
+        .replace("[1, 1, 1]", "[1, 1]")
+        .replace("[2, 2, 2]", "[2, 2]")
+        .replace("zmin", "ymin");
+    let plane = networks(&plane.replace("density", "plane = \"strain\"\ndensity"));
+    assert!(error("mujoco", &plane["classical"], None).contains("take a solid body"));
+    assert!(target_named("lammps").unwrap().files(&plane["classical"], None).is_ok());
+    assert!(target_named("npz").unwrap().files(&plane["exact"], None).is_ok());
+    let unknown = target_named("lamps").err().unwrap().to_string();
+    assert!(
+        unknown.contains("--to: expected one of mujoco, newton") && unknown.ends_with("did you mean \"lammps\"?"),
+        "{unknown}"
+    );
+}
+
+#[test]
+fn lammps_has_half_the_constant_of_each_spring() {
+    let networks = networks(SCENE);
+    let network = &networks["classical"];
+    let files = texts("lammps", network);
+    let data = String::from_utf8(files["network.data"].clone()).unwrap();
+    let section = |name: &str| -> Vec<Vec<f64>> {
+        let lines = data.split(&format!("\n{name}")).nth(1).unwrap().lines().skip(2);
+        let number = |word: &str| word.parse().unwrap();
+        lines.take_while(|line| !line.is_empty()).map(|line| line.split(' ').map(number).collect()).collect()
+    };
+    let (coefficients, bonds) = (section("Bond Coeffs"), section("Bonds"));
+    assert_eq!((coefficients.len(), bonds.len()), (network.springs.len(), network.springs.len()));
+    for (spring, (coefficient, bond)) in network.springs.iter().zip(coefficients.iter().zip(&bonds)) {
+        assert_eq!(coefficient[1..], [spring.constant / 2.0, spring.rest]);
+        assert_eq!(bond[2..], [spring.points[0] as f64 + 1.0, spring.points[1] as f64 + 1.0]);
+    }
+    let masses = section("Masses");
+    let total: f64 = section("Atoms").iter().map(|atom| masses[atom[2] as usize - 1][1]).sum();
+    assert!((total - 1000.0).abs() < 1e-9, "{total}");
+    let input = String::from_utf8(files["in.network"].clone()).unwrap();
+    assert!(input.contains("setforce 0 NULL NULL") && input.contains("mass*(-9.81e0)"), "{input}");
+}
+
+/// The grammar of SOFA's loader: `mass` has nine words after its name, `lspg` six, and both count from 1.
+#[test]
+fn sofa_has_held_points_as_negative_masses() {
+    let networks = networks(SCENE);
+    let network = &networks["classical"];
+    let text = String::from_utf8(texts("sofa", network)["network.xs3"].clone()).unwrap();
+    let lines = |name: &str| -> Vec<Vec<f64>> {
+        let own = text.lines().filter_map(|line| line.strip_prefix(&format!("{name} ")));
+        own.map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect()).collect()
+    };
+    let (masses, springs) = (lines("mass"), lines("lspg"));
+    assert!(text.starts_with("Xsp 3.0\nnumm 27\n") && lines("nums") == [[network.springs.len() as f64]], "{text}");
+    assert!(masses.iter().all(|line| line.len() == 9) && springs.iter().all(|line| line.len() == 6));
+    assert_eq!(masses.iter().filter(|line| line[7] < 0.0).count(), network.held.len());
+    for (line, spring) in springs.iter().zip(&network.springs) {
+        assert_eq!(
+            line[1..],
+            [spring.points[0] as f64 + 1.0, spring.points[1] as f64 + 1.0, spring.constant, 0.0, spring.rest]
+        );
+    }
+}
+
+fn program(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
+    (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
+}
+
+#[test]
+fn a_scene_and_its_network_give_the_same_files_and_a_refusal_leaves_none() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("s.toml"), SCENE).unwrap();
+    let (code, text) = program(folder.path(), &["run", "s.toml", "--out", "o"]);
+    assert_eq!(code, Some(0), "{text}");
+    for (from, to) in [("s.toml", "a"), ("o/classical.json", "b")] {
+        let fit: &[&str] = if from == "s.toml" { &["--fit", "classical"] } else { &[] };
+        let arguments = [&["export", from, "--to", "lammps", "--out", to], fit].concat();
+        let (code, text) = program(folder.path(), &arguments);
+        assert!(code == Some(0) && text.contains("run it: cd "), "{text}");
+    }
+    for name in ["network.data", "in.network"] {
+        assert_eq!(fs::read(at("a").join(name)).unwrap(), fs::read(at("b").join(name)).unwrap());
+    }
+    for (arguments, words) in [
+        (
+            &["export", "o/exact.json", "--to", "lammps"][..],
+            "o/exact.json: springs: expected springs between two points",
+        ),
+        (&["export", "o/exact.json", "--to", "newton", "--fit", "exact"], "--fit: belongs to a scene"),
+        (&["export", "s.toml", "--to", "newton", "--fit", "clasical"], "did you mean \"classical\"?"),
+        (&["export", "o/exact.json", "--to", "newton", "--gravity", "down"], "--gravity: expected numbers"),
+        (&["export", "o/report.json", "--to", "newton"], "format: expected"),
+        (&["export", "o/none.json", "--to", "newton"], "cannot be read"),
+    ] {
+        let before = fs::read_dir(folder.path()).unwrap().count();
+        let (code, text) = program(folder.path(), arguments);
+        assert!(code == Some(2) && text.contains(words), "{arguments:?}: {text}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before, "{arguments:?}");
+    }
+}

@@ -1,0 +1,128 @@
+//! Generated code is compiled and run, and compared with the library: constants, rest measures, energies and forces of random
+//! cells with random moduli, for every shipped element and objective.
+
+mod case;
+mod example;
+mod programs;
+mod refusals;
+mod text;
+
+use case::{Case, every};
+use programs::{Outcome, Tool, c, python, rust, single};
+
+/// The relative difference that rounding leaves.
+const ROUNDING: f64 = 1e-12;
+/// The same if springs measure sums of lengths beside these lengths: they are nearly dependent, and the condition of the
+/// normal equations, 1e4 and more, multiplies the rounding errors of both sides.
+const COUPLED: f64 = 1e-10;
+
+/// Compares the outcomes of all cells, in the order of [`Case::samples`], and returns the largest difference.
+fn compare(cases: &[Case], outcomes: &[Outcome], tolerance: f64) -> f64 {
+    let mut outcomes = outcomes.iter();
+    let mut worst: f64 = 0.0;
+    for case in cases {
+        let tolerance = if case.is_mixed() { tolerance.max(COUPLED) } else { tolerance };
+        for sample in &case.samples {
+            let found = outcomes.next().expect("every cell has an outcome");
+            assert_eq!(found.status, 0, "{}", case.prefix());
+            let size = |values: &[f64]| values.iter().fold(f64::MIN_POSITIVE, |a, b| a.max(b.abs()));
+            let numbers = [
+                ("constants", &found.constants, &sample.constants),
+                ("rests", &found.rests, &sample.rests),
+                ("forces", &found.forces, &sample.forces),
+            ];
+            for (what, found, expected) in numbers {
+                assert_eq!(found.len(), expected.len(), "{} {what}", case.prefix());
+                // Constants on contents have another unit.
+                for range in case.ranges(expected.len()) {
+                    let size = size(&expected[range.clone()]);
+                    for s in range {
+                        let error = (found[s] - expected[s]).abs() / size;
+                        worst = worst.max(error);
+                        assert!(error <= tolerance, "{} {what} {s}: {} {}", case.prefix(), found[s], expected[s]);
+                    }
+                }
+            }
+            // Energies of springs of both signs cancel.
+            let error = (found.energy - sample.energy).abs() / sample.energies;
+            worst = worst.max(error);
+            assert!(error <= tolerance, "{} energy: {} {}", case.prefix(), found.energy, sample.energy);
+        }
+    }
+    assert!(outcomes.next().is_none());
+    worst
+}
+
+#[test]
+fn c_has_the_numbers_of_the_library() {
+    let cases = every(|_| true);
+    assert!(cases.len() > 80, "{}", cases.len());
+    let worst = compare(&cases, &c(&cases, &[]).expect("the tests need a C compiler"), ROUNDING);
+    println!("{} functions in C, largest relative difference {worst:.1e}", cases.len());
+}
+
+#[test]
+fn rust_has_the_numbers_of_the_library() {
+    // The compiler takes long for straight-line code.
+    let cases = every(|case| case.element.nodes() <= 6 || case.springs.len() > 100);
+    compare(&cases, &rust(&cases), ROUNDING);
+}
+
+#[test]
+fn python_has_the_numbers_of_the_library() {
+    let cases = every(|case| case.springs.len() < 100);
+    compare(&cases, &python(&cases).expect("the tests need python3"), ROUNDING);
+}
+
+/// GLSL without tables is C with other words, and compiles as such. Single precision leaves seven digits less the condition.
+#[test]
+fn single_precision_has_the_digits_that_it_can_have() {
+    let cases = every(|case| case.element.nodes() <= 4 && !case.is_mixed());
+    let worst = compare(&cases, &single(&cases).expect("the tests need a C compiler"), 2e-3);
+    assert!(worst > 1e-9, "these numbers are not of single precision");
+}
+
+/// A cell that is flat, turned inside out or not a number, and moduli out of range, end with the status and leave the
+/// results alone.
+#[test]
+fn wrong_cells_and_moduli_have_a_status() {
+    for case in every(|case| case.element.dimension() > 1) {
+        let d = case.element.dimension();
+        let good = &case.samples[0];
+        let with = |change: &dyn Fn(&mut Vec<f64>)| {
+            let mut x = good.x.clone();
+            change(&mut x);
+            x
+        };
+        let flat = with(&|x| x.chunks_exact_mut(d).for_each(|x| x[d - 1] = 0.0));
+        let inside_out = with(&|x| x.chunks_exact_mut(d).for_each(|x| x[0] = -x[0]));
+        let unknown = with(&|x| x[d] = f64::NAN);
+        let far = with(&|x| x[d] = f64::INFINITY);
+        let all = [(flat, 1), (inside_out, 1), (unknown, 1), (far, 1)];
+        let wrong: Vec<_> = all.into_iter().map(|(x, status)| (good.with(x, good.moduli), status)).collect();
+        let moduli = [[1.0, -1.0], [f64::NAN, 1.0], [-3.0, 1.0], [1.0, f64::NAN]];
+        let wrong: Vec<_> = wrong.into_iter().chain(moduli.map(|m| (good.with(good.x.clone(), m), 3))).collect();
+        let statuses: Vec<usize> = wrong.iter().map(|(_, status)| *status).collect();
+        let bad = Case { samples: wrong.into_iter().map(|(sample, _)| sample).collect(), ..case };
+        let found = c(std::slice::from_ref(&bad), &[]).expect("the tests need a C compiler");
+        for (outcome, status) in found.iter().zip(statuses) {
+            assert_eq!(outcome.status, status, "{}", bad.prefix());
+            assert!(outcome.constants.iter().chain(&outcome.rests).all(|k| *k == 7.0), "{}", bad.prefix());
+        }
+        if bad.element.nodes() > 4 {
+            break;
+        }
+    }
+}
+
+/// The syntax of the languages whose compilers are rarely there.
+#[test]
+fn shaders_and_cuda_are_valid_where_they_can_be_checked() {
+    let cases = every(|case| case.element.nodes() <= 8 || case.element.nodes() == 27);
+    for tool in [Tool::Naga, Tool::Glslang, Tool::Cuda] {
+        match tool.check(&cases) {
+            Some(count) => assert!(count > 10, "{tool:?} checked {count} files"),
+            None => println!("not run: {tool:?} is not installed"),
+        }
+    }
+}

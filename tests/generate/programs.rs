@@ -1,0 +1,267 @@
+//! Programs that call the generated functions for all cells and print what they return.
+
+use super::case::{Case, Sample};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// What the functions say of one cell.
+#[derive(Debug)]
+pub struct Outcome {
+    pub status: usize,
+    pub constants: Vec<f64>,
+    pub rests: Vec<f64>,
+    pub energy: f64,
+    pub forces: Vec<f64>,
+}
+
+/// Runs a command in the folder; none if the program is not there.
+fn run(folder: &Path, program: &str, arguments: &[&str]) -> Option<Output> {
+    let output = Command::new(program).args(arguments).current_dir(folder).output().ok()?;
+    let message = String::from_utf8_lossy(&output.stderr);
+    let first: Vec<&str> = message.lines().take(20).collect();
+    assert!(output.status.success(), "{program}: {}", first.join("\n"));
+    Some(output)
+}
+
+/// Reads a line of numbers for each cell: the status, constants, rests, energy, forces.
+fn read(cases: &[Case], output: &Output) -> Vec<Outcome> {
+    let text = String::from_utf8_lossy(&output.stdout);
+    let mut lines = text.lines();
+    let mut outcomes = Vec::new();
+    for case in cases {
+        let (m, size) = (case.springs.len(), case.element.nodes() * case.element.dimension());
+        for _ in &case.samples {
+            let line = lines.next().expect("a line for each cell");
+            let numbers: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+            assert_eq!(numbers.len(), 2 + 2 * m + size, "{}", case.prefix());
+            outcomes.push(Outcome {
+                status: numbers[0] as usize,
+                constants: numbers[1..=m].to_vec(),
+                rests: numbers[m + 1..=2 * m].to_vec(),
+                energy: numbers[2 * m + 1],
+                forces: numbers[2 * m + 2..].to_vec(),
+            });
+        }
+    }
+    outcomes
+}
+
+fn list(numbers: &[f64]) -> String {
+    numbers.iter().map(|x| word(*x)).collect::<Vec<_>>().join(", ")
+}
+
+fn word(number: f64) -> String {
+    match number {
+        _ if number.is_nan() => "NAN".into(),
+        f64::INFINITY => "INFINITY".into(),
+        _ => format!("{number:e}"),
+    }
+}
+
+/// A C program of these functions in `real` numbers. Each case is a file of its own, because cases may have the same names.
+fn c_program(cases: &[Case], language: &str, real: &str, folder: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    let (mut main, mut calls) = (String::new(), String::new());
+    for (i, case) in cases.iter().enumerate() {
+        let (m, size) = (case.springs.len(), case.element.nodes() * case.element.dimension());
+        let (mut text, prefix) = (case.text(language).unwrap(), case.prefix());
+        for kind in ["int", "float", "void"] {
+            text = text.replace(&format!("\n{kind} {prefix}"), &format!("\nstatic {kind} {prefix}"));
+        }
+        let mut code = format!("#include <math.h>\n#include <stdio.h>\n{WORDS}\n{text}\n");
+        write!(
+            code,
+            "static void cell(const {real} *x, const {real} *y, {real} lambda, {real} mu) {{\n\
+             {real} constants[{m}], rests[{m}], forces[{size}];\n\
+             for (int s = 0; s < {m}; ++s) constants[s] = rests[s] = 7;\n\
+             for (int s = 0; s < {size}; ++s) forces[s] = 0;\n\
+             const int status = {prefix}_constants(x, lambda, mu, constants, rests);\n\
+             {real} energy = 0;\n\
+             if (status == 0) {{ energy = {prefix}_energy(y, constants, rests); {prefix}_forces(y, constants, rests, forces); }}\n\
+             printf(\"%d\", status);\n\
+             for (int s = 0; s < {m}; ++s) printf(\" %.17g\", (double)constants[s]);\n\
+             for (int s = 0; s < {m}; ++s) printf(\" %.17g\", (double)rests[s]);\n\
+             printf(\" %.17g\", (double)energy);\n\
+             for (int s = 0; s < {size}; ++s) printf(\" %.17g\", (double)forces[s]);\n\
+             printf(\"\\n\");\n}}\nvoid case_{i}(void);\nvoid case_{i}(void) {{\n"
+        )
+        .unwrap();
+        for Sample { x, deformed, moduli, .. } in &case.samples {
+            writeln!(
+                code,
+                "{{ const {real} x[] = {{{}}}; const {real} y[] = {{{}}}; cell(x, y, {}, {}); }}",
+                list(x),
+                list(deformed),
+                word(moduli[0]),
+                word(moduli[1])
+            )
+            .unwrap();
+        }
+        code += "}\n";
+        let name = format!("case_{i}.c");
+        fs::write(folder.join(&name), code).unwrap();
+        names.push(name);
+        writeln!(main, "void case_{i}(void);").unwrap();
+        writeln!(calls, "case_{i}();").unwrap();
+    }
+    fs::write(folder.join("main.c"), format!("{main}int main(void) {{\n{calls}return 0;\n}}\n")).unwrap();
+    names.push("main.c".into());
+    names
+}
+
+/// Nothing in C; the words of GLSL where they are defined.
+const WORDS: &str = "#ifdef SINGLE\n#define in const\n#define inout\n#define sqrt sqrtf\n#define abs fabsf\n#endif";
+
+/// Compiles the files of a C program, several at once, and runs it; none without a compiler.
+fn compiled(folder: &Path, options: &[&str], names: &[String]) -> Option<Output> {
+    let compile = |names: &[String]| {
+        let arguments: Vec<&str> =
+            options.iter().copied().chain(["-c"]).chain(names.iter().map(String::as_str)).collect();
+        run(folder, "cc", &arguments).is_some()
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let parts = names.chunks(names.len().div_ceil(threads));
+    let done = std::thread::scope(|scope| {
+        let parts: Vec<_> = parts.map(|names| scope.spawn(move || compile(names))).collect();
+        parts.into_iter().all(|part| part.join().expect("the code compiles"))
+    });
+    let objects: Vec<String> = names.iter().map(|name| name.replace(".c", ".o")).collect();
+    let arguments: Vec<&str> =
+        ["-o", "program"].into_iter().chain(objects.iter().map(String::as_str)).chain(["-lm"]).collect();
+    done.then(|| run(folder, "cc", &arguments)).flatten()?;
+    run(folder, "./program", &[])
+}
+
+/// C; none without a compiler.
+pub fn c(cases: &[Case], options: &[&str]) -> Option<Vec<Outcome>> {
+    let folder = TempDir::new().unwrap();
+    let names = c_program(cases, "c", "double", folder.path());
+    let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O0"];
+    let options: Vec<&str> = strict.iter().chain(options).copied().collect();
+    Some(read(cases, &compiled(folder.path(), &options, &names)?))
+}
+
+/// GLSL as C in single precision.
+pub fn single(cases: &[Case]) -> Option<Vec<Outcome>> {
+    let folder = TempDir::new().unwrap();
+    let names = c_program(cases, "glsl", "float", folder.path());
+    let options = ["-std=gnu99", "-w", "-DSINGLE", "-fsingle-precision-constant"];
+    Some(read(cases, &compiled(folder.path(), &options, &names)?))
+}
+
+/// Rust, by the compiler that compiles the tests.
+pub fn rust(cases: &[Case]) -> Vec<Outcome> {
+    let folder = TempDir::new().unwrap();
+    let mut main = String::from("#![deny(warnings)]\n");
+    let mut calls = String::new();
+    for (i, case) in cases.iter().enumerate() {
+        let (m, size) = (case.springs.len(), case.element.nodes() * case.element.dimension());
+        let prefix = case.prefix();
+        fs::write(folder.path().join(format!("case_{i}.rs")), case.text("rust").unwrap()).unwrap();
+        writeln!(main, "#[allow(dead_code)] mod case_{i};").unwrap();
+        for Sample { x, deformed, moduli: [lambda, mu], .. } in &case.samples {
+            writeln!(
+                calls,
+                "{{ let (x, y) = ([{}], [{}]);\n\
+                 let (mut constants, mut rests, mut forces) = ([7.0; {m}], [7.0; {m}], [0.0; {size}]);\n\
+                 match case_{i}::{prefix}_constants(&x, {}, {}, &mut constants, &mut rests) {{\n\
+                 Ok(()) => print!(\"0\"), Err(status) => print!(\"{{status}}\") }}\n\
+                 let energy = case_{i}::{prefix}_energy(&y, &constants, &rests);\n\
+                 case_{i}::{prefix}_forces(&y, &constants, &rests, &mut forces);\n\
+                 let all = constants.iter().chain(&rests).chain(std::iter::once(&energy)).chain(&forces);\n\
+                 all.for_each(|value| print!(\" {{value:e}}\"));\nprintln!(); }}",
+                list(x),
+                list(deformed),
+                word(*lambda),
+                word(*mu)
+            )
+            .unwrap();
+        }
+    }
+    fs::write(folder.path().join("main.rs"), format!("{main}fn main() {{\n{calls}}}\n")).unwrap();
+    let rustc = std::env::var("RUSTC").unwrap_or("rustc".into());
+    run(folder.path(), &rustc, &["--edition", "2021", "-o", "program", "main.rs"]).expect("Rust compiles the tests");
+    read(cases, &run(folder.path(), "./program", &[]).expect("it was compiled"))
+}
+
+/// Python; none without it.
+pub fn python(cases: &[Case]) -> Option<Vec<Outcome>> {
+    let folder = TempDir::new().unwrap();
+    let mut main = String::new();
+    for (i, case) in cases.iter().enumerate() {
+        let prefix = case.prefix();
+        fs::write(folder.path().join(format!("case_{i}.py")), case.text("python").unwrap()).unwrap();
+        writeln!(main, "import case_{i}").unwrap();
+        for Sample { x, deformed, moduli: [lambda, mu], .. } in &case.samples {
+            writeln!(
+                main,
+                "y = [{}]\nconstants, rests = case_{i}.{prefix}_constants([{}], {}, {})\n\
+                 energy = case_{i}.{prefix}_energy(y, constants, rests)\n\
+                 forces = case_{i}.{prefix}_forces(y, constants, rests)\n\
+                 print(0, *constants, *rests, energy, *forces)",
+                list(deformed),
+                list(x),
+                word(*lambda),
+                word(*mu)
+            )
+            .unwrap();
+        }
+    }
+    fs::write(folder.path().join("main.py"), main).unwrap();
+    Some(read(cases, &run(folder.path(), "python3", &["main.py"])?))
+}
+
+/// Programs that check the syntax of a language and are not needed to build springfit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tool {
+    /// The parser and validator of WGSL, of naga-cli.
+    Naga,
+    /// The reference compiler of GLSL.
+    Glslang,
+    /// A C++ compiler, with the words of CUDA defined away; no compiler of CUDA is asked for.
+    Cuda,
+}
+
+impl Tool {
+    /// Checks the files of all cases that the language has room for; their number, or none without the tool.
+    pub fn check(self, cases: &[Case]) -> Option<usize> {
+        let folder = TempDir::new().unwrap();
+        let mut paths = Vec::new();
+        for (i, case) in cases.iter().enumerate() {
+            let (language, first, last, name) = match self {
+                Tool::Naga => ("wgsl", "", "", "code.wgsl"),
+                Tool::Glslang => {
+                    let main = "layout(local_size_x = 1) in;\nvoid main() {}\n";
+                    ("glsl", "#version 450\n", main, "code.comp")
+                }
+                Tool::Cuda => ("cuda", "#define __device__\n#define __forceinline__ inline\n", "", "code.cc"),
+            };
+            let Some(text) = case.text(language) else { continue };
+            let path = folder.path().join(format!("{i}_{name}"));
+            fs::write(&path, format!("{first}{text}\n{last}")).unwrap();
+            paths.push(path.to_str().unwrap().to_string());
+        }
+        let program = match self {
+            Tool::Naga => "naga",
+            Tool::Glslang => "glslangValidator",
+            Tool::Cuda => "c++",
+        };
+        let strict = ["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused"];
+        match self {
+            Tool::Cuda | Tool::Glslang => {
+                let options = if self == Tool::Cuda { &strict[..] } else { &[] };
+                let arguments: Vec<&str> = options.iter().copied().chain(paths.iter().map(String::as_str)).collect();
+                run(folder.path(), program, &arguments)?;
+            }
+            Tool::Naga => {
+                for path in &paths {
+                    run(folder.path(), program, &[path])?;
+                }
+            }
+        }
+        Some(paths.len())
+    }
+}
