@@ -4,9 +4,9 @@ use crate::shapes::{Random, distorted, elements, materials};
 use springfit::element::Element;
 use springfit::error::Result;
 use springfit::fit::published::{self, Method};
-use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, fit_cells, fit_exact};
+use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, condition, fit_cells, fit_exact};
 use springfit::generate::{Program, Recipe, language};
-use springfit::material::Material;
+use springfit::material::{Material, Moduli};
 use springfit::springs::{Force, Springs};
 use springfit::stiffness::Geometry;
 use std::ops::Range;
@@ -147,6 +147,17 @@ impl Case {
         let others = contents.end..length;
         let ranges = [0..lengths, contents].into_iter().chain(others.map(|s| s..s + 1));
         ranges.filter(|range| !range.is_empty()).collect()
+    }
+
+    /// The condition of its normal equations, by which rounding errors may grow.
+    pub fn condition(&self, sample: &Sample) -> f64 {
+        let moduli = Moduli { lambda: sample.moduli[0], mu: sample.moduli[1] };
+        match self.recipe {
+            // Sums of lengths beside these lengths are nearly dependent.
+            Recipe::Frobenius(_) if self.is_mixed() => 1e6,
+            Recipe::Frobenius(weight) => condition(weight, &self.element, &self.springs, &sample.x, &moduli).unwrap(),
+            Recipe::Exact(_) | Recipe::Published(_) => 1.0,
+        }
     }
 
     fn sample(&self, random: &mut Random) -> Option<Sample> {
