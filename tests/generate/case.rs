@@ -149,15 +149,16 @@ impl Case {
         ranges.filter(|range| !range.is_empty()).collect()
     }
 
-    /// The condition of its normal equations, by which rounding errors may grow.
-    pub fn condition(&self, sample: &Sample) -> f64 {
+    /// What rounding may leave of its normal equations: a rounding error for each of the unknowns, times the condition.
+    pub fn rounding(&self, sample: &Sample) -> f64 {
         let moduli = Moduli { lambda: sample.moduli[0], mu: sample.moduli[1] };
-        match self.recipe {
-            // Sums of lengths beside these lengths are nearly dependent.
-            Recipe::Frobenius(_) if self.is_mixed() => 1e6,
+        let condition = match self.recipe {
+            // Sums of lengths beside these lengths are nearly dependent; their condition is not known to the library.
+            Recipe::Frobenius(_) if self.is_mixed() => 1e5,
             Recipe::Frobenius(weight) => condition(weight, &self.element, &self.springs, &sample.x, &moduli).unwrap(),
             Recipe::Exact(_) | Recipe::Published(_) => 1.0,
-        }
+        };
+        self.springs.len() as f64 * f64::EPSILON * condition
     }
 
     fn sample(&self, random: &mut Random) -> Option<Sample> {

@@ -36,7 +36,7 @@ fn compare(cases: &[Case], outcomes: &[Outcome], tolerance: f64) -> f64 {
                     for s in range {
                         let error = (found[s] - expected[s]).abs() / size;
                         worst = worst.max(error);
-                        let is_close = error <= tolerance || error <= f64::EPSILON * case.condition(sample);
+                        let is_close = error <= tolerance || error <= case.rounding(sample);
                         assert!(is_close, "{} {what} {s}: {} {}", case.prefix(), found[s], expected[s]);
                     }
                 }
@@ -44,7 +44,7 @@ fn compare(cases: &[Case], outcomes: &[Outcome], tolerance: f64) -> f64 {
             // Energies of springs of both signs cancel.
             let error = (found.energy - sample.energy).abs() / sample.energies;
             worst = worst.max(error);
-            let is_close = error <= tolerance || error <= f64::EPSILON * case.condition(sample);
+            let is_close = error <= tolerance || error <= case.rounding(sample);
             assert!(is_close, "{} energy: {} {}", case.prefix(), found.energy, sample.energy);
         }
     }
