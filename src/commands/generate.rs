@@ -3,8 +3,8 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
-use springfit::error::Result;
-use springfit::generate::{LANGUAGES, Program, Recipe, language};
+use springfit::error::{Error, Result};
+use springfit::generate::{Program, Recipe, language, language_of};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,7 +14,7 @@ use std::process::ExitCode;
 pub struct Generate {
     /// A shipped element's name, or an element file
     element: String,
-    /// exact, offdiag, frobenius or modal, which have direct solutions
+    /// exact, offdiag, frobenius, modal, or a published method: those with direct solutions
     #[arg(long, default_value = "exact")]
     objective: String,
     /// c, cuda, rust, python, wgsl, glsl or latex [default: by the ending of the file, otherwise c]
@@ -41,27 +41,31 @@ Examples:
   springfit generate tri3 --objective modal --springs edge,bulk --language python
   springfit generate tet4 --language wgsl -o tet4_exact.wgsl
 
-The file needs no other. Its functions give the moduli from Young's modulus and Poisson's ratio, the spring
-constants from the positions of the nodes and the moduli, and the energy and the forces of the network. WGSL and
-GLSL have single precision. The language is that of the ending: .h .cuh .rs .py .wgsl .glsl .tex.";
+The file needs no other. Its functions give the moduli from Young's modulus and Poisson's ratio,
+the spring constants from the positions of the nodes and the moduli, and the energy and the
+forces of the network. WGSL and GLSL have single precision.
+Endings: .h .c .hpp .cpp .cc .cuh .cu .rs .py .wgsl .glsl .comp .tex
+Published methods: van-gelder, van-gelder-simple, lloyd, lloyd-preserving, baudet,
+baudet-corrected, delingette-quadratic, delingette-biquadratic";
 
 impl Generate {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let ending = self.output.as_ref().and_then(|path| path.extension()).and_then(|ending| ending.to_str());
         let language = match (self.language.as_deref(), ending) {
-            (Some(name), _) => language(name).map_err(|e| e.of_option())?,
-            (None, Some(ending)) => LANGUAGES.iter().find(|row| row.ending == ending).unwrap_or(&LANGUAGES[0]),
-            (None, None) => &LANGUAGES[0],
+            (Some(name), _) => language(name),
+            (None, Some(ending)) => language_of(ending),
+            (None, None) => language("c"),
         };
-        let recipe = Recipe::named(&self.objective, self.volume.as_deref(), self.higher).map_err(|e| e.of_option())?;
+        let language = language.map_err(Error::of_option)?;
+        let recipe = Recipe::named(&self.objective, self.volume.as_deref(), self.higher).map_err(Error::of_option)?;
         if let Some(output) = &self.output {
             let inputs: Vec<PathBuf> = vec![self.element.clone().into()];
             springfit::check_apart(std::slice::from_ref(output), &inputs)?;
             springfit::check_file(output)?;
         }
         let element = Element::load(&self.element)?;
-        let program = Program::new(&element, self.springs.as_deref(), recipe).map_err(|e| e.of_option())?;
-        let text = program.print(language).map_err(|e| e.of_option())?;
+        let program = Program::new(&element, self.springs.as_deref(), recipe).map_err(Error::of_option)?;
+        let text = program.print(language).map_err(Error::of_option)?;
         match &self.output {
             Some(path) => springfit::write_whole(path, text.as_bytes())?,
             None => terminal.print(&text)?,

@@ -3,10 +3,14 @@
 use super::code::Status;
 use super::{Recipe, nodes_of};
 use crate::element::Element;
+use crate::fit::published::{Cover, Method, Ratio};
 use crate::springs::Springs;
 
 /// The width of a line of comment.
 const WIDTH: usize = 100;
+
+/// What is said of springs that rest at the mesh.
+const PLAIN: &str = "The energy of a spring is k/2 (c - rest)^2, with c what it measures.";
 
 /// The heading of a file.
 pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<String> {
@@ -32,9 +36,8 @@ pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<Stri
             "(group points) or the sum over all points (group content). At rest the energy is not zero:".into(),
             "differences of energies have a meaning.".into(),
         ],
-        Recipe::Frobenius(_) => {
-            vec!["The energy of a spring is k/2 (c - rest)^2, with c what it measures.".to_string()]
-        }
+        Recipe::Published(method) => published(method, element),
+        Recipe::Frobenius(_) => vec![PLAIN.to_string()],
     });
     lines.push("Constants may be negative.".into());
     lines.push(String::new());
@@ -44,6 +47,47 @@ pub fn heading(element: &Element, springs: &Springs, recipe: Recipe) -> Vec<Stri
     lines.push(String::new());
     lines.push("The springs in their order, by group, as the nodes that they join:".into());
     lines.extend(groups(springs));
+    lines
+}
+
+/// What is said of a published formula: its paper, and what it assumes.
+fn published(method: Method, element: &Element) -> Vec<String> {
+    let mut lines = wrapped(method.reference());
+    if let Ok(Cover { poisson, shape, .. }) = method.cover(element) {
+        match poisson {
+            Ratio::Any => {}
+            Ratio::Only(ratio) => {
+                lines.push(format!("It is made for a Poisson's ratio of {ratio:.4}{}.", of_plane(element)))
+            }
+            Ratio::AtLeast(least) => {
+                lines.push(format!("It requires a Poisson's ratio of at least {least:.4}{}.", of_plane(element)))
+            }
+        }
+        if let Some(shape) = shape {
+            lines.push(format!("It is made for cells of this shape: {}.", shape.name()));
+        }
+    }
+    lines.push(PLAIN.into());
+    lines
+}
+
+fn of_plane(element: &Element) -> &'static str {
+    if element.dimension() == 2 { " of the plane, lambda/(lambda + 2 mu)" } else { "" }
+}
+
+/// A text on lines of the width of a page.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().expect("there is a line");
+        if line.is_empty() {
+            *line = word.to_string();
+        } else if line.chars().count() + word.chars().count() < WIDTH {
+            *line = format!("{line} {word}");
+        } else {
+            lines.push(word.to_string());
+        }
+    }
     lines
 }
 

@@ -12,7 +12,7 @@ mod language;
 mod listing;
 mod recipe;
 
-pub use language::{LANGUAGES, LanguageRow, language};
+pub use language::{LANGUAGES, LanguageRow, language, language_of};
 pub use recipe::Recipe;
 
 use crate::element::Element;
@@ -41,13 +41,14 @@ impl Program {
         let springs = recipe.springs(element, groups)?;
         let prefix = format!("{}_{}", identifier(&element.name), identifier(recipe.name()));
         let plan = Plan::of(element, &springs);
-        let is_exact = matches!(recipe.constants(), Constants::Exact(_));
+        let plan = if let Recipe::Published(_) = recipe { plan.with_springs() } else { plan };
+        let is_exact = matches!(recipe, Recipe::Exact(_));
         let named = |end: &str| format!("{prefix}_{end}");
         let mut functions = Vec::new();
         for (state, end, what) in State::of_dimension(element.dimension()) {
             functions.push(cell::moduli(named(end), listing::moduli(what), *state));
         }
-        functions.push(constants(Cell::new(element, &springs, plan), named("constants"), recipe));
+        functions.push(constants(Cell::new(element, &springs, plan), named("constants"), recipe, groups)?);
         let cell = Cell::new(element, &springs, plan);
         let energy = cell::energy(&cell, is_exact);
         let result = code::Result::Value(energy.number_in_body());
@@ -59,26 +60,25 @@ impl Program {
         Ok(Program { prefix, heading, functions })
     }
 
-    /// The file in a language, by its name.
+    /// The file in a language.
     ///
     /// # Errors
-    /// There is no such language, or it has no room for the working memory of these functions.
+    /// The language has no room for the working memory of these functions.
     pub fn print(&self, language: &LanguageRow) -> Result<String> {
         let work = self.functions.iter().map(Function::work).max().unwrap_or(0);
         if work > language.most_work {
-            let expected =
-                format!("functions with at most {} numbers of working memory in this language", language.most_work);
-            let error = Error::expected(language.name, expected, format!("{work} for {}", self.prefix));
-            return Err(error.of_kind(ErrorKind::Limit).followed_by(
-                "; the objectives \"exact\" and \"offdiag\" need little, and \"c\", \"rust\" and \"python\" have room",
-            ));
+            let most = language.most_work;
+            let expected = format!("one with room for {work} numbers in a function of {}", self.prefix);
+            let error = Error::expected("language", expected, format!("\"{}\", with room for {most}", language.name));
+            let way = "; \"c\", \"rust\" and \"python\" have room, and \"exact\" and \"offdiag\" need little";
+            return Err(error.of_kind(ErrorKind::Limit).followed_by(way));
         }
         Ok(language::print(language, &self.prefix, &self.heading, &self.functions))
     }
 }
 
 /// The function that writes the constants and rest measures.
-fn constants(cell: Cell, name: String, recipe: Recipe) -> Function {
+fn constants(cell: Cell, name: String, recipe: Recipe, groups: Option<&[String]>) -> Result<Function> {
     let body = &cell.body;
     let (lambda, mu) = (body.parameter("lambda"), body.parameter("mu"));
     let m = cell.springs.len();
@@ -87,10 +87,14 @@ fn constants(cell: Cell, name: String, recipe: Recipe) -> Function {
     body.fail_with(Status::Moduli);
     body.guard(&mu, &zero);
     body.guard(&(&lambda + &mu), &zero);
-    let (constants, rests) = match recipe.constants() {
+    let (constants, rests) = match recipe.constants()? {
         Constants::Exact(volume) => {
             let [constants, rests] = cell::exact(&cell, volume, &lambda, &mu);
             (constants, Some(rests))
+        }
+        Constants::Published(method) => {
+            let offered = Springs::select(cell.element, groups)?;
+            (cell::published(&cell, method, &offered, &lambda, &mu)?, None)
         }
         Constants::LeastSquares(weight) => (cell::least_squares(&cell, weight, &lambda, &mu), None),
     };
@@ -107,7 +111,7 @@ fn constants(cell: Cell, name: String, recipe: Recipe) -> Function {
         None => cell.each_measure(|s, measure| body.store(outputs[1], s, measure)),
     }
     let comment = listing::constants();
-    cell.body.finish(name, comment, code::Result::Status)
+    Ok(cell.body.finish(name, comment, code::Result::Status))
 }
 
 fn magnitude(value: &Value) -> Value {

@@ -3,10 +3,10 @@
 use super::cell::LeastSquares;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::published::Method;
+use crate::fit::published::{Elasticity, Method, constants_of_cell};
 use crate::fit::{Choices, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
 use crate::material::Material;
-use crate::springs::Springs;
+use crate::springs::{Springs, distance};
 use crate::unknown;
 
 /// An objective with a direct solution.
@@ -16,26 +16,30 @@ pub enum Recipe {
     Exact(VolumeSprings),
     /// A fit to the stiffness by normal equations.
     Frobenius(Weight),
+    /// A published formula.
+    Published(Method),
 }
 
 /// How the constants are computed.
 pub(super) enum Constants {
     Exact(VolumeSprings),
     LeastSquares(LeastSquares),
+    Published(Method),
 }
 
 impl Recipe {
-    /// The names of the objectives for which code can be written.
-    pub const NAMES: [&'static str; 4] = ["exact", "offdiag", "frobenius", "modal"];
+    /// The names of the objectives for which code can be written, without those of published methods.
+    const NAMES: [&'static str; 4] = ["exact", "offdiag", "frobenius", "modal"];
 
     /// The recipe of an objective with its options.
     ///
     /// # Errors
     /// There is no such objective, it has no direct solution, or an option belongs to another one.
     pub fn named(objective: &str, volume: Option<&str>, higher: Option<f64>) -> Result<Recipe> {
-        let direct = "of the objectives with a direct solution, exact, offdiag, frobenius and modal";
         let refused = |why: &str| {
-            let error = Error::at("objective", format!("\"{objective}\" is not one {direct}: {why}"));
+            let expected =
+                "an objective with a direct solution: exact, offdiag, frobenius, modal or a published formula";
+            let error = Error::expected("objective", expected, format!("\"{objective}\", which {why}"));
             Err(error.of_kind(ErrorKind::Unsupported))
         };
         match objective {
@@ -59,23 +63,31 @@ impl Recipe {
             "frobenius" | "offdiag" | "modal" => {
                 match Objective::named(objective, Choices { higher, ..Choices::default() })? {
                     Objective::Frobenius(weight) => Ok(Recipe::Frobenius(weight)),
-                    Objective::Spectral(_) | Objective::Divergence(_) => refused("it is iterated"),
+                    Objective::Spectral(_) | Objective::Divergence(_) => refused("is iterated"),
                 }
             }
-            "spectral" => refused("it is a semidefinite programme; \"modal\" and \"offdiag\" come near it"),
+            "spectral" => refused("is a semidefinite programme; \"modal\" and \"offdiag\" are direct"),
             "divergence" => refused(
-                "its optimum is iterated; \"offdiag\" is direct, and \"exact\" is definite wherever the finite element is",
+                "is found by Newton steps; \"offdiag\" is direct, and \"exact\" is definite like the finite element",
             ),
-            "sampled" => refused("it is fitted to forces at many shapes; \"exact\" has them at any deformation"),
-            "whole" => refused("it depends on the whole body; fit the body once with springfit fit"),
-            "nonnegative" => refused("constants above zero need a search for each cell; springfit fit has it"),
-            name if Method::ALL.iter().any(|method| method.name() == name) => {
-                refused("published formulas are in their papers; \"offdiag\" has no more terms")
-            }
-            other => {
-                let expected = format!("one {direct}");
-                Err(unknown(expected, Recipe::NAMES, other).at_key("objective"))
-            }
+            "sampled" => refused("is fitted to forces at many shapes; \"exact\" has those of the finite element"),
+            "whole" => refused("depends on the whole body; springfit fit fits it once"),
+            "nonnegative" => refused("needs a search for each cell; springfit fit has it"),
+            other => match Method::ALL.into_iter().find(|method| method.name() == other) {
+                Some(Method::MacielUniform) => {
+                    refused("scales its constant with the whole body; \"van-gelder\" has one constant on regular cells")
+                }
+                Some(_) if higher.is_some() => {
+                    Err(Error::at("higher", format!("belongs to the objective \"modal\", found with \"{other}\"")))
+                }
+                Some(method) => Ok(Recipe::Published(method)),
+                None => {
+                    let names = || Recipe::NAMES.into_iter().chain(Method::ALL.map(Method::name));
+                    let listed = names().filter(|name| *name != Method::MacielUniform.name());
+                    let expected = format!("one of {}", listed.collect::<Vec<_>>().join(", "));
+                    Err(unknown(expected, names(), other).at_key("objective"))
+                }
+            },
         }
     }
 
@@ -85,6 +97,7 @@ impl Recipe {
             Recipe::Exact(VolumeSprings::Cells) => "exact cells",
             Recipe::Exact(_) => "exact",
             Recipe::Frobenius(weight) => Objective::Frobenius(weight).name(),
+            Recipe::Published(method) => method.name(),
         }
     }
 
@@ -93,15 +106,22 @@ impl Recipe {
         match self {
             Recipe::Exact(volume) => format!("exact, volume {}", volume.name()),
             Recipe::Frobenius(weight) => Objective::Frobenius(weight).title(),
+            Recipe::Published(method) => method.name().into(),
         }
     }
 
-    pub(super) fn constants(self) -> Constants {
+    /// How the constants are computed.
+    ///
+    /// # Errors
+    /// A weight has no normal equations without roots of the stiffness.
+    pub(super) fn constants(self) -> Result<Constants> {
         match self {
-            Recipe::Exact(volume) => Constants::Exact(volume),
-            Recipe::Frobenius(weight) => Constants::LeastSquares(match LeastSquares::of(weight) {
-                Some(weight) => weight,
-                None => LeastSquares::All,
+            Recipe::Exact(volume) => Ok(Constants::Exact(volume)),
+            Recipe::Published(method) => Ok(Constants::Published(method)),
+            Recipe::Frobenius(weight) => LeastSquares::of(weight).map(Constants::LeastSquares).ok_or_else(|| {
+                let found = format!("\"{}\"", weight.name());
+                Error::expected("weight", "one with direct equations: none, offdiag or modal", found)
+                    .of_kind(ErrorKind::Unsupported)
             }),
         }
     }
@@ -120,6 +140,13 @@ impl Recipe {
                 }
                 let fit = ExactFit { volume, ..ExactFit::default() };
                 Ok(fit_exact(element, x, &connectivity, material, &fit, &mut |_| {})?.springs)
+            }
+            Recipe::Published(method) => {
+                let bulk = Elasticity::of(element, material)?;
+                let x = |a: usize| &x[a * d..(a + 1) * d];
+                let length = |[i, j]: [usize; 2]| distance(x(i), x(j));
+                let offered = Springs::select(element, groups)?;
+                Ok(constants_of_cell(method, element, &offered, length, element.cell.content(), &bulk)?.0)
             }
             Recipe::Frobenius(weight) => {
                 let springs = Springs::select(element, groups)?;

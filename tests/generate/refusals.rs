@@ -2,8 +2,8 @@
 
 use springfit::element::Element;
 use springfit::error::ErrorKind;
-use springfit::fit::published::Method;
-use springfit::generate::{Program, Recipe, language};
+use springfit::fit::Weight;
+use springfit::generate::{Program, Recipe, language, language_of};
 
 fn refused(objective: &str, volume: Option<&str>, higher: Option<f64>) -> springfit::error::Error {
     Recipe::named(objective, volume, higher).unwrap_err()
@@ -11,12 +11,15 @@ fn refused(objective: &str, volume: Option<&str>, higher: Option<f64>) -> spring
 
 #[test]
 fn objectives_without_a_direct_solution_are_refused_with_a_reason() {
-    for objective in ["spectral", "divergence", "sampled", "whole", "nonnegative"] {
+    for objective in ["spectral", "divergence", "sampled", "whole", "nonnegative", "maciel-uniform"] {
         let error = refused(objective, None, None);
         assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
         let text = error.to_string();
         assert!(text.contains("direct solution") && text.contains(objective), "{text}");
-        assert!(["offdiag", "springfit fit", "exact"].iter().any(|way| text.contains(way)), "{text}");
+        assert!(
+            ["\"offdiag\"", "springfit fit", "\"exact\"", "\"van-gelder\""].iter().any(|way| text.contains(way)),
+            "{text}"
+        );
     }
     assert_eq!(refused("exact", Some("patches"), None).kind(), ErrorKind::Unsupported);
     assert!(refused("offdig", None, None).to_string().contains("did you mean \"offdiag\"?"));
@@ -24,7 +27,10 @@ fn objectives_without_a_direct_solution_are_refused_with_a_reason() {
     assert!(refused("offdiag", Some("cells"), None).to_string().contains("volume"));
     assert!(refused("modal", None, Some(2.0)).to_string().contains("higher"));
     assert!(language("rus").unwrap_err().to_string().contains("did you mean \"rust\"?"));
-    assert!(!Method::ALL.is_empty());
+    assert!(language_of("h").is_ok() && language_of("txt").unwrap_err().to_string().contains("endings"));
+    let relative = Recipe::Frobenius(Weight::Relative);
+    let element = Element::load("tet4").unwrap();
+    assert_eq!(Program::new(&element, None, relative).unwrap_err().kind(), ErrorKind::Unsupported);
 }
 
 /// Springs that are dependent, groups that are not there, and functions that need more memory than a shader has.

@@ -8,6 +8,7 @@ mod least_squares;
 mod moduli;
 mod network;
 mod plan;
+mod published;
 mod solve;
 mod tolerance;
 
@@ -16,6 +17,7 @@ pub use least_squares::{LeastSquares, least_squares};
 pub use moduli::{State, moduli};
 pub use network::{energy, forces};
 pub use plan::Plan;
+pub use published::published;
 pub use tolerance::in_single;
 
 use super::code::{Body, Constant, Index, Role, Room, Status, Value};

@@ -22,6 +22,11 @@ const SPRINGS_OF_POINT: usize = 48;
 const UNKNOWNS: usize = 10;
 
 impl Plan {
+    /// The same plan with all springs unrolled.
+    pub fn with_springs(self) -> Plan {
+        Plan { springs: true, ..self }
+    }
+
     /// The plan for an element and its springs.
     pub fn of(element: &Element, springs: &Springs) -> Plan {
         let (n, points) = (element.nodes(), element.tabulation.points());

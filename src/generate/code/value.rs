@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::node::{Call, Node};
+use crate::fit::published::Quantity;
 use crate::scalar::Scalar;
 use crate::symbolic::Function;
 use num_traits::{One, Zero};
@@ -200,6 +201,40 @@ macro_rules! of_references {
 }
 
 of_references!(Add add, Sub sub, Mul mul, Div div);
+
+macro_rules! of_values {
+    ($($trait:ident $function:ident),+) => {
+        $(impl $trait for Value {
+            type Output = Value;
+
+            fn $function(self, other: Value) -> Value {
+                self.$function(&other)
+            }
+        }
+
+        impl $trait<f64> for Value {
+            type Output = Value;
+
+            fn $function(self, other: f64) -> Value {
+                let other = self.like(other);
+                self.$function(&other)
+            }
+        })+
+    };
+}
+
+of_values!(Add add, Sub sub, Mul mul, Div div);
+
+impl Quantity for Value {
+    fn cube_root(self) -> Value {
+        self.power(1.0 / 3.0)
+    }
+
+    fn positive_part(self) -> Value {
+        let zero = self.like(0.0);
+        self.select(&zero, &self, &zero)
+    }
+}
 
 /// An entry of a tabulation or a modulus: a number, or a value of the function.
 #[derive(Debug, Clone)]

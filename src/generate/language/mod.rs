@@ -21,8 +21,8 @@ use syntax::Syntax;
 pub struct LanguageRow {
     /// The name in options.
     pub name: &'static str,
-    /// The ending of its files.
-    pub ending: &'static str,
+    /// The endings of its files.
+    pub endings: &'static [&'static str],
     /// The largest working memory of a function, in numbers.
     pub most_work: usize,
     syntax: &'static dyn Syntax,
@@ -36,13 +36,13 @@ const SHADER: usize = 4_096;
 
 /// The languages.
 pub const LANGUAGES: &[LanguageRow] = &[
-    LanguageRow { name: "c", ending: "h", most_work: STACK, syntax: &c::C },
-    LanguageRow { name: "cuda", ending: "cuh", most_work: DEVICE, syntax: &cuda::Cuda },
-    LanguageRow { name: "rust", ending: "rs", most_work: STACK, syntax: &rust::Rust },
-    LanguageRow { name: "python", ending: "py", most_work: usize::MAX, syntax: &python::Python },
-    LanguageRow { name: "wgsl", ending: "wgsl", most_work: SHADER, syntax: &wgsl::Wgsl },
-    LanguageRow { name: "glsl", ending: "glsl", most_work: SHADER, syntax: &glsl::Glsl },
-    LanguageRow { name: "latex", ending: "tex", most_work: usize::MAX, syntax: &latex::Latex },
+    LanguageRow { name: "c", endings: &["h", "c", "hpp", "cpp", "cc"], most_work: STACK, syntax: &c::C },
+    LanguageRow { name: "cuda", endings: &["cuh", "cu"], most_work: DEVICE, syntax: &cuda::Cuda },
+    LanguageRow { name: "rust", endings: &["rs"], most_work: STACK, syntax: &rust::Rust },
+    LanguageRow { name: "python", endings: &["py"], most_work: usize::MAX, syntax: &python::Python },
+    LanguageRow { name: "wgsl", endings: &["wgsl"], most_work: SHADER, syntax: &wgsl::Wgsl },
+    LanguageRow { name: "glsl", endings: &["glsl", "comp"], most_work: SHADER, syntax: &glsl::Glsl },
+    LanguageRow { name: "latex", endings: &["tex"], most_work: usize::MAX, syntax: &latex::Latex },
 ];
 
 /// The language with this name.
@@ -53,6 +53,17 @@ pub fn language(name: &str) -> Result<&'static LanguageRow> {
     LANGUAGES.iter().find(|language| language.name == name).ok_or_else(|| {
         let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
         unknown(format!("one of {}", names.join(", ")), names, name).at_key("language")
+    })
+}
+
+/// The language of files with this ending.
+///
+/// # Errors
+/// There is none.
+pub fn language_of(ending: &str) -> Result<&'static LanguageRow> {
+    LANGUAGES.iter().find(|language| language.endings.contains(&ending)).ok_or_else(|| {
+        let endings: Vec<&str> = LANGUAGES.iter().flat_map(|language| language.endings).copied().collect();
+        unknown(format!("a language, or one of the endings {}", endings.join(", ")), endings, ending).at_key("language")
     })
 }
 

@@ -8,31 +8,35 @@
 
 use super::cell_shape::{CellShape, Elasticity};
 use super::corners::Joint;
+use super::quantity::Quantity;
 
 /// Rectangle with sides l and h: `k_d = E (l² + h²)/(4 l h (1 + ν))` for the diagonals and
 /// `k_l = E (h² (3ν + 2) − l²)/(4 l h (1 + ν))` for the sides l, in N/m. Sides longer than `l = h √(3ν + 2)` have
 /// negative constants.
-pub fn rectangle(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
-    let (e, nu) = (bulk.young, bulk.poisson);
+pub fn rectangle<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>, k: &mut [T]) {
+    let (e, nu) = (bulk.young.clone(), bulk.poisson.clone());
     let sides = cell.extents();
-    let (l, h) = (sides[0], sides[1]);
-    let unit = e / (4.0 * l * h * (1.0 + nu));
+    let (l, h) = (sides[0].clone(), sides[1].clone());
+    let (l2, h2) = (l.clone() * l.clone(), h.clone() * h.clone());
+    let unit = e / (l * 4.0 * h * (nu.clone() + 1.0));
+    let wide = nu * 3.0 + 2.0;
     for (k, &pair) in k.iter_mut().zip(cell.pairs) {
         *k = match cell.corners.direction(pair).filter(|_| cell.corners.joint(pair) == Some(Joint::Edge)) {
-            Some(0) => unit * (h * h * (3.0 * nu + 2.0) - l * l),
-            Some(_) => unit * (l * l * (3.0 * nu + 2.0) - h * h),
-            None => unit * (l * l + h * h),
+            Some(0) => unit.clone() * (h2.clone() * wide.clone() - l2.clone()),
+            Some(_) => unit.clone() * (l2.clone() * wide.clone() - h2.clone()),
+            None => unit.clone() * (l2.clone() + h2.clone()),
         };
     }
 }
 
 /// Cube, with a the side of the cube of the same volume: `E a (4ν + 1)/(8 (1 + ν))` for the edges and
 /// `3 E a/(8 (1 + ν))` for the space diagonals, in N/m.
-pub fn cube(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
-    let unit = bulk.young * cell.content.cbrt() / (8.0 * (1.0 + bulk.poisson));
+pub fn cube<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>, k: &mut [T]) {
+    let nu = bulk.poisson.clone();
+    let unit = bulk.young.clone() * cell.content.clone().cube_root() / ((nu.clone() + 1.0) * 8.0);
     for (k, &pair) in k.iter_mut().zip(cell.pairs) {
         let edge = cell.corners.joint(pair) == Some(Joint::Edge);
-        *k = unit * if edge { 4.0 * bulk.poisson + 1.0 } else { 3.0 };
+        *k = if edge { unit.clone() * (nu.clone() * 4.0 + 1.0) } else { unit.clone() * 3.0 };
     }
 }
 
@@ -43,11 +47,12 @@ pub fn cube(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
 /// `½ (a − b) Σ ε_i² + ½ b (Σ ε_i)²`. It adds no stress along the axis of a tension and cancels the stress across it if
 /// `a = (d − 1) ν b` and `b = E ((d + 1) ν − 1)/(2 (1 + ν) (1 − (d − 1) ν))`. The papers state a force orthogonal to a
 /// known tension. Its direction and purpose are theirs; its size is derived here, and no load has to be known.
-pub fn correction(cell: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
-    let (d, nu) = (cell.dimension as f64, bulk.poisson);
-    let difference = -bulk.young * ((d + 1.0) * nu - 1.0) / (2.0 * (1.0 + nu));
+pub fn correction<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>, k: &mut [T]) {
+    let (d, nu) = (cell.dimension as f64, bulk.poisson.clone());
+    let difference = bulk.young.clone() * -1.0 * (nu.clone() * (d + 1.0) + -1.0) / ((nu.clone() + 1.0) * 2.0);
     let (each, content) = k.split_at_mut(cell.dimension);
     let sides = cell.extents();
-    each.iter_mut().zip(sides).for_each(|(k, side)| *k = difference * cell.content / (side * side));
-    content.fill(-difference / ((1.0 - (d - 1.0) * nu) * cell.content));
+    let along = |(k, side): (&mut T, T)| *k = difference.clone() * cell.content.clone() / (side.clone() * side);
+    each.iter_mut().zip(sides).for_each(along);
+    content.fill(difference.clone() * -1.0 / ((nu * (1.0 - d) + 1.0) * cell.content.clone()));
 }

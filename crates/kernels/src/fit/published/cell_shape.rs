@@ -1,38 +1,46 @@
 //! The quantities of a cell and its material on which the formulas depend.
 
 use super::corners::Corners;
+use super::quantity::Quantity;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::material::{Material, Moduli, State};
 
 /// The quantities of a cell on which a formula depends.
-pub struct CellShape<'a> {
+pub struct CellShape<'a, T = f64> {
     pub dimension: usize,
     pub corners: &'a Corners,
     /// The nodes that the formula joins, and their distances, m.
     pub pairs: &'a [[usize; 2]],
-    pub lengths: Vec<f64>,
+    pub lengths: Vec<T>,
     /// The area or volume, m² or m³.
-    pub content: f64,
+    pub content: T,
 }
 
-impl CellShape<'_> {
-    /// The mean length of the edges in each direction, m; zero if the formula joins no edges.
-    pub fn extents(&self) -> Vec<f64> {
+impl<T: Quantity> CellShape<'_, T> {
+    /// The mean length of the edges in each direction, m; times zero if the formula joins no edges.
+    pub fn extents(&self) -> Vec<T> {
         let place = |[a, b]: [usize; 2]| self.pairs.iter().position(|p| *p == [a, b] || *p == [b, a]);
-        self.corners.extents(|pair| place(pair).map_or(0.0, |s| self.lengths[s]))
+        self.corners.extents(|pair| place(pair).map_or_else(|| self.content.clone() * 0.0, |s| self.lengths[s].clone()))
     }
 }
 
 /// The elastic constants in the dimensions of the cell.
-pub struct Elasticity {
+#[derive(Debug, Clone)]
+pub struct Elasticity<T = f64> {
     /// Young's modulus in Pa; in the plane in N/m.
-    pub young: f64,
-    pub poisson: f64,
-    pub moduli: Moduli,
+    pub young: T,
+    /// Poisson's ratio in these dimensions.
+    pub poisson: T,
+    /// λ and μ in these dimensions.
+    pub moduli: Moduli<T>,
 }
 
 impl Elasticity {
+    /// Those of a material.
+    ///
+    /// # Errors
+    /// The material is not one of a body of these dimensions.
     pub fn of(element: &Element, material: Material) -> Result<Elasticity> {
         let (e, nu, moduli) = (material.young(), material.poisson(), material.moduli());
         match (material.state(), element.dimension()) {

@@ -1,5 +1,6 @@
 //! The edges, diagonals and opposite sides of a cell, found from its geometry.
 
+use super::quantity::Quantity;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
 
@@ -75,13 +76,14 @@ impl Corners {
     }
 
     /// The mean length of the edges in each direction of a quadrilateral or hexahedron, m.
-    pub fn extents(&self, length: impl Fn([usize; 2]) -> f64) -> Vec<f64> {
+    pub fn extents<T: Quantity>(&self, length: impl Fn([usize; 2]) -> T) -> Vec<T> {
         let mean = |direction: usize| {
             let along = self.joined(Joint::Edge).filter(|&edge| self.direction(edge) == Some(direction));
-            let lengths: Vec<f64> = along.map(&length).collect();
-            lengths.iter().sum::<f64>() / lengths.len() as f64
+            let lengths: Vec<T> = along.map(&length).collect();
+            let count = lengths.len() as f64;
+            Some(lengths.into_iter().reduce(|sum, length| sum + length)? / count)
         };
-        (0..self.facing.len()).map(mean).collect()
+        (0..self.facing.len()).filter_map(mean).collect()
     }
 }
 

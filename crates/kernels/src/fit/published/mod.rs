@@ -14,12 +14,15 @@ mod lloyd;
 mod maciel;
 mod method;
 mod pattern;
+mod quantity;
 mod shape;
 mod unmet;
 mod van_gelder;
 
+pub use cell_shape::Elasticity;
 pub use corners::Joint;
 pub use method::{Cover, Method, Ratio};
+pub use quantity::Quantity;
 pub use shape::Shape;
 pub use unmet::{Unmet, unmet};
 
@@ -27,10 +30,10 @@ use super::cells::CellFits;
 use super::input::check_cells;
 use super::visit::each_cell;
 use crate::element::{Cell, Element};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::Material;
 use crate::springs::{Springs, distance};
-use cell_shape::{CellShape, Elasticity};
+use cell_shape::CellShape;
 use corners::Corners;
 use pattern::Pattern;
 
@@ -88,8 +91,36 @@ pub fn fit(
     Ok(fits)
 }
 
+/// The constants of one cell by a published method in any kind of number, with the springs that it uses. `springs` are those
+/// that are offered; `length` gives the distance of two nodes in m, `content` is the area or volume in m² or m³.
+///
+/// # Errors
+/// Those of [`fit`] that concern the element and its springs; or the constants depend on other cells.
+pub fn constants_of_cell<T: Quantity>(
+    method: Method,
+    element: &Element,
+    springs: &Springs,
+    length: impl Fn([usize; 2]) -> T,
+    content: T,
+    bulk: &Elasticity<T>,
+) -> Result<(Springs, Vec<T>)> {
+    springs.check(element)?;
+    let cover = method.cover(element)?;
+    let corners = Corners::of(element)?;
+    if method == Method::MacielUniform {
+        let problem = "scales its constant with all cells of a body";
+        return Err(Error::at(method.name(), problem).of_kind(ErrorKind::Unsupported));
+    }
+    let Pattern { pairs, springs } = Pattern::new(method, cover, &corners, element, springs)?;
+    let mut k = vec![content.clone(); springs.len()];
+    let lengths = pairs.iter().map(|&pair| length(pair)).collect();
+    let shape = CellShape { dimension: element.dimension(), corners: &corners, pairs: &pairs, lengths, content };
+    constants(method, cover.cell, &shape, bulk, &mut k);
+    Ok((springs, k))
+}
+
 /// Writes the constants of one cell, `[springs]`; nothing if they depend on other cells.
-fn constants(method: Method, cell: Cell, shape: &CellShape, bulk: &Elasticity, k: &mut [f64]) {
+fn constants<T: Quantity>(method: Method, cell: Cell, shape: &CellShape<T>, bulk: &Elasticity<T>, k: &mut [T]) {
     let (own, more) = k.split_at_mut(shape.pairs.len());
     match (method, cell) {
         (Method::VanGelder, Cell::Triangle) => van_gelder::triangle(shape, bulk, own),
