@@ -69,7 +69,7 @@ fn scene_with(table: &str) -> String {
             rest = format!("[motion]\nduration = 1\nstep = 1\n[[motion.{}]]\nzzz = 1\n", &table[7..]);
         }
         "fix" | "load" => rest = format!("[[{table}]]\n{zzz}"),
-        "newton" | "gauge" | "output" => rest = format!("[{table}]\n{zzz}"),
+        "newton" | "solver" | "gauge" | "output" => rest = format!("[{table}]\n{zzz}"),
         other => panic!("{other}"),
     }
     format!("{head}[mesh]\n{mesh}\n[material]\n{young}{fits}{rest}")
@@ -89,7 +89,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 23);
+    assert_eq!(tables.len(), 24);
 }
 
 #[test]
@@ -197,6 +197,7 @@ fn the_page_of_the_report_has_every_key() {
         ("fits.whole.relative_errors_validated", "fits.whole.relative_errors_fitted"),
         ("fits.loads.followed", "loads_followed"),
         ("fits.loads.gauge", "gauge"),
+        ("fits.loads.solver_lem", "fits.loads.solver_fem"),
         ("fits.start", "fits"),
     ];
     let mut seen = BTreeSet::new();
