@@ -236,7 +236,7 @@ fn arrays_are_those_that_numpy_reads() {
     let mut bytes = Vec::new();
     std::io::Read::read_to_end(&mut archive.by_name("k.npy").unwrap(), &mut bytes).unwrap();
     let length = u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
-    assert!(bytes.starts_with(b"\x93NUMPY\x01\x00") && (10 + length) % 64 == 0);
+    assert!(bytes.starts_with(b"\x93NUMPY\x01\x00") && (10 + length).is_multiple_of(64));
     let header = std::str::from_utf8(&bytes[10..10 + length]).unwrap();
     let lengths = &outcome.fits[0].network.lengths;
     assert!(

@@ -28,6 +28,8 @@ pub enum Tension {
     Any,
     /// Those that balance edge by edge, as in exact networks on tetrahedra.
     Balanced,
+    /// None.
+    None,
 }
 
 /// A network that a program holds.
@@ -109,8 +111,10 @@ impl<'a> Job<'a> {
         if !holds.off_edges {
             job.check_edges(program)?;
         }
-        if holds.tension == Tension::Balanced {
-            job.check_balance(program)?;
+        match holds.tension {
+            Tension::Any => {}
+            Tension::Balanced => job.check_balance(program)?,
+            Tension::None => job.check_slack(program)?,
         }
         if free == 0 {
             return Err(Error::expected("held", "a point that is free to move", "none"));
@@ -155,6 +159,24 @@ impl<'a> Job<'a> {
             Some(part) => Err(error(format!("{:?}", part.points))),
             None => Ok(()),
         }
+    }
+
+    fn check_slack(&self, program: &str) -> Result<()> {
+        let lengths = self.parts.lengths.iter().map(|spring| {
+            let length = distance(self.place(spring.points[0]), self.place(spring.points[1]));
+            (&spring.points[..], spring.rest / length)
+        });
+        let contents = self.parts.contents.iter().map(|part| {
+            let (volume, _) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
+            (&part.points[..], part.rest / volume)
+        });
+        let Some((points, share)) = lengths.chain(contents).find(|(_, share)| (share - 1.0).abs() > BALANCED) else {
+            return Ok(());
+        };
+        let expected = format!("springs that do not pull at rest, which {program} holds");
+        let found = format!("a rest measure of {share:.3} of that in the mesh at points {points:?}");
+        let advice = "; objective = \"offdiag\" with nonnegative = true has such springs, with springs = [\"edge\", \"bulk\"] on volumes as well";
+        Err(Error::expected("springs", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
     }
 
     /// The derivative of the energy by the squared length of each edge at rest, `T/(2 ℓ)` of a spring and

@@ -60,9 +60,6 @@ fn data(job: &Job) -> String {
 
 fn input(job: &Job) -> String {
     let d = job.network.dimension;
-    let mut neighbours = vec![0usize; job.masses.len()];
-    job.parts.lengths.iter().flat_map(|s| s.points).for_each(|p| neighbours[p] += 1);
-    let most = neighbours.iter().max().copied().unwrap_or(0);
     let longest = job.parts.lengths.iter().map(|s| {
         let [a, b] = s.points.map(|p| job.place(p));
         a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
@@ -83,7 +80,9 @@ fn input(job: &Job) -> String {
     }
     let (boundary, plane) = if d == 2 { ("s s p", "fix plane all enforce2d\n") } else { ("s s s", "") };
     let (longest_step, step) = (job.step, 0.2 * job.step);
-    let (reach, special, dmax) = (1.5 * longest, most * (most + 1) * 4 + 8, 0.1 * longest);
+    // A ten-thousandth of a millionth of the weight.
+    let weight = job.masses.iter().sum::<f64>() * (gx * gx + gy * gy + gz * gz).sqrt();
+    let (reach, dmax, least) = (2.1 * longest, 0.1 * longest, 1e-10 * weight);
     let damping = job.network.damping.mass;
     let drag = match damping > 0.0 {
         false => String::new(),
@@ -115,8 +114,8 @@ atom_modify map array sort 0 0
 bond_style harmonic
 comm_modify cutoff {reach:e}
 neighbor {reach:e} bin
-read_data network.data extra/special/per/atom {special}
 special_bonds lj/coul 1 1 1
+read_data network.data
 variable wx atom mass*({gx:e})
 variable wy atom mass*({gy:e})
 variable wz atom mass*({gz:e})
@@ -127,7 +126,7 @@ fix_modify weight energy yes
 if \"${{mode}} == rest\" then &
   \"min_style cg\" &
   \"min_modify dmax {dmax:e} line quadratic\" &
-  \"minimize 0 1e-18 100000 1000000\" &
+  \"minimize 0 {least:e} 100000 1000000\" &
 else &
   \"fix nve all nve\" &
 {drag}  \"timestep {step:e}\" &

@@ -26,6 +26,9 @@ impl Content {
     }
 }
 
+/// Makes the files of a network with a gravity that may be given.
+type Writer = fn(&NetworkRecord, Option<&[f64]>) -> Result<Vec<NamedFile>>;
+
 /// A program that networks are written for.
 pub struct Target {
     /// The word after `--to`.
@@ -36,7 +39,7 @@ pub struct Target {
     pub command: &'static str,
     /// The springs that are left out, for the line that says so.
     pub leaves_out: fn(&NetworkRecord) -> Vec<String>,
-    pub(super) write: fn(&NetworkRecord, Option<&[f64]>) -> Result<Vec<NamedFile>>,
+    pub(super) write: Writer,
 }
 
 impl Target {

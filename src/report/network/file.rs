@@ -263,7 +263,7 @@ impl CellBlockRecord {
     fn of(block: &crate::mesh::CellBlock) -> CellBlockRecord {
         CellBlockRecord {
             element: block.element.name.clone(),
-            vtk: block.element.formats.vtk.as_ref().map(|vtk| vtk.cell_type as u32),
+            vtk: block.element.formats.vtk.as_ref().map(|vtk| vtk.cell_type),
             points: block.cells().map(<[usize]>::to_vec).collect(),
         }
     }
