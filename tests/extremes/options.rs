@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 13] = [
+const RUNS: [&[&str]; 14] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -28,6 +28,7 @@ const RUNS: [&[&str]; 13] = [
     &["compare", "tri3", "--shapes=1", "--iterations=5"],
     &["converge", "scene.toml", "--levels=2"],
     &["run", "scene.toml"],
+    &["sweep", "scene.toml", "--set=sweep.over={material.poisson=[0.1,0.2]}"],
     &["derive", "bar2"],
     &["check", "tri3"],
     &["new", "mesh.msh"],
