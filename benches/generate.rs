@@ -4,7 +4,7 @@
 //! kernels fit the same cells, several at once in the lanes of the processor.
 
 use springfit::element::Element;
-use springfit::fit::{ExactFit, Fit, Objective, fit_cells, fit_exact};
+use springfit::fit::{CellFits, ExactFit, Fit, Objective, fit_cells, fit_exact};
 use springfit::generate::{Program, Recipe, language};
 use springfit::material::Material;
 use springfit::springs::Springs;
@@ -34,7 +34,7 @@ fn kernels(element: &Element, recipe: Recipe, x: &[f64], material: Material) -> 
     let connectivity: Vec<usize> = (0..CELLS * element.nodes()).collect();
     let springs = Springs::select(element, None).expect("no group is named");
     let (mut best, mut sum) = (f64::MAX, 0.0);
-    let mut fits = None;
+    let mut fits: Option<CellFits> = None;
     for _ in 0..RUNS {
         let start = Instant::now();
         let found = match (recipe, &mut fits) {

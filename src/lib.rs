@@ -87,10 +87,10 @@
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "cli")]
+pub mod export;
+#[cfg(feature = "cli")]
 pub mod generate;
 pub mod prelude;
-#[cfg(feature = "cli")]
-pub mod export;
 #[cfg(feature = "cli")]
 pub mod report;
 

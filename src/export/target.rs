@@ -11,7 +11,9 @@ pub type NamedFile = (&'static str, Content);
 
 /// What is in a file.
 pub enum Content {
+    /// Bytes as they are.
     Bytes(Vec<u8>),
+    /// A grid, written as VTU.
     Grid(Box<Grid>),
 }
 
