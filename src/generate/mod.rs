@@ -1,8 +1,8 @@
 //! Code that computes the springs of a cell at run time, for programs that cut, remesh or adapt: one file without
 //! dependencies, for one element and one objective, in one of several languages.
 //!
-//! The functions are written once, independent of the language: the kernel of the geometry runs on values that
-//! record its operations ([`code`]), and [`language`] prints what was recorded.
+//! The functions are written once, independent of the language: kernels run on values that record their operations, and
+//! [`Program::print`] writes what was recorded in the words of a language.
 //!
 //! Theory: pages *Least squares* and *Exact networks and patches* of the book.
 
