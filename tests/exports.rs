@@ -148,7 +148,9 @@ fn sofa_has_held_points_as_negative_masses() {
     };
     let (masses, springs) = (lines("mass"), lines("lspg"));
     assert!(text.starts_with("Xsp 3.0\nnumm 27\n") && lines("nums") == [[network.springs.len() as f64]], "{text}");
-    assert!(masses.iter().all(|line| line.len() == 10 && line[1].is_nan()) && springs.iter().all(|line| line.len() == 6));
+    assert!(
+        masses.iter().all(|line| line.len() == 10 && line[1].is_nan()) && springs.iter().all(|line| line.len() == 6)
+    );
     assert_eq!(masses.iter().filter(|line| line[8] < 0.0).count(), network.held.len());
     for (line, spring) in springs.iter().zip(&network.springs) {
         assert_eq!(
