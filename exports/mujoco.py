@@ -70,11 +70,12 @@ def model(material=None):
         <flexcomp name="network" type="direct" dim="3" radius="1e-5" mass="{float(masses.sum())!r}" rgba=".8 .4 .3 1"
             point="{text(points)}" element="{text(tets)}">
           <contact contype="0" conaffinity="0" selfcollide="none"/>
-          <elasticity young="{young!r}" poisson="{poisson!r}"/>
+          <elasticity young="{young!r}" poisson="{poisson!r}" damping="1e-9"/>
           {pins}
         </flexcomp>
       </worldbody>
     </mujoco>""")
+    m.flex_damping[:] = 0  # MuJoCo warns of a flex without damping
     body = m.flex_vertbodyid
     free = body > 0
     m.body_inertia[body[free]] *= (masses[free] / m.body_mass[body[free]])[:, None]

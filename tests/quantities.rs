@@ -64,7 +64,10 @@ fn options_and_keys_take_the_same_units() {
         let more = ["--thickness", thickness, "--density", density, "--objective", "offdiag", "-o", name];
         let output = springfit(folder.path(), &[&options[..], &more].concat());
         assert!(output.status.success(), "{}", errors(&output));
-        fs::read_to_string(folder.path().join(name)).unwrap()
+        let mut network = springfit::report::read_network(&folder.path().join(name)).unwrap();
+        // They differ in the command alone.
+        assert!(network.provenance.command.take().is_some_and(|command| command.contains(young)));
+        network
     };
     let plain = fit("5000", "0.001", "0.0005", "1060", "plain.json");
     assert_eq!(fit("5 kPa", "mm", "0.5 mm", "1.06 g/cm^3", "units.json"), plain);

@@ -154,7 +154,7 @@ impl Network {
         Ok((matrix(py, u, self.mesh.dimension), left, is_stable))
     }
 
-    /// Writes the springs: .vtu, .json or .csv.
+    /// Writes the springs: .json, .npz, .csv or .vtu.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;

@@ -21,7 +21,7 @@ SCENE = {
 
 def test_a_scene_as_a_dictionary_and_as_a_file(tmp_path, scenes):
     report = sf.run(SCENE, out=tmp_path / "out")
-    assert [p.name for p in report.files] == ["report.json"]
+    assert [p.name for p in report.files] == ["frobenius.json", "exact.json", "report.json"]
     assert json.loads((tmp_path / "out" / "report.json").read_text()) == report.record
     assert report.loads["fit"].tolist() == ["frobenius", "exact"]
     moved = report.displacements["tension"]

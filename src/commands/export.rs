@@ -50,10 +50,8 @@ impl Export {
         let gravity = self.gravity.as_deref().map(numbers).transpose()?;
         let is_network = self.network.extension().is_some_and(|ending| ending == "json");
         let network = if is_network { self.read()? } else { self.fitted(terminal)? };
-        let files = target.files(&network, gravity.as_deref()).map_err(|e| {
-            let file = if e.key() == Some("--gravity") { None } else { Some(&self.network) };
-            file.map_or_else(|| e.clone(), |file| e.clone().in_file(file))
-        })?;
+        let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
+        let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
         check_outputs(&folder, &names, std::slice::from_ref(&self.network))?;
         std::fs::create_dir_all(&folder).map_err(|e| Error::io("the folder cannot be created", e).in_file(&folder))?;

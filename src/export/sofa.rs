@@ -4,6 +4,7 @@ use super::job::{Holds, Job, Tension};
 use super::target::{Content, NamedFile, Target, nothing};
 use crate::error::Result;
 use crate::report::NetworkRecord;
+use std::collections::HashSet;
 use std::fmt::Write;
 
 const HOLDS: Holds =
@@ -26,9 +27,10 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     ])
 }
 
-/// Points count from 1, a held point has a negative mass, and a spring has its rest length as a length.
+/// Points count from 1 and are on the surface, `s`, or in the volume, `v`; a held point has a negative mass.
 fn text(job: &Job) -> String {
     let held = job.held_along(0);
+    let surface: HashSet<usize> = job.network.surface.iter().flatten().copied().collect();
     let mut text = String::from("Xsp 3.0\n");
     let mut line = |words: std::fmt::Arguments| writeln!(text, "{words}").expect("a String grows");
     line(format_args!("numm {}", job.masses.len()));
@@ -38,7 +40,8 @@ fn text(job: &Job) -> String {
     for (p, mass) in job.masses.iter().enumerate() {
         let [x, y, z] = job.place(p);
         let mass = if held.binary_search(&p).is_ok() { -mass } else { *mass };
-        line(format_args!("mass {} {x:e} {y:e} {z:e} 0 0 0 {mass:e} 0", p + 1));
+        let place = if surface.contains(&p) { "s" } else { "v" };
+        line(format_args!("mass {} {place} {x:e} {y:e} {z:e} 0 0 0 {mass:e} 0", p + 1));
     }
     for (i, s) in job.parts.lengths.iter().enumerate() {
         let [a, b] = s.points;
@@ -49,6 +52,7 @@ fn text(job: &Job) -> String {
 
 fn scene(job: &Job) -> String {
     let [gx, gy, gz] = job.gravity;
+    let held = job.held_along(0).iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     format!(
         "<?xml version=\"1.0\"?>
 <!-- A springfit network in SOFA. Springs are springs, with their constants, dampers and rest lengths; a point that is held has a
@@ -59,11 +63,10 @@ fn scene(job: &Job) -> String {
   <Node name=\"network\">
     <EulerImplicitSolver rayleighStiffness=\"0\" rayleighMass=\"0\"/>
     <CGLinearSolver iterations=\"200\" tolerance=\"1e-12\" threshold=\"1e-18\"/>
-    <MassSpringLoader filename=\"network.xs3\"/>
-    <MechanicalObject/>
-    <DiagonalMass/>
-    <FixedConstraint/>
-    <SpringForceField/>
+    <MechanicalObject template=\"Vec3d\" filename=\"network.xs3\"/>
+    <DiagonalMass filename=\"network.xs3\"/>
+    <FixedProjectiveConstraint indices=\"{held}\"/>
+    <SpringForceField fileSprings=\"network.xs3\"/>
   </Node>
 </Node>
 ",
