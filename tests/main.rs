@@ -38,6 +38,7 @@ mod messages;
 mod modes;
 mod moduli;
 mod motion;
+mod multigrid;
 mod mutations;
 mod names;
 mod nonlinear;

@@ -1,7 +1,7 @@
 //! Loads and their answers in `report.json`.
 
 use super::number::finite;
-use crate::solve::Ending;
+use crate::solve::{Ending, Solved};
 use crate::study::{BodyLoad, Followed, LoadOutcome, Reading};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,8 +53,38 @@ pub struct LoadRecord {
     /// To assemble, factorise and solve, each as if this were the only load.
     pub seconds_fem: f64,
     pub seconds_lem: f64,
+    /// Null at large deformation.
+    pub solver_fem: Option<SolvedRecord>,
+    /// Null where the network has no answer.
+    pub solver_lem: Option<SolvedRecord>,
     pub followed: Option<FollowedRecord>,
     pub gauge: Option<ReadingRecord>,
+}
+
+/// How linear equations were solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SolvedRecord {
+    /// `cholesky` or `lu`; `multigrid`, or `minres` with it where a network is not positive definite.
+    pub method: String,
+    pub unknowns: usize,
+    /// Null with a factor.
+    pub iterations: Option<usize>,
+    /// `‖f − K u‖/‖f‖`.
+    pub residual: Option<f64>,
+    /// Nodes and unknowns of each on all levels, the finest first.
+    pub levels: Option<String>,
+}
+
+impl From<&Solved> for SolvedRecord {
+    fn from(solved: &Solved) -> SolvedRecord {
+        SolvedRecord {
+            method: solved.method.into(),
+            unknowns: solved.unknowns,
+            iterations: solved.iterations,
+            residual: finite(solved.residual),
+            levels: solved.levels.clone(),
+        }
+    }
 }
 
 impl From<Reading> for ReadingRecord {
@@ -100,6 +130,8 @@ impl From<&LoadOutcome> for LoadRecord {
             e_energy: load.work_error.and_then(finite),
             seconds_fem: load.seconds_fem,
             seconds_lem: load.seconds_lem,
+            solver_fem: load.solved_fem.as_ref().map(SolvedRecord::from),
+            solver_lem: load.solved_lem.as_ref().map(SolvedRecord::from),
             followed: load.followed.as_ref().map(FollowedRecord::from),
             gauge: load.gauge.map(ReadingRecord::from),
         }

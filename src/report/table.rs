@@ -190,6 +190,21 @@ fn times(outcome: &Outcome) -> String {
         "One load, assembled and solved: {:.2} ms with finite elements, {:.2} ms with springs (means).\n",
         mean(&|l| l.seconds_fem),
         mean(&|l| l.seconds_lem)
+    ) + &iterations(&loads)
+}
+
+/// How iterations went, where there were any: the most of all loads and models, and the largest residual.
+fn iterations(loads: &[&LoadOutcome]) -> String {
+    let solved = || loads.iter().flat_map(|l| l.solved_fem.iter().chain(&l.solved_lem));
+    let iterated: Vec<_> = solved().filter(|solved| solved.iterations.is_some()).collect();
+    let Some(most) = iterated.iter().max_by_key(|solved| solved.iterations) else { return String::new() };
+    format!(
+        "{} unknowns solved by conjugate gradients with multigrid: at most {} iterations, residual {:.1e}; nodes x unknowns of the levels: \
+         {}.\n",
+        most.unknowns,
+        most.iterations.unwrap_or(0),
+        iterated.iter().map(|solved| solved.residual).fold(0.0, f64::max),
+        most.levels.as_deref().unwrap_or("-").replace('×', "x")
     )
 }
 
@@ -286,6 +301,10 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     } else {
         String::new()
     };
+    let unsolved = match fit.loads.iter().all(|load| load.displacement.is_none()) {
+        true => ", and no displacements are given",
+        false => "",
+    };
     match stability.standing {
         Standing::Stable => {}
         Standing::Soft => notes.push(format!(
@@ -294,7 +313,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         )),
         Standing::Indefinite => notes.push(format!(
             "{name}: indefinite, a motion releases energy ({least:.1e} of the energy that it stores in the body): the \
-             equilibrium is unstable. Moving most: {points}{remedy}"
+             equilibrium is unstable{unsolved}. Moving most: {points}{remedy}"
         )),
         Standing::Singular => notes.push(format!(
             "{name}: mechanism, a motion has no stiffness, so no displacements are given. Moving freely: {points}{remedy}"

@@ -71,7 +71,7 @@ fn scene_with(table: &str) -> String {
         "fix" | "load" => rest = format!("[[{table}]]\n{zzz}"),
         "sweep" => rest = format!("[sweep]\nover = {{}}\n{zzz}"),
         "sweep range" => rest = "[sweep.over]\nmaterial.young = { from = 1, to = 2, zzz = 1 }\n".into(),
-        "newton" | "gauge" | "output" => rest = format!("[{table}]\n{zzz}"),
+        "newton" | "solver" | "gauge" | "output" => rest = format!("[{table}]\n{zzz}"),
         other => panic!("{other}"),
     }
     format!("{head}[mesh]\n{mesh}\n[material]\n{young}{fits}{rest}")
@@ -91,7 +91,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 25);
+    assert_eq!(tables.len(), 26);
 }
 
 #[test]
@@ -199,6 +199,7 @@ fn the_page_of_the_report_has_every_key() {
         ("fits.whole.relative_errors_validated", "fits.whole.relative_errors_fitted"),
         ("fits.loads.followed", "loads_followed"),
         ("fits.loads.gauge", "gauge"),
+        ("fits.loads.solver_lem", "fits.loads.solver_fem"),
         ("fits.start", "fits"),
     ];
     let mut seen = BTreeSet::new();

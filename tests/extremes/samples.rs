@@ -37,6 +37,10 @@ body = [0, 0, 1.0]
 group = "zmax"
 displacement = ["free", "free", 0.01]
 measured = { file = "measured.csv", scale = 1.0 }
+[solver]
+method = "multigrid"
+tolerance = 1e-9
+iterations = 300
 [output]
 frequencies = 2
 moduli = true

@@ -7,6 +7,7 @@
 //! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 mod assembly;
+mod blocks;
 mod deformation;
 mod elastic;
 mod fibres;
@@ -26,6 +27,7 @@ mod support;
 mod system;
 mod tension;
 
+pub use blocks::BlockStiffness;
 pub use deformation::Deformation;
 pub use elastic::{Body, Elastic};
 pub use fibres::fibre_springs;

@@ -26,6 +26,16 @@ impl LengthSpring {
         linear(self.constant, length - self.rest)
     }
 
+    /// What its tangent is over its constant, at the points as they are.
+    pub(super) fn along(&self, points: &[f64], d: usize) -> Along {
+        let [i, j] = self.points;
+        let (xi, xj) = (&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d]);
+        let length = distance(xi, xj);
+        let mut n = [0.0; 3];
+        n.iter_mut().zip(xi.iter().zip(xj)).for_each(|(n, (a, b))| *n = (b - a) / length);
+        Along { share: if self.rest == 0.0 { 0.0 } else { self.rest / length }, direction: n }
+    }
+
     /// The force divided by the length, N/m. It is the constant if the rest length is zero.
     #[inline(always)]
     pub(super) fn stress(&self, length: f64) -> f64 {
@@ -36,6 +46,22 @@ impl LengthSpring {
     #[inline(always)]
     pub(super) fn has_direction(&self, length: f64) -> bool {
         length > 0.0 || self.rest == 0.0
+    }
+}
+
+/// `(1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ`: n nᵀ of springs that do not pull at rest, I of those without a rest length.
+pub(super) struct Along {
+    /// L₀/ℓ.
+    share: f64,
+    /// n.
+    direction: [f64; 3],
+}
+
+impl Along {
+    #[inline(always)]
+    pub(super) fn entry(&self, k: usize, l: usize) -> f64 {
+        let across = if k == l { 1.0 - self.share } else { 0.0 };
+        across + self.share * self.direction[k] * self.direction[l]
     }
 }
 
@@ -85,6 +111,20 @@ impl MeasureSpring {
         }
     }
 
+    /// `k g gᵀ + T H` at the points as they are, `[points · d × points · d]`: the slope, the gradient, the force, the second derivatives.
+    pub(super) fn tangent(&self, points: &[f64], d: usize, entries: &mut [f64]) {
+        let mut x = vec![0.0; self.points.len() * d];
+        gather(points, d, &self.points, &mut x);
+        let gradient = self.measure.gradient(&x, d);
+        let [_, pull, slope] = self.pull(self.measure.value(&x, d));
+        // Springs that do not pull at rest need no second derivatives.
+        let bend = if pull == 0.0 { Vec::new() } else { self.measure.jet(&x, d).hessian };
+        for (at, entry) in entries.iter_mut().enumerate() {
+            let bent = bend.get(at).map_or(0.0, |h| pull * h);
+            *entry = slope * gradient[at / x.len()] * gradient[at % x.len()] + bent;
+        }
+    }
+
     /// The force of [`MeasureSpring::pull`] alone; the energy of a law is an integral.
     pub fn tension(&self, c: f64) -> f64 {
         match &self.law {
@@ -112,35 +152,23 @@ impl Network {
         let mut entries = Entries::with_capacity(self.entries());
         for spring in &self.lengths {
             let [i, j] = spring.points;
-            let (xi, xj) = (&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d]);
-            let length = distance(xi, xj);
-            let n: Vec<f64> = xi.iter().zip(xj).map(|(a, b)| (b - a) / length).collect();
-            // (1 − L₀/ℓ) I + (L₀/ℓ) n nᵀ: it is n nᵀ for springs that do not pull at rest, and I for springs of rest
-            // length zero.
-            let along = if spring.rest == 0.0 { 0.0 } else { spring.rest / length };
-            for k in 0..d {
-                for l in 0..d {
-                    let across = if k == l { 1.0 - along } else { 0.0 };
-                    let value = spring.constant * (across + along * n[k] * n[l]);
-                    if l <= k {
-                        entries.push(Triplet::new(i * d + k, i * d + l, value));
-                        entries.push(Triplet::new(j * d + k, j * d + l, value));
-                    }
-                    entries.push(Triplet::new(j * d + k, i * d + l, -value));
+            let along = spring.along(points, d);
+            for (k, l) in (0..d).flat_map(|k| (0..d).map(move |l| (k, l))) {
+                let value = spring.constant * along.entry(k, l);
+                if l <= k {
+                    entries.push(Triplet::new(i * d + k, i * d + l, value));
+                    entries.push(Triplet::new(j * d + k, j * d + l, value));
                 }
+                entries.push(Triplet::new(j * d + k, i * d + l, -value));
             }
         }
         for spring in &self.others {
-            let mut x = vec![0.0; spring.points.len() * d];
-            gather(points, d, &spring.points, &mut x);
-            let gradient = spring.measure.gradient(&x, d);
-            let [_, pull, slope] = spring.pull(spring.measure.value(&x, d));
-            // Springs that do not pull at rest need no second derivatives.
-            let bend = if pull == 0.0 { Vec::new() } else { spring.measure.jet(&x, d).hessian };
+            let n = spring.points.len() * d;
+            let mut own = vec![0.0; n * n];
+            spring.tangent(points, d, &mut own);
             for (a, row) in dofs(&spring.points, d).enumerate() {
                 for (b, column) in dofs(&spring.points, d).enumerate().filter(|(_, column)| row >= *column) {
-                    let bent = bend.get(a * x.len() + b).map_or(0.0, |h| pull * h);
-                    entries.push(Triplet::new(row, column, slope * gradient[a] * gradient[b] + bent));
+                    entries.push(Triplet::new(row, column, own[a * n + b]));
                 }
             }
         }

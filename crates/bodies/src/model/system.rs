@@ -63,7 +63,7 @@ pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
 }
 
 /// `Q R Qᵀ` of a cell of a surface or curve; Q maps the displacements in its own plane or line into space.
-fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &DMatrix<f64>) -> DMatrix<f64> {
     let (n, d, space) = (table.nodes, table.dimension, table.space);
     let mut placement = Placement::new(table);
     placement.place(table, points, nodes, &mut vec![0.0; n * d]).expect("a mesh holds only cells with tangents");

@@ -6,13 +6,17 @@
 mod cholesky;
 mod expectation;
 mod internal;
+mod levels;
 mod linear;
+mod method;
 mod modes;
 mod newton;
 mod stability;
 
 pub use expectation::{FactorCost, dense_rate, factor_cost};
+pub use levels::{Levels, Solved, compare_levels};
 pub use linear::{Factor, System};
+pub use method::{StaticMethod, StaticSolver};
 pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};

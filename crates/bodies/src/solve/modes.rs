@@ -54,11 +54,31 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
         let error = Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance");
         return Err(error.of_kind(ErrorKind::Infeasible));
     }
-    let n = system.size();
+    let solve = |x: &mut [f64]| {
+        factor.solve(x);
+        Ok(())
+    };
+    modes_of(system.free(), |x| system.apply(x), solve, masses, dimension, count)
+}
+
+/// [`lowest_modes`] of a stiffness on the degrees of freedom `free`, positive definite, as its product and what solves with it,
+/// several vectors one after the other.
+///
+/// # Errors
+/// As there, and those of `solve`.
+pub(super) fn modes_of(
+    free: &[usize],
+    apply: impl Fn(&[f64]) -> Vec<f64>,
+    solve: impl Fn(&mut [f64]) -> Result<()>,
+    masses: &[f64],
+    dimension: usize,
+    count: usize,
+) -> Result<Modes> {
+    let n = free.len();
     if count > n {
         return Err(Error::expected("modes", format!("at most {n}, the free degrees of freedom"), count));
     }
-    let points = || system.free().iter().map(|dof| dof / dimension);
+    let points = || free.iter().map(|dof| dof / dimension);
     if let Some(p) = points().find(|&p| !(masses[p] > 0.0 && masses[p].is_finite())) {
         return Err(Error::expected("masses", format!("a mass above zero at point {}", p + 1), masses[p]));
     }
@@ -66,16 +86,17 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
     let weigh = |block: &mut DMatrix<f64>| block.column_iter_mut().for_each(|mut y| y.component_mul_assign(&root));
     let operator = |block: &mut DMatrix<f64>| {
         weigh(block);
-        factor.solve(block.as_mut_slice());
+        solve(block.as_mut_slice())?;
         weigh(block);
+        Ok(())
     };
     let mut modes = Modes { squares: Vec::with_capacity(count), shapes: Vec::with_capacity(count) };
     for (theta, y) in largest_eigenpairs(n, count, operator)? {
         let (square, phi) = (1.0 / theta, y.component_div(&root));
-        let force = DVector::from_vec(system.apply(phi.as_slice()));
+        let force = DVector::from_vec(apply(phi.as_slice()));
         let residual = &force - y.component_mul(&root) * square;
         let mut off = residual.clone();
-        factor.solve(off.as_mut_slice());
+        solve(off.as_mut_slice())?;
         let error = (residual.dot(&off).abs() / phi.dot(&force)).sqrt();
         if !(error <= TOLERANCE) {
             let mode = modes.squares.len() + 1;
@@ -84,7 +105,7 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
         let mut shape = vec![0.0; masses.len() * dimension];
-        system.free().iter().zip(&phi).for_each(|(&dof, &x)| shape[dof] = x);
+        free.iter().zip(&phi).for_each(|(&dof, &x)| shape[dof] = x);
         modes.squares.push(square);
         modes.shapes.push(shape);
     }
@@ -100,8 +121,12 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
 /// find the others only by rounding.
 ///
 /// # Errors
-/// The operator gives numbers that are not finite.
-fn largest_eigenpairs(n: usize, count: usize, apply: impl Fn(&mut DMatrix<f64>)) -> Result<Vec<(f64, DVector<f64>)>> {
+/// The operator gives numbers that are not finite, or an error.
+fn largest_eigenpairs(
+    n: usize,
+    count: usize,
+    apply: impl Fn(&mut DMatrix<f64>) -> Result<()>,
+) -> Result<Vec<(f64, DVector<f64>)>> {
     let width = (count + SPARE).min(n);
     if count == 0 {
         return Ok(Vec::new());
@@ -114,7 +139,7 @@ fn largest_eigenpairs(n: usize, count: usize, apply: impl Fn(&mut DMatrix<f64>))
         round += 1;
         let old = basis.ncols();
         basis = beside(basis, &block);
-        apply(&mut block);
+        apply(&mut block)?;
         images = beside(images, &block);
         let m = basis.ncols();
         let products = basis.tr_mul(&block);

@@ -9,10 +9,10 @@ use nalgebra::{DMatrix, DVector};
 /// The number of steps of the Lanczos method. The ends of the spectrum, which are needed, converge first.
 const STEPS: usize = 40;
 /// An energy ratio below this is zero up to rounding: the network does not resist the motion.
-const NOTHING: f64 = 1e-9;
+pub(super) const NOTHING: f64 = 1e-9;
 /// An energy ratio below this indicates that the network is close to a mechanism: it is a hundred times softer than the
 /// body.
-const SOFT: f64 = 0.01;
+pub(super) const SOFT: f64 = 0.01;
 
 /// How a network resists the motions that a body resists.
 #[derive(Debug, Clone, PartialEq)]

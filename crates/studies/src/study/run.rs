@@ -56,8 +56,9 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     };
     let masses = scene.density().map(|density| point_masses(&mesh, density, material)).transpose();
     let masses = masses.map_err(|e| scene.at("material", e))?;
-    let linear =
-        |progress: &mut Progress| LinearBody::solve(&mesh, material.moduli(), &cases, progress).map_err(in_scene);
+    let linear = |progress: &mut Progress| {
+        LinearBody::solve(&mesh, material.moduli(), &cases, scene.solver(), progress).map_err(in_scene)
+    };
     // Only fits to the whole object need the displacements of the body.
     let needed = large.is_none() && scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
     let body = if needed { Some(linear(progress)?) } else { None };
@@ -65,7 +66,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     whole.cases = &cases;
     whole.displacements = match (&large, &body) {
         (Some(large), _) => large.complete().collect(),
-        (None, Some(body)) => body.displacements.iter().map(Some).collect(),
+        (None, Some(body)) => body.displacements().map(Some).collect(),
         (None, None) => Vec::new(),
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
@@ -101,10 +102,10 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
             for (done, fit) in fits.iter_mut().enumerate() {
                 progress(Event::stage("networks", done, count));
                 let compared = fit.kind.compared(material.moduli());
-                let answers = body.compare(&mesh, &cases, &fit.network, compared)?;
+                let answers = body.compare(&mesh, &cases, &fit.network, compared, progress).map_err(in_scene)?;
                 (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
             }
-            (body.displacements, vec![None; cases.len()], None)
+            (body.into_displacements(), vec![None; cases.len()], None)
         }
     };
     let is_linear = energy.is_none();

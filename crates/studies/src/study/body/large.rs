@@ -119,6 +119,8 @@ impl LargeBody {
                 displacement,
                 seconds_fem: self.seconds[i],
                 seconds_lem,
+                solved_fem: None,
+                solved_lem: None,
                 followed: Some(followed),
                 gauge: None,
             });

@@ -1,8 +1,11 @@
 //! The body of a scene under its loads: load cases, gauges, and the finite element solutions.
 
+mod answer;
 mod case;
 mod cases;
+mod factored;
 mod gauge;
+mod iterated;
 mod large;
 mod linear;
 

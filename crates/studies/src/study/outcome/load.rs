@@ -2,7 +2,7 @@
 
 use super::gauge::{GaugeResult, Reading};
 use crate::model::Deformation;
-use crate::solve::Ending;
+use crate::solve::{Ending, Solved};
 use crate::study::metrics::DisplacementError;
 
 /// A load of a scene, and the response of the finite elements.
@@ -51,6 +51,10 @@ pub struct LoadOutcome {
     pub seconds_fem: f64,
     /// The same time for the network, s.
     pub seconds_lem: f64,
+    /// How the equations were solved; at large deformation they are many.
+    pub solved_fem: Option<Solved>,
+    /// The same of the network.
+    pub solved_lem: Option<Solved>,
     /// At large deformation, how the load was applied to the network.
     pub followed: Option<Followed>,
     /// The gauge's reading of the network.

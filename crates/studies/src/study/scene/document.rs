@@ -15,7 +15,7 @@ use crate::file;
 use crate::material::{Energy, Material};
 use crate::mesh::Mesh;
 use crate::model::{Action, Component};
-use crate::solve::Newton;
+use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::{BodyConstants, assumed};
 use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
 use crate::study::own_name::expect_own_name;
@@ -34,6 +34,7 @@ pub struct Scene {
     supports: Vec<(Part, Option<Vec<usize>>)>,
     loads: Vec<LoadCase>,
     newton: Newton,
+    solver: StaticSolver,
     gauge: Option<Gauge>,
     motion: Option<MotionRecipe>,
     output: Output,
@@ -94,6 +95,10 @@ impl Scene {
             return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
         }
         let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
+        if entry.solver.is_some() && entry.material.law.is_some() {
+            return Err(Error::at("solver", "belongs to small deformation, found a material with a \"law\""));
+        }
+        let solver = entry.solver.map_or(Ok(StaticSolver::default()), |e| e.check().map_err(|e| e.under("solver")))?;
         let motion = entry.motion.map(|e| e.check().map_err(|e| e.under("motion"))).transpose()?;
         if motion.is_some() && entry.material.density.is_none() {
             return Err(Error::expected("material.density", "a number of kg/m³, for [motion] moves masses", "none"));
@@ -120,6 +125,7 @@ impl Scene {
             supports,
             loads,
             newton,
+            solver,
             gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
             motion,
             output: entry.output,
@@ -165,6 +171,11 @@ impl Scene {
     /// How loads are applied if the material has a law.
     pub fn newton(&self) -> Newton {
         self.newton
+    }
+
+    /// How the linear equations of the loads are solved.
+    pub fn solver(&self) -> StaticSolver {
+        self.solver
     }
 
     /// Where the modulus and the ratio of a specimen are measured, if the scene says so.

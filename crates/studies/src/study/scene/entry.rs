@@ -11,11 +11,16 @@ use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::range;
-use crate::solve::Newton;
+use crate::solve::{Newton, StaticMethod, StaticSolver};
+use crate::study::choice::choice;
 use crate::study::fits::FitEntry;
 use crate::study::sweep::SweepEntry;
 use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
+
+/// Errors that iterations may leave: below is rounding, above solves nothing.
+const LEAST_TOLERANCE: f64 = 1e-14;
+const LARGEST_TOLERANCE: f64 = 1e-3;
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -26,6 +31,7 @@ pub struct SceneFile {
     #[serde(default)]
     pub fit: Vec<FitEntry>,
     pub newton: Option<NewtonEntry>,
+    pub solver: Option<SolverEntry>,
     #[serde(default)]
     pub fix: Vec<FixEntry>,
     #[serde(default)]
@@ -69,6 +75,16 @@ pub struct NewtonEntry {
     pub tolerance: Option<f64>,
 }
 
+/// How linear equations are solved.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolverEntry {
+    #[schemars(extend("enum" = StaticMethod::NAMES))]
+    pub method: Option<String>,
+    pub tolerance: Option<f64>,
+    pub iterations: Option<usize>,
+}
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FixEntry {
@@ -109,6 +125,25 @@ impl NewtonEntry {
             return Err(Error::expected("tolerance", "a share above 0 and below 1", newton.tolerance));
         }
         Ok(newton)
+    }
+}
+
+impl SolverEntry {
+    pub fn check(self) -> Result<StaticSolver> {
+        let solver = StaticSolver::default();
+        let method = choice("method", self.method.as_deref(), solver.method, StaticMethod::named)?;
+        let given = [("tolerance", self.tolerance.is_some()), ("iterations", self.iterations.is_some())];
+        if let (StaticMethod::Cholesky, Some((key, _))) = (method, given.iter().find(|(_, given)| *given)) {
+            return Err(Error::at(*key, "belongs to iterations, found with method = \"cholesky\""));
+        }
+        let tolerance = self.tolerance.unwrap_or(solver.tolerance);
+        let iterations = self.iterations.unwrap_or(solver.iterations);
+        check_count("iterations", iterations as u64, 1, bound::ITERATIONS)?;
+        if !(LEAST_TOLERANCE..LARGEST_TOLERANCE).contains(&tolerance) {
+            let expected = format!("a share from {LEAST_TOLERANCE:e} to below {LARGEST_TOLERANCE:e}");
+            return Err(Error::expected("tolerance", expected, format!("{tolerance:?}")));
+        }
+        Ok(StaticSolver { method, tolerance, iterations })
     }
 }
 

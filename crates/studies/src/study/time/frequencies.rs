@@ -3,8 +3,10 @@
 use super::raised::{RELEASE, Raised};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies};
-use crate::solve::{System, lowest_modes};
+use crate::model::{
+    BlockStiffness, Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies,
+};
+use crate::solve::{Levels, System, lowest_modes};
 use crate::study::outcome::{FrequencyOutcome, Outcome};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
@@ -41,16 +43,28 @@ pub fn natural_frequencies(
     let total = outcome.fits.len() + 1;
     progress(Event::stage("frequencies", 0, total));
     let vibrations = Vibrations { mesh, support, masses: &masses, rigid, count };
-    let of = |name: &str, stiffness: &Entries| {
-        let found = vibrations.of(stiffness).map_err(|e| e.problem().to_string());
-        FrequencyOutcome { name: name.into(), rigid, found }
+    // Rigid motions make the stiffness singular: levels alone do not find those after them.
+    let iterates = rigid == 0 && scene.solver().iterates(mesh, 1);
+    let of = |name: &str, blocks: &dyn Fn() -> Result<BlockStiffness>, entries: &dyn Fn() -> Result<Entries>| {
+        let iterated = if iterates { vibrations.by_levels(blocks()?) } else { None };
+        let found = match iterated {
+            Some(found) => Ok(found),
+            None => vibrations.of(&entries()?).map_err(|e| e.problem().to_string()),
+        };
+        Ok(FrequencyOutcome { name: name.into(), rigid, found })
     };
-    check_body(mesh)?;
-    let mut all = vec![of("finite elements", &finite_elements(mesh, material.moduli()))];
+    let entries = || {
+        check_body(mesh)?;
+        Ok(finite_elements(mesh, material.moduli()))
+    };
+    let mut all = vec![of("finite elements", &|| BlockStiffness::of_body(mesh, material.moduli(), 1, 1), &entries)?];
     for (done, fit) in outcome.fits.iter().enumerate() {
         progress(Event::stage("frequencies", done + 1, total));
-        fit.network.check_size()?;
-        all.push(of(&fit.fit.name, &fit.network.stiffness(&mesh.points)));
+        let entries = || {
+            fit.network.check_size()?;
+            Ok(fit.network.stiffness(&mesh.points))
+        };
+        all.push(of(&fit.fit.name, &|| Ok(BlockStiffness::of_network(&fit.network, &mesh.points, None)), &entries)?);
     }
     Ok(all)
 }
@@ -65,6 +79,15 @@ struct Vibrations<'a> {
 }
 
 impl Vibrations<'_> {
+    /// Hz; `None` where the stiffness is not shown to be positive definite, or the iterations stall.
+    fn by_levels(&self, stiffness: BlockStiffness) -> Option<Vec<f64>> {
+        let levels = Levels::new(stiffness, &self.mesh.points, self.support).ok()?.ok()?;
+        if levels.prove().ok()?.is_some() {
+            return None;
+        }
+        Some(levels.lowest_modes(self.masses, self.mesh.dimension, self.count).ok()?.frequencies())
+    }
+
     /// The frequencies, Hz.
     fn of(&self, stiffness: &Entries) -> Result<Vec<f64>> {
         let d = self.mesh.dimension;

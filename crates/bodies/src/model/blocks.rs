@@ -1,0 +1,184 @@
+//! The stiffness of either model in blocks of points, made of the cells and springs without a list of entries.
+
+use super::network::{LengthSpring, Network};
+use super::size::ADVICE;
+use super::system::in_space;
+use crate::error::Result;
+use crate::material::Moduli;
+use crate::memory;
+use crate::mesh::Mesh;
+use crate::stiffness;
+use springfit_multigrid::{BlockMatrix, Groups, Pattern};
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A stiffness, N/m, of d × d blocks, one for each two points that act on each other.
+#[derive(Debug, Clone)]
+pub enum BlockStiffness {
+    /// In the plane.
+    Plane(Arc<BlockMatrix<2, 2>>),
+    /// In space.
+    Space(Arc<BlockMatrix<3, 3>>),
+}
+
+/// What solves with a stiffness, as blocks of it for each point: the levels after it, the vectors, and what is in memory while they are
+/// built. Measured in space: 33 for hexahedra, 44 for tetrahedra.
+const LEVELS: usize = 50;
+
+impl BlockStiffness {
+    /// Whether the stiffness of that mesh can be stored so: a mesh of the plane or of space, whose points can be counted in 32 bits.
+    pub fn is_of(mesh: &Mesh) -> bool {
+        (2..=3).contains(&mesh.dimension) && mesh.point_count() < u32::MAX as usize
+    }
+
+    /// The bytes of so many stiffnesses of models of a mesh, and of so many times what solves with one.
+    pub fn expected_bytes(mesh: &Mesh, models: usize, levels: usize) -> u64 {
+        bytes(&places(mesh).1, mesh.dimension, models, levels)
+    }
+
+    /// Of the finite elements, once it is known that `models` such matrices and `levels` times what solves with one fit into memory.
+    ///
+    /// # Errors
+    /// They do not; kind `Limit`.
+    pub fn of_body(mesh: &Mesh, moduli: Moduli, models: usize, levels: usize) -> Result<BlockStiffness> {
+        Ok(match mesh.dimension {
+            2 => BlockStiffness::Plane(Arc::new(body(mesh, moduli, models, levels)?)),
+            _ => BlockStiffness::Space(Arc::new(body(mesh, moduli, models, levels)?)),
+        })
+    }
+
+    /// The tangent stiffness of a network at rest, in the places of `shared` if its springs are between points that act on each other
+    /// there as well.
+    pub fn of_network(network: &Network, points: &[f64], shared: Option<&BlockStiffness>) -> BlockStiffness {
+        match (network.dimension, shared) {
+            (2, Some(BlockStiffness::Plane(shared))) => {
+                BlockStiffness::Plane(Arc::new(springs(network, points, Some(shared.pattern()))))
+            }
+            (2, _) => BlockStiffness::Plane(Arc::new(springs(network, points, None))),
+            (_, Some(BlockStiffness::Space(shared))) => {
+                BlockStiffness::Space(Arc::new(springs(network, points, Some(shared.pattern()))))
+            }
+            (_, _) => BlockStiffness::Space(Arc::new(springs(network, points, None))),
+        }
+    }
+
+    /// `K u`, `[points · dimension]`.
+    pub fn apply(&self, u: &[f64]) -> Vec<f64> {
+        fn product<const D: usize>(matrix: &BlockMatrix<D, D>, u: &[f64]) -> Vec<f64> {
+            let mut force = vec![[0.0; D]; matrix.rows()];
+            matrix.apply(u.as_chunks::<D>().0, &mut force);
+            force.into_flattened()
+        }
+        match self {
+            BlockStiffness::Plane(matrix) => product(matrix, u),
+            BlockStiffness::Space(matrix) => product(matrix, u),
+        }
+    }
+}
+
+/// The connectivity of each block of a mesh.
+struct Connectivity {
+    nodes: Vec<u32>,
+    starts: Vec<usize>,
+}
+
+impl Connectivity {
+    fn of<'a>(groups: impl Iterator<Item = &'a [usize]>) -> Connectivity {
+        let (mut nodes, mut starts) = (Vec::new(), vec![0]);
+        for group in groups {
+            nodes.extend(group.iter().map(|&point| point as u32));
+            starts.push(nodes.len());
+        }
+        Connectivity { nodes, starts }
+    }
+
+    fn groups(&self) -> Groups<'_> {
+        Groups { nodes: &self.nodes, starts: &self.starts }
+    }
+}
+
+/// The cells of each block, and the places of the stiffness of finite elements.
+fn places(mesh: &Mesh) -> (Vec<Connectivity>, Pattern) {
+    let cells: Vec<Connectivity> = mesh.blocks.iter().map(|block| Connectivity::of(block.cells())).collect();
+    let groups: Vec<Groups> = cells.iter().map(Connectivity::groups).collect();
+    let pattern = Pattern::of_groups(mesh.point_count(), &groups);
+    (cells, pattern)
+}
+
+fn bytes(pattern: &Pattern, d: usize, models: usize, levels: usize) -> u64 {
+    let blocks = pattern.len() * models + LEVELS * pattern.rows() * levels;
+    (blocks * d * d * size_of::<f64>()) as u64
+}
+
+fn body<const D: usize>(mesh: &Mesh, moduli: Moduli, models: usize, levels: usize) -> Result<BlockMatrix<D, D>> {
+    let (cells, pattern) = places(mesh);
+    let bytes = bytes(&pattern, D, models, levels);
+    memory::require("the stiffness with the levels of its multigrid", bytes, ADVICE).map_err(|e| e.at_key("mesh"))?;
+    let mut matrix = BlockMatrix::zero(Arc::new(pattern));
+    for (block, groups) in mesh.blocks.iter().zip(cells.iter().map(Connectivity::groups)) {
+        let table = &block.element.tabulation;
+        let n = table.nodes;
+        let fill = |cells: Range<usize>, entries: &mut [f64]| {
+            let own = &block.connectivity[cells.start * n..cells.end * n];
+            let mut each = entries.chunks_exact_mut((n * D).pow(2));
+            stiffness::each_cell(table, &mesh.points, own, |cell, _, geometry| {
+                let mut r = geometry.stiffness(moduli);
+                if table.dimension < D {
+                    r = in_space(table, &mesh.points, &own[cell * n..(cell + 1) * n], &r);
+                }
+                // Symmetric: by columns is by rows.
+                each.next().into_iter().for_each(|entries| entries.copy_from_slice(r.as_slice()));
+            })
+            .expect("a mesh holds only cells with a volume");
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = matrix.add(&groups, fill);
+    }
+    Ok(matrix)
+}
+
+fn springs<const D: usize>(network: &Network, points: &[f64], shared: Option<&Arc<Pattern>>) -> BlockMatrix<D, D> {
+    let pairs = Connectivity::of(network.lengths.iter().map(|spring| &spring.points[..]));
+    let others = Connectivity::of(network.others.iter().map(|spring| &spring.points[..]));
+    let groups = [pairs.groups(), others.groups()];
+    let has_all = |pattern: &&Arc<Pattern>| {
+        let has = |points: &[usize]| points.iter().all(|&i| points.iter().all(|&j| pattern.place(i, j).is_some()));
+        let lengths = network.lengths.iter().all(|spring| has(&spring.points));
+        lengths && network.others.iter().all(|spring| has(&spring.points))
+    };
+    let pattern = match shared.filter(has_all) {
+        Some(shared) => shared.clone(),
+        None => Arc::new(Pattern::of_groups(points.len() / D, &groups)),
+    };
+    let mut matrix = BlockMatrix::zero(pattern);
+    let lengths = |springs: Range<usize>, entries: &mut [f64]| {
+        let own = network.lengths[springs].iter().zip(entries.chunks_exact_mut(4 * D * D));
+        own.for_each(|(spring, entries)| length::<D>(spring, points, entries));
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = matrix.add(&groups[0], lengths);
+    let measures = |springs: Range<usize>, mut entries: &mut [f64]| {
+        for spring in &network.others[springs] {
+            let (own, rest) = entries.split_at_mut((spring.points.len() * D).pow(2));
+            spring.tangent(points, D, own);
+            entries = rest;
+        }
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = matrix.add(&groups[1], measures);
+    matrix
+}
+
+/// `k ((1 − L₀/ℓ) I + L₀/ℓ n nᵀ)` between two points, with its signs.
+fn length<const D: usize>(spring: &LengthSpring, points: &[f64], entries: &mut [f64]) {
+    let along = spring.along(points, D);
+    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let sign = if a == b { 1.0 } else { -1.0 };
+        for k in 0..D {
+            for l in 0..D {
+                entries[(a * D + k) * 2 * D + b * D + l] = sign * spring.constant * along.entry(k, l);
+            }
+        }
+    }
+}

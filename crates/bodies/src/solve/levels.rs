@@ -1,0 +1,287 @@
+//! Linear statics by conjugate gradients with smoothed-aggregation multigrid: for equations too large to be factorised.
+
+use super::method::StaticSolver;
+use super::modes::{Modes, modes_of};
+use super::stability::{NOTHING, SOFT, Stability, Standing};
+use crate::error::{Error, ErrorKind, Result};
+use crate::model::{BlockStiffness, Support};
+use springfit_multigrid::{Definiteness, End, Event, Extreme, Fault, Multigrid, Settings, Solution, Watch, sizes};
+use springfit_multigrid::{plane_motions, space_motions};
+use std::ops::ControlFlow;
+
+/// The chance of a wrong "positive definite" that is let pass.
+const DOUBT: f64 = 1e-12;
+/// Steps of the proof at most.
+const STEPS: usize = 3000;
+/// Steps to the least ratio of energies, and to the largest, which decides nothing.
+const LEAST_STEPS: usize = 100;
+const LARGEST_STEPS: usize = 8;
+
+/// Of the solutions in the iteration for modes.
+const MODE_TOLERANCE: f64 = 1e-12;
+
+/// Called with the share of a solution that is done.
+pub type Share<'a> = dyn FnMut(f64) + 'a;
+
+/// The equations of the free degrees of freedom with the levels that solve them.
+#[derive(Debug)]
+pub struct Levels {
+    stiffness: BlockStiffness,
+    hierarchy: Hierarchy,
+    prescribed: Vec<Option<f64>>,
+}
+
+#[derive(Debug)]
+enum Hierarchy {
+    Plane(Multigrid<2, 3>),
+    Space(Multigrid<3, 6>),
+}
+
+/// How equations were solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solved {
+    /// `cholesky` or `lu`; `multigrid`, or `minres` with the multigrid of the finite elements where a network is not positive definite.
+    pub method: &'static str,
+    /// Free degrees of freedom.
+    pub unknowns: usize,
+    /// None with a factor.
+    pub iterations: Option<usize>,
+    /// `‖f − K u‖/‖f‖`.
+    pub residual: f64,
+    /// `nodes × unknowns of each` of all levels, the finest first.
+    pub levels: Option<String>,
+}
+
+/// `Ok` with the levels, or with the motion that shows that the stiffness is not positive definite, on all degrees of freedom.
+pub type Built = Result<std::result::Result<Levels, Vec<f64>>>;
+
+impl Levels {
+    /// `points` are `[points × dimension]`, m.
+    ///
+    /// # Errors
+    /// The points do not group: kind `Limit`.
+    pub fn new(stiffness: BlockStiffness, points: &[f64], support: &Support) -> Built {
+        let held: Vec<bool> = support.prescribed.iter().map(Option::is_some).collect();
+        let settings = Settings::default();
+        let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
+        let built = match &stiffness {
+            BlockStiffness::Plane(matrix) => {
+                Multigrid::new(matrix.clone(), &plane_motions(points, &held), &held, &settings, watch)
+                    .map(Hierarchy::Plane)
+            }
+            BlockStiffness::Space(matrix) => {
+                Multigrid::new(matrix.clone(), &space_motions(points, &held), &held, &settings, watch)
+                    .map(Hierarchy::Space)
+            }
+        };
+        match built {
+            Ok(hierarchy) => Ok(Ok(Levels { stiffness, hierarchy, prescribed: support.prescribed.clone() })),
+            Err(Fault::NotPositive(motion)) => Ok(Err(motion.displacement)),
+            Err(fault) => Err(limit(&fault)),
+        }
+    }
+
+    /// The stiffness of all degrees of freedom.
+    pub fn stiffness(&self) -> &BlockStiffness {
+        &self.stiffness
+    }
+
+    /// The number of free degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.prescribed.iter().filter(|u| u.is_none()).count()
+    }
+
+    /// The displacements of all degrees of freedom under the nodal forces f, `[points · dimension]`.
+    ///
+    /// # Errors
+    /// The iterations stall: kind `Limit`. The stiffness is not positive definite: kind `Infeasible`.
+    pub fn solve(&self, f: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<(Vec<f64>, Solved)> {
+        let (mut displacement, force) = self.loaded(&self.stiffness, f);
+        let found = self.found(&force, solver, share)?;
+        displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
+        Ok((displacement, self.told("multigrid", &found)))
+    }
+
+    /// What is free, with all else zero.
+    fn found(&self, force: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<Solution> {
+        let target = solver.tolerance.ln();
+        let watch: &mut Watch = &mut |event| {
+            if let Event::Iteration { residual, .. } = event {
+                share((residual.ln() / target).clamp(0.0, 1.0));
+            }
+            ControlFlow::Continue(())
+        };
+        let found = match &self.hierarchy {
+            Hierarchy::Plane(levels) => levels.solve(force, solver.tolerance, solver.iterations, watch),
+            Hierarchy::Space(levels) => levels.solve(force, solver.tolerance, solver.iterations, watch),
+        };
+        found.map_err(|fault| limit(&fault))
+    }
+
+    /// The displacements of another model with the same supports, whose stiffness is not positive definite, under the nodal forces f, by
+    /// minimal residuals with these levels.
+    ///
+    /// # Errors
+    /// The iterations stall: kind `Limit`.
+    pub fn solve_other(&self, other: &BlockStiffness, f: &[f64], solver: &StaticSolver) -> Result<(Vec<f64>, Solved)> {
+        let (mut displacement, force) = self.loaded(other, f);
+        let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
+        let found = match (&self.hierarchy, other) {
+            (Hierarchy::Plane(levels), BlockStiffness::Plane(other)) => {
+                levels.solve_indefinite(other, &force, solver.tolerance, solver.iterations, watch)
+            }
+            (Hierarchy::Space(levels), BlockStiffness::Space(other)) => {
+                levels.solve_indefinite(other, &force, solver.tolerance, solver.iterations, watch)
+            }
+            _ => return Err(Error::new("expected stiffnesses of one dimension, found two")),
+        };
+        let found = found.map_err(|fault| limit(&fault))?;
+        displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
+        Ok((displacement, self.told("minres", &found)))
+    }
+
+    /// The `count` lowest natural vibrations ([`super::lowest_modes`]), each product with the inverse by iterations; `masses` in kg,
+    /// `[points]`. The stiffness is known to be positive definite.
+    ///
+    /// # Errors
+    /// As there, and the iterations stall: kind `Limit`.
+    pub fn lowest_modes(&self, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+        let free: Vec<usize> = (0..self.prescribed.len()).filter(|dof| self.prescribed[*dof].is_none()).collect();
+        let spread = |x: &[f64]| {
+            let mut all = vec![0.0; self.prescribed.len()];
+            free.iter().zip(x).for_each(|(&dof, x)| all[dof] = *x);
+            all
+        };
+        let gather = |all: &[f64], x: &mut [f64]| free.iter().zip(x).for_each(|(&dof, x)| *x = all[dof]);
+        let apply = |x: &[f64]| {
+            let mut product = x.to_vec();
+            gather(&self.stiffness.apply(&spread(x)), &mut product);
+            product
+        };
+        let solver = StaticSolver { tolerance: MODE_TOLERANCE, ..StaticSolver::default() };
+        let solve = |x: &mut [f64]| {
+            for x in x.chunks_exact_mut(free.len().max(1)) {
+                gather(&self.found(&spread(x), &solver, &mut |_| ())?.displacement, x);
+            }
+            Ok(())
+        };
+        modes_of(&free, apply, solve, masses, dimension, count)
+    }
+
+    /// The given displacements, and the forces without those that these cause.
+    fn loaded(&self, stiffness: &BlockStiffness, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let displacement: Vec<f64> = self.prescribed.iter().map(|u| u.unwrap_or(0.0)).collect();
+        let mut force = f.to_vec();
+        if displacement.iter().any(|u| *u != 0.0) {
+            let reaction = stiffness.apply(&displacement);
+            force.iter_mut().zip(reaction).for_each(|(f, r)| *f -= r);
+        }
+        (displacement, force)
+    }
+
+    fn told(&self, method: &'static str, solution: &Solution) -> Solved {
+        let levels = match &self.hierarchy {
+            Hierarchy::Plane(levels) => levels.levels(),
+            Hierarchy::Space(levels) => levels.levels(),
+        };
+        Solved {
+            method,
+            unknowns: self.size(),
+            iterations: Some(solution.iterations),
+            residual: solution.residual,
+            levels: Some(sizes(levels)),
+        }
+    }
+
+    /// That no motion is without energy, but with a chance of 1e-12; the motion if there is one.
+    ///
+    /// # Errors
+    /// It cannot be decided: kind `Limit`.
+    pub fn prove(&self) -> Result<Option<Vec<f64>>> {
+        let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
+        let found = match &self.hierarchy {
+            Hierarchy::Plane(levels) => levels.definiteness(DOUBT, STEPS, watch),
+            Hierarchy::Space(levels) => levels.definiteness(DOUBT, STEPS, watch),
+        };
+        match found.map_err(|fault| limit(&fault))? {
+            Definiteness::Positive { .. } => Ok(None),
+            Definiteness::NotPositive { motion, .. } => Ok(Some(motion.displacement)),
+            Definiteness::Undecided { least, doubt, iterations } => Err(Error::new(format!(
+                "whether the stiffness is positive definite is not decided after {iterations} iterations: its least eigenvalue \
+                 relative to the multigrid is {least:.1e}, the chance of one below zero {doubt:.1e}; method = \"cholesky\" decides it"
+            ))
+            .of_kind(ErrorKind::Limit)),
+        }
+    }
+
+    fn extreme(
+        &self,
+        end: End,
+        measured: &BlockStiffness,
+        by: &BlockStiffness,
+        start: Option<&[f64]>,
+        steps: usize,
+    ) -> Result<Extreme> {
+        let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
+        let found = match (&self.hierarchy, measured, by) {
+            (Hierarchy::Plane(levels), BlockStiffness::Plane(measured), BlockStiffness::Plane(by)) => {
+                levels.extreme(end, measured, by, start, steps, watch)
+            }
+            (Hierarchy::Space(levels), BlockStiffness::Space(measured), BlockStiffness::Space(by)) => {
+                levels.extreme(end, measured, by, start, steps, watch)
+            }
+            _ => return Err(Error::new("expected stiffnesses of one dimension, found two")),
+        };
+        found.map_err(|fault| limit(&fault))
+    }
+}
+
+/// The extreme ratios of the energies of a network, with its levels or the motion that shows that it has none, and of a body.
+///
+/// The network is proved to be positive definite, or not ([`Multigrid::definiteness`]); then the least ratio is sought among all motions,
+/// with the levels of the network, or of the body where the network has none. A ratio is always that of a motion.
+///
+/// # Errors
+/// It is not decided whether the network is positive definite, or numbers are not finite: kind `Limit`.
+pub fn compare_levels(
+    network: std::result::Result<&Levels, &[f64]>,
+    stiffness: &BlockStiffness,
+    body: &Levels,
+) -> Result<Stability> {
+    let own = body.stiffness();
+    let free = |motion: Vec<f64>| {
+        let pairs = motion.into_iter().zip(&body.prescribed);
+        pairs.filter_map(|(u, held)| held.is_none().then_some(u)).collect::<Vec<f64>>()
+    };
+    let shown = match network {
+        _ if body.size() == 0 => {
+            return Ok(Stability { standing: Standing::Stable, energy_ratio: [1.0; 2], softest: Vec::new() });
+        }
+        Ok(levels) => levels.prove()?,
+        Err(motion) => Some(motion.to_vec()),
+    };
+    let least = match (network, &shown) {
+        (Ok(levels), None) => levels.extreme(End::Least, stiffness, own, None, LEAST_STEPS)?,
+        (_, start) => body.extreme(End::Least, stiffness, own, start.as_deref(), LEAST_STEPS)?,
+    };
+    let largest = body.extreme(End::Largest, stiffness, own, None, LARGEST_STEPS)?;
+    let standing = match least.quotient {
+        ratio if !(ratio.abs() >= NOTHING) => Standing::Singular,
+        ratio if ratio < 0.0 || shown.is_some() => Standing::Indefinite,
+        ratio if ratio < SOFT => Standing::Soft,
+        _ => Standing::Stable,
+    };
+    let energy_ratio = [least.quotient, largest.quotient.max(least.quotient)];
+    Ok(Stability { standing, energy_ratio, softest: free(least.displacement) })
+}
+
+/// An end of the iterations that says nothing about the model, or one that does.
+fn limit(fault: &Fault) -> Error {
+    let kind = match fault {
+        Fault::NotPositive(_) => ErrorKind::Infeasible,
+        Fault::Interrupted | Fault::Stagnant { .. } | Fault::Stalled { .. } | Fault::Size { .. } | Fault::NotFinite => {
+            ErrorKind::Limit
+        }
+    };
+    Error::new(fault.to_string()).of_kind(kind)
+}

@@ -1,0 +1,145 @@
+//! Whether a matrix is positive definite, by Lanczos' method with the levels.
+
+use crate::block::Block;
+use crate::fault::{Fault, Motion};
+use crate::gradients::Lanczos;
+use crate::hierarchy::Multigrid;
+use crate::parallel::{combine, dot};
+use crate::random::Random;
+use crate::settings::{Event, Watch};
+use std::f64::consts::PI;
+
+/// Of `M⁻¹ A`, this is a zero with rounding.
+const NOTHING: f64 = 1e-10;
+/// The largest eigenvalue of `M⁻¹ A` is at most this multiple of the largest that was met, and not below 1, which it is without rounding.
+const MARGIN: f64 = 1.05;
+/// Steps between two looks at the eigenvalues.
+const LOOK: usize = 4;
+
+/// What is known about the least eigenvalue of a matrix.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Definiteness {
+    /// No eigenvalue is zero or below it, but with a chance of `doubt`: that of a random vector which is so nearly orthogonal to the motion
+    /// of such an eigenvalue that `iterations` steps do not find it.
+    Positive {
+        /// The chance of an eigenvalue at or below zero.
+        doubt: f64,
+        /// The steps of Lanczos' method.
+        iterations: usize,
+    },
+    /// A motion without energy above zero, up to rounding.
+    NotPositive {
+        /// What shows it.
+        motion: Motion,
+        /// The steps of Lanczos' method.
+        iterations: usize,
+    },
+    /// The steps were too few.
+    Undecided {
+        /// The least eigenvalue of `M⁻¹ A` that they met.
+        least: f64,
+        /// The chance of one at or below zero.
+        doubt: f64,
+        /// The steps of Lanczos' method.
+        iterations: usize,
+    },
+}
+
+impl<const D: usize, const M: usize> Multigrid<D, M> {
+    /// Whether the matrix is positive definite on what is not held, with at most the chance `doubt` of a wrong "positive".
+    ///
+    /// A is positive definite if `M⁻¹ A` is (Sylvester's law), M the V-cycle, which is positive. Let its eigenvalues be at most c, θ the
+    /// least Ritz value of k steps of Lanczos' method from `v = M^(−½) r`, and u a unit eigenvector of an eigenvalue that is not above zero.
+    /// Chebyshev's polynomial of the degree k − 1 on [θ, c] in Rayleigh's quotient gives
+    ///
+    /// `(u·v)²/‖v‖² ≤ ε² = (c − θ) / (θ T²_(k−1)((c + θ)/(c − θ)))`
+    ///
+    /// (as in Kuczyński, Woźniakowski, SIAM J. Matrix Anal. Appl. 13, 1992). With `r = L g`, `L Lᵀ` the blocks of the diagonal and g
+    /// normally distributed, `u·v` is so too, with a variance of at least `(1 − q²)/Λ` of the smoother alone, Λ the largest eigenvalue
+    /// of `D⁻¹ A`. Hence the chance of an eigenvalue that stays unseen is at most `√(2/π) ε √(rᵀ M⁻¹ r Λ/(1 − q²))`.
+    ///
+    /// # Errors
+    /// The watch broke off, or numbers are not finite.
+    pub fn definiteness(&self, doubt: f64, steps: usize, watch: &mut Watch) -> Result<Definiteness, Fault> {
+        let rows = self.rows();
+        let mut room = self.workspace();
+        let mut random = Random::new(0x5eed);
+        let mut r: Vec<[f64; D]> = (0..rows)
+            .map(|row| {
+                let normal: [f64; D] = std::array::from_fn(|_| random.normal());
+                root_product(&self.first.matrix.diagonal(row), &self.is_held[row].map(|held| !held), &normal)
+            })
+            .collect();
+        let mut z = vec![[0.0; D]; rows];
+        self.apply(&r, &mut z, &mut room);
+        let (mut p, mut ap) = (z.clone(), z.clone());
+        let mut along = dot(&r, &z);
+        if along == 0.0 {
+            return Ok(Definiteness::Positive { doubt: 0.0, iterations: 0 });
+        }
+        let first = along;
+        let smoother = &self.first.smoother;
+        let weight = (2.0 / PI * first * smoother.upper / (1.0 - smoother.damping())).sqrt();
+        let mut t = Lanczos::default();
+        let (mut least, mut chance) = (1.0, 1.0);
+        for k in 1..=steps {
+            self.matrix().apply(&p, &mut ap);
+            let energy = dot(&p, &ap);
+            if !(energy > 0.0) {
+                return match self.not_positive(&p, energy) {
+                    Fault::NotPositive(motion) => Ok(Definiteness::NotPositive { motion, iterations: k }),
+                    other => Err(other),
+                };
+            }
+            let step = along / energy;
+            combine(&mut r, 1.0, &ap, -step);
+            self.mask(&mut r);
+            self.apply(&r, &mut z, &mut room);
+            let next = dot(&r, &z);
+            t.step(step, next / along);
+            if watch(Event::Iteration { number: k, residual: (next / first).max(0.0).sqrt() }).is_break() {
+                return Err(Fault::Interrupted);
+            }
+            if k % LOOK == 0 || k == steps || !(next > 0.0) {
+                let [low, high] = t.matrix.extremes().unwrap_or([1.0; 2]);
+                let bound = (MARGIN * high).max(1.0);
+                least = low;
+                // The whole space is seen where nothing is left.
+                chance = if next > 0.0 { weight * unseen(low, bound, k) } else { 0.0 };
+                if low <= NOTHING {
+                    // A zero with rounding: the direction of least energy is the last one, or near it.
+                    return match self.not_positive(&p, energy) {
+                        Fault::NotPositive(motion) => Ok(Definiteness::NotPositive { motion, iterations: k }),
+                        other => Err(other),
+                    };
+                }
+                if chance <= doubt {
+                    return Ok(Definiteness::Positive { doubt: chance, iterations: k });
+                }
+            }
+            combine(&mut p, next / along, &z, 1.0);
+            along = next;
+        }
+        Ok(Definiteness::Undecided { least, doubt: chance.min(1.0), iterations: steps })
+    }
+}
+
+/// ε of the bound.
+fn unseen(theta: f64, c: f64, k: usize) -> f64 {
+    let argument = ((c + theta) / (c - theta).max(f64::MIN_POSITIVE)).acosh();
+    // cosh overflows late; its logarithm does not.
+    let log = argument * (k - 1) as f64 - 2.0_f64.ln();
+    ((c - theta).max(0.0) / theta).sqrt() * (-log.max(0.0)).exp()
+}
+
+/// `L g`, with `L Lᵀ` the block on what is free.
+fn root_product<const D: usize>(a: &Block<D, D>, free: &[bool; D], g: &[f64; D]) -> [f64; D] {
+    let mut l = [[0.0; D]; D];
+    for i in (0..D).filter(|i| free[*i]) {
+        for j in (0..=i).filter(|j| free[*j]) {
+            let rest = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = if i == j { rest.max(0.0).sqrt() } else { rest / l[j][j] };
+        }
+    }
+    std::array::from_fn(|i| (0..D).map(|j| l[i][j] * g[j]).sum())
+}

@@ -1,0 +1,130 @@
+//! One level: its matrix, its smoother, and the way to the next one.
+
+use crate::aggregation::aggregates;
+use crate::block::{Block, add_transposed_product, inverse, softest};
+use crate::galerkin::galerkin;
+use crate::matrix::BlockMatrix;
+use crate::parallel::{PIECE, vectorized};
+use crate::prolongator::prolongator;
+use crate::settings::{LevelSize, Settings};
+use crate::smoother::{Room, Smoother};
+use crate::tentative::tentative;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Groups that leave more than this share of the nodes are none.
+const COARSER: f64 = 0.7;
+
+#[derive(Debug)]
+pub(crate) struct Level<const R: usize, const C: usize> {
+    pub matrix: Arc<BlockMatrix<R, R>>,
+    pub smoother: Smoother<R>,
+    pub prolongator: BlockMatrix<R, C>,
+    rows_of: Vec<usize>,
+    places: Vec<[u32; 2]>,
+}
+
+/// What the next level is built of.
+pub(crate) struct Next<const C: usize> {
+    pub matrix: Arc<BlockMatrix<C, C>>,
+    pub motions: Vec<Block<C, C>>,
+    pub is_held: Vec<[bool; C]>,
+}
+
+/// D⁻¹ of a level; a motion of one node, on the level, that shows that it is not positive.
+pub(crate) fn inverses<const N: usize>(
+    a: &BlockMatrix<N, N>,
+    is_held: &[[bool; N]],
+) -> Result<Vec<Block<N, N>>, Vec<[f64; N]>> {
+    let free = |row: usize| is_held[row].map(|held| !held);
+    let all: Vec<Option<Block<N, N>>> =
+        (0..a.rows()).into_par_iter().map(|row| inverse(&a.diagonal(row), &free(row))).collect();
+    if let Some(row) = all.iter().position(Option::is_none) {
+        let mut motion = vec![[0.0; N]; a.rows()];
+        motion[row] = softest(&a.diagonal(row), &free(row));
+        return Err(motion);
+    }
+    Ok(all.into_iter().flatten().collect())
+}
+
+pub(crate) fn size<const N: usize>(a: &BlockMatrix<N, N>) -> LevelSize {
+    LevelSize { nodes: a.rows(), width: N, blocks: a.pattern().len() }
+}
+
+impl<const R: usize, const C: usize> Level<R, C> {
+    /// `None` where the nodes do not group; an error is a motion that shows that the matrix is not positive.
+    #[allow(clippy::type_complexity)]
+    pub fn new(
+        matrix: Arc<BlockMatrix<R, R>>,
+        motions: &[Block<R, C>],
+        is_held: &[[bool; R]],
+        settings: &Settings,
+        depth: i32,
+    ) -> Result<Option<(Level<R, C>, Next<C>)>, Vec<[f64; R]>> {
+        let inverse = inverses(&matrix, is_held)?;
+        let all_held: Vec<bool> = is_held.iter().map(|held| held.iter().all(|h| *h)).collect();
+        let free = all_held.iter().filter(|held| !**held).count();
+        let mut groups = aggregates(&matrix, &all_held, settings.threshold * 0.5_f64.powi(depth));
+        if groups.count as f64 > COARSER * free as f64 {
+            groups = aggregates(&matrix, &all_held, 0.0);
+        }
+        if groups.count as f64 > COARSER * free as f64 {
+            return Ok(None);
+        }
+        let smoother = Smoother::new(&matrix, inverse, settings.degree, settings.ratio);
+        let tentative = tentative(&groups, motions);
+        let omega = 4.0 / 3.0 / smoother.upper;
+        let prolongator = prolongator(&matrix, &smoother.inverse, omega, &groups, &tentative);
+        let (rows_of, places) = prolongator.pattern.transposed();
+        let coarse = Arc::new(galerkin(&matrix, &prolongator, &rows_of, &places));
+        let next = Next { matrix: coarse, motions: tentative.motions, is_held: tentative.is_held };
+        Ok(Some((Level { matrix, smoother, prolongator, rows_of, places }, next)))
+    }
+
+    /// `y ← Pᵀ r`.
+    fn restrict(&self, r: &[[f64; R]], y: &mut [[f64; C]]) {
+        let piece = PIECE / 8;
+        y.par_chunks_mut(piece).enumerate().for_each(|(part, y)| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (coarse, y) in (part * piece..).zip(y) {
+                        *y = [0.0; C];
+                        for &[row, at] in &self.places[self.rows_of[coarse]..self.rows_of[coarse + 1]] {
+                            add_transposed_product(y, &self.prolongator.values[at as usize], &r[row as usize]);
+                        }
+                    }
+                },
+            );
+        });
+    }
+
+    /// `x ← P y`.
+    pub fn prolong(&self, y: &[[f64; C]], x: &mut [[f64; R]]) {
+        self.prolongator.apply(y, x);
+    }
+
+    /// One V-cycle from zero for the right hand side in `room.residual`; `solve` replaces the right hand side of the next level, its
+    /// first argument, by a solution in its second.
+    pub fn cycle(
+        &self,
+        x: &mut [[f64; R]],
+        room: &mut Room<R>,
+        force: &mut [[f64; C]],
+        motion: &mut [[f64; C]],
+        solve: impl FnOnce(&mut [[f64; C]], &mut [[f64; C]]),
+    ) {
+        x.fill([0.0; R]);
+        self.smoother.smooth(&self.matrix, x, room, true);
+        self.restrict(&room.residual, force);
+        solve(force, motion);
+        self.prolong(motion, &mut room.next);
+        let Room { residual, next, .. } = room;
+        let add = |(x, next): (&mut [[f64; R]], &[[f64; R]])| {
+            x.as_flattened_mut().iter_mut().zip(next.as_flattened()).for_each(|(x, p)| *x += p);
+        };
+        x.par_chunks_mut(PIECE).zip(next.par_chunks(PIECE)).for_each(add);
+        self.matrix.each_row(residual, next, |r, product| (0..R).for_each(|k| r[k] -= product[k]));
+        self.smoother.smooth(&self.matrix, x, room, false);
+    }
+}

@@ -1,0 +1,36 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+mod aggregation;
+mod assembly;
+mod block;
+mod bottom;
+mod definiteness;
+mod extreme;
+mod fault;
+mod galerkin;
+mod gradients;
+mod hierarchy;
+mod level;
+mod matrix;
+mod minres;
+mod parallel;
+mod pattern;
+mod prolongator;
+mod random;
+mod rigid;
+mod settings;
+mod smoother;
+mod tentative;
+mod tridiagonal;
+
+pub use block::Block;
+pub use definiteness::Definiteness;
+pub use extreme::{End, Extreme};
+pub use fault::{Fault, Motion, sizes};
+pub use gradients::Solution;
+pub use hierarchy::{Multigrid, Workspace};
+pub use matrix::BlockMatrix;
+pub use pattern::{Groups, Pattern};
+pub use rigid::{plane_motions, space_motions};
+pub use settings::{Event, LevelSize, Settings, Watch, unwatched};

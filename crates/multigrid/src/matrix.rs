@@ -1,0 +1,91 @@
+//! Matrices of dense blocks, stored row by row.
+
+use crate::block::{Block, zero};
+use crate::parallel::{PIECE, vectorized};
+use crate::pattern::Pattern;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A matrix of R × C blocks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockMatrix<const R: usize, const C: usize> {
+    pub(crate) pattern: Arc<Pattern>,
+    pub(crate) values: Vec<Block<R, C>>,
+}
+
+impl<const R: usize, const C: usize> BlockMatrix<R, C> {
+    /// All entries zero.
+    pub fn zero(pattern: Arc<Pattern>) -> BlockMatrix<R, C> {
+        let values = vec![zero(); pattern.len()];
+        BlockMatrix { pattern, values }
+    }
+
+    /// Which blocks are stored.
+    pub fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
+    }
+
+    /// The blocks in the order of the pattern's columns.
+    pub fn values(&self) -> &[Block<R, C>] {
+        &self.values
+    }
+
+    /// As [`BlockMatrix::values`], to be changed.
+    pub fn values_mut(&mut self) -> &mut [Block<R, C>] {
+        &mut self.values
+    }
+
+    /// Rows of blocks.
+    pub fn rows(&self) -> usize {
+        self.pattern.rows()
+    }
+
+    /// Bytes of the matrix.
+    pub fn bytes(&self) -> usize {
+        self.values.len() * (size_of::<Block<R, C>>() + size_of::<u32>())
+            + self.pattern.starts.len() * size_of::<usize>()
+    }
+
+    /// `Σ_j A_ij x_j`.
+    #[inline(always)]
+    pub(crate) fn row_product(&self, row: usize, x: &[[f64; C]]) -> [f64; R] {
+        let range = self.pattern.starts[row]..self.pattern.starts[row + 1];
+        // A sum for each entry of a block: no addition waits for another.
+        let mut sums = zero::<R, C>();
+        for (block, &column) in self.values[range.clone()].iter().zip(&self.pattern.columns[range]) {
+            let x = &x[column as usize];
+            for i in 0..R {
+                for j in 0..C {
+                    sums[i][j] += block[i][j] * x[j];
+                }
+            }
+        }
+        sums.map(|row| row.iter().sum())
+    }
+
+    /// `y ← A x`.
+    pub fn apply(&self, x: &[[f64; C]], y: &mut [[f64; R]]) {
+        self.each_row(y, x, |y, product| *y = product);
+    }
+
+    /// Calls `set(y_i, (A x)_i)` for each row.
+    pub(crate) fn each_row(&self, y: &mut [[f64; R]], x: &[[f64; C]], set: impl Fn(&mut [f64; R], [f64; R]) + Sync) {
+        y.par_chunks_mut(PIECE).enumerate().for_each(|(piece, y)| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (row, y) in (piece * PIECE..).zip(y) {
+                        set(y, self.row_product(row, x));
+                    }
+                },
+            );
+        });
+    }
+}
+
+impl<const N: usize> BlockMatrix<N, N> {
+    /// The block of the diagonal.
+    pub fn diagonal(&self, row: usize) -> Block<N, N> {
+        self.pattern.place(row, row).map_or(zero(), |at| self.values[at])
+    }
+}

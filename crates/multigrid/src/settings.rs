@@ -1,0 +1,55 @@
+//! How a hierarchy is built and used.
+
+use std::ops::ControlFlow;
+
+/// How a hierarchy is built and used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Nodes are strongly coupled above this share, `‖A_ij‖ > threshold √(‖A_ii‖ ‖A_jj‖)`; halved from level to level.
+    pub threshold: f64,
+    /// Degree of the smoothing polynomial, before and after the correction by the next level.
+    pub degree: usize,
+    /// The polynomial damps eigenvalues of `D⁻¹ A` down to the largest over this.
+    pub ratio: f64,
+    /// Unknowns of the last level, which is factorised densely, at most.
+    pub dense: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { threshold: 0.08, degree: 2, ratio: 12.0, dense: 900 }
+    }
+}
+
+/// The size of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LevelSize {
+    /// Its nodes.
+    pub nodes: usize,
+    /// Unknowns of each node.
+    pub width: usize,
+    /// Blocks of its matrix.
+    pub blocks: usize,
+}
+
+/// What has been done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Event {
+    /// A level of the hierarchy is built.
+    Level(LevelSize),
+    /// An iteration is done.
+    Iteration {
+        /// Counted from 1.
+        number: usize,
+        /// As a share of that at the start, in the norm of the inverse preconditioner.
+        residual: f64,
+    },
+}
+
+/// Hears of each level and iteration, and ends the work where it breaks.
+pub type Watch<'a> = dyn FnMut(Event) -> ControlFlow<()> + 'a;
+
+/// Hears nothing and ends nothing.
+pub fn unwatched(_: Event) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}

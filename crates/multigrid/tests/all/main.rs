@@ -1,0 +1,6 @@
+//! Truths about the levels and what they solve.
+
+mod definite;
+mod elastic;
+mod matrices;
+mod solutions;

@@ -1,0 +1,50 @@
+//! What the solvers of a body at small deformation answer, whichever way they solve.
+
+use super::case::Case;
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::Mesh;
+use crate::solve::Solved;
+use crate::study::metrics::SOLVED;
+
+/// The answer of the finite elements to one load.
+pub(super) struct BodyAnswer {
+    pub displacement: Vec<f64>,
+    /// J; see [`Case::work`].
+    pub work: Option<f64>,
+    pub seconds: f64,
+    pub solved: Solved,
+}
+
+/// The answer of a network to one load.
+pub(super) struct NetworkAnswer {
+    pub displacement: Option<Vec<f64>>,
+    /// J; see [`Case::work`].
+    pub work: Option<f64>,
+    pub seconds: f64,
+    pub solved: Option<Solved>,
+}
+
+/// For each load the first load with the same support, whose equations it shares.
+pub(super) fn shared(cases: &[Case]) -> Vec<usize> {
+    let first = |case: &Case| cases.iter().position(|c| c.support == case.support).unwrap_or(0);
+    cases.iter().map(first).collect()
+}
+
+/// # Errors
+/// More of the forces is left than an answer may leave: kind `Limit`.
+pub(super) fn check_residual(residual: f64, case: &Case) -> Result<()> {
+    if residual <= SOLVED {
+        return Ok(());
+    }
+    let expected = format!("equations that can be solved to {SOLVED:.0e} of the forces");
+    let found = format!("{residual:.1e} left under load \"{}\"", case.name);
+    Err(Error::expected("mesh", expected, found).of_kind(ErrorKind::Limit))
+}
+
+/// Of finite elements.
+pub(super) fn not_definite(mesh: &Mesh) -> Error {
+    let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
+    let bending = "; surfaces and curves resist no bending, so hold their points across them";
+    let embedded = mesh.cell_dimension() < mesh.dimension;
+    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" })).of_kind(ErrorKind::Infeasible)
+}

@@ -1,0 +1,126 @@
+//! The loads of a scene at small deformation by sparse factors: one for each model and support.
+
+use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
+use super::case::Case;
+use crate::error::Result;
+use crate::material::Moduli;
+use crate::mesh::Mesh;
+use crate::model::{Network, check_body, finite_elements};
+use crate::solve::{Factor, Solved, Stability, Standing, System, compare_energies};
+use crate::study::metrics::{SOLVED, square};
+use crate::study::progress::{Event, Progress};
+use std::time::Instant;
+
+/// The finite elements under each support, factorised.
+#[derive(Default)]
+pub(super) struct Factored {
+    pub systems: Vec<(System, Factor)>,
+    /// Of each load, into these.
+    pub system_of: Vec<usize>,
+}
+
+impl Factored {
+    /// # Errors
+    /// Some motion has no stiffness, the factor does not fit into memory, or the equations are too badly conditioned.
+    pub fn solve(
+        mesh: &Mesh,
+        moduli: Moduli,
+        cases: &[Case],
+        progress: &mut Progress,
+    ) -> Result<(Factored, Vec<BodyAnswer>)> {
+        let (mut factored, mut answers) = (Factored::default(), Vec::new());
+        if cases.is_empty() {
+            return Ok((factored, answers));
+        }
+        check_body(mesh)?;
+        let start = Instant::now();
+        let entries = finite_elements(mesh, moduli);
+        let assembly = start.elapsed().as_secs_f64();
+        let mut setup = Vec::new();
+        for (i, (case, first)) in cases.iter().zip(shared(cases)).enumerate() {
+            progress(Event::stage("finite elements", i, cases.len()));
+            if first == i {
+                let start = Instant::now();
+                let system = System::new(&entries, &case.support)?;
+                let factor = definite(&system, mesh)?;
+                factored.system_of.push(factored.systems.len());
+                factored.systems.push((system, factor));
+                setup.push(start.elapsed().as_secs_f64());
+            } else {
+                factored.system_of.push(factored.system_of[first]);
+            }
+            let index = factored.system_of[i];
+            let (system, factor) = &factored.systems[index];
+            let start = Instant::now();
+            let (u, residual) = system.solve(factor, &case.forces);
+            check_residual(residual, case)?;
+            let seconds = assembly + setup[index] + start.elapsed().as_secs_f64();
+            let work = case.work(&u, || Some(square(&entries, &u)));
+            answers.push(BodyAnswer { displacement: u, work, seconds, solved: by_factor(factor, system, residual) });
+        }
+        progress(Event::stage("finite elements", cases.len(), cases.len()));
+        Ok((factored, answers))
+    }
+
+    /// The answers of a network to all loads, and its stability under the support of the first; its energies are compared with those of
+    /// finite elements of the second moduli, the first are those of this body.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn compare(
+        &self,
+        mesh: &Mesh,
+        cases: &[Case],
+        network: &Network,
+        (moduli, compared): (Moduli, Moduli),
+    ) -> Result<(Vec<NetworkAnswer>, Stability)> {
+        network.check_size()?;
+        let start = Instant::now();
+        let entries = network.stiffness(&mesh.points);
+        let assembly = start.elapsed().as_secs_f64();
+        let other = (compared != moduli).then(|| finite_elements(mesh, compared));
+        let mut systems: Vec<(System, Option<Factor>, Stability, f64)> = Vec::new();
+        let mut answers = Vec::new();
+        for (i, case) in cases.iter().enumerate() {
+            let index = self.system_of[i];
+            if index == systems.len() {
+                let start = Instant::now();
+                let system = System::new(&entries, &case.support)?;
+                let factor = system.factorize().map_err(|e| e.at_key("mesh"))?;
+                let seconds = start.elapsed().as_secs_f64();
+                let (body, body_factor) = &self.systems[index];
+                let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
+                let other = other.map(|body| definite(&body, mesh).map(|factor| (body, factor))).transpose()?;
+                let (body, body_factor) = other.as_ref().map_or((body, body_factor), |(body, factor)| (body, factor));
+                let stability = compare_energies(&system, factor.as_ref(), body, body_factor);
+                systems.push((system, factor, stability, seconds));
+            }
+            let (system, factor, stability, setup) = &systems[index];
+            let start = Instant::now();
+            let factor = factor.as_ref().filter(|_| stability.standing != Standing::Singular);
+            let found = factor.map(|factor| (factor, system.solve(factor, &case.forces)));
+            let seconds = assembly + setup + start.elapsed().as_secs_f64();
+            let found = found.filter(|(_, (u, residual))| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
+            let solved = found.as_ref().map(|(factor, (_, residual))| by_factor(factor, system, *residual));
+            let displacement = found.map(|(_, (u, _))| u);
+            let work = displacement.as_ref().and_then(|u| case.work(u, || Some(square(&entries, u))));
+            answers.push(NetworkAnswer { displacement, work, seconds, solved });
+        }
+        let (_, _, stability, _) = systems.into_iter().next().expect("there is a load");
+        Ok((answers, stability))
+    }
+}
+
+fn by_factor(factor: &Factor, system: &System, residual: f64) -> Solved {
+    let method = if factor.is_positive_definite() { "cholesky" } else { "lu" };
+    Solved { method, unknowns: system.size(), iterations: None, residual, levels: None }
+}
+
+/// The Cholesky factor of the equations of the finite elements.
+///
+/// # Errors
+/// Some motion has no stiffness, or the factor does not fit into memory.
+fn definite(system: &System, mesh: &Mesh) -> Result<Factor> {
+    let factor = system.cholesky().map_err(|e| e.at_key("mesh"))?;
+    factor.ok_or_else(|| not_definite(mesh))
+}
