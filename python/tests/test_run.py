@@ -80,7 +80,9 @@ def test_wrong_paths_of_keys_are_named():
 
 def test_ctrl_c_ends_a_long_run():
     code = (
-        "import springfit as sf, numpy as np\n"
+        "import springfit as sf, numpy as np, signal\n"
+        # A process that begins in the background ignores interrupts.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "mesh = sf.Mesh.box('hex20', size=[1, 1, 1], cells=[12, 12, 12])\n"
         "x = mesh.points + 1e-3 * np.random.default_rng(1).uniform(-1, 1, mesh.points.shape)\n"
         "print('go', flush=True)\n"
