@@ -12,7 +12,7 @@ use std::io::{self, Write};
 /// spring on an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad.
 ///
 /// A spring of the kinds `point-content`, `point-area` and `patch`, which exact networks have, measures what the columns do not tell:
-/// [`network_json`] does.
+/// [`network_json`](super::network_json) does.
 ///
 /// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
 /// rest then.
