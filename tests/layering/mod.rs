@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 27] = [
+const LAYERS: [&str; 28] = [
     "shipped",
     "multigrid",
     "text",
