@@ -136,7 +136,8 @@ impl Recipe {
                 if groups.is_some() {
                     let problem =
                         "belongs to fits to the stiffness; an exact network has springs between all pairs of nodes";
-                    return Err(Error::at("springs", problem));
+                    let key = if weight.higher().is_some() { "higher" } else { "springs" };
+                    return Err(Error::at(key, problem));
                 }
                 let fit = ExactFit { volume, ..ExactFit::default() };
                 Ok(fit_exact(element, x, &connectivity, material, &fit, &mut |_| {})?.springs)
@@ -161,7 +162,8 @@ impl Recipe {
                         element.name,
                         self.title()
                     );
-                    return Err(Error::at("springs", problem).of_kind(ErrorKind::Infeasible));
+                    let key = if weight.higher().is_some() { "higher" } else { "springs" };
+                    return Err(Error::at(key, problem).of_kind(ErrorKind::Infeasible));
                 }
                 Ok(springs)
             }
