@@ -136,8 +136,7 @@ impl Recipe {
                 if groups.is_some() {
                     let problem =
                         "belongs to fits to the stiffness; an exact network has springs between all pairs of nodes";
-                    let key = if weight.higher().is_some() { "higher" } else { "springs" };
-                    return Err(Error::at(key, problem));
+                    return Err(Error::at("springs", problem));
                 }
                 let fit = ExactFit { volume, ..ExactFit::default() };
                 Ok(fit_exact(element, x, &connectivity, material, &fit, &mut |_| {})?.springs)
