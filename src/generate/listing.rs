@@ -1,7 +1,7 @@
 //! The comments of generated files: what the functions compute, and the springs in their order.
 
+use super::Recipe;
 use super::code::Status;
-use super::{Recipe, nodes_of};
 use crate::element::Element;
 use crate::fit::published::{Cover, Method, Ratio};
 use crate::springs::Springs;
@@ -151,4 +151,12 @@ pub fn energy() -> Vec<String> {
 /// What is said of the function of the forces.
 pub fn forces() -> Vec<String> {
     vec!["The forces of the network of the cell on its nodes at x in N, [nodes x dimension].".into()]
+}
+
+/// The nodes of every spring with the name of its group; none for a spring on the whole cell.
+fn nodes_of(springs: &Springs) -> Vec<(&str, Vec<usize>)> {
+    let pairs = springs.pairs().iter().map(|pair| pair.to_vec());
+    let functions = springs.functions().iter().map(|f| f.nodes.clone());
+    let nodes = pairs.chain(functions).chain(std::iter::repeat(Vec::new()));
+    springs.groups().iter().map(|&group| springs.names()[group].as_str()).zip(nodes).collect()
 }

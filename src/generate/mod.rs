@@ -125,11 +125,3 @@ fn identifier(name: &str) -> String {
     let plain = plain.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_");
     if plain.starts_with(|c: char| c.is_ascii_alphabetic()) { plain } else { format!("element_{plain}") }
 }
-
-/// The nodes of every spring with the name of its group; none for a spring on the whole cell.
-fn nodes_of(springs: &Springs) -> Vec<(&str, Vec<usize>)> {
-    let pairs = springs.pairs().iter().map(|pair| pair.to_vec());
-    let functions = springs.functions().iter().map(|f| f.nodes.clone());
-    let nodes = pairs.chain(functions).chain(std::iter::repeat(Vec::new()));
-    springs.groups().iter().map(|&group| springs.names()[group].as_str()).zip(nodes).collect()
-}

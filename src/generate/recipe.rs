@@ -161,7 +161,8 @@ impl Recipe {
                         element.name,
                         self.title()
                     );
-                    return Err(Error::at("springs", problem).of_kind(ErrorKind::Infeasible));
+                    let key = if weight.higher().is_some() { "higher" } else { "springs" };
+                    return Err(Error::at(key, problem).of_kind(ErrorKind::Infeasible));
                 }
                 Ok(springs)
             }

@@ -31,6 +31,7 @@ const RUNS: [&[&str]; 14] = [
     &["sweep", "scene.toml", "--set=sweep.over={material.poisson=[0.1,0.2]}"],
     &["derive", "bar2"],
     &["check", "tri3"],
+    &["generate", "quad4", "--objective", "modal"],
     &["new", "mesh.msh"],
     &["groups", "mesh.msh"],
 ];

@@ -3,7 +3,6 @@
 use super::function::{Array, Function, Result, Role, Statement, Status};
 use super::index::{Atom, Index};
 use super::node::Node;
-use super::value::Value;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -42,11 +41,11 @@ impl Body {
         })))
     }
 
-    /// The value of this operation.
-    pub(super) fn value(&self, node: Node) -> Value {
+    /// The number of the value of this operation.
+    pub(super) fn make(&self, node: Node) -> usize {
         let mut state = self.0.borrow_mut();
         if let Some(&known) = state.known.get(&node) {
-            return Value::new(self, known);
+            return known;
         }
         let number = state.nodes.len();
         state.nodes.push(node.clone());
@@ -54,7 +53,7 @@ impl Body {
         let (steps, own) = state.open.last_mut().expect("the function itself is open");
         steps.push(Statement::Value(number));
         own.push(node);
-        Value::new(self, number)
+        number
     }
 
     /// The operation of a value.
@@ -62,20 +61,11 @@ impl Body {
         self.0.borrow().nodes[value].clone()
     }
 
-    /// A number.
-    pub fn number(&self, number: f64) -> Value {
-        // Minus zero would be another value than zero.
-        self.value(Node::Number((number + 0.0).to_bits()))
-    }
-
-    /// A parameter that is a number.
-    pub fn parameter(&self, name: &str) -> Value {
-        let place = {
-            let mut state = self.0.borrow_mut();
-            state.parameters.push(name.to_string());
-            state.parameters.len() - 1
-        };
-        self.value(Node::Parameter(place))
+    /// The place of a new parameter that is a number.
+    pub(super) fn add_parameter(&self, name: &str) -> usize {
+        let mut state = self.0.borrow_mut();
+        state.parameters.push(name.to_string());
+        state.parameters.len() - 1
     }
 
     /// An array of so many entries.
@@ -89,20 +79,16 @@ impl Body {
         state.arrays.len() - 1
     }
 
-    /// An entry of an array; of a table, the number itself if the place is known.
-    pub fn entry(&self, array: usize, at: impl Into<Index>) -> Value {
-        let at = at.into();
-        let (known, writes) = {
-            let state = self.0.borrow();
-            let known = match (&state.arrays[array].role, at.number()) {
-                (Role::Table(numbers), Some(at)) => numbers.get(at).copied(),
-                _ => None,
-            };
-            (known, state.writes[array])
+    /// The operation that reads an entry of an array; of a table, the number itself if the place is known.
+    pub(super) fn read(&self, array: usize, at: Index) -> Node {
+        let state = self.0.borrow();
+        let known = match (&state.arrays[array].role, at.number()) {
+            (Role::Table(numbers), Some(at)) => numbers.get(at).copied(),
+            _ => None,
         };
         match known {
-            Some(number) => self.number(number),
-            None => self.value(Node::Entry { array, at, writes }),
+            Some(number) => Node::of_number(number),
+            None => Node::Entry { array, at, writes: state.writes[array] },
         }
     }
 
@@ -116,34 +102,23 @@ impl Body {
         }
     }
 
-    /// 1 if two indices are equal, otherwise 0.
-    pub fn equal(&self, a: &Index, b: &Index) -> Value {
-        match (a == b, a.number(), b.number()) {
-            (true, _, _) => self.number(1.0),
-            (false, Some(_), Some(_)) => self.number(0.0),
-            (false, ..) => self.value(Node::Equal(a.clone(), b.clone())),
-        }
-    }
-
-    /// Writes an entry of an array.
-    pub fn store(&self, array: usize, at: impl Into<Index>, value: &Value) {
-        let at = at.into();
+    /// Writes a value into an entry of an array.
+    pub(super) fn write(&self, array: usize, at: Index, value: usize) {
         let mut state = self.0.borrow_mut();
         state.writes[array] += 1;
-        state.step(Statement::Store { array, at, value: value.number_in_body() });
+        state.step(Statement::Store { array, at, value });
+    }
+
+    /// Ends the function unless one value is greater than the other.
+    pub(super) fn require(&self, greater: usize, than: usize) {
+        let mut state = self.0.borrow_mut();
+        let status = state.status;
+        state.step(Statement::Guard { greater, than, status });
     }
 
     /// The status with which the guards that follow end the function.
     pub fn fail_with(&self, status: Status) {
         self.0.borrow_mut().status = status;
-    }
-
-    /// Ends the function unless `greater > than`.
-    pub fn guard(&self, greater: &Value, than: &Value) {
-        let mut state = self.0.borrow_mut();
-        let status = state.status;
-        let (greater, than) = (greater.number_in_body(), than.number_in_body());
-        state.step(Statement::Guard { greater, than, status });
     }
 
     /// Runs `work` for the integers from `from` up to `to`, exclusively: once for each if `unrolled`, otherwise once

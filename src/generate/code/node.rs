@@ -46,6 +46,12 @@ pub enum Node {
 }
 
 impl Node {
+    /// A number.
+    pub fn of_number(number: f64) -> Node {
+        // Minus zero would be another value than zero.
+        Node::Number((number + 0.0).to_bits())
+    }
+
     /// The number, if the node is one.
     pub fn number(&self) -> Option<f64> {
         if let Node::Number(bits) = self { Some(f64::from_bits(*bits)) } else { None }

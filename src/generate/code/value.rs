@@ -1,6 +1,7 @@
 //! Values of the function that is being written, as numbers with which the kernels compute.
 
 use super::body::Body;
+use super::index::Index;
 use super::node::{Call, Node};
 use crate::fit::published::Quantity;
 use crate::scalar::Scalar;
@@ -16,8 +17,48 @@ pub struct Value {
     number: usize,
 }
 
+impl Body {
+    fn value(&self, node: Node) -> Value {
+        Value::new(self, self.make(node))
+    }
+
+    /// A number.
+    pub fn number(&self, number: f64) -> Value {
+        self.value(Node::of_number(number))
+    }
+
+    /// A parameter that is a number.
+    pub fn parameter(&self, name: &str) -> Value {
+        self.value(Node::Parameter(self.add_parameter(name)))
+    }
+
+    /// An entry of an array.
+    pub fn entry(&self, array: usize, at: impl Into<Index>) -> Value {
+        self.value(self.read(array, at.into()))
+    }
+
+    /// 1 if two indices are equal, otherwise 0.
+    pub fn equal(&self, a: &Index, b: &Index) -> Value {
+        match (a == b, a.number(), b.number()) {
+            (true, _, _) => self.number(1.0),
+            (false, Some(_), Some(_)) => self.number(0.0),
+            (false, ..) => self.value(Node::Equal(a.clone(), b.clone())),
+        }
+    }
+
+    /// Writes an entry of an array.
+    pub fn store(&self, array: usize, at: impl Into<Index>, value: &Value) {
+        self.write(array, at.into(), value.number);
+    }
+
+    /// Ends the function unless `greater > than`.
+    pub fn guard(&self, greater: &Value, than: &Value) {
+        self.require(greater.number, than.number);
+    }
+}
+
 impl Value {
-    pub(super) fn new(body: &Body, number: usize) -> Value {
+    fn new(body: &Body, number: usize) -> Value {
         Value { body: body.clone(), number }
     }
 
