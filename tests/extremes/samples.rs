@@ -41,6 +41,13 @@ measured = { file = "measured.csv", scale = 1.0 }
 method = "multigrid"
 tolerance = 1e-9
 iterations = 300
+[sweep]
+design = "random"
+samples = 3
+seed = 1
+[sweep.over]
+material.young = [1.0, 2.0]
+material.poisson = [0.1, 0.3]
 [output]
 frequencies = 2
 moduli = true
