@@ -347,7 +347,7 @@ fn every_way_of_fitting_lowers_the_errors() {
         "regularization = 1e-3",
         "seed = 7",
         "start = \"equal\"",
-        "loads = [\"tension\", \"shear\", \"torsion\"]\nvalidate = [\"leave-one-out\"]",
+        "loads = [\"tension\", \"shear\", \"torsion\"]\nvalidate = \"leave-one-out\"",
         "loads = [\"tension\", \"made\"]",
         "springs = [\"edge\", \"face diagonal\", \"body diagonal\", \"bulk\"]",
     ] {
@@ -531,13 +531,10 @@ fn ended_fits_go_on() {
         assert!(error.contains("state.json: fits.whole: "), "{error}");
     }
     let state = std::fs::read_to_string(&path).unwrap();
-    let (from, _) = state.rsplit_once("\"limited\"").unwrap();
+    let (from, _) = state.rsplit_once("\"curve\"").unwrap();
     let place = from.rfind("\"stage\":").unwrap();
-    std::fs::write(
-        &path,
-        state[..place].to_string() + "\"stage\":99}," + &state[state.rfind("\"limited\"").unwrap()..],
-    )
-    .unwrap();
+    std::fs::write(&path, state[..place].to_string() + "\"stage\":99}," + &state[state.rfind("\"curve\"").unwrap()..])
+        .unwrap();
     let error = run_with(&scene, &controls, &mut |_| {}).unwrap_err().to_string();
     assert!(error.contains("state.json: fits.whole.snapshot: "), "{error}");
     std::fs::write(&path, "{}}").unwrap();

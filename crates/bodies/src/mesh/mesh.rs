@@ -115,13 +115,31 @@ impl Mesh {
         crc.sum()
     }
 
+    /// One cell alone, without its groups. Its points are in the order of its nodes.
+    pub(crate) fn of_cell(&self, index: CellIndex) -> Mesh {
+        let nodes = self.cell_nodes(index);
+        let points = nodes.iter().flat_map(|&p| self.point(p)).copied().collect();
+        let element = self.blocks[index.block].element.clone();
+        let block = CellBlock { element, connectivity: (0..nodes.len()).collect() };
+        Mesh { blocks: vec![block], ..Mesh::of_points(self.dimension, points) }
+    }
+
+    /// The names of the groups to which each cell belongs, by block and cell.
+    pub(crate) fn regions(&self) -> Vec<Vec<Vec<&str>>> {
+        let mut regions: Vec<Vec<Vec<&str>>> = self.blocks.iter().map(|b| vec![Vec::new(); b.cells().len()]).collect();
+        for (name, group) in &self.groups {
+            group.cells.iter().for_each(|cell| regions[cell.block][cell.cell].push(name));
+        }
+        regions
+    }
+
     /// The points of one cell, in the node order of its element.
-    pub(super) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
+    pub(crate) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
         let n = self.blocks[block].element.nodes();
         &self.blocks[block].connectivity[cell * n..(cell + 1) * n]
     }
 
-    pub(super) fn cell_indices(&self) -> impl Iterator<Item = CellIndex> {
+    pub(crate) fn cell_indices(&self) -> impl Iterator<Item = CellIndex> {
         let counts = self.blocks.iter().map(|block| block.cells().len()).enumerate();
         counts.flat_map(|(block, count)| (0..count).map(move |cell| CellIndex { block, cell }))
     }

@@ -42,6 +42,7 @@ pub use pressure::smoothed_pressure;
 pub(crate) use size::ADVICE;
 pub use size::check_body;
 pub use support::{Support, Unheld, unheld_bodies};
+pub(crate) use system::dofs;
 pub use system::{content, finite_elements};
 pub use tension::RestTension;
 

@@ -75,6 +75,6 @@ pub(super) fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &
 }
 
 /// The degrees of freedom of `nodes`, in order.
-pub(super) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
+pub(crate) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
     nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
 }

@@ -1,9 +1,9 @@
 //! The residual forces at the target displacements.
 
 use super::displacements::Displacements;
-use super::gradients::SpringGradients;
 use super::linearized::{LeastSquares, Linearized, Tangent};
 use super::object::Object;
+use super::parts::PartVectors;
 use super::target::Target;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Entries, displaced};
@@ -39,18 +39,12 @@ impl<'a> ResidualForces<'a> {
             let singular = || Error::new("the finite elements do not stand").of_kind(ErrorKind::Infeasible);
             let factor = system.cholesky()?.ok_or_else(singular)?;
             let (system, factor) = (Arc::new(system), Arc::new(factor));
-            if object.newton.is_none() {
-                let loads = group.iter().map(|&l| (l, Arc::new(object.pulls(&targets[l].displacement)))).collect();
-                all.push(Tangent { system, factor, gradients: object.gradients.clone(), loads });
-                continue;
-            }
-            for l in group {
-                let (gradients, pulls) =
-                    SpringGradients::at(&object.network, &displaced(object.points, &targets[l].displacement));
-                let (system, factor) = (system.clone(), factor.clone());
-                let loads = vec![(l, Arc::new(pulls))];
-                all.push(Tangent { system, factor, gradients: Arc::new(gradients), loads });
-            }
+            let forces = |l: usize| match object.newton {
+                None => object.forces(&targets[l].displacement),
+                Some(_) => object.forces_at(&displaced(object.points, &targets[l].displacement)),
+            };
+            let loads = group.iter().map(|&l| (l, Arc::new(forces(l)))).collect();
+            all.push(Tangent { system, factor, loads });
         }
         Ok(ResidualForces { object, scales, targets, tangents: all })
     }
@@ -65,9 +59,8 @@ impl LeastSquares for ResidualForces<'_> {
         let factors = self.object.unknowns.factors(theta);
         let mut residuals = vec![Vec::new(); self.targets.len()];
         for tangent in &self.tangents {
-            let rest = |(l, pulls): &(usize, Arc<Vec<f64>>)| {
-                let pulls = pulls.iter().zip(&factors).map(|(pull, c)| -pull * c);
-                let mut rest = tangent.gradients.sum(pulls, self.scales[*l].len());
+            let rest = |(l, forces): &(usize, Arc<PartVectors>)| {
+                let mut rest = forces.sum(factors.iter().map(|c| -c), self.scales[*l].len());
                 rest.iter_mut().zip(&self.targets[*l].forces).for_each(|(r, f)| *r += f);
                 rest
             };

@@ -1,6 +1,5 @@
 //! The differences between the network's displacements and frequencies and the targets.
 
-use super::gradients::SpringGradients;
 use super::linearized::{LeastSquares, Linearized, Tangent};
 use super::object::Object;
 use super::target::{Frequencies, Target};
@@ -50,7 +49,7 @@ impl<'a> Displacements<'a> {
         targets: Vec<&'a Target>,
         frequencies: Option<&'a Frequencies>,
     ) -> Result<Displacements<'a>> {
-        if frequencies.is_some() && object.pulls_at_rest {
+        if frequencies.is_some() && object.pulls_at_rest() {
             let expected = "springs that do not pull at rest";
             return Err(Error::expected("frequencies", expected, "laws of force or rest lengths that do"));
         }
@@ -141,13 +140,12 @@ impl<'a> Displacements<'a> {
             let support = &self.targets[group[0]].support;
             let Some((system, factor)) = self.factorize(index, entries, support)? else { return Ok(None) };
             let forces: Vec<Vec<f64>> = group.iter().map(|&l| self.targets[l].forces.clone()).collect();
-            let gradients = &self.object.gradients;
             let mut loads = Vec::new();
             for (&l, u) in group.iter().zip(system.solve_all(&factor, &forces)) {
-                loads.push((l, Arc::new(self.object.pulls(&u))));
+                loads.push((l, Arc::new(self.object.forces(&u))));
                 displacements[l] = u;
             }
-            tangents.push(Tangent { system, factor, gradients: gradients.clone(), loads });
+            tangents.push(Tangent { system, factor, loads });
         }
         Ok(Some((displacements, tangents)))
     }
@@ -176,9 +174,8 @@ impl<'a> Displacements<'a> {
             let Some(response) = network.respond(&x) else { return Ok(None) };
             let system = System::new(&response.tangent, &target.support)?;
             let Some(factor) = system.cholesky()? else { return Ok(None) };
-            let (gradients, pulls) = SpringGradients::at(&self.object.network, &x);
-            let (system, factor, gradients) = (Arc::new(system), Arc::new(factor), Arc::new(gradients));
-            Ok(Some((u, Tangent { system, factor, gradients, loads: vec![(l, Arc::new(pulls))] })))
+            let forces = Arc::new(self.object.forces_at(&x));
+            Ok(Some((u, Tangent { system: Arc::new(system), factor: Arc::new(factor), loads: vec![(l, forces)] })))
         };
         let found: Result<Vec<_>> = self.targets.par_iter().enumerate().map(one).collect();
         let Some(found) = found?.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
@@ -188,19 +185,18 @@ impl<'a> Displacements<'a> {
         Ok(Some((displacements, tangents)))
     }
 
-    /// The residuals of the frequencies and the derivative `∂/∂c_s = ½ √w T⁰_s (∇c_s·φ_i)²/ω_i²` of each.
+    /// The residuals of the frequencies and the derivative `∂/∂c_s = ½ √w φ_iᵀ K_s φ_i/ω_i²` of each.
     fn vibrations(&self, entries: &Entries) -> Result<Option<Vibrating>> {
         let Some(wanted) = self.frequencies else { return Ok(Some((Vec::new(), Vec::new()))) };
         let (object, count) = (self.object, wanted.squares.len());
         let Some((system, factor)) = self.factorize(self.groups.len(), entries, &wanted.support)? else {
             return Ok(None);
         };
-        let modes = lowest_modes(&system, &factor, &wanted.masses, object.network.dimension, count)?;
+        let modes = lowest_modes(&system, &factor, &wanted.masses, object.dimension(), count)?;
         let root = 0.5 * wanted.weight.sqrt();
         let residuals = modes.squares.iter().zip(&wanted.squares).map(|(a, b)| root * (a / b).ln()).collect();
         let row = |(square, shape): (&f64, &Vec<f64>)| {
-            let energies = object.gradients.along(shape).zip(object.slopes());
-            energies.map(|(along, slope)| root * slope * along * along / square).collect()
+            object.energies(shape).into_iter().map(|energy| root * energy / square).collect()
         };
         Ok(Some((residuals, modes.squares.iter().zip(&modes.shapes).map(row).collect())))
     }
@@ -212,11 +208,10 @@ impl LeastSquares for Displacements<'_> {
     }
 
     fn at(&self, theta: &[f64]) -> Result<Option<Linearized<'_>>> {
-        let network = self.object.network(theta);
         let small = self.object.newton.is_none();
         let entries =
-            if small || self.frequencies.is_some() { network.stiffness(self.object.points) } else { Entries::new() };
-        let found = if small { self.small(&entries)? } else { self.large(&network)? };
+            if small || self.frequencies.is_some() { self.object.stiffness(theta) } else { Entries::new() };
+        let found = if small { self.small(&entries)? } else { self.large(&self.object.network(theta))? };
         let Some((displacements, tangents)) = found else { return Ok(None) };
         let residual = |(l, u): (usize, Vec<f64>)| {
             let lack = u.iter().zip(&self.targets[l].displacement).zip(&self.scales[l]);

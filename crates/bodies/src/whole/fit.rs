@@ -2,7 +2,7 @@
 
 use super::displacements::{Displacements, Errors};
 use super::object::Object;
-use super::path::{Best, Path, Snapshot, StepCallback, leave_one_out, mean};
+use super::path::{Best, Path, Snapshot, Stage, StepCallback, leave_one_out, mean};
 use super::settings::{Validation, Wanted, WholeSettings};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Network;
@@ -25,8 +25,12 @@ pub struct WholeFit {
     pub change: f64,
     /// The ratio of the largest to the least constant of the length springs.
     pub range: f64,
-    /// Whether a smaller ρ was rejected because this ratio would have been too large.
+    /// Whether a better ρ was rejected because this ratio would have been too large.
     pub limited: bool,
+    /// The stages of the path, one for each ρ.
+    pub curve: Vec<Stage>,
+    /// With leave-one-out validation the geometric mean of the relative errors after each stage.
+    pub left_out: Vec<f64>,
     /// Whether the network is stable under every load at the start; otherwise it is returned unchanged.
     pub stands: bool,
     /// Whether the fit was cancelled.
@@ -59,7 +63,7 @@ pub fn fit_whole(
     let start = vec![0.0; m];
     let network = object.network(&start);
     let mut found = WholeFit {
-        range: network.range(),
+        range: object.range(&start),
         network,
         regularization: None,
         trained: Default::default(),
@@ -67,13 +71,16 @@ pub fn fit_whole(
         steps: 0,
         change: 1.0,
         limited: false,
+        curve: Vec::new(),
+        left_out: Vec::new(),
         stands: false,
         cancelled: false,
     };
     let (Some(trained), Some(validated)) = (problem.errors(&start)?, judge.errors(&start)?) else { return Ok(found) };
     found.stands = true;
     let first = Best { error: mean(&validated), theta: start.clone(), stage: None };
-    let mut snapshot = from.unwrap_or(Snapshot { stage: 0, theta: start, best: first, limited: false, stages: None });
+    let begin = || Snapshot { stage: 0, theta: start, best: first, curve: Vec::new(), left_out: Vec::new() };
+    let mut snapshot = from.unwrap_or_else(begin);
     let (mut steps, mut cancelled) = (0, false);
     let mut count = |snapshot: Option<&Snapshot>| {
         steps += 1;
@@ -81,10 +88,10 @@ pub fn fit_whole(
         !cancelled
     };
     let mut begins = true;
-    if wanted.validation == Validation::LeaveOneOut && snapshot.stages.is_none() {
-        snapshot.stages = leave_one_out(object, wanted, settings, &mut count)?;
+    if wanted.validation == Validation::LeaveOneOut && snapshot.left_out.is_empty() {
+        snapshot.left_out = leave_one_out(object, wanted, settings, &mut count)?;
         // Cancelled during cross-validation, the fit has not begun.
-        begins = snapshot.stages.is_some();
+        begins = !snapshot.left_out.is_empty();
     }
     let best = match begins {
         true => Path { object, wanted, settings }.follow(&problem, &judge, &mut snapshot, &mut count)?,
@@ -95,7 +102,7 @@ pub fn fit_whole(
     }
     watch(Some(&snapshot));
     found.network = object.network(&best.theta);
-    found.range = found.network.range();
+    found.range = object.range(&best.theta);
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
     problem.forget();
     judge.forget();
@@ -108,6 +115,7 @@ pub fn fit_whole(
     found.trained = [trained, after(&problem)?];
     found.validated = [validated, after(&judge)?];
     found.change = object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);
-    (found.steps, found.limited, found.cancelled) = (steps, snapshot.limited, cancelled);
+    (found.steps, found.limited, found.cancelled) = (steps, snapshot.is_limited(), cancelled);
+    (found.curve, found.left_out) = (snapshot.curve, snapshot.left_out);
     Ok(found)
 }

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use super::gradients::SpringGradients;
+use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::Result;
 use crate::solve::{Factor, System};
@@ -21,8 +21,8 @@ pub trait LeastSquares {
 }
 
 /// Residual vectors `r_l = s_l ∘ (u_l − ū_l)`, one per load, then one of frequencies, with
-/// `∂r_l/∂c = −s_l ∘ K⁻¹ Σ_s T_sl ∇c_s`, where c are the factors on the springs and T_sl is the force of spring s at
-/// factor 1.
+/// `∂r_l/∂c_s = −s_l ∘ K⁻¹ F_sl`, where c are the factors on the parts of the model, for example its springs, and F_sl are
+/// the forces of part s at factor 1.
 #[derive(Debug)]
 pub struct Linearized<'a> {
     /// The residual vectors.
@@ -41,9 +41,8 @@ pub struct Linearized<'a> {
 pub(super) struct Tangent {
     pub system: Arc<System>,
     pub factor: Arc<Factor>,
-    pub gradients: Arc<SpringGradients>,
-    /// The index of each load, and its T_sl, `[springs]`.
-    pub loads: Vec<(usize, Arc<Vec<f64>>)>,
+    /// The index of each load, and its F_sl.
+    pub loads: Vec<(usize, Arc<PartVectors>)>,
 }
 
 impl Linearized<'_> {
@@ -57,9 +56,8 @@ impl Linearized<'_> {
         let change = self.unknowns.forward(&self.theta, v);
         let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
         for tangent in &self.tangents {
-            let force = |(load, pulls): &(usize, Arc<Vec<f64>>)| {
-                let along = pulls.iter().zip(&change).map(|(pull, c)| -pull * c);
-                tangent.gradients.sum(along, self.scales[*load].len())
+            let force = |(load, forces): &(usize, Arc<PartVectors>)| {
+                forces.sum(change.iter().map(|c| -c), self.scales[*load].len())
             };
             let forces: Vec<Vec<f64>> = tangent.loads.iter().map(force).collect();
             let moves = tangent.system.respond_all(&tangent.factor, &forces);
@@ -78,14 +76,13 @@ impl Linearized<'_> {
     pub fn adjoint(&self, w: &[Vec<f64>]) -> Vec<f64> {
         let mut total = vec![0.0; self.unknowns.springs()];
         for tangent in &self.tangents {
-            let pull = |(load, _): &(usize, Arc<Vec<f64>>)| {
+            let pull = |(load, _): &(usize, Arc<PartVectors>)| {
                 w[*load].iter().zip(&self.scales[*load]).map(|(w, s)| w * s).collect()
             };
             let pulls: Vec<Vec<f64>> = tangent.loads.iter().map(pull).collect();
             let adjoints = tangent.system.respond_all(&tangent.factor, &pulls);
-            for ((_, pulls), adjoint) in tangent.loads.iter().zip(&adjoints) {
-                let along = tangent.gradients.along(adjoint).zip(pulls.iter());
-                total.iter_mut().zip(along).for_each(|(t, (along, pull))| *t -= pull * along);
+            for ((_, forces), adjoint) in tangent.loads.iter().zip(&adjoints) {
+                total.iter_mut().zip(forces.along(adjoint)).for_each(|(t, along)| *t -= along);
             }
         }
         for (row, w) in self.rows.iter().zip(w.last().into_iter().flatten()) {

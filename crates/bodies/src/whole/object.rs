@@ -1,27 +1,43 @@
 //! A network on its points, with the unknowns of a fit.
 
 use super::gradients::SpringGradients;
+use super::moduli::ModuliParts;
+use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
-use crate::model::Network;
+use crate::model::{Entries, Network};
 use crate::solve::Newton;
 use crate::springs::{Force, distance};
-use std::sync::Arc;
 
 /// A network whose constants are fitted.
 #[derive(Debug)]
 pub struct Object<'a> {
-    /// The network with the constants at θ = 0, which are positive if the springs are linear.
-    pub(super) network: Network,
+    pub(super) model: Model<'a>,
     /// The positions at rest, `[points × dimension]`, m.
     pub(super) points: &'a [f64],
     pub(super) unknowns: Unknowns,
     /// How loads are applied at large displacements; `None` at small displacements.
     pub(super) newton: Option<Newton>,
+}
+
+/// The parts that the unknowns multiply, at θ = 0.
+#[derive(Debug)]
+pub(super) enum Model<'a> {
+    /// The springs of a network.
+    Springs(SpringParts),
+    /// The cells of an exact network, for each modulus.
+    Moduli(ModuliParts<'a>),
+}
+
+/// The springs of a network as parts.
+#[derive(Debug)]
+pub(super) struct SpringParts {
+    /// The constants are positive if the springs are linear.
+    pub network: Network,
     /// The gradients at rest.
-    pub(super) gradients: Arc<SpringGradients>,
-    pub(super) pulls_at_rest: bool,
+    gradients: SpringGradients,
+    pub pulls_at_rest: bool,
 }
 
 /// Nearly vanishing constants start at this share of the median: large enough to take part in the fit, too small to
@@ -59,7 +75,19 @@ impl<'a> Object<'a> {
         if newton.is_none() && pulls_at_rest {
             return Err(Error::expected("force", "springs that do not pull at rest", "rest lengths of their own"));
         }
-        Ok(Object { network, points, unknowns, newton, gradients: Arc::new(gradients), pulls_at_rest })
+        let model = Model::Springs(SpringParts { network, gradients, pulls_at_rest });
+        Ok(Object { model, points, unknowns, newton })
+    }
+
+    /// An exact network at small displacements whose unknowns are moduli; `points` are those of its mesh.
+    ///
+    /// # Errors
+    /// The unknowns are not those of these parts.
+    pub fn of_moduli(parts: ModuliParts<'a>, points: &'a [f64], unknowns: Unknowns) -> Result<Object<'a>> {
+        if parts.len() != unknowns.springs() {
+            return Err(Error::expected("unknowns", format!("those of {} parts", parts.len()), unknowns.springs()));
+        }
+        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton: None })
     }
 
     /// The unknowns.
@@ -67,45 +95,132 @@ impl<'a> Object<'a> {
         &self.unknowns
     }
 
-    /// The force of each spring at factor 1 under small displacements: `T_s = k_s g_s·u`.
-    pub(super) fn pulls(&self, u: &[f64]) -> Vec<f64> {
-        self.gradients.along(u).zip(self.slopes()).map(|(along, slope)| slope * along).collect()
+    /// The forces of each part at factor 1 under small displacements.
+    pub(super) fn forces(&self, u: &[f64]) -> PartVectors {
+        match &self.model {
+            Model::Springs(parts) => {
+                let pulls = parts.gradients.along(u).zip(parts.slopes()).map(|(along, slope)| slope * along);
+                parts.gradients.forces(pulls)
+            }
+            Model::Moduli(parts) => parts.forces(u),
+        }
     }
 
+    /// The forces of each part at factor 1 with the points at x.
+    pub(super) fn forces_at(&self, x: &[f64]) -> PartVectors {
+        match &self.model {
+            Model::Springs(parts) => {
+                let (gradients, pulls) = SpringGradients::at(&parts.network, x);
+                gradients.forces(pulls.into_iter())
+            }
+            Model::Moduli(parts) => {
+                let u: Vec<f64> = x.iter().zip(self.points).map(|(x, rest)| x - rest).collect();
+                parts.forces(&u)
+            }
+        }
+    }
+
+    /// `uᵀ K_s u` of each part at factor 1, under small displacements.
+    pub(super) fn energies(&self, u: &[f64]) -> Vec<f64> {
+        match &self.model {
+            Model::Springs(parts) => {
+                parts.gradients.along(u).zip(parts.slopes()).map(|(along, slope)| slope * along * along).collect()
+            }
+            Model::Moduli(parts) => parts.forces(u).along(u).collect(),
+        }
+    }
+
+    /// Whether springs pull at rest in such a way that natural frequencies have no derivatives here.
+    pub(super) fn pulls_at_rest(&self) -> bool {
+        match &self.model {
+            Model::Springs(parts) => parts.pulls_at_rest,
+            Model::Moduli(_) => false,
+        }
+    }
+
+    /// The stiffness at rest, N/m.
+    pub(super) fn stiffness(&self, theta: &[f64]) -> Entries {
+        match &self.model {
+            Model::Springs(_) => self.network(theta).stiffness(self.points),
+            Model::Moduli(parts) => parts.stiffness(&self.unknowns.factors(theta)),
+        }
+    }
+
+    /// The number of coordinates of a point.
+    pub(super) fn dimension(&self) -> usize {
+        match &self.model {
+            Model::Springs(parts) => parts.network.dimension,
+            Model::Moduli(parts) => parts.dimension(),
+        }
+    }
+
+    /// The object with equal constants of all length springs, the others equally stiff against the strain of their
+    /// measure, and the trace of the stiffness, `Σ_s k_s ‖g_s‖²`, unchanged. Moduli are as they were.
+    #[must_use]
+    pub fn alike(mut self) -> Object<'a> {
+        if let Model::Springs(parts) = &mut self.model {
+            parts.equalize(self.points);
+        }
+        self
+    }
+
+    /// The object with all constants multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Object<'a> {
+        match &mut self.model {
+            Model::Springs(parts) => parts.scale(factor),
+            Model::Moduli(parts) => *parts = parts.scaled(&vec![factor; parts.len()]),
+        }
+        self
+    }
+
+    /// The network at θ.
+    pub fn network(&self, theta: &[f64]) -> Network {
+        let factors = self.unknowns.factors(theta);
+        match &self.model {
+            Model::Springs(parts) => parts.network.scaled(&factors),
+            Model::Moduli(parts) => parts.scaled(&factors).network(),
+        }
+    }
+
+    /// The ratio of the largest to the least constant of the length springs at θ, or of the largest to the least factor on a
+    /// modulus.
+    pub(super) fn range(&self, theta: &[f64]) -> f64 {
+        match &self.model {
+            Model::Springs(parts) => parts.network.scaled(&self.unknowns.factors(theta)).range(),
+            Model::Moduli(_) => {
+                let largest = theta.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                (largest - theta.iter().copied().fold(f64::INFINITY, f64::min)).exp()
+            }
+        }
+    }
+}
+
+impl SpringParts {
     /// `∂T_s/∂c_s` at rest, at factor 1.
-    pub(super) fn slopes(&self) -> impl Iterator<Item = f64> + '_ {
+    fn slopes(&self) -> impl Iterator<Item = f64> + '_ {
         let others = self.network.others.iter().map(|s| s.pull(s.rest)[2]);
         self.network.lengths.iter().map(|s| s.constant).chain(others)
     }
 
-    /// The object with equal constants of all length springs, the others equally stiff against the strain of their
-    /// measure, and the trace of the stiffness, `Σ_s k_s ‖g_s‖²`, unchanged.
-    #[must_use]
-    pub fn alike(mut self) -> Object<'a> {
+    fn equalize(&mut self, points: &[f64]) {
         let d = self.network.dimension;
-        let point = |p: usize| &self.points[p * d..(p + 1) * d];
-        let trace = |object: &Object| object.slopes().zip(object.gradients.squares()).map(|(k, g)| k * g).sum::<f64>();
-        let before = trace(&self);
+        let point = |p: usize| &points[p * d..(p + 1) * d];
+        let trace =
+            |parts: &SpringParts| parts.slopes().zip(parts.gradients.squares()).map(|(k, g)| k * g).sum::<f64>();
+        let before = trace(self);
         let squares = self.network.lengths.iter().map(|s| distance(point(s.points[0]), point(s.points[1])).powi(2));
         let mean = squares.sum::<f64>() / self.network.lengths.len().max(1) as f64;
         self.network.lengths.iter_mut().for_each(|s| s.constant = 1.0);
         for spring in self.network.others.iter_mut().filter(|s| s.law.is_none() && s.rest != 0.0) {
             spring.constant = mean / (spring.rest * spring.rest);
         }
-        let after = trace(&self);
-        self.scaled(before / after)
+        let after = trace(self);
+        self.scale(before / after);
     }
 
-    /// The object with all constants multiplied by `factor`.
-    #[must_use]
-    pub fn scaled(mut self, factor: f64) -> Object<'a> {
+    fn scale(&mut self, factor: f64) {
         self.network = self.network.scaled(&vec![factor; self.network.len()]);
-        self
-    }
-
-    /// The network at θ.
-    pub fn network(&self, theta: &[f64]) -> Network {
-        self.network.scaled(&self.unknowns.factors(theta))
     }
 }
 

@@ -20,10 +20,26 @@ pub struct Snapshot {
     pub theta: Vec<f64>,
     /// The stage with the least error on the validation so far.
     pub best: Best,
-    /// Whether a better ρ was rejected because of its range of constants.
-    pub limited: bool,
-    /// The number of stages, once leave-one-out validation has chosen it.
-    pub stages: Option<usize>,
+    /// The finished stages.
+    pub curve: Vec<Stage>,
+    /// Once leave-one-out validation has chosen the number of stages, the mean relative error of each.
+    pub left_out: Vec<f64>,
+}
+
+/// A finished stage: a point of the curve of errors against ρ, and of the L-curve.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Stage {
+    /// The regularization ρ.
+    pub regularization: f64,
+    /// The geometric mean of the relative errors on the validation; `None` without one, or if the network is unstable.
+    pub validated: Option<f64>,
+    /// The root mean square of the relative errors on the loads of the fit; `None` if the network is unstable.
+    pub trained: Option<f64>,
+    /// The root mean square of θ.
+    pub change: f64,
+    /// Whether it was rejected because of its range of constants.
+    pub rejected: bool,
 }
 
 /// The best of the finished stages.
@@ -40,8 +56,6 @@ pub struct Best {
 /// A callback after each step, with the current state, or `None` during cross-validation. Returning false ends the fit.
 pub type StepCallback<'a> = dyn FnMut(Option<&Snapshot>) -> bool + 'a;
 
-/// The number of stages without improvement after which the path ends.
-const PATIENCE: usize = 2;
 /// The largest size of θ: no constant changes by more than the factor e¹⁰⁰.
 const LARGEST: f64 = 100.0;
 
@@ -53,11 +67,24 @@ impl Snapshot {
     pub fn check(&self, m: usize, stages: usize) -> Result<()> {
         let fits = |theta: &[f64]| theta.len() == m && theta.iter().all(|t| t.abs() <= LARGEST);
         let known = |stage: Option<usize>| stage.is_none_or(|stage| stage < stages);
-        if fits(&self.theta) && fits(&self.best.theta) && self.stage <= stages && known(self.best.stage) {
+        let counted = self.curve.len() <= stages && [0, stages].contains(&self.left_out.len());
+        if fits(&self.theta) && fits(&self.best.theta) && self.stage <= stages && known(self.best.stage) && counted {
             return Ok(());
         }
         let expected = format!("the state of a fit with {m} unknowns and {stages} regularizations");
         Err(Error::expected("snapshot", expected, "another"))
+    }
+
+    /// The number of stages of the path: all, or those after which the error on loads that are left out is least.
+    fn stages(&self, all: usize) -> usize {
+        let least = (0..self.left_out.len()).min_by(|&a, &b| self.left_out[a].total_cmp(&self.left_out[b]));
+        least.map_or(all, |stage| stage + 1)
+    }
+
+    /// Whether a stage with a smaller error than the best was rejected because of its range of constants.
+    pub fn is_limited(&self) -> bool {
+        let best = self.best.error.map_or(f64::INFINITY, f64::exp);
+        self.curve.iter().any(|stage| stage.rejected && stage.validated.is_none_or(|error| error < best))
     }
 }
 
@@ -69,8 +96,11 @@ pub(super) struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// Continues from a snapshot until the validation shows no improvement, the path ends, or `watch` returns false.
-    /// Returns the best result, which is that of the snapshot unless a stage was ended early.
+    /// Continues from a snapshot to the end of the path, or until `watch` returns false. Returns the best result, which
+    /// is that of the snapshot unless a stage was ended early.
+    ///
+    /// The error on the validation is not convex along the path: it can grow for several stages before it falls to its
+    /// least value. No stage is therefore left out.
     pub fn follow(
         &self,
         problem: &Displacements,
@@ -78,10 +108,10 @@ impl Path<'_> {
         snapshot: &mut Snapshot,
         watch: &mut StepCallback,
     ) -> Result<Best> {
-        let range = |theta: &[f64]| self.object.network(theta).range();
+        let range = |theta: &[f64]| self.object.range(theta);
         let limit = self.settings.range.max(range(&vec![0.0; snapshot.theta.len()]));
         let stages = self.settings.regularizations.len();
-        while snapshot.stage < snapshot.stages.unwrap_or(stages).min(stages) {
+        while snapshot.stage < snapshot.stages(stages) {
             let stage = snapshot.stage;
             let now = snapshot.clone();
             let mut goes_on = true;
@@ -111,11 +141,16 @@ impl Path<'_> {
                 // The result counts, but the stage is not finished.
                 return Ok(best);
             }
-            *snapshot = Snapshot { stage: stage + 1, theta, best, limited: better && wide, stages: snapshot.stages };
-            // The largest ρ may keep the network too close to a start that happens to be good under some loads.
-            if wide || snapshot.best.stage.is_some_and(|best| stage >= best + PATIENCE) {
-                break;
-            }
+            let mut curve = std::mem::take(&mut snapshot.curve);
+            curve.push(Stage {
+                regularization: self.settings.regularizations[stage],
+                validated: error.map(f64::exp),
+                trained: problem.errors(&theta)?.and_then(|errors| root_mean_square(&errors.loads)),
+                change: root_mean_square(&theta).unwrap_or(0.0),
+                rejected: wide,
+            });
+            let left_out = std::mem::take(&mut snapshot.left_out);
+            *snapshot = Snapshot { stage: stage + 1, theta, best, curve, left_out };
         }
         Ok(snapshot.best.clone())
     }
@@ -161,14 +196,14 @@ impl Path<'_> {
     }
 }
 
-/// The number of stages after which the error on loads that are left out, one at a time, is least; `None` if `watch`
+/// The geometric mean of the relative errors on loads that are left out, one at a time, after each stage; empty if `watch`
 /// returned false.
 pub(super) fn leave_one_out(
     object: &Object,
     wanted: &Wanted,
     settings: &WholeSettings,
     watch: &mut StepCallback,
-) -> Result<Option<usize>> {
+) -> Result<Vec<f64>> {
     let count = wanted.trained.len();
     if count < 2 {
         return Err(Error::expected("validate", "at least two loads to leave one out", count));
@@ -189,16 +224,22 @@ pub(super) fn leave_one_out(
             };
             theta = path.stage(&problem, stage, &theta, &mut visit)?;
             if !goes_on {
-                return Ok(None);
+                return Ok(Vec::new());
             }
             *sum += judge.errors(&theta)?.and_then(|errors| mean(&errors)).unwrap_or(f64::INFINITY);
         }
     }
-    Ok((0..stages).min_by(|&a, &b| sums[a].total_cmp(&sums[b])).map(|stage| stage + 1))
+    // JSON has no infinity.
+    Ok(sums.into_iter().map(|sum| (sum / count as f64).exp().min(f64::MAX)).collect())
 }
 
 /// The mean of the logarithms.
 pub(super) fn mean(errors: &Errors) -> Option<f64> {
     let sum: f64 = errors.loads.iter().map(|e| e.ln()).sum();
     (!errors.loads.is_empty()).then(|| sum / errors.loads.len() as f64)
+}
+
+/// The root of the mean square.
+fn root_mean_square(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt())
 }

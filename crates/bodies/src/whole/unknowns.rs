@@ -20,6 +20,12 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
+    /// Unknown `own[s]` for part s.
+    pub(super) fn one_for_each(own: Vec<usize>) -> Unknowns {
+        let count = own.iter().max().map_or(0, |last| last + 1);
+        Unknowns { starts: (0..=own.len()).collect(), shares: own.into_iter().map(|p| (p, 1.0)).collect(), count }
+    }
+
     /// One unknown for each spring of the network.
     pub fn per_spring(network: &Network) -> Unknowns {
         let count = network.len();
@@ -41,10 +47,7 @@ impl Unknowns {
     /// # Errors
     /// Those of [`Unknowns::per_element`].
     pub fn per_region(mesh: &Mesh, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
-        let mut regions: Vec<Vec<Vec<&str>>> = mesh.blocks.iter().map(|b| vec![Vec::new(); b.cells().len()]).collect();
-        for (name, group) in &mesh.groups {
-            group.cells.iter().for_each(|cell| regions[cell.block][cell.cell].push(name));
-        }
+        let regions = mesh.regions();
         Unknowns::labelled(mesh, fits, network, |cell, spring| {
             (regions[cell.block][cell.cell].clone(), group(&fits[cell.block], spring))
         })
@@ -105,7 +108,7 @@ impl Unknowns {
         Ok(unknowns)
     }
 
-    /// The number of springs.
+    /// The number of springs, or of other parts with a factor.
     pub fn springs(&self) -> usize {
         self.starts.len() - 1
     }

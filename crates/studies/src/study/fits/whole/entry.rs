@@ -10,6 +10,9 @@ use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::{DescentMethod, Residual, WholeSettings};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use std::fmt;
 
 /// The default seed of the random loads.
 const SEED: u64 = 2010;
@@ -26,6 +29,9 @@ pub struct WholeEntry {
     pub higher: Option<f64>,
     pub balance: Option<f64>,
     pub loads: Option<Vec<String>>,
+    /// A name, or a list of names.
+    #[serde(deserialize_with = "one_or_more")]
+    #[schemars(with = "Option<serde_json::Value>")]
     pub validate: Option<Vec<String>>,
     #[schemars(extend("enum" = Sharing::NAMES))]
     pub unknowns: Option<String>,
@@ -149,6 +155,28 @@ impl WholeEntry {
             seed: self.seed.unwrap_or(SEED),
         })
     }
+}
+
+/// A text, or a list of texts.
+fn one_or_more<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Vec<String>>, D::Error> {
+    struct Texts;
+
+    impl<'de> Visitor<'de> for Texts {
+        type Value = Vec<String>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            f.write_str("a text or a list of texts")
+        }
+
+        fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Vec<String>, E> {
+            Ok(vec![v.into()])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<Vec<String>, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(list))
+        }
+    }
+    deserializer.deserialize_any(Texts).map(Some)
 }
 
 /// The names of the starts: a name, or a list of different names.

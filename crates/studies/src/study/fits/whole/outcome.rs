@@ -1,7 +1,7 @@
 //! The loads of a whole-object fit, and its result.
 
 use super::recipe::WholeRecipe;
-use crate::whole::{Errors, Target, Wanted, WholeFit};
+use crate::whole::{Errors, Stage, Target, Wanted, WholeFit};
 
 /// The loads of a whole-object fit, and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +23,12 @@ pub struct WholeOutcome {
     pub change: f64,
     /// The ratio of the largest to the least constant of the length springs.
     pub range: f64,
-    /// Whether a smaller ρ was rejected because this ratio would have been too large.
+    /// Whether a better ρ was rejected because this ratio would have been too large.
     pub limited: bool,
+    /// The stages of the path, one for each ρ.
+    pub curve: Vec<Stage>,
+    /// With leave-one-out validation the geometric mean of the relative errors after each stage.
+    pub left_out: Vec<f64>,
     /// The number of steps.
     pub steps: usize,
     /// Whether the network is stable under every load at the start; otherwise it is returned unchanged.
@@ -63,6 +67,8 @@ impl WholeOutcome {
             change: found.change,
             range: found.range,
             limited: found.limited,
+            curve: found.curve.clone(),
+            left_out: found.left_out.clone(),
             steps: found.steps,
             stands: found.stands,
             cancelled: found.cancelled,
@@ -84,7 +90,13 @@ impl WholeOutcome {
                 )
             }
             None if !self.stands => "the start is not stable under each of them, so its constants are unchanged".into(),
-            None => format!("no rho gave smaller errors than the start, in {} steps", self.steps),
+            None => {
+                let tried = self.curve.len();
+                format!(
+                    "none of {tried} values of rho gave smaller errors than the start, in {} steps; its constants are unchanged",
+                    self.steps
+                )
+            }
         };
         let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
         let [before, after] = [0, 1].map(|i| largest(&self.frequencies[i]));
@@ -94,7 +106,7 @@ impl WholeOutcome {
         };
         let ended = match (self.cancelled, self.limited) {
             (true, _) => "; it was ended early",
-            (_, true) => "; a smaller rho exceeds the range that is allowed",
+            (_, true) => "; a better rho exceeds the range that is allowed",
             _ => "",
         };
         vec![format!(

@@ -3,6 +3,7 @@
 use super::outcome::{FittedLoad, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
+use crate::whole::Stage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -50,8 +51,10 @@ pub struct WholeOutcomeRecord {
     pub largest_change: Option<f64>,
     /// The ratio of the largest to the least constant of the length springs.
     pub range: Option<f64>,
-    /// Whether a smaller regularization was rejected because of this ratio.
+    /// Whether a better regularization was rejected because of this ratio.
     pub limited_by_range: bool,
+    /// The stages of the path: the curve of errors against ρ.
+    pub curve: Vec<StageRecord>,
     /// The number of steps.
     pub steps: usize,
     /// Whether the fit was cancelled.
@@ -64,6 +67,22 @@ pub struct WholeOutcomeRecord {
     pub relative_errors_validated: Vec<FittedLoadRecord>,
     /// The relative errors of the frequencies.
     pub relative_errors_of_frequencies: FrequencyErrorsRecord,
+}
+
+/// A stage of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StageRecord {
+    /// ρ.
+    pub regularization: f64,
+    /// The geometric mean of the relative errors on the loads of the validation, or on each load that was left out; null
+    /// without validation, or if the network is not stable.
+    pub validated: Option<f64>,
+    /// The root mean square of the relative errors on the loads of the fit.
+    pub trained: Option<f64>,
+    /// The root mean square of the logarithms of the factors on the constants.
+    pub change: f64,
+    /// Whether it was rejected because of the range of its constants.
+    pub rejected: bool,
 }
 
 /// The relative error under a load; null if the network is not stable.
@@ -114,6 +133,13 @@ impl WholeOutcomeRecord {
             before: finite(load.before),
             after: finite(load.after),
         };
+        let stage = |(index, stage): (usize, &Stage)| StageRecord {
+            regularization: stage.regularization,
+            validated: outcome.left_out.get(index).copied().or(stage.validated).and_then(finite),
+            trained: stage.trained,
+            change: stage.change,
+            rejected: stage.rejected,
+        };
         let [before, after] = [0, 1].map(|i| outcome.frequencies[i].iter().map(|error| finite(*error)).collect());
         WholeOutcomeRecord {
             loads: outcome.loads.clone(),
@@ -122,6 +148,7 @@ impl WholeOutcomeRecord {
             largest_change: finite(outcome.change),
             range: finite(outcome.range),
             limited_by_range: outcome.limited,
+            curve: outcome.curve.iter().enumerate().map(stage).collect(),
             steps: outcome.steps,
             cancelled: outcome.cancelled,
             stands: outcome.stands,

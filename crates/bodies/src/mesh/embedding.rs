@@ -1,0 +1,165 @@
+//! Where the points of one mesh lie in the cells of another mesh of the same body.
+
+use super::mesh::{CellIndex, Mesh};
+use super::places::spatial;
+use crate::error::{Error, ErrorKind, Result};
+use crate::springs::distance;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// The shape functions of the cells of a mesh at given points: with `P_pa` the function of its point a at point p, values at
+/// its points become `Σ_a P_pa u_a` at the given points, and forces on these become `Σ_p P_pa f_p` on its own points, which do the
+/// same work.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Embedding {
+    /// The points of the mesh whose functions do not vanish at each given point, with their values.
+    rows: Vec<Vec<(usize, f64)>>,
+    dimension: usize,
+    /// The number of points of the mesh.
+    points: usize,
+    /// The number of given points outside all cells, whose values are extrapolated from the nearest cell.
+    pub outside: usize,
+}
+
+/// The largest distance of a point from the centre of its cell, as a multiple of that of the border in its direction. Meshes of one
+/// curved body differ near its surface.
+const FARTHEST: f64 = 1.6;
+/// The multiples that are tried.
+const MULTIPLES: [f64; 6] = [1.0 + 1e-8, 1.02, 1.08, 1.2, 1.4, FARTHEST];
+const ITERATIONS: usize = 30;
+
+impl Embedding {
+    /// Finds the cells of `points`, `[points × dimension]`, m.
+    ///
+    /// # Errors
+    /// The cells have another dimension than the space (kind `Unsupported`), or a point is far from all cells.
+    pub fn of(points: &[f64], mesh: &Mesh) -> Result<Embedding> {
+        let d = mesh.dimension;
+        if mesh.cell_dimension() != d {
+            let found = "surfaces or curves in space";
+            return Err(Error::expected("cells", "solids, or plane cells in the plane", found).of_kind(ErrorKind::Unsupported));
+        }
+        let bins = Bins::of(mesh);
+        let found: Vec<Option<(Vec<(usize, f64)>, bool)>> = points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
+        let (mut rows, mut outside) = (Vec::with_capacity(found.len()), 0);
+        for (found, x) in found.into_iter().zip(points.chunks_exact(d)) {
+            let far = || {
+                Error::expected("points", "points in the cells of the other mesh, or near them", format!("one at {x:?} m"))
+            };
+            let (row, inside) = found.ok_or_else(far)?;
+            outside += usize::from(!inside);
+            rows.push(row);
+        }
+        Ok(Embedding { rows, dimension: d, points: mesh.point_count(), outside })
+    }
+
+    /// The values at the given points of values at the points of the mesh, both `[points · dimension]`.
+    pub fn interpolate(&self, values: &[f64]) -> Vec<f64> {
+        let d = self.dimension;
+        let at = |row: &[(usize, f64)], k: usize| row.iter().map(|(a, n)| n * values[a * d + k]).sum();
+        self.rows.iter().flat_map(|row| (0..d).map(move |k| at(row, k))).collect()
+    }
+
+    /// The forces on the points of the mesh that do the same work as forces on the given points, both `[points · dimension]`.
+    pub fn restrict(&self, forces: &[f64]) -> Vec<f64> {
+        let d = self.dimension;
+        let mut own = vec![0.0; self.points * d];
+        for (row, force) in self.rows.iter().zip(forces.chunks_exact(d)) {
+            for (a, n) in row {
+                own[a * d..(a + 1) * d].iter_mut().zip(force).for_each(|(own, f)| *own += n * f);
+            }
+        }
+        own
+    }
+}
+
+/// The cells by the bins that their boxes meet.
+struct Bins {
+    width: f64,
+    cells: HashMap<[i64; 3], Vec<CellIndex>>,
+}
+
+impl Bins {
+    fn of(mesh: &Mesh) -> Bins {
+        let boxes: Vec<(CellIndex, [[f64; 3]; 2])> = mesh.cell_indices().map(|cell| (cell, surroundings(mesh, cell))).collect();
+        let mean = boxes.iter().map(|(_, [low, high])| distance(low, high)).sum::<f64>() / boxes.len().max(1) as f64;
+        let mut bins = Bins { width: mean, cells: HashMap::new() };
+        for (cell, [low, high]) in boxes {
+            let (from, to) = (bins.bin(&low), bins.bin(&high));
+            for i in from[0]..=to[0] {
+                for j in from[1]..=to[1] {
+                    for k in from[2]..=to[2] {
+                        bins.cells.entry([i, j, k]).or_default().push(cell);
+                    }
+                }
+            }
+        }
+        bins
+    }
+
+    fn bin(&self, x: &[f64; 3]) -> [i64; 3] {
+        x.map(|x| (x / self.width).floor() as i64)
+    }
+
+    /// The shape functions at x of the cell that has it, or is nearest to having it, and whether it has it.
+    fn find(&self, mesh: &Mesh, x: &[f64]) -> Option<(Vec<(usize, f64)>, bool)> {
+        let mut best: Option<(usize, CellIndex, Vec<f64>)> = None;
+        for &cell in self.cells.get(&self.bin(&spatial(x)))? {
+            let Some((multiple, at)) = local(mesh, cell, x) else { continue };
+            if best.as_ref().is_none_or(|best| multiple < best.0) {
+                best = Some((multiple, cell, at));
+            }
+            if multiple == 0 {
+                break;
+            }
+        }
+        let (multiple, cell, at) = best?;
+        let functions = &mesh.blocks[cell.block].element.functions.values;
+        let values = mesh.cell_nodes(cell).iter().zip(functions).map(|(a, n)| (*a, n.evaluate(&at)));
+        Some((values.filter(|(_, n)| n.abs() > 1e-14).collect(), multiple == 0))
+    }
+}
+
+/// A box around a cell that also has the points that may lie outside it.
+fn surroundings(mesh: &Mesh, cell: CellIndex) -> [[f64; 3]; 2] {
+    let points: Vec<[f64; 3]> = mesh.cell_nodes(cell).iter().map(|&p| spatial(mesh.point(p))).collect();
+    let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| points.iter().map(|x| x[k]).fold(start, pick);
+    let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
+    let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
+    let margin = 0.5 * (FARTHEST - 1.0) * distance(&low, &high);
+    [low.map(|x| x - margin), high.map(|x| x + margin)]
+}
+
+/// The position in the coordinates of a cell, by Newton's method, and the index of the least multiple of the cell that has it.
+fn local(mesh: &Mesh, cell: CellIndex, x: &[f64]) -> Option<(usize, Vec<f64>)> {
+    let (element, nodes, d) = (&mesh.blocks[cell.block].element, mesh.cell_nodes(cell), mesh.dimension);
+    let centre = element.cell.centre();
+    let mut at = centre.clone();
+    for _ in 0..ITERATIONS {
+        let mut rest = DVector::from_column_slice(x);
+        let mut jacobian = DMatrix::zeros(d, d);
+        for (a, &p) in nodes.iter().enumerate() {
+            let value = element.functions.values[a].evaluate(&at);
+            for (k, x) in mesh.point(p).iter().enumerate() {
+                rest[k] -= value * x;
+                for (l, gradient) in element.functions.gradients[a].iter().enumerate() {
+                    jacobian[(k, l)] += x * gradient.evaluate(&at);
+                }
+            }
+        }
+        let step = jacobian.lu().solve(&rest)?;
+        if !step.iter().all(|step| step.is_finite()) || at.iter().any(|at| at.abs() > 100.0) {
+            return None;
+        }
+        at.iter_mut().zip(&step).for_each(|(at, step)| *at += step);
+        if step.amax() < 1e-12 {
+            break;
+        }
+    }
+    let within = |multiple: &f64| {
+        let shrunk: Vec<f64> = at.iter().zip(&centre).map(|(a, c)| c + (a - c) / multiple).collect();
+        element.cell.contains(&shrunk)
+    };
+    MULTIPLES.iter().position(within).map(|multiple| (multiple, at))
+}
