@@ -38,14 +38,21 @@ impl Embedding {
         let d = mesh.dimension;
         if mesh.cell_dimension() != d {
             let found = "surfaces or curves in space";
-            return Err(Error::expected("cells", "solids, or plane cells in the plane", found).of_kind(ErrorKind::Unsupported));
+            return Err(
+                Error::expected("cells", "solids, or plane cells in the plane", found).of_kind(ErrorKind::Unsupported)
+            );
         }
         let bins = Bins::of(mesh);
-        let found: Vec<Option<(Vec<(usize, f64)>, bool)>> = points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
+        let found: Vec<Option<(Vec<(usize, f64)>, bool)>> =
+            points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
         let (mut rows, mut outside) = (Vec::with_capacity(found.len()), 0);
         for (found, x) in found.into_iter().zip(points.chunks_exact(d)) {
             let far = || {
-                Error::expected("points", "points in the cells of the other mesh, or near them", format!("one at {x:?} m"))
+                Error::expected(
+                    "points",
+                    "points in the cells of the other mesh, or near them",
+                    format!("one at {x:?} m"),
+                )
             };
             let (row, inside) = found.ok_or_else(far)?;
             outside += usize::from(!inside);
@@ -82,7 +89,8 @@ struct Bins {
 
 impl Bins {
     fn of(mesh: &Mesh) -> Bins {
-        let boxes: Vec<(CellIndex, [[f64; 3]; 2])> = mesh.cell_indices().map(|cell| (cell, surroundings(mesh, cell))).collect();
+        let boxes: Vec<(CellIndex, [[f64; 3]; 2])> =
+            mesh.cell_indices().map(|cell| (cell, surroundings(mesh, cell))).collect();
         let mean = boxes.iter().map(|(_, [low, high])| distance(low, high)).sum::<f64>() / boxes.len().max(1) as f64;
         let mut bins = Bins { width: mean, cells: HashMap::new() };
         for (cell, [low, high]) in boxes {

@@ -209,8 +209,7 @@ impl LeastSquares for Displacements<'_> {
 
     fn at(&self, theta: &[f64]) -> Result<Option<Linearized<'_>>> {
         let small = self.object.newton.is_none();
-        let entries =
-            if small || self.frequencies.is_some() { self.object.stiffness(theta) } else { Entries::new() };
+        let entries = if small || self.frequencies.is_some() { self.object.stiffness(theta) } else { Entries::new() };
         let found = if small { self.small(&entries)? } else { self.large(&self.object.network(theta))? };
         let Some((displacements, tangents)) = found else { return Ok(None) };
         let residual = |(l, u): (usize, Vec<f64>)| {

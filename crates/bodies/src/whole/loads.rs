@@ -4,7 +4,7 @@
 
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
-use crate::springs::{dot, norm, unit};
+use crate::springs::{distance, dot, norm, unit};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -21,6 +21,8 @@ pub struct NodalLoad {
 const WAVES: f64 = 0.5;
 /// The number of sines of which a component of a random field is the sum.
 const SINES: usize = 4;
+/// The width of a patch of traction, relative to the size of the object.
+const PATCH: std::ops::Range<f64> = 0.1..0.5;
 
 /// Tractions `t = σ n` on the boundary, and body forces, of size 1 Pa and 1 N/m³:
 ///
@@ -100,6 +102,42 @@ pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize
         NodalLoad { name: format!("random {index}"), forces: weights.iter().enumerate().map(at).collect() }
     };
     (1..=count).map(&mut field).collect()
+}
+
+/// "pressure" on the whole boundary, then "patch 1", …: tractions of random direction around a random place of the boundary, and
+/// "field 1", …: body forces that are linear in the position. Every third is a field. The same seed always gives the same loads.
+pub fn varied_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize, seed: u64) -> Vec<NodalLoad> {
+    let d = mesh.dimension;
+    let frame = Frame::of(mesh, support);
+    let mut random = StdRng::seed_from_u64(seed);
+    let pressure = boundary_forces(mesh, &|_: &[f64], n: &[f64]| n.iter().map(|n| -n).collect(), thickness);
+    let on_boundary: Vec<usize> =
+        (0..mesh.point_count()).filter(|p| pressure[p * d..(p + 1) * d].iter().any(|f| *f != 0.0)).collect();
+    let weights = nodal_forces(mesh, &Selection::Everything, &Action::body(&vec![1.0; d]), thickness)
+        .expect("a mesh has cells to act on");
+    let mut loads = vec![NodalLoad { name: "pressure".into(), forces: pressure }];
+    for index in 1..count {
+        let direction = unit(&(0..d).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>());
+        if index % 3 == 0 || on_boundary.is_empty() {
+            let slopes: Vec<f64> = (0..d * d).map(|_| random.random_range(-2.0..2.0)).collect();
+            let at = |(dof, weight): (usize, &f64)| {
+                let (r, k) = (frame.away(mesh.point(dof / d)), dof % d);
+                weight * (direction[k] + dot(&slopes[k * d..(k + 1) * d], &r))
+            };
+            let forces = weights.iter().enumerate().map(at).collect();
+            loads.push(NodalLoad { name: format!("field {index}"), forces });
+            continue;
+        }
+        let place = mesh.point(on_boundary[random.random_range(0..on_boundary.len())]);
+        let width = frame.size * random.random_range(PATCH);
+        let around = |x: &[f64], _: &[f64]| {
+            let share = (-0.5 * (distance(x, place) / width).powi(2)).exp();
+            direction.iter().map(|t| share * t).collect()
+        };
+        loads.push(NodalLoad { name: format!("patch {index}"), forces: boundary_forces(mesh, &around, thickness) });
+    }
+    let acts = |load: &NodalLoad| load.forces.iter().zip(&support.prescribed).any(|(f, p)| p.is_none() && *f != 0.0);
+    loads.into_iter().filter(acts).collect()
 }
 
 /// The middle of the object, and its direction away from the supports.

@@ -29,7 +29,7 @@ pub use displacements::{Displacements, Errors};
 pub use fit::{WholeFit, fit_whole};
 pub use gauss_newton::GaussNewton;
 pub use linearized::{LeastSquares, Linearized};
-pub use loads::{NodalLoad, made_loads, random_loads};
+pub use loads::{NodalLoad, made_loads, random_loads, varied_loads};
 pub use moduli::{ModuliParts, ModuliSharing};
 pub use object::{Object, raise_idle};
 pub use path::{Best, Snapshot, Stage, StepCallback};

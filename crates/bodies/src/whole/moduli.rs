@@ -73,9 +73,8 @@ impl<'a> ModuliParts<'a> {
         let shear = Material::new(2.0 * material.young() / (2.0 * (1.0 + material.poisson())), 0.0, material.state())?;
         let mut fits = Vec::new();
         for block in &mesh.blocks {
-            let of = |material| {
-                fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {})
-            };
+            let of =
+                |material| fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {});
             let (all, shear) = (of(material)?, of(shear)?);
             let rest = |all: &[f64], own: &[f64]| all.iter().zip(own).map(|(a, b)| share * (a - b)).collect();
             let volume = CellFits {
@@ -85,14 +84,8 @@ impl<'a> ModuliParts<'a> {
             };
             fits.push([shear, volume]);
         }
-        let mut parts = ModuliParts {
-            mesh,
-            fits,
-            patches,
-            places: Arc::default(),
-            tangents: Arc::default(),
-            parts: Vec::new(),
-        };
+        let mut parts =
+            ModuliParts { mesh, fits, patches, places: Arc::default(), tangents: Arc::default(), parts: Vec::new() };
         parts.tabulate();
         Ok(parts)
     }

@@ -51,10 +51,10 @@ pub use draft::{contents, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
-    KindRecord, LoadSelection, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord,
-    Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing,
-    SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, TensionOutcome, TensionRecord, ValidationRecipe,
-    WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    HeldOut, KindRecord, LoadSelection, ModelError, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord,
+    PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts,
+    Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, TensionOutcome, TensionRecord,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
 pub use forecast::{ExpectedStage, Forecast};
@@ -72,7 +72,7 @@ pub use progress::{Event, Progress};
 pub use run::{run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, MeshInput, MotionRecipe, Output, Part,
-    PrescribedMotion, Scene, Setting, load_elements, scene_schema,
+    PrescribedMotion, ReferenceEntry, Scene, Setting, load_elements, scene_schema,
 };
 pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};

@@ -1,6 +1,6 @@
 //! Runs a scene: fits each objective, solves each load with both models, and compares them.
 
-use super::body::{Case, Gauged, LargeBody, LinearBody, load_cases};
+use super::body::{Case, FineBody, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
 use super::fits::{Reference, WholeBody};
 use super::fitting::fit_mesh;
@@ -37,7 +37,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let mesh = scene.build_mesh()?;
     let material = scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
-    let (support, cases) = load_cases(scene, &mesh, material)?;
+    let (support, mut cases) = load_cases(scene, &mesh, material)?;
     let energy = scene.energy(material)?;
     if controls.announce
         && let Some(words) = Forecast::of_body(scene, &mesh, material, &cases, energy.as_ref())?.announcement()
@@ -47,6 +47,10 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
     let plan = TimePlan::of(scene, &mesh, material, &support)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(scene.path()));
+    let fine = FineBody::of(scene, &mesh, material)?;
+    if let Some(fine) = &fine {
+        fine.measure(scene, &mut cases, progress)?;
+    }
     let large = match energy {
         Some(energy) => {
             let state = material.state();
@@ -70,6 +74,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         (None, None) => Vec::new(),
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
+    whole.fine = fine.as_ref();
     whole.masses = masses.as_deref();
     whole.solved = body.as_ref().and_then(|body| body.held_by(&support, &cases));
     let held = held_points(&mesh, &support, &cases);

@@ -14,7 +14,7 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
 }
 
 /// The support of the `[[fix]]` entries.
-fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
+pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
     for (i, (part, axes)) in scene.supports().iter().enumerate() {

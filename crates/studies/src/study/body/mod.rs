@@ -4,6 +4,7 @@ mod answer;
 mod case;
 mod cases;
 mod factored;
+mod fine;
 mod gauge;
 mod iterated;
 mod large;
@@ -11,6 +12,7 @@ mod linear;
 
 pub use case::Case;
 pub use cases::load_cases;
+pub use fine::FineBody;
 pub use gauge::Gauged;
 pub use large::LargeBody;
 pub use linear::LinearBody;

@@ -7,10 +7,11 @@ use super::load::{LoadCase, LoadEntry};
 use super::motion::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
+use super::reference::ReferenceEntry;
 use super::setting::Setting;
 use super::source::SceneSource;
 use crate::bound::{self, check_count};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::material::{Energy, Material};
 use crate::mesh::Mesh;
@@ -35,6 +36,7 @@ pub struct Scene {
     loads: Vec<LoadCase>,
     newton: Newton,
     solver: StaticSolver,
+    reference: Option<ReferenceEntry>,
     gauge: Option<Gauge>,
     motion: Option<MotionRecipe>,
     output: Output,
@@ -112,6 +114,13 @@ impl Scene {
             let expected = format!("a name other than {}", RESERVED.join(", "));
             return Err(Error::expected(format!("load[{i}].name"), expected, format!("\"{}\"", loads[i].name)));
         }
+        if let Some(reference) = &entry.reference {
+            reference.check().map_err(|e| e.under("reference"))?;
+            if entry.material.law.is_some() {
+                let problem = "belongs to small deformation, found a material with a \"law\"";
+                return Err(Error::at("reference", problem).of_kind(ErrorKind::Unsupported));
+            }
+        }
         if let Some(sweep) = &entry.sweep {
             sweep.check().map_err(|e| e.under("sweep"))?;
         }
@@ -126,6 +135,7 @@ impl Scene {
             loads,
             newton,
             solver,
+            reference: entry.reference,
             gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
             motion,
             output: entry.output,
@@ -176,6 +186,11 @@ impl Scene {
     /// How the linear equations of the loads are solved.
     pub fn solver(&self) -> StaticSolver {
         self.solver
+    }
+
+    /// The finer body with which the networks are compared, if there is one.
+    pub fn reference(&self) -> Option<&ReferenceEntry> {
+        self.reference.as_ref()
     }
 
     /// Where the modulus and the ratio of a specimen are measured, if the scene says so.
@@ -310,6 +325,7 @@ impl Scene {
         let folder = self.path().parent().unwrap_or(Path::new(""));
         let mut files = vec![self.path().to_path_buf()];
         files.extend(self.mesh.files(folder));
+        files.extend(self.reference.iter().flat_map(|reference| reference.files(folder)));
         files.extend(self.law().map(|law| PathBuf::from(law_at(law, folder))));
         let measured = self.loads.iter().filter_map(|load| load.measured.as_ref());
         files.extend(measured.map(|entry| folder.join(&entry.file)));

@@ -6,6 +6,7 @@ use super::load::LoadEntry;
 use super::motion::MotionEntry;
 use super::output::Output;
 use super::part::Part;
+use super::reference::ReferenceEntry;
 use super::value::{self, Pressure};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
@@ -36,6 +37,8 @@ pub struct SceneFile {
     pub fix: Vec<FixEntry>,
     #[serde(default)]
     pub load: Vec<LoadEntry>,
+    /// The finer body with which the networks are compared.
+    pub reference: Option<ReferenceEntry>,
     pub gauge: Option<GaugeEntry>,
     pub motion: Option<MotionEntry>,
     #[serde(default)]

@@ -3,7 +3,7 @@
 use super::recipe::{LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective};
+use crate::fit::{Choices, Fit, Objective, VolumeSprings};
 use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
@@ -41,6 +41,13 @@ pub struct WholeEntry {
     pub range: Option<f64>,
     pub frequencies: Option<usize>,
     pub seed: Option<u64>,
+    /// The groups that are held, for each support under which made loads are fitted.
+    pub supports: Option<Vec<Vec<String>>>,
+    /// The same for the loads that choose ρ.
+    pub validate_supports: Option<Vec<Vec<String>>>,
+    /// The springs for λ of the start "exact".
+    #[schemars(extend("enum" = VolumeSprings::NAMES))]
+    pub volume: Option<String>,
     #[schemars(extend("enum" = DescentMethod::NAMES))]
     pub solver: Option<String>,
     pub iterations: Option<u64>,
@@ -55,7 +62,8 @@ impl WholeEntry {
         let recipe = |name: String| {
             let start = match name.as_str() {
                 "sampled" => Start::Sampled(Box::new(sampled()?)),
-                "equal" => self.equal()?,
+                "equal" => self.without_objective("equal", Start::Equal)?,
+                "exact" => self.without_objective("exact", Start::Exact(self.volume()?))?,
                 objective => self.objective(objective)?,
             };
             Ok((name, self.recipe(start)?))
@@ -63,19 +71,23 @@ impl WholeEntry {
         starts(self.start.as_ref())?.into_iter().map(recipe).collect()
     }
 
-    fn equal(&self) -> Result<Start> {
+    fn volume(&self) -> Result<VolumeSprings> {
+        choice("volume", self.volume.as_deref(), VolumeSprings::default(), VolumeSprings::named)
+    }
+
+    fn without_objective(&self, name: &str, start: Start) -> Result<Start> {
         let choices =
             [("weight", self.weight.is_some()), ("higher", self.higher.is_some()), ("balance", self.balance.is_some())];
         match choices.iter().find(|(_, given)| *given) {
-            Some((key, _)) => Err(Error::at(*key, "belongs to an objective, found with the start \"equal\"")),
-            None => Ok(Start::Equal),
+            Some((key, _)) => Err(Error::at(*key, format!("belongs to an objective, found with the start \"{name}\""))),
+            None => Ok(start),
         }
     }
 
     fn objective(&self, name: &str) -> Result<Start> {
         if !Objective::NAMES.contains(&name) {
-            let expected = format!("one of {}, sampled, equal", Objective::NAMES.join(", "));
-            let names = Objective::NAMES.iter().copied().chain(["sampled", "equal"]);
+            let expected = format!("one of {}, sampled, equal, exact", Objective::NAMES.join(", "));
+            let names = Objective::NAMES.iter().copied().chain(["sampled", "equal", "exact"]);
             return Err(unknown(expected, names, name).at_key("start"));
         }
         let choices = Choices { weight: self.weight.as_deref(), higher: self.higher, balance: self.balance };
@@ -144,7 +156,26 @@ impl WholeEntry {
                 ValidationRecipe::Loads(LoadSelection::new(names))
             }
         };
-        let unknowns = choice("unknowns", self.unknowns.as_deref(), Sharing::default(), Sharing::named)?;
+        let is_exact = matches!(start, Start::Exact(_));
+        let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
+        let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
+        if unknowns.moduli().is_some() != is_exact {
+            let found = format!("\"{}\" with the start \"{}\"", unknowns.name(), start.title());
+            let expected = "\"moduli\", \"region-moduli\" or \"body-moduli\" with the start \"exact\", and no others";
+            return Err(Error::expected("unknowns", expected, found));
+        }
+        if self.volume.is_some() && !is_exact {
+            return Err(Error::at("volume", "belongs to the start \"exact\""));
+        }
+        let supports = checked_supports("supports", self.supports.as_deref())?;
+        let validation_supports = checked_supports("validate_supports", self.validate_supports.as_deref())?;
+        let is_made = matches!(&validation, ValidationRecipe::Loads(loads) if loads.made);
+        if !validation_supports.is_empty() && !is_made {
+            return Err(Error::at("validate_supports", "belongs to validate = \"made\""));
+        }
+        if !supports.is_empty() && !loads.iter().any(|name| name == MADE) {
+            return Err(Error::at("supports", "belongs to loads = [\"made\"]"));
+        }
         Ok(WholeRecipe {
             start,
             unknowns,
@@ -153,7 +184,21 @@ impl WholeEntry {
             settings,
             frequencies: self.frequencies.unwrap_or(0),
             seed: self.seed.unwrap_or(SEED),
+            supports,
+            validation_supports,
         })
+    }
+}
+
+/// Lists of groups; none is empty.
+fn checked_supports(key: &str, supports: Option<&[Vec<String>]>) -> Result<Vec<Vec<String>>> {
+    match supports {
+        Some([]) => Err(Error::expected(key, "lists of groups that are held", "none")),
+        Some(supports) => match supports.iter().position(Vec::is_empty) {
+            Some(empty) => Err(Error::expected(format!("{key}[{empty}]"), "groups that are held", "none")),
+            None => Ok(supports.to_vec()),
+        },
+        None => Ok(Vec::new()),
     }
 }
 

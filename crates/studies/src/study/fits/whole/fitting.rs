@@ -22,6 +22,7 @@ impl WholeRecipe {
             Start::Fit(fit) => fit_at_rest(fit, task, progress),
             // Only its springs are needed, not their constants.
             Start::Equal => fit_at_rest(&Fit::new(Objective::Frobenius(Weight::None)), task, progress),
+            Start::Exact(_) => Ok(Vec::new()),
             Start::Sampled(recipe) => {
                 Ok(fit_shapes(recipe, task, progress)?.into_iter().map(|found| found.fits).collect())
             }
@@ -53,7 +54,8 @@ impl FitKind for WholeRecipe {
         let start = Instant::now();
         let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
         let body = task.reference.whole.ok_or_else(missing)?;
-        let (network, outcome) = body.fit((task.name, task.springs), self, &cells, &network, progress)?;
+        let own = (!matches!(self.start, Start::Exact(_))).then_some((&cells[..], &network));
+        let (network, outcome) = body.fit(task, self, own, progress)?;
         let seconds = seconds + start.elapsed().as_secs_f64();
         let (cells, kind) = (Vec::new(), FittedKind::Whole(outcome));
         Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind })
@@ -62,7 +64,7 @@ impl FitKind for WholeRecipe {
     fn sampled(&self) -> Option<&SampledRecipe> {
         match &self.start {
             Start::Sampled(recipe) => Some(recipe),
-            Start::Fit(_) | Start::Equal => None,
+            Start::Fit(_) | Start::Equal | Start::Exact(_) => None,
         }
     }
 

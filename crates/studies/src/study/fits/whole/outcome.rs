@@ -1,5 +1,6 @@
 //! The loads of a whole-object fit, and its result.
 
+use super::held_out::{HeldOut, ModelError};
 use super::recipe::WholeRecipe;
 use crate::whole::{Errors, Stage, Target, Wanted, WholeFit};
 
@@ -35,6 +36,8 @@ pub struct WholeOutcome {
     pub stands: bool,
     /// Whether the fit was cancelled.
     pub cancelled: bool,
+    /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
+    pub held_out: Vec<HeldOut>,
 }
 
 /// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
@@ -50,7 +53,7 @@ pub struct FittedLoad {
 }
 
 impl WholeOutcome {
-    pub(super) fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit) -> WholeOutcome {
+    pub(super) fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit, held_out: Vec<HeldOut>) -> WholeOutcome {
         let errors = |targets: &[Target], [before, after]: &[Errors; 2]| {
             let name = targets.iter().map(|target| target.name.clone());
             let before = before.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
@@ -72,6 +75,7 @@ impl WholeOutcome {
             steps: found.steps,
             stands: found.stands,
             cancelled: found.cancelled,
+            held_out,
         }
     }
 
@@ -109,9 +113,22 @@ impl WholeOutcome {
             (_, true) => "; a better rho exceeds the range that is allowed",
             _ => "",
         };
-        vec![format!(
+        let percent = |error: Option<f64>| error.map_or("-".into(), |error| format!("{:.2}", 100.0 * error));
+        let held_out = self.held_out.iter().map(|held_out| {
+            let seen = if held_out.is_trained { "" } else { ", a support that was not fitted" };
+            let model =
+                |model: &ModelError| format!("{} {} / {}", model.model, percent(model.median), percent(model.worst));
+            let models: Vec<String> = held_out.models.iter().map(model).collect();
+            let (loads, support) = (held_out.loads, &held_out.support);
+            format!(
+                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}",
+                models.join(", ")
+            )
+        });
+        let fitted = format!(
             "fitted to {}, so that errors under them are not predictions{validated}: {done}{ended}",
             self.loads.join(", ")
-        )]
+        );
+        std::iter::once(fitted).chain(held_out).collect()
     }
 }

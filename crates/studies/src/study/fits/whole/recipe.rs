@@ -1,10 +1,10 @@
 //! A whole-object fit, before the mesh is known.
 
 use crate::error::{Error, Result};
-use crate::fit::Fit;
+use crate::fit::{Fit, VolumeSprings};
 use crate::study::fits::facts::SceneFacts;
 use crate::study::fits::sampled::SampledRecipe;
-use crate::whole::WholeSettings;
+use crate::whole::{ModuliSharing, WholeSettings};
 
 /// The settings of a whole-object fit, before the mesh is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,11 @@ pub struct WholeRecipe {
     pub frequencies: usize,
     /// The seed of the random loads.
     pub seed: u64,
+    /// The supports under which made loads are fitted, each by the names of the groups that are held; that of the scene if
+    /// empty.
+    pub supports: Vec<Vec<String>>,
+    /// The supports under which made loads of the validation act; those of the fit if empty.
+    pub validation_supports: Vec<Vec<String>>,
 }
 
 /// The constants from which a fit starts; none is negative.
@@ -34,6 +39,8 @@ pub enum Start {
     Sampled(Box<SampledRecipe>),
     /// One constant for all springs of a kind.
     Equal,
+    /// The exact network, whose moduli are the unknowns.
+    Exact(VolumeSprings),
 }
 
 /// The springs that share an unknown factor.
@@ -48,6 +55,12 @@ pub enum Sharing {
     Region,
     /// Each spring of each element has a factor.
     Element,
+    /// The moduli of each cell of an exact network have factors, and so has each patch.
+    Moduli,
+    /// The moduli of the cells of each region of the mesh have factors.
+    RegionModuli,
+    /// The moduli of the body have factors.
+    BodyModuli,
 }
 
 /// Loads of the scene by name, and whether a set generated from the mesh is used as well.
@@ -84,11 +97,33 @@ impl Start {
             Start::Fit(fit) => fit.objective.title(),
             Start::Sampled(recipe) => format!("sampled{}", recipe.force.name()),
             Start::Equal => "equal".into(),
+            Start::Exact(VolumeSprings::Points) => "exact".into(),
+            Start::Exact(volume) => format!("exact {}", volume.name()),
         }
     }
 }
 
-crate::named!(Sharing { "spring" => Spring, "group" => Group, "region" => Region, "element" => Element });
+crate::named!(Sharing {
+    "spring" => Spring,
+    "group" => Group,
+    "region" => Region,
+    "element" => Element,
+    "moduli" => Moduli,
+    "region-moduli" => RegionModuli,
+    "body-moduli" => BodyModuli,
+});
+
+impl Sharing {
+    /// The cells that share moduli; `None` if the unknowns are no moduli.
+    pub fn moduli(self) -> Option<ModuliSharing> {
+        match self {
+            Sharing::Moduli => Some(ModuliSharing::Element),
+            Sharing::RegionModuli => Some(ModuliSharing::Region),
+            Sharing::BodyModuli => Some(ModuliSharing::Body),
+            Sharing::Spring | Sharing::Group | Sharing::Region | Sharing::Element => None,
+        }
+    }
+}
 
 impl WholeRecipe {
     /// Checks the settings that depend on the material.
@@ -102,6 +137,10 @@ impl WholeRecipe {
                 let expected = "loads of the scene, where the material has a law";
                 return Err(Error::expected(key, expected, "\"made\""));
             }
+        }
+        if law && self.unknowns.moduli().is_some() {
+            let expected = "a material without a law, where the moduli of cells are unknown";
+            return Err(Error::expected("unknowns", expected, format!("\"{}\"", self.unknowns.name())));
         }
         if self.frequencies > 0 && !density {
             return Err(Error::expected("frequencies", "a density in [material]", "none"));

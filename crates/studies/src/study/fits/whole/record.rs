@@ -1,5 +1,6 @@
 //! The settings and errors of a whole-object fit in a report.
 
+use super::held_out::{HeldOut, ModelError};
 use super::outcome::{FittedLoad, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
@@ -28,6 +29,10 @@ pub struct WholeRecord {
     pub frequencies: usize,
     /// The seed of the random loads.
     pub seed: u64,
+    /// The groups that are held, for each support under which made loads are fitted; empty for that of the scene.
+    pub supports: Vec<Vec<String>>,
+    /// The same for the loads that choose the regularization; empty for those of the fit.
+    pub validate_supports: Vec<Vec<String>>,
 }
 
 /// The start: an objective or "equal", or the settings of a sampled fit.
@@ -65,8 +70,49 @@ pub struct WholeOutcomeRecord {
     pub relative_errors_fitted: Vec<FittedLoadRecord>,
     /// The relative errors on the loads that chose the regularization.
     pub relative_errors_validated: Vec<FittedLoadRecord>,
+    /// The relative errors under loads that were neither fitted nor chose the regularization.
+    pub held_out: Vec<HeldOutRecord>,
     /// The relative errors of the frequencies.
     pub relative_errors_of_frequencies: FrequencyErrorsRecord,
+}
+
+/// The relative errors under loads with one support.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeldOutRecord {
+    /// The groups that are held.
+    pub support: String,
+    /// Whether loads with this support were fitted.
+    pub trained: bool,
+    /// The number of loads.
+    pub loads: usize,
+    /// The finite elements of the mesh, the network at the start, and the fitted one.
+    pub models: Vec<ModelErrorRecord>,
+}
+
+/// The relative errors `‖u − ū‖/‖ū‖` of a model; null if it is not stable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ModelErrorRecord {
+    pub model: String,
+    pub median: Option<f64>,
+    pub worst: Option<f64>,
+    pub worst_load: Option<String>,
+}
+
+impl HeldOutRecord {
+    fn of(held_out: &HeldOut) -> HeldOutRecord {
+        let model = |model: &ModelError| ModelErrorRecord {
+            model: model.model.into(),
+            median: model.median,
+            worst: model.worst,
+            worst_load: model.worst_load.clone(),
+        };
+        HeldOutRecord {
+            support: held_out.support.clone(),
+            trained: held_out.is_trained,
+            loads: held_out.loads,
+            models: held_out.models.iter().map(model).collect(),
+        }
+    }
 }
 
 /// A stage of the path.
@@ -104,14 +150,14 @@ impl WholeRecord {
     pub(super) fn of(recipe: &WholeRecipe) -> WholeRecord {
         let objective = match &recipe.start {
             Start::Fit(fit) => Some(fit.objective),
-            Start::Sampled(_) | Start::Equal => None,
+            Start::Sampled(_) | Start::Equal | Start::Exact(_) => None,
         };
         WholeRecord {
             objective: "whole".into(),
             start: match &recipe.start {
                 Start::Fit(fit) => StartRecord::Name(fit.objective.name().into()),
                 Start::Sampled(recipe) => StartRecord::Sampled(Box::new(SampledRecord::of(recipe))),
-                Start::Equal => StartRecord::Name("equal".into()),
+                Start::Equal | Start::Exact(_) => StartRecord::Name(recipe.start.title()),
             },
             weight: objective.and_then(|objective| objective.weight()).map(|weight| weight.name().into()),
             higher: objective.and_then(|objective| objective.higher()),
@@ -120,6 +166,8 @@ impl WholeRecord {
             solver: recipe.settings.method.name().into(),
             frequencies: recipe.frequencies,
             seed: recipe.seed,
+            supports: recipe.supports.clone(),
+            validate_supports: recipe.validation_supports.clone(),
         }
     }
 }
@@ -154,6 +202,7 @@ impl WholeOutcomeRecord {
             stands: outcome.stands,
             relative_errors_fitted: outcome.fitted.iter().map(load).collect(),
             relative_errors_validated: outcome.judged.iter().map(load).collect(),
+            held_out: outcome.held_out.iter().map(HeldOutRecord::of).collect(),
             relative_errors_of_frequencies: FrequencyErrorsRecord { before, after },
         }
     }

@@ -1,0 +1,55 @@
+//! The finer body with which the networks of a scene are compared.
+
+use super::input::MeshInput;
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// `[reference]`: the mesh of the scene with smaller cells, or another mesh of the same body with the same groups.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceEntry {
+    /// How often the edges of all cells are halved.
+    pub refine: Option<u32>,
+    /// Another mesh of the same body, with the keys of `[mesh]`.
+    pub mesh: Option<MeshInput>,
+}
+
+/// With six halvings a cell becomes 262 144.
+const MOST: u32 = 6;
+
+impl ReferenceEntry {
+    pub(super) fn check(&self) -> Result<()> {
+        match (self.refine, &self.mesh) {
+            (Some(times), None) if (1..=MOST).contains(&times) => Ok(()),
+            (Some(times), None) => Err(Error::expected("refine", format!("a number from 1 to {MOST}"), times)),
+            (None, Some(mesh)) => mesh.check(),
+            (Some(_), Some(_)) => Err(Error::expected("reference", "one of \"refine\", \"mesh\"", "both")),
+            (None, None) => Err(Error::expected("reference", "one of \"refine\", \"mesh\"", "none")),
+        }
+    }
+
+    /// The finer mesh of the body with this mesh; files are relative to the scene at `path`.
+    ///
+    /// # Errors
+    /// The file is wrong, or a cell cannot be divided.
+    pub fn build(&self, path: &Path, mesh: &Mesh) -> Result<Mesh> {
+        match &self.mesh {
+            Some(input) => input.build(path),
+            None => {
+                let mut fine = mesh.refined()?;
+                for _ in 1..self.refine.unwrap_or(1) {
+                    fine = fine.refined()?;
+                }
+                Ok(fine)
+            }
+        }
+    }
+
+    /// The files that it names, relative to `folder`.
+    pub fn files(&self, folder: &Path) -> Vec<PathBuf> {
+        self.mesh.as_ref().map_or(Vec::new(), |mesh| mesh.files(folder))
+    }
+}
