@@ -6,6 +6,7 @@ mod book;
 mod cases;
 mod catalogue;
 mod check;
+mod coarse;
 mod command_line;
 mod converge;
 mod corpora;

@@ -1,6 +1,6 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
-use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
+use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
 use springfit::material::Material;
 use springfit::mesh::{Mesh, vtk};
 use springfit::model::{Network, Support, finite_elements, masses};
@@ -9,8 +9,9 @@ use springfit::solve::{Newton, System, lowest_modes};
 use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
-    DescentMethod, Displacements, Frequencies, GaussNewton, LeastSquares, NodalLoad, Object, Residual, ResidualForces,
-    Target, Unknowns, Validation, Wanted, WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads,
+    DescentMethod, Displacements, Frequencies, GaussNewton, LeastSquares, ModuliParts, ModuliSharing, NodalLoad,
+    Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted, WholeFit, WholeSettings, fit_whole,
+    made_loads, raise_idle, random_loads, varied_loads,
 };
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -121,6 +122,121 @@ fn derivatives_are_those_of_differences() {
         compare_with_differences(&problem);
         let entries = finite_elements(&body.mesh, body.material.moduli());
         compare_with_differences(&ResidualForces::new(&object, vec![&targets[0], &targets[2]], &entries).unwrap());
+    }
+}
+
+/// The same where the unknowns are the moduli of an exact network, each in all ways to share them.
+#[test]
+fn derivatives_in_moduli_are_those_of_differences() {
+    for (scene, held, volume) in [
+        ("cube_tet", "fixed", VolumeSprings::Points),
+        ("cube_tet", "fixed", VolumeSprings::Patches),
+        ("tissue_quad", "fixed", VolumeSprings::Cells),
+    ] {
+        let body = Body::new(&load(scene), held);
+        let mut targets = body.made();
+        targets.truncate(2);
+        let frequencies = body.frequencies(2);
+        let parts = ModuliParts::new(&body.mesh, body.material, volume, &[]).unwrap();
+        for sharing in [ModuliSharing::Body, ModuliSharing::Region, ModuliSharing::Element] {
+            let object = Object::of_moduli(parts.clone(), &body.mesh.points, parts.unknowns(sharing)).unwrap();
+            let problem = Displacements::new(&object, targets.iter().collect(), Some(&frequencies)).unwrap();
+            compare_with_differences(&problem);
+        }
+        // With all factors at one the parts are the finite elements, unless patches or cells carry lambda.
+        let unknowns = parts.unknowns(ModuliSharing::Element);
+        let object = Object::of_moduli(parts.clone(), &body.mesh.points, unknowns.clone()).unwrap();
+        if volume == VolumeSprings::Points {
+            let network = object.network(&vec![0.0; unknowns.count()]);
+            let problem = Displacements::new(&object, targets.iter().collect(), None).unwrap();
+            let errors = problem.errors(&vec![0.0; unknowns.count()]).unwrap().unwrap();
+            assert!(errors.loads.iter().all(|e| *e < 1e-10), "{errors:?}");
+            let exact = fit_exact(
+                &body.mesh.blocks[0].element,
+                &body.mesh.points,
+                &body.mesh.blocks[0].connectivity,
+                body.material,
+                &ExactFit::default(),
+                &mut |_| {},
+            );
+            let exact = Network::assemble(&body.mesh, &[exact.unwrap()]);
+            assert_eq!(network.lengths.len(), exact.lengths.len());
+            for (a, b) in network.lengths.iter().zip(&exact.lengths) {
+                assert!((a.constant - b.constant).abs() < 1e-9 * b.constant.abs().max(1e-3), "{a:?} {b:?}");
+            }
+        }
+        // The network of any factors has the stiffness of the parts.
+        let theta = waves(unknowns.count(), 0.5);
+        let network = object.network(&theta);
+        let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
+        let u = system.solve(&system.factorize().unwrap().unwrap(), &targets[0].forces).0;
+        let own = Target::new("own".into(), body.support.clone(), targets[0].forces.clone(), u);
+        let problem = Displacements::new(&object, vec![&own], None).unwrap();
+        let errors = problem.errors(&theta).unwrap().unwrap();
+        assert!(errors.loads[0] < 1e-9, "{scene} {volume:?}: {errors:?}");
+    }
+}
+
+/// Two halves of a body, one four times as stiff and with another ratio: from the displacements of the finite elements, the moduli
+/// of every cell come back.
+#[test]
+fn moduli_of_two_halves_come_back() {
+    let body = Body::new(&load("cube_tet"), "fixed");
+    let parts = ModuliParts::new(&body.mesh, body.material, VolumeSprings::Points, &[]).unwrap();
+    let unknowns = parts.unknowns(ModuliSharing::Element);
+    let object = Object::of_moduli(parts.clone(), &body.mesh.points, unknowns.clone()).unwrap();
+    let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
+    // The parts of a cell are its shear and its volume, in this order.
+    let truth: Vec<f64> = body.mesh.blocks[0]
+        .cells()
+        .flat_map(|cell| if height(cell) > 0.01 { [4.0f64.ln(), 2.0f64.ln()] } else { [0.0, 0.0] })
+        .collect();
+    assert_eq!(truth.len(), unknowns.count());
+    let network = object.network(&truth);
+    let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
+    let factor = system.factorize().unwrap().unwrap();
+    let moved = |load: NodalLoad| {
+        let u = system.solve(&factor, &load.forces).0;
+        Target::new(load.name, body.support.clone(), load.forces, u)
+    };
+    let loads = varied_loads(&body.mesh, &body.support, 1.0, 24, 5);
+    let trained: Vec<Target> = loads.into_iter().map(moved).collect();
+    let wanted = Wanted { trained, ..Wanted::default() };
+    let settings = WholeSettings {
+        regularizations: vec![1e-2, 1e-4, 1e-6, 1e-8],
+        iterations: 40,
+        method: DescentMethod::GaussNewton(GaussNewton { products: 400, accuracy: 1e-3, decrease: 1e-6 }),
+        ..WholeSettings::default()
+    };
+    let found = quietly(&object, &wanted, &settings);
+    assert!(found.trained[0].loads.iter().all(|e| *e > 0.05));
+    assert!(found.trained[1].loads.iter().all(|e| *e < 1e-4), "{:?}", found.trained[1]);
+    // Every stage is on the curve, and the fitted loads follow it down.
+    assert_eq!(found.curve.len(), 4);
+    assert!(found.curve.windows(2).all(|pair| pair[1].trained.unwrap() < pair[0].trained.unwrap()));
+}
+
+/// A path with a bump in the error of its validation: it goes on, and its choice is the least error of all.
+#[test]
+fn the_path_goes_to_its_end() {
+    let body = Body::new(&load("cube_tet"), "fixed");
+    let fits = body.fits(PLAIN, false);
+    let network = Network::assemble(&body.mesh, &fits);
+    for seed in 0..3 {
+        let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
+        let trained = body.random(2, seed);
+        let wanted = Wanted { trained, validation: Validation::Loads(body.random(3, 40 + seed)), ..Wanted::default() };
+        let settings = WholeSettings { iterations: 4, range: f64::INFINITY, ..WholeSettings::default() };
+        let found = quietly(&object, &wanted, &settings);
+        assert_eq!(found.curve.len(), WholeSettings::REGULARIZATIONS.len());
+        let errors: Vec<f64> = found.curve.iter().map(|stage| stage.validated.unwrap()).collect();
+        let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
+        let chosen = found.curve.iter().find(|stage| Some(stage.regularization) == found.regularization);
+        let start = found.validated[0].loads.iter().map(|e| e.ln()).sum::<f64>() / 3.0;
+        match chosen {
+            Some(stage) => assert_eq!(stage.validated.unwrap(), least),
+            None => assert!(start.exp() <= least),
+        }
     }
 }
 

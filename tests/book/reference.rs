@@ -68,6 +68,7 @@ fn scene_with(table: &str) -> String {
         "motion pull" | "motion force" => {
             rest = format!("[motion]\nduration = 1\nstep = 1\n[[motion.{}]]\nzzz = 1\n", &table[7..]);
         }
+        "reference" => rest = "[reference]\nrefine = 1\nzzz = 1\n".into(),
         "fix" | "load" => rest = format!("[[{table}]]\n{zzz}"),
         "sweep" => rest = format!("[sweep]\nover = {{}}\n{zzz}"),
         "sweep range" => rest = "[sweep.over]\nmaterial.young = { from = 1, to = 2, zzz = 1 }\n".into(),
@@ -91,7 +92,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 26);
+    assert_eq!(tables.len(), 27);
 }
 
 #[test]

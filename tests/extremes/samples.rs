@@ -182,6 +182,29 @@ group = "zmax"
 traction = [1.0, 0, 0]
 "#;
 
+/// A coarse network for a finer body.
+pub const COARSE: &str = r#"
+[mesh]
+box = { element = "tet4", size = [2, 1, 1], cells = [2, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+[reference]
+refine = 1
+[[fit]]
+objective = "whole"
+start = "exact"
+volume = "patches"
+supports = [["xmin"]]
+validate_supports = [["xmax"]]
+iterations = 2
+[[fix]]
+group = "xmin"
+[[load]]
+group = "xmax"
+traction = [0, 0, 1.0]
+"#;
+
 /// A disc in motion: pulled, pushed and damped.
 pub const MOTION: &str = r#"
 [mesh]
@@ -266,12 +289,13 @@ group = "zmax"
 displacement = ["free", 0, "0.01*t"]
 "#;
 
-pub const ALL: [(&str, &str); 8] = [
+pub const ALL: [(&str, &str); 9] = [
     ("linear", LINEAR),
     ("plane", PLANE),
     ("rods", RODS),
     ("large", LARGE),
     ("whole", WHOLE),
+    ("coarse", COARSE),
     ("motion", MOTION),
     ("damped", DAMPED),
     ("explicit", EXPLICIT),

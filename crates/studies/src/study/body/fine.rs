@@ -11,6 +11,8 @@ use crate::solve::StaticSolver;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 use crate::whole::NodalLoad;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
 /// A finer mesh of the same body.
 pub struct FineBody {
@@ -24,7 +26,12 @@ pub struct FineBody {
     pub support: Support,
     material: Material,
     solver: StaticSolver,
+    /// The answers so far, by what was asked.
+    known: Mutex<HashMap<String, Answers>>,
 }
+
+/// Loads on the points of the mesh of the scene, and the displacements there.
+pub type Answers = Arc<Vec<(NodalLoad, Vec<f64>)>>;
 
 impl FineBody {
     /// The finer body of the scene, if it has one.
@@ -44,7 +51,15 @@ impl FineBody {
         let embedding = Embedding::of(&fine.points, mesh).map_err(another)?;
         let sampling = Embedding::of(&mesh.points, &fine).map_err(another)?;
         let support = held(scene, &fine)?;
-        Ok(Some(FineBody { mesh: fine, embedding, sampling, support, material, solver: scene.solver() }))
+        Ok(Some(FineBody {
+            mesh: fine,
+            embedding,
+            sampling,
+            support,
+            material,
+            solver: scene.solver(),
+            known: Mutex::default(),
+        }))
     }
 
     /// Replaces the forces of the cases by those that do the same work as on the finer mesh, and gives each the displacements
@@ -70,16 +85,22 @@ impl FineBody {
     }
 
     /// The loads on the points of the mesh of the scene that do the same work as these forces on the finer mesh, which holds
-    /// `support`; and the displacements of the finer body at those points.
+    /// `support`; and the displacements of the finer body at those points. `name` says which loads and which support they are, so that
+    /// no load is solved twice.
     ///
     /// # Errors
     /// The finer body has no solution.
     pub fn answers(
         &self,
+        name: String,
         support: &Support,
-        loads: Vec<NodalLoad>,
+        loads: impl FnOnce() -> Vec<NodalLoad>,
         progress: &mut Progress,
-    ) -> Result<Vec<(NodalLoad, Vec<f64>)>> {
+    ) -> Result<Answers> {
+        let known = || self.known.lock().expect("nothing panics while it holds the answers");
+        if let Some(answers) = known().get(&name) {
+            return Ok(answers.clone());
+        }
         let case = |load: NodalLoad| Case {
             name: load.name,
             support: support.clone(),
@@ -87,7 +108,7 @@ impl FineBody {
             is_prescribed: false,
             measured: None,
         };
-        let cases: Vec<Case> = loads.into_iter().map(case).collect();
+        let cases: Vec<Case> = loads().into_iter().map(case).collect();
         let found = self.displacements(&cases, progress)?;
         let answer = |(case, u): (Case, Vec<f64>)| {
             (
@@ -95,7 +116,9 @@ impl FineBody {
                 self.sampling.interpolate(&u),
             )
         };
-        Ok(cases.into_iter().zip(found).map(answer).collect())
+        let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
+        known().insert(name, answers.clone());
+        Ok(answers)
     }
 
     fn displacements(&self, cases: &[Case], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {

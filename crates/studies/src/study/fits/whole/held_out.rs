@@ -3,7 +3,8 @@
 use super::body::WholeBody;
 use super::recipe::WholeRecipe;
 use crate::error::Result;
-use crate::model::{Entries, Network, check_body};
+use crate::mesh::Mesh;
+use crate::model::{Entries, Network, Support, check_body};
 use crate::solve::System;
 use crate::study::progress::Progress;
 use crate::whole::{Target, varied_loads};
@@ -66,9 +67,9 @@ impl WholeBody<'_> {
         ];
         let mut all = Vec::new();
         for (held, is_trained) in supports {
-            let make =
-                |mesh: &_, support: &_| varied_loads(mesh, support, thickness, LOADS, recipe.seed.wrapping_add(SEED));
-            let targets = self.made("loads", &held, &make, progress)?;
+            let seed = recipe.seed.wrapping_add(SEED);
+            let make = |mesh: &Mesh, support: &Support| varied_loads(mesh, support, thickness, LOADS, seed);
+            let targets = self.made("loads", &held, (&make, seed), progress)?;
             let models =
                 models.iter().map(|(model, entries)| model_error(model, entries, &targets)).collect::<Result<_>>()?;
             all.push(HeldOut { support: held.words(), is_trained, loads: targets.len(), models });

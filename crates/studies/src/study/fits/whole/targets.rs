@@ -6,15 +6,20 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Support, check_body, unheld_bodies};
 use crate::named::unknown;
-use crate::solve::System;
+use crate::solve::{Factor, System};
+use crate::study::body::Answers;
 use crate::study::progress::Progress;
 use crate::whole::{NodalLoad, Residual, Target, Validation, Wanted, made_loads, random_loads, varied_loads};
+use std::sync::Arc;
 
 /// The number of random loads that choose the regularization.
 const RANDOM: usize = 4;
 /// The number of varied loads for each support, where the fit has several or the displacements are those of a finer mesh: half as
 /// many leave the worst loads worse, twice as many gain little.
 const VARIED: usize = 16;
+
+/// Makes loads from a mesh and its support.
+pub(super) type Loads<'a> = dyn Fn(&Mesh, &Support) -> Vec<NodalLoad> + 'a;
 
 /// A support under which loads are made from the mesh.
 pub(super) struct Held {
@@ -49,7 +54,7 @@ impl WholeBody<'_> {
             }
             loads
         };
-        let trained = self.targets("loads", &recipe.loads, &supports, &make, progress)?;
+        let trained = self.targets("loads", &recipe.loads, &supports, (&make, recipe.seed), progress)?;
         let validation = match &recipe.validation {
             ValidationRecipe::None => Validation::None,
             ValidationRecipe::LeaveOneOut => Validation::LeaveOneOut,
@@ -59,10 +64,10 @@ impl WholeBody<'_> {
                     others => self.supports("validate_supports", others)?,
                 };
                 let make = |mesh: &Mesh, support: &Support| match is_varied {
-                    true => varied_loads(mesh, support, thickness, VARIED, recipe.seed + 1),
+                    true => varied_loads(mesh, support, thickness, VARIED, recipe.seed.wrapping_add(1)),
                     false => random_loads(mesh, support, thickness, RANDOM, recipe.seed),
                 };
-                Validation::Loads(self.targets("validate", named, &others, &make, progress)?)
+                Validation::Loads(self.targets("validate", named, &others, (&make, recipe.seed), progress)?)
             }
         };
         let frequencies = self.frequencies(recipe.frequencies)?;
@@ -97,7 +102,7 @@ impl WholeBody<'_> {
         key: &str,
         named: &LoadSelection,
         supports: &[Held],
-        make: &dyn Fn(&Mesh, &Support) -> Vec<NodalLoad>,
+        made: (&Loads, u64),
         progress: &mut Progress,
     ) -> Result<Vec<Target>> {
         let mut targets = Vec::new();
@@ -120,49 +125,49 @@ impl WholeBody<'_> {
         }
         if named.made {
             for held in supports {
-                targets.extend(self.made(key, held, make, progress)?);
+                targets.extend(self.made(key, held, made, progress)?);
             }
         }
         Ok(targets)
     }
 
-    /// The loads that are made from the mesh, or from the finer one, with the displacements of its finite elements.
+    /// The loads that are made with a seed from the mesh, or from the finer one, with the displacements of its finite elements.
     pub(super) fn made(
         &self,
         key: &str,
         held: &Held,
-        make: &dyn Fn(&Mesh, &Support) -> Vec<NodalLoad>,
+        (make, seed): (&Loads, u64),
         progress: &mut Progress,
     ) -> Result<Vec<Target>> {
-        let answers: Vec<(NodalLoad, Vec<f64>)> = match (self.fine, &held.fine) {
-            (Some(fine), Some(support)) => fine.answers(support, make(&fine.mesh, support), progress)?,
-            _ if held.groups.is_empty() => {
-                let (system, factor) = self.held(key)?;
-                let answer = |load: NodalLoad| {
-                    let u = system.solve(factor, &load.forces).0;
-                    (load, u)
-                };
-                make(self.mesh, &held.support).into_iter().map(answer).collect()
+        let answers: Answers = match (self.fine, &held.fine) {
+            (Some(fine), Some(support)) => {
+                let name = format!("{key} {seed} {:?}", held.groups);
+                fine.answers(name, support, || make(&fine.mesh, support), progress)?
             }
+            _ if held.groups.is_empty() => Arc::new(solved(self.held(key)?, make(self.mesh, &held.support))),
             _ => {
                 check_body(self.mesh)?;
                 let system = System::new(self.entries(), &held.support)?;
                 let singular = || Error::expected(key, "supports without loose parts", "motions without stiffness");
                 let factor = system.cholesky()?.ok_or_else(singular)?;
-                let answer = |load: NodalLoad| {
-                    let u = system.solve(&factor, &load.forces).0;
-                    (load, u)
-                };
-                make(self.mesh, &held.support).into_iter().map(answer).collect()
+                Arc::new(solved(&(system, factor), make(self.mesh, &held.support)))
             }
         };
-        let target = |(load, u): (NodalLoad, Vec<f64>)| {
-            let name =
-                if held.groups.is_empty() { load.name } else { format!("{}, held at {}", load.name, held.words()) };
-            Target::new(name, held.support.clone(), load.forces, u)
+        let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
+        let target = |(load, u): &(NodalLoad, Vec<f64>)| {
+            Target::new(format!("{}{place}", load.name), held.support.clone(), load.forces.clone(), u.clone())
         };
-        Ok(answers.into_iter().map(target).collect())
+        Ok(answers.iter().map(target).collect())
     }
+}
+
+/// The loads with the displacements under them.
+fn solved((system, factor): &(System, Factor), loads: Vec<NodalLoad>) -> Vec<(NodalLoad, Vec<f64>)> {
+    let answer = |load: NodalLoad| {
+        let u = system.solve(factor, &load.forces).0;
+        (load, u)
+    };
+    loads.into_iter().map(answer).collect()
 }
 
 /// The support that holds these groups of points.
