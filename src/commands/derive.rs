@@ -75,7 +75,7 @@ impl Derive {
             Some("frobenius") => Ok((false, vec![Weight::None])),
             Some("offdiag") => Ok((false, vec![Weight::OffDiagonal])),
             Some(other) => {
-                let expected = "exact, frobenius or offdiag, which have closed forms";
+                let expected = "exact, frobenius or offdiag; others are solved cell by cell and have no formula here";
                 Err(unknown(expected, ["exact", "frobenius", "offdiag"], other).at_key("--objective"))
             }
         }

@@ -5,13 +5,17 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::{Element, SHIPPED};
 use springfit::error::Result;
+use springfit::named::unknown;
 use springfit::report::{self, ElementRecord};
 use std::process::ExitCode;
 
-/// List the shipped elements with their spring groups
+/// List the shipped elements with their spring groups, or print the file of one
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Elements {
+    /// The element whose file is printed, as a start for one of your own
+    #[arg(conflicts_with = "json")]
+    name: Option<String>,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -19,6 +23,7 @@ pub struct Elements {
 const EXAMPLES: &str = "\
 Examples:
   springfit elements
+  springfit elements quad4 > quad5.toml   # the file of one of them
   springfit check hex8                    # what is proved of one of them
   springfit elements --json | jq -r '.[].name'
 
@@ -26,6 +31,15 @@ With --json: a list of elements with the keys name, title, cell, nodes, springs,
 
 impl Elements {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        if let Some(name) = &self.name {
+            let names = || SHIPPED.iter().map(|file| file.name);
+            let file = SHIPPED.iter().find(|file| file.name == name).ok_or_else(|| {
+                let expected = format!("one of {}", names().collect::<Vec<_>>().join(", "));
+                unknown(expected, names(), name).at_key("NAME")
+            })?;
+            terminal.print(file.text)?;
+            return Ok(ExitCode::SUCCESS);
+        }
         let record = |file| Ok(ElementRecord::of(&Element::shipped(file)?, file));
         let elements = SHIPPED.iter().map(record).collect::<Result<Vec<_>>>()?;
         match self.output.json {

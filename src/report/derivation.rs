@@ -85,7 +85,8 @@ impl Derivation<'_> {
             }
             text += "\\end{align*}\n";
         }
-        text
+        // The last line of a block has no line after it.
+        text.replace(" \\\\\n\\end{align*}", "\n\\end{align*}")
     }
 
     fn exact_text(&self, exact: &ExactForm, text: &mut String) {

@@ -55,11 +55,17 @@ pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
     let beyond = loads.chain(motion).filter(|(_, deformation)| deformation.exceeds(Deformation::LINEAR));
     let note = |(name, Deformation { strain, rotation }): (&str, Deformation)| {
         let bound = Deformation::LINEAR;
+        let strains = format!("strains of up to {:.0} % (bound {:.0} %)", 100.0 * strain, 100.0 * bound);
+        let rotations = format!("rotations of up to {rotation:.2} rad (bound {bound} rad)");
+        let large: Vec<String> = [(strain, strains), (rotation, rotations)]
+            .into_iter()
+            .filter(|(size, _)| !(*size <= bound))
+            .map(|(_, words)| words)
+            .collect();
         format!(
-            "finite elements: strains of up to {:.0} % and rotations of up to {rotation:.2} rad under {name} are beyond the linear \
-             theory ({:.0} %, {bound} rad); a \"law\" in [material] asks for large deformation",
-            100.0 * strain,
-            100.0 * bound
+            "finite elements: {} under {name} are beyond the linear theory; law = \"stable-neo-hookean\" in [material] asks for large \
+             deformation",
+            large.join(" and ")
         )
     };
     beyond.map(note).collect()

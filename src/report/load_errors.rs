@@ -1,7 +1,7 @@
 //! What the root mean square hides: the error where the body moves most, and that of the work of each load.
 
 use super::columns::{Heading, aligned};
-use crate::study::{BodyLoad, FitOutcome, LoadOutcome, Outcome};
+use crate::study::{BodyLoad, FitOutcome, LoadOutcome, Outcome, extent};
 
 /// One row per fit and one column per load; empty without loads.
 pub(super) fn load_error_table(outcome: &Outcome) -> String {
@@ -21,5 +21,18 @@ pub(super) fn load_error_table(outcome: &Outcome) -> String {
     let row =
         |fit: &FitOutcome| std::iter::once(fit.fit.name.clone()).chain(fit.loads.iter().map(entry)).collect::<Vec<_>>();
     let rows: Vec<_> = outcome.fits.iter().map(row).collect();
-    format!("\n{}", aligned(&header, &rows))
+    format!("\n{}{}", aligned(&header, &rows), largest(outcome))
+}
+
+/// How far the finite elements move, which percentages hide.
+fn largest(outcome: &Outcome) -> String {
+    let d = outcome.mesh.dimension;
+    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let moved = |load: &BodyLoad| {
+        let length = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let most = load.fem.chunks_exact(d).map(length).fold(0.0, f64::max);
+        format!("{} {most:.3e} m ({:.2} % of the body)", load.name, 100.0 * most / size)
+    };
+    let loads: Vec<String> = outcome.loads.iter().map(moved).collect();
+    format!("Largest displacement of the finite elements: {}.\n", loads.join(", "))
 }

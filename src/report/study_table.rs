@@ -11,6 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const PRINTED: usize = 40;
 /// Studies whose errors are printed at most.
 const FAULTS: usize = 10;
+/// Verdicts on networks whose errors mean little.
+const UNSTABLE: [&str; 3] = ["near-mechanism", "indefinite", "mechanism"];
 /// The columns after the values that are set, in this order where there are any; the others follow by name.
 const LEADING: [&str; 9] = ["error", "fit", "load", "e_rms", "e_max", "e_tip", "e_energy", "springs", "status"];
 /// What the report says of the whole body that a row has as well.
@@ -161,12 +163,18 @@ pub fn studies_text<'a>(
         row.extend(keys.iter().map(|key| values.get(key).map_or_else(String::new, shown)));
         row.extend(names.iter().map(|name| {
             let fit = fits(record).iter().find(|fit| fit["name"] == **name);
-            fit.and_then(rms).map_or("-".into(), |error| format!("{error:.2}"))
+            let error = fit.and_then(rms).map_or("-".into(), |error| format!("{error:.2}"));
+            let status = fit.and_then(|fit| fit["status"].as_str()).unwrap_or_default();
+            if UNSTABLE.contains(&status) { format!("{error} !") } else { error }
         }));
         row
     };
     let rows: Vec<Vec<String>> = done.iter().take(PRINTED).map(row).collect();
     let mut text = aligned(&header, &rows) + &rest(done.len());
+    let is_marked = |row: &Vec<String>| row.iter().any(|cell| cell.ends_with(" !"));
+    if rows.iter().any(is_marked) {
+        text += "! the network is not stable, so that its errors mean little; the column status of table.csv has the verdict\n";
+    }
     let failed: Vec<_> =
         done.iter().filter_map(|(place, _, record)| Some((place + 1, record.error.as_ref()?))).collect();
     for (number, error) in failed.iter().take(FAULTS) {

@@ -146,7 +146,7 @@ fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
         fit.network.negative().to_string(),
         pair(fit.frobenius),
         pair(fit.spectral),
-        format!("{:.2}", 1e6 * fit.seconds / elements.max(1) as f64),
+        format!("{:.2}{}", 1e6 * fit.seconds / elements.max(1) as f64, if fit.reused > 0 { "*" } else { "" }),
     ];
     if sampled {
         let percent = |spread: &Spread| format!("{:.2}", 100.0 * spread.mean);
@@ -268,13 +268,19 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         ));
     }
     if fit.reused > 0 {
+        let cells = outcome.mesh.cell_count();
+        let fitted = cells.saturating_sub(fit.reused).max(1);
         notes.push(format!(
-            "{name}: {} elements are congruent to another element and have the same constants",
-            fit.reused
+            "{name}: {fitted} of {cells} elements {} fitted, in {:.3} us each; the others have the shape of one of them and got its \
+             constants (* in the table)",
+            if fitted == 1 { "was" } else { "were" },
+            1e6 * fit.seconds / fitted as f64
         ));
     }
     if fit.unreached > 0 {
-        notes.push(format!("{name}: in {} elements the iteration ended before it reached the optimum", fit.unreached));
+        let elements = if fit.unreached == 1 { "element" } else { "elements" };
+        notes
+            .push(format!("{name}: in {} {elements} the iteration ended before it reached the optimum", fit.unreached));
     }
     let own = fit.kind.notes(outcome.mesh.cell_count(), outcome.material);
     notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
@@ -297,7 +303,9 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     let Some(stability) = &fit.stability else { return notes };
     let points = points(outcome, &fit.loose_points);
     let [least, _] = stability.energy_ratio;
-    let remedy = if fit.network.negative() > 0 {
+    let remedy = if fit.network.negative() > 0 && fit.kind.published().is_some() {
+        format!("; {} spring constants are negative", fit.network.negative())
+    } else if fit.network.negative() > 0 {
         format!("; {} spring constants are negative, which \"nonnegative = true\" prevents", fit.network.negative())
     } else {
         String::new()

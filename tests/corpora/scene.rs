@@ -22,7 +22,11 @@ pub fn check(bytes: &[u8]) {
 fn check_scene(scene: &Scene) {
     assert!(!scene.fits().is_empty() && scene.fits().iter().all(|fit| fit.entry().is_some()));
     for dimension in 1..=3 {
-        let parts = scene.supports().iter().map(|(part, _)| part).chain(scene.loads().iter().map(|load| &load.part));
+        let parts = scene
+            .supports()
+            .iter()
+            .map(|(part, _)| part)
+            .chain(scene.loads().iter().filter_map(|load| load.single()).map(|(part, _)| part));
         for part in parts {
             let selected = part.selection(dimension);
             assert!(selected.is_ok() || dimension < 3 && matches!(part, Part::Where(_)));

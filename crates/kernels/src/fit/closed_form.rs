@@ -110,7 +110,9 @@ impl ClosedForm {
             })
             .collect();
         if !is_exact(element, &table.map(to_f64)) {
-            return Err(refuse("its quadrature is not exact for its own stiffness"));
+            return Err(refuse(
+                "closed forms are those of exact integration, and the quadrature of the file is another one; with more points it is exact",
+            ));
         }
         let mut geometry = Geometry::like(&x[0], &table);
         if !geometry.update(&table, &x) {

@@ -61,7 +61,7 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
     line(&format!("objective = {:<13} # {words}\n", quoted(objective)));
     line("[[fit]]");
     line("name        = \"classical springs, k >= 0\"");
-    line("objective   = \"offdiag\"   # springs alone; `springfit compare --help` lists the objectives");
+    line("objective   = \"offdiag\"   # springs alone; `springfit fit --help` lists the objectives");
     line("nonnegative = true");
     let names = mesh.blocks.first().map(|block| block.element.springs.iter().map(|group| quoted(&group.name)));
     let names = names.into_iter().flatten().collect::<Vec<_>>().join(", ");

@@ -71,7 +71,7 @@ pub use paper::{
 pub use progress::{Event, Progress};
 pub use run::{run, run_with};
 pub use scene::{
-    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, MeshInput, MotionRecipe, Output, Part,
+    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, LoadKind, MeshInput, MotionRecipe, Output, Part,
     PrescribedMotion, ReferenceEntry, Scene, Setting, load_elements, scene_schema,
 };
 pub use shapes::random_shapes;

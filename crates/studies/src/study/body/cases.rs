@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::Material;
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
-use crate::study::scene::{MeasuredEntry, Scene};
+use crate::study::scene::{LoadKind, MeasuredEntry, Part, Scene};
 use std::path::Path;
 
 fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Field> {
@@ -43,44 +43,10 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
     let mut cases = Vec::new();
     for (i, load) in scene.loads().iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);
-        let (key, entries) = match &load.action {
-            Action::Traction(v) => ("traction", v.len()),
-            Action::Force(v) => ("force", v.len()),
-            Action::Body(v) => ("body", v.len()),
-            Action::Displacement(v) => ("displacement", v.len()),
+        let (forces, support) = match load.single() {
+            Some((part, action)) => acting(mesh, material, &fixed, (part, action)).map_err(at)?,
+            None => (Vec::new(), fixed.clone()),
         };
-        if entries != d {
-            return Err(at(Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), entries)));
-        }
-        if let (Action::Traction(v) | Action::Body(v), 2) = (&load.action, d)
-            && let Some(i) = v.iter().position(|c| matches!(c, Component::Varying(e) if e.uses(2)))
-        {
-            return Err(at(Error::expected(format!("{key}[{i}]"), "an expression of x and y in a plane mesh", "z")));
-        }
-        let selection: Selection = load.part.selection(d).map_err(at)?;
-        let points = selection.points(mesh).map_err(at)?;
-        // The part has been checked: any other error is about the load.
-        let forces = nodal_forces(mesh, &selection, &load.action, material.thickness());
-        let forces = forces.map_err(|e| at(Error::new(e.problem())))?;
-        let mut support = fixed.clone();
-        if let Action::Displacement(given) = &load.action {
-            for p in points {
-                for (k, u) in given.iter().enumerate().filter_map(|(k, u)| Some((k, (*u)?))) {
-                    let dof = p * d + k;
-                    if fixed.prescribed[dof].is_some_and(|held| held != u) {
-                        let (axis, number, place) = (["x", "y", "z"][k], mesh.point_number(p), mesh.point(p));
-                        let problem =
-                            format!("moves point {number} at {place:?} m along {axis} by {u:?} m, which [[fix]] holds");
-                        return Err(at(Error::at(format!("displacement[{k}]"), problem)));
-                    }
-                    support.prescribed[dof] = Some(u);
-                }
-            }
-        }
-        let acts = |(dof, force): (usize, &f64)| *force != 0.0 && !support.is_fixed(dof);
-        if forces.iter().any(|force| *force != 0.0) && !forces.iter().enumerate().any(acts) {
-            return Err(at(Error::at(key, "acts on nothing that can move")));
-        }
         if let Some(body) = unheld_bodies(mesh, &support).first() {
             let expected = "supports that hold every body";
             let place = mesh.point(body.first_point);
@@ -93,8 +59,62 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         }
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
         let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;
-        let is_prescribed = matches!(load.action, Action::Displacement(_));
+        let is_prescribed = matches!(load.single(), Some((_, Action::Displacement(_))));
         cases.push(Case { name: load.name.clone(), support, forces, is_prescribed, measured });
     }
+    for (i, load) in scene.loads().iter().enumerate() {
+        if let LoadKind::Sum(parts) = &load.kind {
+            let sum = |dof: usize| parts.iter().map(|&part| cases[part].forces[dof]).sum();
+            cases[i].forces = (0..mesh.points.len()).map(sum).collect();
+        }
+    }
     Ok((fixed, cases))
+}
+
+/// The nodal forces of an action, and the supports under it.
+fn acting(
+    mesh: &Mesh,
+    material: Material,
+    fixed: &Support,
+    (part, action): (&Part, &Action),
+) -> Result<(Vec<f64>, Support)> {
+    let d = mesh.dimension;
+    let (key, entries) = match action {
+        Action::Traction(v) => ("traction", v.len()),
+        Action::Force(v) => ("force", v.len()),
+        Action::Body(v) => ("body", v.len()),
+        Action::Displacement(v) => ("displacement", v.len()),
+    };
+    if entries != d {
+        return Err(Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), entries));
+    }
+    if let (Action::Traction(v) | Action::Body(v), 2) = (action, d)
+        && let Some(i) = v.iter().position(|c| matches!(c, Component::Varying(e) if e.uses(2)))
+    {
+        return Err(Error::expected(format!("{key}[{i}]"), "an expression of x and y in a plane mesh", "z"));
+    }
+    let selection: Selection = part.selection(d)?;
+    let points = selection.points(mesh)?;
+    // The part has been checked: any other error is about the load.
+    let forces = nodal_forces(mesh, &selection, action, material.thickness()).map_err(|e| Error::new(e.problem()))?;
+    let mut support = fixed.clone();
+    if let Action::Displacement(given) = action {
+        for p in points {
+            for (k, u) in given.iter().enumerate().filter_map(|(k, u)| Some((k, (*u)?))) {
+                let dof = p * d + k;
+                if fixed.prescribed[dof].is_some_and(|held| held != u) {
+                    let (axis, number, place) = (["x", "y", "z"][k], mesh.point_number(p), mesh.point(p));
+                    let problem =
+                        format!("moves point {number} at {place:?} m along {axis} by {u:?} m, which [[fix]] holds");
+                    return Err(Error::at(format!("displacement[{k}]"), problem));
+                }
+                support.prescribed[dof] = Some(u);
+            }
+        }
+    }
+    let acts = |(dof, force): (usize, &f64)| *force != 0.0 && !support.is_fixed(dof);
+    if forces.iter().any(|force| *force != 0.0) && !forces.iter().enumerate().any(acts) {
+        return Err(Error::at(key, "acts on nothing that can move"));
+    }
+    Ok((forces, support))
 }

@@ -8,7 +8,7 @@ use crate::model::{Action, nodal_forces};
 use crate::scalar::Sum;
 use crate::study::body::load_cases;
 use crate::study::metrics::product;
-use crate::study::scene::{LoadCase, Scene};
+use crate::study::scene::{LoadCase, Part, Scene};
 
 /// A load on a mesh, which weights displacements.
 pub struct Quantities {
@@ -29,12 +29,14 @@ impl Quantities {
         let (_, cases) = load_cases(scene, mesh, material)?;
         let weigh = |load: &LoadCase| -> Result<Option<Vec<f64>>> {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
-            let unit = match load.action {
-                Action::Displacement(_) => return Ok(None),
-                Action::Traction(_) | Action::Force(_) => Action::Force(along_x),
-                Action::Body(_) => Action::body(&along_x),
+            let (unit, part) = match load.single() {
+                Some((_, Action::Displacement(_))) => return Ok(None),
+                Some((part, Action::Traction(_) | Action::Force(_))) => (Action::Force(along_x), part),
+                Some((part, Action::Body(_))) => (Action::body(&along_x), part),
+                // Of several parts the mean is that of the body.
+                None => (Action::body(&along_x), &Part::Everything),
             };
-            let forces = nodal_forces(mesh, &load.part.selection(mesh.dimension)?, &unit, 1.0)?;
+            let forces = nodal_forces(mesh, &part.selection(mesh.dimension)?, &unit, 1.0)?;
             Ok(Some(forces.chunks_exact(mesh.dimension).map(|f| f[0]).collect()))
         };
         let pairs = scene.loads().iter().zip(cases);

@@ -3,7 +3,7 @@
 use super::entry::{FixEntry, MaterialEntry};
 use super::gauge::Gauge;
 use super::input::MeshInput;
-use super::load::{LoadCase, LoadEntry};
+use super::load::{LoadCase, read_loads};
 use super::motion::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
@@ -265,12 +265,15 @@ impl Scene {
 
     /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.
     pub fn is_in_metres(&self) -> bool {
-        let conditions = self.supports.iter().map(|(part, _)| part).chain(self.loads.iter().map(|load| &load.part));
-        let varies = |load: &LoadCase| match &load.action {
+        let actions = || self.loads.iter().filter_map(LoadCase::single);
+        let conditions = self.supports.iter().map(|(part, _)| part).chain(actions().map(|(part, _)| part));
+        let varies = |action: &Action| match action {
             Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
-            _ => load.measured.is_some(),
+            Action::Force(_) | Action::Displacement(_) => false,
         };
-        conditions.into_iter().any(|part| matches!(part, Part::Where(_))) || self.loads.iter().any(varies)
+        conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
+            || actions().any(|(_, action)| varies(action))
+            || self.loads.iter().any(|load| load.measured.is_some())
     }
 
     /// The same scene with Young's modulus multiplied by `factor`, and with another Poisson's ratio if one is given.
@@ -374,16 +377,6 @@ fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
         }
     }
     Ok(fits)
-}
-
-fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
-    let mut loads: Vec<LoadCase> = Vec::new();
-    for (i, load) in entries.into_iter().enumerate() {
-        let name = load.name.clone().unwrap_or_else(|| format!("load {}", i + 1));
-        expect_own_name(&format!("load[{i}].name"), &name, loads.iter().map(|load| load.name.as_str()))?;
-        loads.push(load.check(name).map_err(|e| e.under(format!("load[{i}]")))?);
-    }
-    Ok(loads)
 }
 
 /// Checks that the material and the loads are those that the fits require.

@@ -4,7 +4,9 @@ use super::part::Part;
 use super::value::{self, PrescribedComponent, Varying};
 use crate::error::{Error, Result};
 use crate::model::{Action, Component};
+use crate::named::unknown;
 use crate::range;
+use crate::study::own_name::expect_own_name;
 use crate::symbolic::Scope;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -15,12 +17,34 @@ use std::path::PathBuf;
 pub struct LoadCase {
     /// The name in reports.
     pub name: String,
-    /// The part of the mesh on which it acts.
-    pub part: Part,
-    /// What acts on that part.
-    pub action: Action,
+    /// What acts.
+    pub kind: LoadKind,
     /// The file of displacements that were measured under it, if there is one.
     pub measured: Option<MeasuredEntry>,
+}
+
+/// What acts under a load.
+#[derive(Debug, Clone)]
+pub enum LoadKind {
+    /// An action on a part of the mesh.
+    Single {
+        /// The part of the mesh.
+        part: Part,
+        /// What acts on that part.
+        action: Action,
+    },
+    /// Other loads of the scene at the same time, by their indices.
+    Sum(Vec<usize>),
+}
+
+impl LoadCase {
+    /// The part and what acts on it, unless the load is a sum of others.
+    pub fn single(&self) -> Option<(&Part, &Action)> {
+        match &self.kind {
+            LoadKind::Single { part, action } => Some((part, action)),
+            LoadKind::Sum(_) => None,
+        }
+    }
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -34,6 +58,8 @@ pub struct LoadEntry {
     pub force: Option<Vec<f64>>,
     pub body: Option<Vec<Varying>>,
     pub displacement: Option<Vec<PrescribedComponent>>,
+    /// The names of other loads that act at the same time.
+    pub sum: Option<Vec<String>>,
     /// The file of displacements that were measured under it.
     pub measured: Option<MeasuredEntry>,
 }
@@ -56,8 +82,47 @@ fn one() -> f64 {
     1.0
 }
 
+/// The loads of a scene.
+///
+/// # Errors
+/// A load is wrong, two have one name, or a sum has loads that cannot be added.
+pub fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
+    let mut loads: Vec<LoadCase> = Vec::new();
+    let mut sums: Vec<Option<Vec<String>>> = Vec::new();
+    for (i, mut load) in entries.into_iter().enumerate() {
+        let name = load.name.clone().unwrap_or_else(|| format!("load {}", i + 1));
+        expect_own_name(&format!("load[{i}].name"), &name, loads.iter().map(|load| load.name.as_str()))?;
+        sums.push(load.sum.take());
+        let is_sum = sums[i].is_some();
+        loads.push(load.check(name, is_sum).map_err(|e| e.under(format!("load[{i}]")))?);
+    }
+    for (i, sum) in sums.into_iter().enumerate() {
+        if let Some(names) = sum {
+            let kind = summed(&names, &loads).map_err(|e| e.under(format!("load[{i}]")))?;
+            loads[i].kind = kind;
+        }
+    }
+    Ok(loads)
+}
+
+fn summed(names: &[String], loads: &[LoadCase]) -> Result<LoadKind> {
+    let is_force = |load: &&LoadCase| load.single().is_some_and(|(_, action)| !matches!(action, Action::Displacement(_)));
+    let able = || loads.iter().filter(is_force).map(|load| load.name.as_str());
+    if names.len() < 2 || (1..names.len()).any(|i| names[..i].contains(&names[i])) {
+        return Err(Error::expected("sum", "two loads or more, each once", format!("{names:?}")));
+    }
+    let place = |name: &String| {
+        let known = able().any(|known| known == name).then(|| loads.iter().position(|load| load.name == *name)).flatten();
+        known.ok_or_else(|| {
+            let expected = format!("loads of forces ({})", able().collect::<Vec<_>>().join(", "));
+            unknown(expected, able(), name).at_key("sum")
+        })
+    };
+    Ok(LoadKind::Sum(names.iter().map(place).collect::<Result<_>>()?))
+}
+
 impl LoadEntry {
-    pub fn check(self, name: String) -> Result<LoadCase> {
+    fn check(self, name: String, is_sum: bool) -> Result<LoadCase> {
         let varying = |key: &str, v: Vec<Varying>, unit: &str| -> Result<Vec<Component>> {
             let scope = Scope::new(&["x", "y", "z"]);
             let number = |v: &Varying| if let Varying::Number(value) = v { Some(*value) } else { None };
@@ -88,15 +153,22 @@ impl LoadEntry {
             range::largest("displacement", v.iter().filter_map(|g| g.0), "m")?;
             actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
         }
+        if is_sum {
+            if !actions.is_empty() || self.group.is_some() || self.condition.is_some() {
+                return Err(Error::at("sum", "stands alone: the loads that it names have parts and actions"));
+            }
+            return Ok(LoadCase { name, kind: LoadKind::Sum(Vec::new()), measured: self.measured });
+        }
         if actions.len() != 1 {
-            let expected = "one of \"traction\", \"force\", \"body\", \"displacement\"";
-            return Err(Error::new(format!("expected {expected}, found {}", actions.len())));
+            let expected = "one of \"traction\", \"force\", \"body\", \"displacement\", or \"sum\"";
+            let hint = if actions.len() > 1 { "; loads that act together are a load with sum = [\"…\", \"…\"]" } else { "" };
+            return Err(Error::new(format!("expected {expected}, found {}{hint}", actions.len())));
         }
         let action = actions.remove(0);
         let part = match action {
             Action::Body(_) => Part::optional(self.group, self.condition)?,
             _ => Part::required(self.group, self.condition)?,
         };
-        Ok(LoadCase { name, part, action, measured: self.measured })
+        Ok(LoadCase { name, kind: LoadKind::Single { part, action }, measured: self.measured })
     }
 }

@@ -20,7 +20,7 @@ pub use elements::load_elements;
 pub use entry::scene_schema;
 pub use gauge::Gauge;
 pub use input::{BoxEntry, DiscEntry, MeshInput};
-pub use load::{LoadCase, MeasuredEntry};
+pub use load::{LoadCase, LoadKind, MeasuredEntry};
 pub use motion::{AppliedForce, DampingRecipe, MotionRecipe, PrescribedMotion};
 pub use output::Output;
 pub use part::Part;

@@ -91,6 +91,12 @@ impl Setting {
             let fault = |expected: String, found: String| Err(Error::expected(&reached, expected, found));
             place = match (step, place) {
                 (Step::Name(name), Value::Table(table)) => {
+                    // A part has one of the two.
+                    for (one, other) in [("where", "group"), ("group", "where")] {
+                        if following.is_empty() && name == one {
+                            table.remove(other);
+                        }
+                    }
                     reached = format!("{reached}.{name}");
                     table.entry(name.clone()).or_insert_with(|| made(following))
                 }

@@ -18,19 +18,20 @@ impl PublishedOutcome {
     pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
         let unmet = &self.unmet;
         let ratio = unmet.poisson.map(|assumed| {
-            format!("assumes Poisson's ratio {assumed:.4}, and the material has {}", material.poisson())
+            format!("{} assumes Poisson's ratio {assumed:.4}, and the material has {}", self.method.name(), material.poisson())
         });
         let shape = (unmet.cells > 0).then(|| {
             let percent = 100.0 * unmet.deviation;
             format!(
-                "{} of {cells} elements do not have the shape that it assumes (lengths differ by up to {percent:.0} %)",
-                unmet.cells
+                "{} of {cells} elements do not have the shape that {} assumes (lengths differ by up to {percent:.0} %)",
+                unmet.cells,
+                self.method.name()
             )
         });
         let lacking: Vec<String> = ratio.into_iter().chain(shape).collect();
         if lacking.is_empty() {
             return Vec::new();
         }
-        vec![format!("{} {}", self.method.name(), lacking.join("; "))]
+        vec![lacking.join("; ")]
     }
 }

@@ -37,7 +37,8 @@ impl StiffnessOutcome {
                 format!("certified: no constants have an error that is smaller by more than a share of {gap:.1e}");
             if self.ambiguous > 0 {
                 let others = "the optimum is not unique, and the one with the smallest Frobenius error is used";
-                note += &format!("; in {} elements {others}", self.ambiguous);
+                let elements = if self.ambiguous == 1 { "element" } else { "elements" };
+                note += &format!("; in {} {elements} {others}", self.ambiguous);
             }
             note
         });
