@@ -106,13 +106,15 @@ pub fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
 }
 
 fn summed(names: &[String], loads: &[LoadCase]) -> Result<LoadKind> {
-    let is_force = |load: &&LoadCase| load.single().is_some_and(|(_, action)| !matches!(action, Action::Displacement(_)));
+    let is_force =
+        |load: &&LoadCase| load.single().is_some_and(|(_, action)| !matches!(action, Action::Displacement(_)));
     let able = || loads.iter().filter(is_force).map(|load| load.name.as_str());
     if names.len() < 2 || (1..names.len()).any(|i| names[..i].contains(&names[i])) {
         return Err(Error::expected("sum", "two loads or more, each once", format!("{names:?}")));
     }
     let place = |name: &String| {
-        let known = able().any(|known| known == name).then(|| loads.iter().position(|load| load.name == *name)).flatten();
+        let known =
+            able().any(|known| known == name).then(|| loads.iter().position(|load| load.name == *name)).flatten();
         known.ok_or_else(|| {
             let expected = format!("loads of forces ({})", able().collect::<Vec<_>>().join(", "));
             unknown(expected, able(), name).at_key("sum")
@@ -161,7 +163,11 @@ impl LoadEntry {
         }
         if actions.len() != 1 {
             let expected = "one of \"traction\", \"force\", \"body\", \"displacement\", or \"sum\"";
-            let hint = if actions.len() > 1 { "; loads that act together are a load with sum = [\"…\", \"…\"]" } else { "" };
+            let hint = if actions.len() > 1 {
+                "; loads that act together are a load with sum = [\"…\", \"…\"]"
+            } else {
+                ""
+            };
             return Err(Error::new(format!("expected {expected}, found {}{hint}", actions.len())));
         }
         let action = actions.remove(0);

@@ -18,7 +18,11 @@ impl PublishedOutcome {
     pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
         let unmet = &self.unmet;
         let ratio = unmet.poisson.map(|assumed| {
-            format!("{} assumes Poisson's ratio {assumed:.4}, and the material has {}", self.method.name(), material.poisson())
+            format!(
+                "{} assumes Poisson's ratio {assumed:.4}, and the material has {}",
+                self.method.name(),
+                material.poisson()
+            )
         });
         let shape = (unmet.cells > 0).then(|| {
             let percent = 100.0 * unmet.deviation;
