@@ -62,6 +62,12 @@ impl Export {
             written.push(path);
         }
         terminal.print(&summary(&network))?;
+        if network.held.is_empty() {
+            terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");
+        }
+        if !is_network && self.settings.scene(&self.network).is_ok_and(|scene| !scene.loads().is_empty()) {
+            terminal.note("the loads of the scene are not exported: supports and gravity are");
+        }
         (target.leaves_out)(&network).iter().for_each(|words| terminal.note(words));
         if !target.command.is_empty() {
             terminal.print(&format!("run it: cd {} && {}\n", folder.display(), target.command))?;
@@ -102,7 +108,9 @@ fn summary(network: &NetworkRecord) -> String {
     let (points, springs) = (network.points.len(), network.springs.len());
     let step = network.largest_step.map_or(String::new(), |step| format!(", longest explicit step {step:.2e} s"));
     let name = network.provenance.fit.as_ref().map_or("network", |fit| &fit.name);
-    format!("{name}: {points} points, {springs} springs, {} points held{step}\n", network.held.len())
+    let material = network.material.as_ref();
+    let material = material.map_or(String::new(), |m| format!("; E = {} Pa, nu = {}", m.young, m.poisson));
+    format!("{name}: {points} points, {springs} springs, {} points held{step}{material}\n", network.held.len())
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>> {

@@ -4,7 +4,11 @@ use super::mesh_file::MeshOptions;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::study::draft;
+use springfit::material::Material;
+use springfit::mesh::Mesh;
+use springfit::quantity::Quantity;
+use springfit::range;
+use springfit::study::{DraftMaterial, draft};
 use springfit::{check_file, write_whole};
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
@@ -15,6 +19,15 @@ use std::process::ExitCode;
 pub struct New {
     /// The mesh: .msh, .vtu or .vtk
     mesh: PathBuf,
+    /// Young's modulus, such as "5 kPa" [default: 10 kPa]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
+    young: Option<String>,
+    /// Poisson's ratio [default: 0.3]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
+    poisson: Option<f64>,
+    /// Density, such as "1060 kg/m^3"
+    #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
+    density: Option<String>,
     #[command(flatten)]
     options: MeshOptions,
     /// Where the scene goes; a file that is there is not replaced [default: standard output]
@@ -26,6 +39,7 @@ const EXAMPLES: &str = "\
 Examples:
   springfit new organ.msh -o organ.toml
   springfit new organ.msh --scale mm > organ.toml     # a mesh in millimetres
+  springfit new organ.msh --young 5kPa --poisson 0.45 --density 1060 -o organ.toml
   springfit run organ.toml";
 
 impl New {
@@ -42,7 +56,8 @@ impl New {
         let elements: Vec<String> =
             self.options.elements().iter().map(|name| own_file(name, folder.unwrap_or(Path::new("")))).collect();
         let title = self.mesh.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let text = draft(&mesh, &file.to_string_lossy(), self.options.unit(), &elements, &title);
+        let unit = self.options.unit();
+        let text = draft(&mesh, &file.to_string_lossy(), unit, &elements, &title, &self.material(&mesh)?);
         match &self.output {
             None => terminal.print(&text)?,
             Some(output) => {
@@ -51,6 +66,24 @@ impl New {
             }
         }
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl New {
+    /// The material that is given.
+    ///
+    /// # Errors
+    /// A value is no quantity of its kind, or out of its range.
+    fn material(&self, mesh: &Mesh) -> Result<DraftMaterial> {
+        let parsed = |quantity: Quantity, option: &str, text: &Option<String>| {
+            text.as_deref().map(|text| quantity.parse(text).map_err(|e| e.under(option))).transpose()
+        };
+        let young = parsed(Quantity::Pressure, "--young", &self.young)?;
+        let density = parsed(Quantity::Density, "--density", &self.density)?;
+        density.map_or(Ok(()), |density| range::positive("--density", density, "kg/m³").map(|_| ()))?;
+        let (young, poisson) = (young.unwrap_or(10e3), self.poisson.unwrap_or(0.3));
+        Material::for_body(mesh.cell_dimension(), young, poisson, None, None).map_err(Error::of_option)?;
+        Ok(DraftMaterial { young: self.young.clone(), poisson: self.poisson, density: self.density.clone() })
     }
 }
 

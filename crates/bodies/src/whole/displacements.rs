@@ -74,6 +74,15 @@ impl<'a> Displacements<'a> {
         Ok(Displacements { object, targets, frequencies, scales, groups, systems, guesses })
     }
 
+    /// The number of displacements that are known and free to change.
+    pub(super) fn observations(&self) -> usize {
+        let free = |target: &Target| {
+            let known = target.weights.iter().zip(&target.support.prescribed);
+            known.filter(|(weight, held)| **weight > 0.0 && held.is_none()).count()
+        };
+        self.targets.iter().map(|target| free(target)).sum()
+    }
+
     /// Forgets the displacements from which the next equilibrium is searched. The result at the next θ then depends on
     /// θ alone, to the last bit, and not on the path of the fit.
     pub fn forget(&self) {

@@ -13,6 +13,8 @@ use crate::model::Network;
 pub struct WholeFit {
     /// The fitted network.
     pub network: Network,
+    /// The unknowns θ of the network.
+    pub theta: Vec<f64>,
     /// The regularization ρ that was chosen; `None` if the start was best.
     pub regularization: Option<f64>,
     /// The errors on the loads of the fit and on frequencies, before and after.
@@ -65,6 +67,7 @@ pub fn fit_whole(
     let mut found = WholeFit {
         range: object.range(&start),
         network,
+        theta: start.clone(),
         regularization: None,
         trained: Default::default(),
         validated: Default::default(),
@@ -115,6 +118,7 @@ pub fn fit_whole(
     found.trained = [trained, after(&problem)?];
     found.validated = [validated, after(&judge)?];
     found.change = object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);
+    found.theta = best.theta;
     (found.steps, found.limited, found.cancelled) = (steps, snapshot.is_limited(), cancelled);
     (found.curve, found.left_out) = (snapshot.curve, snapshot.left_out);
     Ok(found)

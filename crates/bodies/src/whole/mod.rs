@@ -9,6 +9,7 @@
 //! Theory: page *Whole-object fits* of the book.
 
 mod balance;
+mod covariance;
 mod descent;
 mod displacements;
 mod fit;
@@ -25,6 +26,7 @@ mod target;
 mod unknowns;
 
 pub use balance::ResidualForces;
+pub use covariance::{Determination, MOST_ESTIMATED};
 pub use displacements::{Displacements, Errors};
 pub use fit::{WholeFit, fit_whole};
 pub use gauss_newton::GaussNewton;

@@ -42,6 +42,8 @@ pub struct ModuliParts<'a> {
     tangents: Arc<Vec<f64>>,
     /// What the parts are, in their order.
     parts: Vec<Part>,
+    /// The factors by which the parts differ from those of the material.
+    factors: Vec<f64>,
 }
 
 /// A part of the stiffness.
@@ -84,8 +86,8 @@ impl<'a> ModuliParts<'a> {
             };
             fits.push([shear, volume]);
         }
-        let mut parts =
-            ModuliParts { mesh, fits, patches, places: Arc::default(), tangents: Arc::default(), parts: Vec::new() };
+        let (places, tangents, parts, factors) = Default::default();
+        let mut parts = ModuliParts { mesh, fits, patches, places, tangents, parts, factors };
         parts.tabulate();
         Ok(parts)
     }
@@ -121,11 +123,21 @@ impl<'a> ModuliParts<'a> {
             all.extend(tangent);
             parts.push(Part::Patch(index));
         }
+        self.factors = vec![1.0; parts.len()];
         (self.places, self.tangents, self.parts) = (Arc::new(places), Arc::new(all), parts);
     }
 
     /// The unknowns that cells share in this way.
     pub fn unknowns(&self, sharing: ModuliSharing) -> Unknowns {
+        self.shared(sharing).0
+    }
+
+    /// The names of the unknowns, such as `mu of tumour`; cells are counted from 1.
+    pub fn names(&self, sharing: ModuliSharing) -> Vec<String> {
+        self.shared(sharing).1
+    }
+
+    fn shared(&self, sharing: ModuliSharing) -> (Unknowns, Vec<String>) {
         let regions = self.mesh.regions();
         let label = |part: &Part| match (sharing, *part) {
             (ModuliSharing::Element, part) => (part, Vec::new()),
@@ -135,12 +147,24 @@ impl<'a> ModuliParts<'a> {
             (ModuliSharing::Region, Part::Shear(b, c)) => (Part::Shear(0, 0), regions[b][c].clone()),
             (ModuliSharing::Region, Part::Volume(b, c)) => (Part::Volume(0, 0), regions[b][c].clone()),
         };
-        let mut known: BTreeMap<(Part, Vec<&str>), usize> = BTreeMap::new();
+        let (mut known, mut names): (BTreeMap<(Part, Vec<&str>), usize>, _) = (BTreeMap::new(), Vec::new());
         let own = self.parts.iter().map(|part| {
-            let count = known.len();
-            *known.entry(label(part)).or_insert(count)
+            let (count, label) = (known.len(), label(part));
+            let name = match (sharing, *part) {
+                (ModuliSharing::Element, Part::Shear(_, cell)) => format!("mu of cell {}", cell + 1),
+                (ModuliSharing::Element, Part::Volume(_, cell)) => format!("lambda of cell {}", cell + 1),
+                (ModuliSharing::Element, Part::Patch(patch)) => format!("lambda of patch {}", patch + 1),
+                (_, Part::Patch(_)) => "lambda of patches".into(),
+                (_, Part::Shear(..)) => in_region("mu", &label.1),
+                (_, Part::Volume(..)) => in_region("lambda", &label.1),
+            };
+            *known.entry(label).or_insert_with(|| {
+                names.push(name);
+                count
+            })
         });
-        Unknowns::one_for_each(own.collect())
+        let unknowns = Unknowns::one_for_each(own.collect());
+        (unknowns, names)
     }
 
     /// The parts, multiplied by factors, `[parts]`.
@@ -162,6 +186,7 @@ impl<'a> ModuliParts<'a> {
             fit.constants[cell * m..(cell + 1) * m].iter_mut().for_each(|k| *k *= factor);
             fit.parameters[cell * p..(cell + 1) * p].iter_mut().for_each(|k| *k *= factor);
         }
+        scaled.factors.iter_mut().zip(factors).for_each(|(own, factor)| *own *= factor);
         let mut tangents = self.tangents.to_vec();
         let mut rest = &mut tangents[..];
         for (dofs, factor) in self.places.dofs().zip(factors) {
@@ -238,6 +263,11 @@ impl<'a> ModuliParts<'a> {
         self.mesh.dimension
     }
 
+    /// The factors by which the parts differ from those of the material.
+    pub(super) fn factors(&self) -> &[f64] {
+        &self.factors
+    }
+
     /// The number of parts.
     pub(super) fn len(&self) -> usize {
         self.parts.len()
@@ -251,6 +281,11 @@ impl<'a> ModuliParts<'a> {
             (dofs, &self.tangents[from..first])
         })
     }
+}
+
+/// `mu of tumour`, or `mu` of cells in no group.
+fn in_region(modulus: &str, groups: &[&str]) -> String {
+    if groups.is_empty() { modulus.into() } else { format!("{modulus} of {}", groups.join(", ")) }
 }
 
 /// A matrix with these entries of its lower triangle, `[size × size]`.

@@ -1,7 +1,7 @@
 //! A network on its points, with the unknowns of a fit.
 
 use super::gradients::SpringGradients;
-use super::moduli::ModuliParts;
+use super::moduli::{ModuliParts, ModuliSharing};
 use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::{Error, ErrorKind, Result};
@@ -181,6 +181,25 @@ impl<'a> Object<'a> {
             Model::Springs(parts) => parts.network.scaled(&factors),
             Model::Moduli(parts) => parts.scaled(&factors).network(),
         }
+    }
+
+    /// The names of the unknowns that cells share in this way; none if the unknowns are no moduli.
+    pub fn modulus_names(&self, sharing: ModuliSharing) -> Vec<String> {
+        match &self.model {
+            Model::Springs(_) => Vec::new(),
+            Model::Moduli(parts) => parts.names(sharing),
+        }
+    }
+
+    /// The factor of each unknown on the modulus of the material at θ; `None` if the unknowns are no moduli.
+    pub fn modulus_factors(&self, theta: &[f64]) -> Option<Vec<f64>> {
+        let Model::Moduli(parts) = &self.model else { return None };
+        let mut found = vec![1.0; self.unknowns.count()];
+        let own = parts.factors().iter().zip(self.unknowns.factors(theta));
+        for (unknown, (before, factor)) in self.unknowns.owners().zip(own) {
+            found[unknown] = before * factor;
+        }
+        Some(found)
     }
 
     /// The ratio of the largest to the least constant of the length springs at θ, or of the largest to the least factor on a

@@ -108,6 +108,11 @@ impl Unknowns {
         Ok(unknowns)
     }
 
+    /// The first unknown of each part.
+    pub(super) fn owners(&self) -> impl Iterator<Item = usize> {
+        self.each().map(|own| own[0].0)
+    }
+
     /// The number of springs, or of other parts with a factor.
     pub fn springs(&self) -> usize {
         self.starts.len() - 1

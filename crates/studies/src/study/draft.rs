@@ -9,9 +9,22 @@ use std::fmt::Write;
 const LISTED: usize = 40;
 /// Names of groups that are probably meant to be held.
 const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "left", "min"];
+/// The share of the points that a group without such a name may hold.
+const MOST_HELD: f64 = 0.4;
 /// What the load strains the body by, about.
 const STRAIN: f64 = 0.01;
 const YOUNG: f64 = 10e3;
+
+/// The material of a first scene, as texts of TOML; the usual one where there is none.
+#[derive(Debug, Clone, Default)]
+pub struct DraftMaterial {
+    /// Young's modulus, with or without a unit.
+    pub young: Option<String>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// The density, with or without a unit.
+    pub density: Option<String>,
+}
 
 /// The text of a scene for the mesh in `file`, relative to the scene, whose unit is `unit`, such as `0.001` or `mm`, and which has
 /// cells of the files `elements`.
@@ -19,7 +32,14 @@ const YOUNG: f64 = 10e3;
 /// A solid or plane body is held at a group, or at the points that lie lowest along its longest axis, so that no part of it can move as
 /// a rigid body; a load acts on another group, or on the whole body. Surfaces and curves in space have fits alone: they do not
 /// resist all motions.
-pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &str) -> String {
+pub fn draft(
+    mesh: &Mesh,
+    file: &str,
+    unit: &str,
+    elements: &[String],
+    title: &str,
+    material: &DraftMaterial,
+) -> String {
     let mut text = String::new();
     let mut line = |words: &str| writeln!(text, "{words}").expect("a String grows");
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
@@ -38,8 +58,10 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
     line("");
     groups(mesh).iter().for_each(|listed| line(listed));
     line("[material]");
-    line("young   = \"10 kPa\"        # Young's modulus");
-    line("poisson = 0.3             # Poisson's ratio, below 0.5");
+    let value = |text: &str| if text.parse::<f64>().is_ok() { text.to_string() } else { quoted(text) };
+    let young = material.young.as_deref().map_or("\"10 kPa\"".into(), value);
+    line(&format!("young   = {young:<15} # Young's modulus"));
+    line(&format!("poisson = {:<15} # Poisson's ratio, below 0.5", material.poisson.unwrap_or(0.3)));
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
     match mesh.cell_dimension() {
         2 => {
@@ -49,7 +71,10 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
         1 => line(&format!("area    = {:<15} # m^2, the cross-section", rounded(longest * longest / 1e4, 1))),
         _ => {}
     }
-    line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it");
+    match material.density.as_deref().map(value) {
+        Some(density) => line(&format!("density = {density:<15} # kg/m^3; masses, [motion] and frequencies require it")),
+        None => line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it"),
+    }
     line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies\n");
     let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
     let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
@@ -132,7 +157,9 @@ fn conditions(mesh: &Mesh, longest: f64) -> Vec<String> {
     let held_by = |group: &&String| holds(mesh, &parts, &mesh.groups[*group].points);
     let is_likely = |group: &&String| HELD.iter().any(|word| group.to_lowercase().contains(word));
     let able: Vec<&String> = mesh.groups.keys().filter(held_by).collect();
-    let group = able.iter().find(|group| is_likely(group)).or(able.first()).copied();
+    // A group such as the whole surface leaves little to move.
+    let is_small = |group: &&&String| (mesh.groups[**group].points.len() as f64) < MOST_HELD * mesh.point_count() as f64;
+    let group = able.iter().find(|group| is_likely(group)).or(able.iter().find(is_small)).copied();
     let mut lines = Vec::new();
     let (held, fix) = match group {
         Some(group) => (mesh.groups[group].points.clone(), format!("group = {}", quoted(group))),

@@ -47,10 +47,10 @@ pub use convergence::{
     Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
     limit_of, most_unknowns, rates, refinements,
 };
-pub use draft::{contents, draft};
+pub use draft::{DraftMaterial, contents, draft};
 pub use extent::extent;
 pub use fits::{
-    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
+    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe, FoundModulus,
     HeldOut, KindRecord, LoadSelection, ModelError, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord,
     PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts,
     Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, TensionOutcome, TensionRecord,

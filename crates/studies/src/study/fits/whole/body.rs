@@ -1,6 +1,7 @@
 //! The body to which the whole-object fits of a scene are fitted.
 
 use super::outcome::WholeOutcome;
+use super::objects::found_moduli;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
@@ -133,12 +134,13 @@ impl<'a> WholeBody<'a> {
             // An error about the checkpoint must not discard the result.
             progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
         }
+        let moduli = found_moduli(recipe, &object, &wanted, &found)?;
         let held_out = if self.fine.is_some() || !recipe.supports.is_empty() {
             self.held_out(recipe, &object.network(&none), &found.network, progress)?
         } else {
             Vec::new()
         };
-        let outcome = WholeOutcome::of(recipe, &wanted, &found, held_out);
+        let outcome = WholeOutcome { moduli, held_out, ..WholeOutcome::of(recipe, &wanted, &found) };
         Ok((found.network, outcome))
     }
 }

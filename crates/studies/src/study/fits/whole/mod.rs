@@ -15,6 +15,6 @@ mod targets;
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
 pub use held_out::{HeldOut, ModelError};
-pub use outcome::{FittedLoad, WholeOutcome};
+pub use outcome::{FittedLoad, FoundModulus, WholeOutcome};
 pub use recipe::{LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeRecipe};
 pub use record::{WholeOutcomeRecord, WholeRecord};

@@ -1,7 +1,7 @@
 //! The loads of a whole-object fit, and its result.
 
 use super::held_out::{HeldOut, ModelError};
-use super::recipe::WholeRecipe;
+use super::recipe::{Start, WholeRecipe};
 use crate::whole::{Errors, Stage, Target, Wanted, WholeFit};
 
 /// The loads of a whole-object fit, and its result.
@@ -36,9 +36,28 @@ pub struct WholeOutcome {
     pub stands: bool,
     /// Whether the fit was cancelled.
     pub cancelled: bool,
+    /// Whether the fit started from the exact network.
+    pub is_exact: bool,
+    /// The factors on the moduli of the body or of its regions, if these are the unknowns.
+    pub moduli: Vec<FoundModulus>,
     /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
     pub held_out: Vec<HeldOut>,
 }
+
+/// The factor on a modulus.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FoundModulus {
+    /// The modulus and the region, such as `mu of tumour`.
+    pub name: String,
+    /// The factor on that of the material.
+    pub factor: f64,
+    /// The ends of the 95 % interval of the factor; `None` if the displacements do not determine it.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// A relative error under a load from which on a fit has not enough unknowns of the right kind.
+const CAPACITY: f64 = 0.2;
 
 /// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +72,7 @@ pub struct FittedLoad {
 }
 
 impl WholeOutcome {
-    pub(super) fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit, held_out: Vec<HeldOut>) -> WholeOutcome {
+    pub(super) fn of(recipe: &WholeRecipe, wanted: &Wanted, found: &WholeFit) -> WholeOutcome {
         let errors = |targets: &[Target], [before, after]: &[Errors; 2]| {
             let name = targets.iter().map(|target| target.name.clone());
             let before = before.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
@@ -75,8 +94,16 @@ impl WholeOutcome {
             steps: found.steps,
             stands: found.stands,
             cancelled: found.cancelled,
-            held_out,
+            is_exact: matches!(recipe.start, Start::Exact(_)),
+            moduli: Vec::new(),
+            held_out: Vec::new(),
         }
+    }
+
+    /// The largest relative error after the fit under the loads that it has seen.
+    fn largest_left(&self) -> f64 {
+        let loads = self.fitted.iter().chain(&self.judged);
+        loads.map(|load| load.after).filter(|error| error.is_finite()).fold(0.0, f64::max)
     }
 
     /// Notes for the reader, one sentence each.
@@ -129,6 +156,21 @@ impl WholeOutcome {
             "fitted to {}, so that errors under them are not predictions{validated}: {done}{ended}",
             self.loads.join(", ")
         );
-        std::iter::once(fitted).chain(held_out).collect()
+        let moduli = self.moduli.iter().map(|modulus| match modulus.interval {
+            Some([low, high]) => format!("{} x {:.4} ({low:.4} to {high:.4})", modulus.name, modulus.factor),
+            None => format!("{} x {:.4} (not determined by these displacements)", modulus.name, modulus.factor),
+        });
+        let moduli: Vec<String> = moduli.collect();
+        let moduli = (!moduli.is_empty()).then(|| {
+            format!("moduli relative to the material, 95 % intervals without errors of the mesh: {}", moduli.join(", "))
+        });
+        let capacity = (self.largest_left() > CAPACITY && !self.is_exact).then(|| {
+            format!(
+                "errors of up to {:.0} % are left: springs with the rest lengths of the mesh cannot do better here; start = \"exact\" has \
+                 the capacity",
+                100.0 * self.largest_left()
+            )
+        });
+        std::iter::once(fitted).chain(moduli).chain(held_out).chain(capacity).collect()
     }
 }

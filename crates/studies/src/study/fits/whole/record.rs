@@ -1,7 +1,7 @@
 //! The settings and errors of a whole-object fit in a report.
 
 use super::held_out::{HeldOut, ModelError};
-use super::outcome::{FittedLoad, WholeOutcome};
+use super::outcome::{FittedLoad, FoundModulus, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
 use crate::whole::Stage;
@@ -70,10 +70,29 @@ pub struct WholeOutcomeRecord {
     pub relative_errors_fitted: Vec<FittedLoadRecord>,
     /// The relative errors on the loads that chose the regularization.
     pub relative_errors_validated: Vec<FittedLoadRecord>,
+    /// The factors on the moduli of the body or of its regions, if these are the unknowns.
+    pub moduli: Vec<FoundModulusRecord>,
     /// The relative errors under loads that were neither fitted nor chose the regularization.
     pub held_out: Vec<HeldOutRecord>,
     /// The relative errors of the frequencies.
     pub relative_errors_of_frequencies: FrequencyErrorsRecord,
+}
+
+/// The factor on a modulus.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FoundModulusRecord {
+    /// The modulus and the region.
+    pub modulus: String,
+    /// The factor on that of the material.
+    pub factor: f64,
+    /// The ends of the 95 % interval; null if the displacements do not determine it.
+    pub interval: Option<[f64; 2]>,
+}
+
+impl FoundModulusRecord {
+    fn of(found: &FoundModulus) -> FoundModulusRecord {
+        FoundModulusRecord { modulus: found.name.clone(), factor: found.factor, interval: found.interval }
+    }
 }
 
 /// The relative errors under loads with one support.
@@ -202,6 +221,7 @@ impl WholeOutcomeRecord {
             stands: outcome.stands,
             relative_errors_fitted: outcome.fitted.iter().map(load).collect(),
             relative_errors_validated: outcome.judged.iter().map(load).collect(),
+            moduli: outcome.moduli.iter().map(FoundModulusRecord::of).collect(),
             held_out: outcome.held_out.iter().map(HeldOutRecord::of).collect(),
             relative_errors_of_frequencies: FrequencyErrorsRecord { before, after },
         }

@@ -1,0 +1,78 @@
+//! How well displacements determine the unknowns of a whole-object fit.
+//!
+//! Theory: page *Whole-object fits* of the book.
+
+use super::displacements::Displacements;
+use super::linearized::LeastSquares;
+use crate::error::{Error, Result};
+use nalgebra::{DMatrix, DVector};
+
+/// The unknowns that are tried at most: each takes the solution of every load.
+pub const MOST_ESTIMATED: usize = 200;
+/// A combination of unknowns that changes the residuals by a smaller share of what others do is not determined.
+const UNSEEN: f64 = 1e-7;
+/// The share of an undetermined combination from which on an unknown belongs to it.
+const PART: f64 = 0.05;
+
+/// What the residuals say of the unknowns.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Determination {
+    /// The standard deviation of each unknown θ, a logarithm; `None` if the displacements do not determine it.
+    pub deviations: Vec<Option<f64>>,
+    /// The standard deviation of a residual: the relative error of a displacement, with that of one load as its unit.
+    pub residual: f64,
+}
+
+impl Determination {
+    /// The deviations at θ, by linearisation: `s² (JᵀJ)⁻¹` with `s² = Σ r²/(n − m)` (Seber and Wild 2003, 2.1.2). They hold if
+    /// the differences between the displacements are independent errors of equal size within each load, such as the noise of a
+    /// measurement; errors of the mesh are not, and are not in them.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory, the network is unstable at θ, or there are more unknowns than
+    /// [`MOST_ESTIMATED`] or than displacements.
+    pub fn of(problem: &Displacements, theta: &[f64]) -> Result<Determination> {
+        let m = theta.len();
+        if m > MOST_ESTIMATED || m != problem.unknowns() {
+            return Err(Error::expected("unknowns", format!("at most {MOST_ESTIMATED}, those of the problem"), m));
+        }
+        let at = problem.at(theta)?.ok_or_else(|| Error::expected("network", "a stable one", "one that is not"))?;
+        let column = |p: usize| -> Vec<f64> {
+            let unit: Vec<f64> = (0..m).map(|q| f64::from(u8::from(p == q))).collect();
+            at.forward(&unit).concat()
+        };
+        let columns: Vec<DVector<f64>> = (0..m).map(|p| DVector::from_vec(column(p))).collect();
+        let seen = problem.observations();
+        if seen <= m {
+            return Err(Error::expected("displacements", format!("more than {m} that are known"), seen));
+        }
+        let residual = (at.square() / (seen - m) as f64).sqrt();
+        let norms: Vec<f64> = columns.iter().map(|column| column.norm()).collect();
+        let largest = norms.iter().copied().fold(0.0, f64::max);
+        // In units in which every unknown changes the residuals alike.
+        let scaled = DMatrix::from_fn(m, m, |p, q| {
+            if norms[p] > UNSEEN * largest && norms[q] > UNSEEN * largest {
+                columns[p].dot(&columns[q]) / (norms[p] * norms[q])
+            } else {
+                f64::from(u8::from(p == q))
+            }
+        });
+        let eigen = scaled.symmetric_eigen();
+        let deviation = |p: usize| {
+            if !(norms[p] > UNSEEN * largest) {
+                return None;
+            }
+            let mut variance = 0.0;
+            for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+                if *value > UNSEEN * UNSEEN {
+                    variance += vector[p] * vector[p] / value;
+                } else if vector[p].abs() > PART {
+                    return None;
+                }
+            }
+            Some(residual * variance.sqrt() / norms[p])
+        };
+        Ok(Determination { deviations: (0..m).map(deviation).collect(), residual })
+    }
+}
