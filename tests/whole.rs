@@ -1,5 +1,7 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
 use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
 use springfit::material::Material;
 use springfit::mesh::{CellIndex, Group, Mesh, vtk};
@@ -9,12 +11,10 @@ use springfit::solve::{Newton, System, lowest_modes};
 use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
-    Determination, DescentMethod, Displacements, Frequencies, GaussNewton, LeastSquares, ModuliParts, ModuliSharing, NodalLoad,
-    Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted, WholeFit, WholeSettings, fit_whole,
-    made_loads, raise_idle, random_loads, varied_loads,
+    DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares, ModuliParts, ModuliSharing,
+    NodalLoad, Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted, WholeFit, WholeSettings,
+    fit_whole, made_loads, raise_idle, random_loads, varied_loads,
 };
-use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use tempfile::TempDir;

@@ -5,8 +5,8 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::{Element, SHIPPED};
 use springfit::error::Result;
-use springfit::named::unknown;
 use springfit::report::{self, ElementRecord};
+use springfit::unknown;
 use std::process::ExitCode;
 
 /// List the shipped elements with their spring groups, or print the file of one

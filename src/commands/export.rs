@@ -108,7 +108,7 @@ fn summary(network: &NetworkRecord) -> String {
     let (points, springs) = (network.points.len(), network.springs.len());
     let step = network.largest_step.map_or(String::new(), |step| format!(", longest explicit step {step:.2e} s"));
     let name = network.provenance.fit.as_ref().map_or("network", |fit| &fit.name);
-    let material = network.material.as_ref();
+    let material = network.provenance.material.as_ref();
     let material = material.map_or(String::new(), |m| format!("; E = {} Pa, nu = {}", m.young, m.poisson));
     format!("{name}: {points} points, {springs} springs, {} points held{step}{material}\n", network.held.len())
 }

@@ -184,7 +184,7 @@ impl Fit {
         // The file first: who reads the table may have gone away.
         format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
         terminal.print_outcome(&outcome, self.format.json)?;
-        if outcome.masses.is_some() && format == NetworkFormat::Csv {
+        if outcome.masses.is_some() && format.ending == "csv" {
             terminal.note("a CSV file has no masses and no places of points; .json and .npz have both");
         }
         terminal.written(std::slice::from_ref(&self.output))?;

@@ -43,7 +43,7 @@ impl Embedding {
             );
         }
         let bins = Bins::of(mesh);
-        let found: Vec<Option<(Vec<(usize, f64)>, bool)>> =
+        let found: Vec<Option<Found>> =
             points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
         let (mut rows, mut outside) = (Vec::with_capacity(found.len()), 0);
         for (found, x) in found.into_iter().zip(points.chunks_exact(d)) {
@@ -81,6 +81,9 @@ impl Embedding {
     }
 }
 
+/// The shape functions at a point that do not vanish, and whether a cell has the point.
+type Found = (Vec<(usize, f64)>, bool);
+
 /// The cells by the bins that their boxes meet.
 struct Bins {
     width: f64,
@@ -111,7 +114,7 @@ impl Bins {
     }
 
     /// The shape functions at x of the cell that has it, or is nearest to having it, and whether it has it.
-    fn find(&self, mesh: &Mesh, x: &[f64]) -> Option<(Vec<(usize, f64)>, bool)> {
+    fn find(&self, mesh: &Mesh, x: &[f64]) -> Option<Found> {
         let mut best: Option<(usize, CellIndex, Vec<f64>)> = None;
         for &cell in self.cells.get(&self.bin(&spatial(x)))? {
             let Some((multiple, at)) = local(mesh, cell, x) else { continue };

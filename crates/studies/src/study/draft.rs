@@ -72,7 +72,9 @@ pub fn draft(
         _ => {}
     }
     match material.density.as_deref().map(value) {
-        Some(density) => line(&format!("density = {density:<15} # kg/m^3; masses, [motion] and frequencies require it")),
+        Some(density) => {
+            line(&format!("density = {density:<15} # kg/m^3; masses, [motion] and frequencies require it"))
+        }
         None => line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it"),
     }
     line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies\n");
@@ -158,7 +160,8 @@ fn conditions(mesh: &Mesh, longest: f64) -> Vec<String> {
     let is_likely = |group: &&String| HELD.iter().any(|word| group.to_lowercase().contains(word));
     let able: Vec<&String> = mesh.groups.keys().filter(held_by).collect();
     // A group such as the whole surface leaves little to move.
-    let is_small = |group: &&&String| (mesh.groups[**group].points.len() as f64) < MOST_HELD * mesh.point_count() as f64;
+    let is_small =
+        |group: &&&String| (mesh.groups[**group].points.len() as f64) < MOST_HELD * mesh.point_count() as f64;
     let group = able.iter().find(|group| is_likely(group)).or(able.iter().find(is_small)).copied();
     let mut lines = Vec::new();
     let (held, fix) = match group {

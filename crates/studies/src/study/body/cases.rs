@@ -38,7 +38,6 @@ pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
 /// # Errors
 /// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
 pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Support, Vec<Case>)> {
-    let d = mesh.dimension;
     let fixed = held(scene, mesh)?;
     let mut cases = Vec::new();
     for (i, load) in scene.loads().iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The body to which the whole-object fits of a scene are fitted.
 
-use super::outcome::WholeOutcome;
 use super::objects::found_moduli;
+use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
