@@ -1,7 +1,7 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
 use springfit::fit::{CellFits, Fit, Objective, Weight, fit_cells};
-use springfit::material::Material;
+use springfit::material::{CellMap, Material};
 use springfit::mesh::{Mesh, vtk};
 use springfit::model::{Network, Support, finite_elements, masses};
 use springfit::report;
@@ -113,7 +113,7 @@ fn derivatives_are_those_of_differences() {
     for unknowns in [
         Unknowns::per_spring(&network),
         Unknowns::per_group(&body.mesh, &fits, &network).unwrap(),
-        Unknowns::per_region(&body.mesh, &fits, &network).unwrap(),
+        Unknowns::per_region(&body.mesh, &CellMap::Uniform(0), &fits, &network).unwrap(),
         Unknowns::per_element(&body.mesh, &fits, &network).unwrap(),
     ] {
         let object = Object::new(&network, &body.mesh.points, unknowns, None).unwrap();

@@ -7,7 +7,7 @@ use super::network::MeasureSpring;
 use super::system::each_cell;
 use crate::element::{SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Energy, Material, State};
+use crate::material::{Energy, MaterialMap, State};
 use crate::mesh::Mesh;
 use crate::springs::{Law, Measure};
 use std::sync::Arc;
@@ -17,7 +17,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// The stress of the fibres depends on more than their stretch, or they point out of a plane (kind `Unsupported`).
-pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Vec<MeasureSpring>> {
+pub fn fibre_springs(mesh: &Mesh, material: impl Into<MaterialMap>, law: &Energy) -> Result<Vec<MeasureSpring>> {
+    let material = material.into();
     let Some((direction, text)) = law.fibre_law()? else { return Ok(Vec::new()) };
     let d = mesh.dimension;
     let is_in_space = matches!(material.state(), State::Solid | State::PlaneStrain { .. });
@@ -27,8 +28,9 @@ pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Ve
             .of_kind(ErrorKind::Unsupported));
     }
     let law = Arc::new(Law::parse(&text)?);
-    let mut springs = Vec::new();
-    each_cell(mesh, |_, nodes, geometry| {
+    let (thicknesses, mut springs) = (material.thicknesses(), Vec::new());
+    each_cell(mesh, |cell, nodes, geometry| {
+        let thickness = thicknesses.at(cell.block, cell.cell);
         let size = nodes.len() * d;
         for (gradients, volume) in geometry.gradients.chunks_exact(size).zip(&geometry.volumes) {
             let along = gradients.chunks_exact(d).map(|g| g.iter().zip(&direction).map(|(g, a)| g * a).sum());
@@ -41,7 +43,7 @@ pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Ve
                 values: Vec::new(),
                 gradients: along.collect(),
             };
-            let parameters = vec![volume * material.thickness()];
+            let parameters = vec![volume * thickness];
             springs.push(MeasureSpring {
                 kind: SpringKind::Fibre,
                 points: nodes.to_vec(),

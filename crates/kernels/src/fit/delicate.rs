@@ -44,7 +44,7 @@ impl DelicateCells<'_> {
             return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
         };
         let mut normal = Normal::default();
-        normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
+        normal_equations(weight, springs, &x, &geometry, &moduli.of_kind(&any), &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         fit.spread(springs, constants, &k);

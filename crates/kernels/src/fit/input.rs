@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 use crate::error::{Error, Result};
-use crate::material::Moduli;
+use crate::material::{BlockValues, Moduli};
 use crate::springs::Springs;
 
 /// The number of values that are checked without a branch between them.
@@ -89,10 +89,11 @@ pub fn check_fit(
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    moduli: &Moduli,
+    moduli: &BlockValues<Moduli>,
 ) -> Result<()> {
     springs.check(element)?;
-    check_moduli(moduli, element.dimension())?;
+    moduli.check("moduli", connectivity.len() / element.nodes())?;
+    moduli.values().iter().try_for_each(|moduli| check_moduli(moduli, element.dimension()))?;
     check_cells(element, points, connectivity)
 }
 

@@ -49,7 +49,7 @@ pub fn constants_in<T: Scalar>(
         return Err(none("the Jacobian is not positive everywhere"));
     }
     let mut normal = Normal::default();
-    normal_equations(weight, springs, x, &geometry, moduli, &mut normal);
+    normal_equations(weight, springs, x, &geometry, &moduli.of_kind(&x[0]), &mut normal);
     // NaN is not equal to itself plus one.
     let is_finite = |k: &T| (k.one() + &(k.clone() - k)).exceeds(&k.zero());
     if !(normal.solve_regular() && normal.rhs.iter().all(is_finite)) {
@@ -64,7 +64,7 @@ pub fn normal_equations<T: Scalar>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli<T::Constant>,
+    moduli: &Moduli<T>,
     normal: &mut Normal<T>,
 ) {
     let n = springs.nodes;
@@ -86,7 +86,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli<T::Constant>,
+    moduli: &Moduli<T>,
     normal: &mut Normal<T>,
 ) {
     let x = &x.as_chunks::<D>().0[..n];
@@ -217,7 +217,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
         springs: &'a Springs,
         x: &'a [[T; D]],
         geometry: &'a Geometry<T>,
-        moduli: &Moduli<T::Constant>,
+        moduli: &Moduli<T>,
         edges: &'a mut Vec<T>,
         q: &'a mut Vec<T>,
         rhs: &mut Vec<T>,
@@ -233,7 +233,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
             *d = difference(&x[j], &x[i]);
             *q = zero.one() / &dot(d, d);
         }
-        let (lambda, mu) = (zero.constant(&moduli.lambda), zero.constant(&moduli.mu));
+        let (lambda, mu) = (moduli.lambda.clone(), moduli.mu.clone());
         EdgeCell { springs, x, edges, q: &q[..lengths], geometry, lambda, mu }
     }
 

@@ -112,7 +112,7 @@ impl<T: Real> Method<T> {
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
-    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli, measured: &[T]) {
+    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli<T>, measured: &[T]) {
         self.reduced.set(self.weight, springs, x, geometry, moduli, measured);
         match &mut self.solver {
             Solver::LeastSquares { normal, products } => {

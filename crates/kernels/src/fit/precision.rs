@@ -60,7 +60,7 @@ fn closed_equations<T: Real>(
         return Err(no_answer("the Jacobian is not positive everywhere"));
     }
     let mut normal = Normal::default();
-    normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
+    normal_equations(weight, springs, &x, &geometry, &moduli.of_kind(any), &mut normal);
     Ok(Some(normal.by_unknowns(springs, fit.tied)))
 }
 
@@ -171,7 +171,7 @@ pub(super) fn solved<T: Real>(
     fit: &Fit,
 ) -> Option<Method<T>> {
     let mut method = Method::like(&x[0], springs, fit)?;
-    method.solve(springs, x, geometry, moduli, measured);
+    method.solve(springs, x, geometry, &moduli.of_kind(&x[0]), measured);
     Some(method)
 }
 

@@ -71,7 +71,7 @@ impl<T: Real> Reduced<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli,
+        moduli: &Moduli<T>,
         measured: &[T],
     ) {
         x[0].vectorize(
@@ -91,7 +91,7 @@ impl<T: Real> Reduced<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli,
+        moduli: &Moduli<T>,
         measured: &[T],
     ) {
         let n = springs.nodes;
@@ -143,7 +143,7 @@ impl<T: Real> Reduced<T> {
 
     /// `Σ_q v (λ ∇_a ∇_bᵀ + μ (∇_b ∇_aᵀ + ∇_a·∇_b I))`, with the gradients of the differences.
     #[inline(always)]
-    fn set_stiffness<const D: usize>(&mut self, n: usize, geometry: &Geometry<T>, moduli: &Moduli) {
+    fn set_stiffness<const D: usize>(&mut self, n: usize, geometry: &Geometry<T>, moduli: &Moduli<T>) {
         let full = (n - 1) * D;
         let zero = geometry.volumes[0].zero();
         let r = &mut self.stiffness[..full * full];
@@ -153,7 +153,7 @@ impl<T: Real> Reduced<T> {
         let differences = self.work[..full].as_chunks_mut::<D>().0;
         for (grad, v, w) in geometry.each_point() {
             mixed(&self.mix, grad.as_chunks::<D>().0, differences);
-            let (lambda, mu) = (w.clone().scaled(&moduli.lambda), v.clone().scaled(&moduli.mu));
+            let (lambda, mu) = (w.clone() * &moduli.lambda, v.clone() * &moduli.mu);
             add_isotropic(r, differences, &lambda, &mu);
         }
     }

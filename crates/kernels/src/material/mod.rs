@@ -5,13 +5,18 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+mod cell_map;
 mod energy;
+mod map;
 
+pub use cell_map::{BlockValues, CellMap};
 pub use energy::{Energy, Tangent, schema};
+pub use map::MaterialMap;
 pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};
 use crate::range::positive;
+use crate::scalar::Scalar;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -100,6 +105,13 @@ pub struct Moduli<C = f64> {
     pub lambda: C,
     /// The shear modulus μ.
     pub mu: C,
+}
+
+impl<C> Moduli<C> {
+    /// The moduli as numbers of the kind of `any`.
+    pub fn of_kind<T: Scalar<Constant = C>>(&self, any: &T) -> Moduli<T> {
+        Moduli { lambda: any.constant(&self.lambda), mu: any.constant(&self.mu) }
+    }
 }
 
 impl Material {

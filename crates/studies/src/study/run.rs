@@ -35,7 +35,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
 fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     controls.check()?;
     let mesh = scene.build_mesh()?;
-    let material = scene.material_of(&mesh)?;
+    let material = &scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
     let energy = scene.energy(material)?;
@@ -54,10 +54,10 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         }
         None => None,
     };
-    let masses = scene.density().map(|density| point_masses(&mesh, density, material)).transpose();
+    let masses = material.density().map(|density| point_masses(&mesh, density, material)).transpose();
     let masses = masses.map_err(|e| scene.at("material", e))?;
     let linear = |progress: &mut Progress| {
-        LinearBody::solve(&mesh, material.moduli(), &cases, scene.solver(), progress).map_err(in_scene)
+        LinearBody::solve(&mesh, &material.moduli(), &cases, scene.solver(), progress).map_err(in_scene)
     };
     // Only fits to the whole object need the displacements of the body.
     let needed = large.is_none() && scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
@@ -102,7 +102,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
             for (done, fit) in fits.iter_mut().enumerate() {
                 progress(Event::stage("networks", done, count));
                 let compared = fit.kind.compared(material.moduli());
-                let answers = body.compare(&mesh, &cases, &fit.network, compared, progress).map_err(in_scene)?;
+                let answers = body.compare(&mesh, &cases, &fit.network, &compared, progress).map_err(in_scene)?;
                 (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
             }
             (body.into_displacements(), vec![None; cases.len()], None)
@@ -132,8 +132,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
-        material,
-        density: scene.density(),
+        material: material.clone(),
         support: Some(support),
         masses,
         law,

@@ -91,7 +91,7 @@ pub fn compare_stretches(
     let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
     let pulled = Pulled { mesh, material, large: LargeBody::at_rest(energy, material.state()) };
     let exact = Some(ExactRecipe::default());
-    let exact = exact.filter(|exact| exact.serves(Some(&pulled.large.energy), &pulled.mesh, material));
+    let exact = exact.filter(|exact| exact.serves(Some(&pulled.large.energy), &pulled.mesh, &material.into()));
     let exact = exact.map(|exact| NamedFit::of(Recipe::Exact(exact), None));
     let recipes: Vec<NamedFit> = exact.into_iter().chain(recipes(element, sampled)).collect();
     let total = recipes.len() + 1;

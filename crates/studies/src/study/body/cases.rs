@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
 use crate::study::scene::{MeasuredEntry, Scene};
@@ -37,10 +37,10 @@ fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
 ///
 /// # Errors
 /// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
-pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Support, Vec<Case>)> {
+pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<(Support, Vec<Case>)> {
     let d = mesh.dimension;
     let fixed = held(scene, mesh)?;
-    let mut cases = Vec::new();
+    let (mut cases, thicknesses) = (Vec::new(), material.thicknesses());
     for (i, load) in scene.loads().iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);
         let (key, entries) = match &load.action {
@@ -60,7 +60,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
         let selection: Selection = load.part.selection(d).map_err(at)?;
         let points = selection.points(mesh).map_err(at)?;
         // The part has been checked: any other error is about the load.
-        let forces = nodal_forces(mesh, &selection, &load.action, material.thickness());
+        let forces = nodal_forces(mesh, &selection, &load.action, &thicknesses);
         let forces = forces.map_err(|e| at(Error::new(e.problem())))?;
         let mut support = fixed.clone();
         if let Action::Displacement(given) = &load.action {

@@ -136,7 +136,7 @@ fn cell_size(mesh: &Mesh) -> f64 {
 
 /// The results of the finite elements and of each fit, for each load.
 fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
-    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let (mesh, material) = (&outcome.mesh, &outcome.material);
     let quantities = Quantities::of(scene, mesh, material)?;
     let prescribed = quantities.iter().any(Quantities::is_prescribed);
     // Forces at points with prescribed displacements do work only there.

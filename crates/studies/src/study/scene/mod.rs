@@ -1,14 +1,17 @@
 //! The scene file: its entries, and the checks that can be made before the mesh is read.
 
+mod distribution;
 mod document;
 mod elements;
 mod entry;
 mod gauge;
 mod input;
 mod load;
+mod material;
 mod motion;
 mod output;
 mod part;
+mod regions;
 mod setting;
 mod source;
 mod value;

@@ -49,7 +49,7 @@ pub fn move_models(
     outcome: &Outcome,
     progress: &mut Progress,
 ) -> Result<MotionOutcome> {
-    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let (mesh, material) = (&outcome.mesh, &outcome.material);
     let run = Run { planned, mesh };
     let mut models = Vec::new();
     let mut reference = Vec::new();

@@ -45,9 +45,10 @@ impl FitKind for ExactRecipe {
         let fibres = fibres.transpose()?.unwrap_or_default();
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
-        for block in &mesh.blocks {
+        for (index, block) in mesh.blocks.iter().enumerate() {
+            let of_block = material.materials().block(index);
             let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
-            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut watch)?);
+            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, &fit, &mut watch)?);
             done += block.cells().len();
         }
         let mut seconds = start.elapsed().as_secs_f64();

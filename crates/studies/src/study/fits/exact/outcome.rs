@@ -2,7 +2,7 @@
 
 use super::positive::positive_note;
 use crate::fit::{ExactEnergy, VolumeSprings};
-use crate::material::Moduli;
+use crate::material::{CellMap, Moduli};
 use crate::positive::PositiveOutcome;
 
 /// λ/μ at Poisson's ratio 1/3.
@@ -27,11 +27,11 @@ pub struct ExactOutcome {
 impl ExactOutcome {
     /// The moduli of finite elements that do not lock. For nearly incompressible materials networks with volume springs
     /// on cells or patches are softer than finite elements with the moduli of the material, and should be.
-    pub fn compared(&self, moduli: Moduli) -> Moduli {
+    pub fn compared(&self, moduli: CellMap<Moduli>) -> CellMap<Moduli> {
         match self.volume {
             VolumeSprings::Points => moduli,
             VolumeSprings::Cells | VolumeSprings::Patches => {
-                Moduli { lambda: moduli.lambda.min(UNLOCKED * moduli.mu), ..moduli }
+                moduli.map(|moduli| Moduli { lambda: moduli.lambda.min(UNLOCKED * moduli.mu), ..*moduli })
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
-use crate::material::{Energy, Material};
+use crate::material::{Energy, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::patch_springs;
 use crate::positive::PositiveFit;
@@ -42,13 +42,14 @@ impl ExactRecipe {
 
     /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
     /// patches are constructed.
-    pub fn serves(&self, law: Option<&Energy>, mesh: &Mesh, material: Material) -> bool {
+    pub fn serves(&self, law: Option<&Energy>, mesh: &Mesh, material: &MaterialMap) -> bool {
         let Ok(fit) = self.resolve(law) else { return false };
-        let block = |block: &CellBlock| {
+        let block = |(index, block): (usize, &CellBlock)| {
+            let material = *material.materials().at(index, 0);
             let cell = &block.connectivity[..block.element.nodes()];
             fit_exact(&block.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
         };
         let patches = fit.volume == VolumeSprings::Patches;
-        mesh.blocks.iter().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
+        mesh.blocks.iter().enumerate().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
     }
 }

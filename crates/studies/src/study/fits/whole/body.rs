@@ -4,7 +4,7 @@ use super::outcome::WholeOutcome;
 use super::recipe::{LoadSelection, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Entries, Network, Support, check_body, finite_elements, unheld_bodies};
 use crate::solve::{Factor, Newton, System, lowest_modes};
@@ -23,7 +23,7 @@ const RANDOM: usize = 4;
 /// The body to which the whole-object fits of a scene are fitted.
 pub struct WholeBody<'a> {
     mesh: &'a Mesh,
-    material: Material,
+    material: MaterialMap,
     /// The support of the `[[fix]]` entries.
     support: &'a Support,
     pub(in crate::study) cases: &'a [Case],
@@ -42,7 +42,8 @@ pub struct WholeBody<'a> {
 
 impl<'a> WholeBody<'a> {
     /// A body at small deformation, without loads of a scene.
-    pub fn new(mesh: &'a Mesh, material: Material, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
+    pub fn new(mesh: &'a Mesh, material: impl Into<MaterialMap>, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
+        let material = material.into();
         let (cases, displacements, newton, masses, solved, entries, held) = Default::default();
         WholeBody { mesh, material, support, cases, displacements, newton, masses, solved, controls, entries, held }
     }
@@ -114,7 +115,7 @@ impl<'a> WholeBody<'a> {
 
     fn wanted(&self, recipe: &WholeRecipe) -> Result<Wanted> {
         recipe.check(self.newton.is_some(), self.masses.is_some())?;
-        let thickness = self.material.thickness();
+        let thickness = &self.material.thicknesses();
         let trained = self.targets("loads", &recipe.loads, || made_loads(self.mesh, self.support, thickness))?;
         let validation = match &recipe.validation {
             ValidationRecipe::None => Validation::None,
@@ -144,7 +145,7 @@ impl<'a> WholeBody<'a> {
         let unknowns = match recipe.unknowns {
             Sharing::Spring => Unknowns::per_spring(network),
             Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
-            Sharing::Region => Unknowns::per_region(self.mesh, fits, network)?,
+            Sharing::Region => Unknowns::per_region(self.mesh, self.material.region(), fits, network)?,
             Sharing::Element => Unknowns::per_element(self.mesh, fits, network)?,
         };
         let mut object = Object::new(network, &self.mesh.points, unknowns, self.newton)?;
