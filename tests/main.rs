@@ -55,6 +55,7 @@ mod programs;
 mod published;
 mod quadrature;
 mod quantities;
+mod regions;
 mod report;
 mod rest;
 mod sampled;

@@ -79,6 +79,30 @@ axis = "x"
 area = 0.1
 "#;
 
+/// Regions with values of their own and from a file.
+pub const REGIONS: &str = r#"
+[mesh]
+box = { element = "quad4", size = [2, 1], cells = [2, 1] }
+[[material]]
+where = "x < 1.5"
+young = 10e3
+poisson = 0.3
+thickness = 0.1
+density = 1000.0
+[[material]]
+young = { file = "young.csv", scale = 1.0 }
+poisson = 0.2
+thickness = 0.2
+density = 900.0
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "xmin"
+[[load]]
+group = "xmax"
+traction = [1.0, 0]
+"#;
+
 /// Rods, from a file.
 pub const RODS: &str = r#"
 [mesh]
@@ -266,9 +290,10 @@ group = "zmax"
 displacement = ["free", 0, "0.01*t"]
 "#;
 
-pub const ALL: [(&str, &str); 8] = [
+pub const ALL: [(&str, &str); 9] = [
     ("linear", LINEAR),
     ("plane", PLANE),
+    ("regions", REGIONS),
     ("rods", RODS),
     ("large", LARGE),
     ("whole", WHOLE),
@@ -278,7 +303,8 @@ pub const ALL: [(&str, &str); 8] = [
 ];
 
 /// Files that the scenes name.
-pub const FILES: [(&str, &str); 2] = [
+pub const FILES: [(&str, &str); 3] = [
+    ("young.csv", "x,y,E\n0.5,0.5,5e3\n1.5,0.5,2e4\n"),
     ("measured.csv", "point,ux,uy,uz\n4,0.001,0,0.01\n5,0,0,0.01\n6,0,0.001,0.01\n7,0,0,0.01\n"),
     (
         "rods.msh",
