@@ -14,9 +14,9 @@ pub struct RegionRecord {
     pub region: Option<String>,
     /// The number of cells.
     pub cells: usize,
-    /// Young's modulus, Pa.
+    /// Young's modulus, Pa; null of anisotropic materials.
     pub young: [Option<f64>; 2],
-    /// Poisson's ratio.
+    /// Poisson's ratio; null of anisotropic materials.
     pub poisson: [Option<f64>; 2],
     /// m; the cross-section of rods, m²; null for solids.
     pub thickness: Option<[Option<f64>; 2]>,
@@ -28,7 +28,7 @@ impl RegionRecord {
     /// Of each region of a body.
     pub(super) fn all(outcome: &Outcome) -> Vec<RegionRecord> {
         let (mesh, material) = (&outcome.mesh, &outcome.material);
-        let names = material.regions();
+        let (names, thicknesses) = (material.regions(), material.thicknesses());
         let cells = cells_of_regions(mesh, outcome);
         let record = |(name, cells): (&String, &Vec<(usize, usize)>)| {
             let range = |value: &dyn Fn(usize, usize) -> f64| {
@@ -38,13 +38,15 @@ impl RegionRecord {
                 });
                 ends.map(finite)
             };
-            let of = |value: fn(&Material) -> f64| range(&|block, cell| value(material.materials().at(block, cell)));
+            let of = |value: fn(&Material) -> f64| {
+                range(&|block, cell| material.isotropic(block, cell).map_or(f64::NAN, |material| value(&material)))
+            };
             RegionRecord {
                 region: (!name.is_empty()).then(|| name.clone()),
                 cells: cells.len(),
                 young: of(Material::young),
                 poisson: of(Material::poisson),
-                thickness: (material.state() != State::Solid).then(|| of(Material::thickness)),
+                thickness: (material.state() != State::Solid).then(|| range(&|block, cell| *thicknesses.at(block, cell))),
                 density: material.density().map(|density| range(&|block, cell| *density.at(block, cell))),
             }
         };
@@ -58,7 +60,10 @@ impl RegionRecord {
             (Some(least), Some(largest)) => format!("{} to {}", short(least), short(largest)),
             _ => "-".into(),
         };
-        format!("E = {} Pa, nu = {}", words(self.young), words(self.poisson))
+        match self.young {
+            [None, None] => "anisotropic".into(),
+            _ => format!("E = {} Pa, nu = {}", words(self.young), words(self.poisson)),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::network::{LengthSpring, Network};
 use super::size::ADVICE;
 use super::system::in_space;
 use crate::error::Result;
-use crate::material::{CellMap, Moduli};
+use crate::material::{CellMap, Hooke};
 use crate::memory;
 use crate::mesh::Mesh;
 use crate::stiffness;
@@ -43,7 +43,7 @@ impl BlockStiffness {
     /// They do not; kind `Limit`.
     pub fn of_body(
         mesh: &Mesh,
-        moduli: impl Into<CellMap<Moduli>>,
+        moduli: impl Into<CellMap<Hooke>>,
         models: usize,
         levels: usize,
     ) -> Result<BlockStiffness> {
@@ -119,7 +119,7 @@ fn bytes(pattern: &Pattern, d: usize, models: usize, levels: usize) -> u64 {
 
 fn body<const D: usize>(
     mesh: &Mesh,
-    moduli: &CellMap<Moduli>,
+    moduli: &CellMap<Hooke>,
     models: usize, levels: usize) -> Result<BlockMatrix<D, D>> {
     let (cells, pattern) = places(mesh);
     let bytes = bytes(&pattern, D, models, levels);
@@ -133,7 +133,7 @@ fn body<const D: usize>(
             let own = &block.connectivity[cells.start * n..cells.end * n];
             let mut each = entries.chunks_exact_mut((n * D).pow(2));
             stiffness::each_cell(table, &mesh.points, own, |cell, _, geometry| {
-                let mut r = geometry.stiffness(*moduli.at(index, first + cell));
+                let mut r = geometry.stiffness(moduli.at(index, first + cell));
                 if table.dimension < D {
                     r = in_space(table, &mesh.points, &own[cell * n..(cell + 1) * n], &r);
                 }

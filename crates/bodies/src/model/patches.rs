@@ -11,7 +11,7 @@ use super::network::MeasureSpring;
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit};
-use crate::material::{CellMap, MaterialMap, Moduli, State};
+use crate::material::{CellMap, Material, MaterialMap, Moduli, State};
 use crate::mesh::Mesh;
 use crate::springs::{Content, Law, Measure, Patch};
 use crate::stiffness::gather;
@@ -62,7 +62,7 @@ pub fn patch_springs(
     let region = |part: &Part| *material.region().at(0, part.cell);
     shares.iter_mut().for_each(|parts| parts.sort_by_key(region));
     let in_regions = shares.iter().flat_map(|parts| parts.chunk_by(|a, b| region(a) == region(b)));
-    let moduli = material.moduli();
+    let moduli = &material.materials()?.map(Material::moduli);
     let law = match fit.energy {
         ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. } => None,
         ExactEnergy::NeoHookean => Some(Arc::new(Law::parse(NEO_HOOKEAN)?)),
@@ -77,7 +77,7 @@ pub fn patch_springs(
         let mut x = vec![0.0; points.len() * d];
         gather(&mesh.points, d, &points, &mut x);
         let rest = measure.value(&x, d);
-        let lambda = mean_lambda(mesh, element, &moduli, parts);
+        let lambda = mean_lambda(mesh, element, moduli, parts);
         let parameters = if law.is_some() { vec![lambda] } else { Vec::new() };
         MeasureSpring {
             kind: SpringKind::Patch,

@@ -22,7 +22,8 @@ pub fn smoothed_pressure(
     u: &[f64],
     linear: bool,
 ) -> Option<Vec<f64>> {
-    let bulk = Bulk::of(mesh, material.into());
+    let material = material.into();
+    let bulk = Bulk::of(mesh, &material)?;
     let mut cells: BTreeMap<Vec<usize>, [f64; 2]> = BTreeMap::new();
     for spring in &network.others {
         let Measure::Patch(patch) = &spring.measure else { continue };
@@ -60,17 +61,19 @@ enum Bulk {
 }
 
 impl Bulk {
-    fn of(mesh: &Mesh, material: MaterialMap) -> Bulk {
+    /// `None` of anisotropic materials, whose pressure is not that of the content alone.
+    fn of(mesh: &Mesh, material: &MaterialMap) -> Option<Bulk> {
         if let Some(material) = material.uniform() {
-            return Bulk::Uniform(bulk_modulus(material));
+            return Some(Bulk::Uniform(bulk_modulus(material)));
         }
+        let materials = material.materials().ok()?;
         let of_block = |(index, block): (usize, &CellBlock)| -> Vec<(Vec<usize>, f64)> {
             let of_cell = |(cell, nodes): (usize, &[usize])| {
-                (nodes.to_vec(), bulk_modulus(*material.materials().at(index, cell)))
+                (nodes.to_vec(), bulk_modulus(*materials.at(index, cell)))
             };
             block.cells().enumerate().map(of_cell).collect()
         };
-        Bulk::Each(mesh.blocks.iter().enumerate().flat_map(of_block).collect())
+        Some(Bulk::Each(mesh.blocks.iter().enumerate().flat_map(of_block).collect()))
     }
 
     /// That of the cell with these nodes.

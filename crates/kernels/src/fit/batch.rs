@@ -8,11 +8,11 @@ use super::delicate::DelicateCells;
 use super::least_squares::off_diagonal_equations;
 use super::method::{Certificate, Method, Verdict};
 use super::normal::{Normal, Rank};
-use super::packed_moduli::PackedModuli;
+use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
 use super::settings::Fit;
 use crate::element::Element;
-use crate::material::{BlockValues, Moduli};
+use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, PackedWork, distance, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
@@ -26,7 +26,7 @@ pub struct Batch<'a> {
     /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
     /// Those of each cell.
-    pub moduli: BlockValues<'a, Moduli>,
+    pub hooke: BlockValues<'a, Hooke>,
     pub fit: Fit,
     /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
@@ -97,12 +97,14 @@ impl PackedWork for Batch<'_> {
 struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
-    moduli: PackedModuli<'a, T>,
+    hooke: PackedHooke<'a, T>,
     fit: Fit,
     /// For objectives with a closed form.
     closed: Option<Closed<T>>,
     /// For objectives that need the reduced element.
     method: Option<Method<T>>,
+    /// For anisotropic laws, of which no objective has a closed form.
+    anisotropic: Option<Method<T>>,
     packing: Packing<'a, T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
     measured: Vec<T>,
@@ -111,14 +113,15 @@ struct Workspace<'a, T: Packed> {
 
 impl<'a, T: Packed> Workspace<'a, T> {
     fn new(zero: T, batch: &Batch<'a>) -> Workspace<'a, T> {
-        let Batch { element, springs, points, moduli, fit, .. } = *batch;
+        let Batch { element, springs, points, ref hooke, fit, .. } = *batch;
         Workspace {
             element,
             springs,
-            moduli: PackedModuli::new(&zero, moduli),
+            hooke: PackedHooke::new(&zero, element.dimension(), hooke.clone()),
             fit,
             closed: Closed::of(springs, &fit),
-            method: Method::like(&zero, springs, &fit),
+            method: Method::like(&zero, springs, &fit, false),
+            anisotropic: None,
             packing: Packing::new(&zero, element, points),
             measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
             geometry: Geometry::like(&zero, &element.tabulation),
@@ -128,15 +131,21 @@ impl<'a, T: Packed> Workspace<'a, T> {
     /// Writes the constants of the given cells, at most one per lane, of which the first has the number `first`. Returns false, with nothing written, if the
     /// Jacobian of a cell is not safely positive or its equations are not regular.
     fn fit(&mut self, first: usize, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
-        if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
+        self.hooke.set(first, nodes.len() / self.element.nodes());
+        let is_anisotropic = self.hooke.lanes.is_anisotropic();
+        if is_anisotropic && self.anisotropic.is_none() {
+            self.anisotropic = Method::like(&self.geometry.volumes[0], self.springs, &self.fit, true);
+        }
+        let none = self.closed.is_none() && self.method.is_none() || is_anisotropic && self.anisotropic.is_none();
+        if none || !self.packing.gather(nodes) {
             return false;
         }
-        self.moduli.set(first, nodes.len() / self.element.nodes());
-        let Some(mut method) = self.method.take() else { return self.fit_closed(constants, tally) };
+        let own = if is_anisotropic { &mut self.anisotropic } else { &mut self.method };
+        let Some(mut method) = own.take() else { return self.fit_closed(constants, tally) };
         let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
             && self.measure(nodes.len() / self.element.nodes());
         if regular {
-            method.solve(self.springs, &self.packing.x, &self.geometry, &self.moduli.lanes, &self.measured);
+            method.solve(self.springs, &self.packing.x, &self.geometry, &self.hooke.lanes, &self.measured);
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.packing.lane(lane));
@@ -149,15 +158,14 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 tally.add(verdict);
             }
         }
-        self.method = Some(method);
+        *(if is_anisotropic { &mut self.anisotropic } else { &mut self.method }) = Some(method);
         regular
     }
 
     /// [`Workspace::fit`] for objectives with a closed form.
     fn fit_closed(&mut self, constants: &mut [f64], tally: &mut Tally) -> bool {
         let Workspace { element, springs, fit, .. } = *self;
-        let moduli = &self.moduli.lanes;
-        let Some(closed) = &mut self.closed else { return false };
+        let (Some(closed), Hooke::Isotropic(moduli)) = (&mut self.closed, &self.hooke.lanes) else { return false };
         if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, moduli) {
             return false;
         }
@@ -195,7 +203,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         constants: &mut [f64],
         is_delicate: bool,
     ) -> Result<Verdict, Fault> {
-        let moduli = &self.moduli.of_cell(cell);
+        let hooke = &self.hooke.of_cell(cell);
         let mut x = vec![0.0; self.packing.x.len()];
         self.packing.place(nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
@@ -208,7 +216,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         let Workspace { element, springs, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
         if is_delicate || quality <= T::delicate() || are_near {
-            let delicate = DelicateCells { element, springs, moduli, fit };
+            let delicate = DelicateCells { element, springs, hooke, fit };
             let d = element.dimension();
             let mut given = x.clone();
             if element.space() == d {
@@ -219,13 +227,15 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 return Ok(verdict);
             }
         }
-        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit) {
-            method.solve(self.springs, &x, &geometry, moduli, &measured);
+        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit, hooke.is_anisotropic()) {
+            method.solve(self.springs, &x, &geometry, &hooke.of_kind(&0.0), &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }
-        let normal = match &self.closed {
-            Some(closed) => closed.equations_alone(self.springs, &x, &geometry, moduli),
-            None => off_diagonal_equations(self.springs, &x, &geometry, *moduli),
+        let normal = match (&self.closed, hooke) {
+            (Some(closed), Hooke::Isotropic(moduli)) => {
+                closed.equations_alone(self.springs, &x, &geometry, moduli)
+            }
+            _ => off_diagonal_equations(self.springs, &x, &geometry, hooke),
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };

@@ -14,7 +14,7 @@ use super::tension::fit_tensions;
 use super::visit::{cell_fault, cell_name, each_cell};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{BlockValues, Moduli};
+use crate::material::{BlockValues, Hooke};
 use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
@@ -62,7 +62,7 @@ pub fn fit_cells<'a>(
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    moduli: impl Into<BlockValues<'a, Moduli>>,
+    moduli: impl Into<BlockValues<'a, Hooke>>,
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
@@ -109,7 +109,7 @@ impl CellFits {
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
-        moduli: impl Into<BlockValues<'a, Moduli>>,
+        moduli: impl Into<BlockValues<'a, Hooke>>,
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
@@ -163,7 +163,7 @@ impl CellFits {
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
-        moduli: BlockValues<Moduli>,
+        moduli: BlockValues<Hooke>,
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
@@ -196,7 +196,8 @@ impl CellFits {
                 check_constants(element, first, m, constants)?;
                 return Ok(Tally::default());
             }
-            let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
+            let hooke = moduli;
+            let batch = Batch { element, springs, points, connectivity, hooke, fit: *fit, constants: &mut *constants };
             let tally = batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))?;
             check_constants(element, first, m, constants)?;
             Ok(tally)
@@ -248,7 +249,14 @@ fn check_constants(element: &Element, first: usize, springs: usize, values: &[f6
 ///
 /// # Errors
 /// Those of [`fit_cells`]; or the springs pull at rest, so that constants alone do not describe them.
-pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
+pub fn fit_element(
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: impl Into<Hooke>,
+    fit: &Fit,
+) -> Result<Vec<f64>> {
+    let moduli = moduli.into();
     check_nodes(element, element.space(), x)?;
     fit.check_constants_alone()?;
     let connectivity: Vec<usize> = (0..element.nodes()).collect();

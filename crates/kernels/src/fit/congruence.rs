@@ -3,7 +3,7 @@
 use super::visit::each_cell;
 use crate::element::Element;
 use crate::error::Result;
-use crate::material::{BlockValues, Moduli};
+use crate::material::{BlockValues, Hooke, Moduli};
 use crate::springs::distance;
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -21,7 +21,8 @@ pub struct Congruence {
 }
 
 impl Congruence {
-    /// Groups cells of the same moduli that a rigid motion or a mirror maps onto each other.
+    /// Groups cells of the same moduli that a rigid motion or a mirror maps onto each other; under anisotropic laws those that a
+    /// translation does.
     ///
     /// # Errors
     /// A cell is reversed, tangled or flat.
@@ -29,13 +30,20 @@ impl Congruence {
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
-        moduli: &BlockValues<Moduli>,
+        hooke: &BlockValues<Hooke>,
     ) -> Result<Congruence> {
         let d = element.dimension();
-        let material = |cell: usize| match moduli {
-            BlockValues::Uniform(_) => None,
-            BlockValues::Each(all) => Some([all[cell].lambda.to_bits(), all[cell].mu.to_bits()]),
+        let material = |cell: usize| match hooke {
+            BlockValues::Uniform(_) => Vec::new(),
+            BlockValues::Each(all) => match &all[cell] {
+                Hooke::Isotropic(Moduli { lambda, mu }) => vec![lambda.to_bits(), mu.to_bits()],
+                Hooke::Anisotropic(stiffness) => stiffness.bits(),
+            },
         };
+        if hooke.values().iter().any(Hooke::is_anisotropic) {
+            // The axes of the material do not turn with the cell.
+            return Congruence::by(element, points, connectivity, material, |x| differences(x, d));
+        }
         Congruence::by(element, points, connectivity, material, |x| {
             let nodes: Vec<&[f64]> = x.chunks_exact(d).collect();
             let pairs = (0..nodes.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
@@ -49,7 +57,7 @@ impl Congruence {
     /// A cell is reversed, tangled or flat.
     pub fn by_translation(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
         let d = element.dimension();
-        Congruence::by(element, points, connectivity, |_| (), |x| (d..x.len()).map(|i| x[i] - x[i % d]).collect())
+        Congruence::by(element, points, connectivity, |_| (), |x| differences(x, d))
     }
 
     /// `lengths` computes, from the node positions, the numbers that are equal for cells of one shape; `material` is equal
@@ -78,4 +86,9 @@ impl Congruence {
         })?;
         Ok(congruence)
     }
+}
+
+/// The positions of the nodes relative to the first.
+fn differences(x: &[f64], d: usize) -> Vec<f64> {
+    (d..x.len()).map(|i| x[i] - x[i % d]).collect()
 }

@@ -5,19 +5,19 @@
 //! the shape functions.
 
 use super::cells::CellFits;
-use super::packed_moduli::PackedModuli;
+use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
 use crate::element::Element;
-use crate::material::{BlockValues, Moduli};
+use crate::material::{BlockValues, Hooke, Moduli};
 use crate::scalar::{Packed, difference, dot};
 use crate::springs::{Force, Measure};
-use crate::stiffness::{Fault, Geometry, add_isotropic};
+use crate::stiffness::{Fault, Geometry, add_anisotropic, add_isotropic};
 use std::sync::Arc;
 
 /// Memory for as many cells as there are lanes.
 pub struct Differences<'a, T> {
     element: &'a Element,
-    moduli: PackedModuli<'a, T>,
+    hooke: PackedHooke<'a, T>,
     fits: &'a CellFits,
     packing: Packing<'a, T>,
     geometry: Geometry<T>,
@@ -39,7 +39,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         zero: &T,
         element: &'a Element,
         points: &'a [f64],
-        moduli: BlockValues<'a, Moduli>,
+        hooke: BlockValues<'a, Hooke>,
         fits: &'a CellFits,
     ) -> Differences<'a, T> {
         let size = element.nodes() * element.dimension();
@@ -50,7 +50,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         let single = fits.springs.functions.len() + fits.springs.areas.len();
         Differences {
             element,
-            moduli: PackedModuli::new(zero, moduli),
+            hooke: PackedHooke::new(zero, element.dimension(), hooke),
             fits,
             packing: Packing::new(zero, element, points),
             geometry: Geometry::like(zero, &element.tabulation),
@@ -63,9 +63,9 @@ impl<'a, T: Packed> Differences<'a, T> {
         }
     }
 
-    /// Takes the moduli of `count` cells from `first` on, as they are numbered in the moduli.
-    pub fn set_moduli(&mut self, first: usize, count: usize) {
-        self.moduli.set(first, count);
+    /// Takes the laws of `count` cells from `first` on, as they are numbered in the laws.
+    pub fn set_hooke(&mut self, first: usize, count: usize) {
+        self.hooke.set(first, count);
     }
 
     /// Fills in these cells, at most one per lane, of which the first has this number; lanes without a cell repeat the first.
@@ -172,9 +172,13 @@ impl<'a, T: Packed> Differences<'a, T> {
             *entry = zero.clone();
         }
         for (grad, v, w) in self.geometry.each_point() {
-            let Moduli { lambda, mu } = &self.moduli.lanes;
-            let (lambda, mu) = (w.clone() * lambda, v.clone() * mu);
-            add_isotropic(&mut self.stiffness, grad.as_chunks::<D>().0, &lambda, &mu);
+            let grad = grad.as_chunks::<D>().0;
+            match &self.hooke.lanes {
+                Hooke::Isotropic(Moduli { lambda, mu }) => {
+                    add_isotropic(&mut self.stiffness, grad, &(w.clone() * lambda), &(v.clone() * mu));
+                }
+                Hooke::Anisotropic(stiffness) => add_anisotropic(&mut self.stiffness, grad, stiffness, v, w),
+            }
         }
         self.left.clone_from_slice(&self.stiffness);
         let pulls = !self.measures.is_empty();

@@ -18,7 +18,7 @@ use super::normal::Normal;
 use super::weight::{ClosedWeight, Higher, Weight};
 use crate::element::Tabulation;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli};
 use crate::scalar::{Scalar, difference, dot, plus_multiple};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -174,11 +174,11 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     }
 }
 
-/// The equations of the blocks of different nodes if springs measure functions, of which only g is known:
+/// The equations of the blocks of different nodes if springs measure functions, of which only g is known, or R is that of an anisotropic law:
 /// `M_st = (g_s·g_t)² − Σ_a (g_sa·g_ta)²`, `b_s = g_sᵀ R g_s − Σ_a g_saᵀ R_aa g_sa`.
-pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, moduli: Moduli) -> Normal {
+pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
     let (d, m, size) = (springs.dimension, springs.len(), x.len());
-    let r = geometry.stiffness(moduli);
+    let r = geometry.stiffness(hooke);
     let mut g = Vec::new();
     springs.gradients(x, geometry, &mut g);
     let row = |s: usize| &g[s * size..(s + 1) * size];

@@ -7,7 +7,7 @@ use super::input::{check_fit, check_length};
 use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::Result;
-use crate::material::{BlockValues, Moduli};
+use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, PackedWork, widest};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
@@ -57,7 +57,7 @@ pub fn element_errors<'a>(
     element: &Element,
     points: &[f64],
     connectivity: &[usize],
-    moduli: impl Into<BlockValues<'a, Moduli>>,
+    moduli: impl Into<BlockValues<'a, Hooke>>,
     fits: &CellFits,
 ) -> Result<ElementErrors> {
     let moduli = moduli.into();
@@ -86,7 +86,7 @@ struct ErrorBatch<'a> {
     element: &'a Element,
     points: &'a [f64],
     connectivity: &'a [usize],
-    moduli: BlockValues<'a, Moduli>,
+    moduli: BlockValues<'a, Hooke>,
     fits: &'a CellFits,
     first: usize,
 }
@@ -102,7 +102,7 @@ impl PackedWork for ErrorBatch<'_> {
         let mut errors = ElementErrors::default();
         for (i, nodes) in self.connectivity.chunks(T::COUNT * n).enumerate() {
             let done = i * T::COUNT;
-            both.set_moduli(done, nodes.len() / n);
+            both.set_hooke(done, nodes.len() / n);
             both.update(self.first + done, nodes).map_err(|(lane, fault)| (done + lane, fault))?;
             let frobenius = (frobenius_square(&both.left, size) / &frobenius_square(&both.stiffness, size)).sqrt();
             let spectral = extremes.norm(&mut both.left) / &extremes.norm(&mut both.stiffness);

@@ -1,5 +1,6 @@
 //! Values of the cells of a body: one for all cells, or one for each.
 
+use super::{Hooke, Moduli};
 use crate::error::{Error, Result};
 use std::sync::Arc;
 
@@ -197,6 +198,18 @@ impl<T: Clone> From<&CellMap<T>> for CellMap<T> {
 impl<T> From<T> for BlockValues<'_, T> {
     fn from(value: T) -> Self {
         BlockValues::Uniform(value)
+    }
+}
+
+impl From<Moduli> for CellMap<Hooke> {
+    fn from(moduli: Moduli) -> CellMap<Hooke> {
+        CellMap::Uniform(moduli.into())
+    }
+}
+
+impl From<Moduli> for BlockValues<'_, Hooke> {
+    fn from(moduli: Moduli) -> Self {
+        BlockValues::Uniform(moduli.into())
     }
 }
 

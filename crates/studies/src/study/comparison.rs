@@ -187,7 +187,8 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {
         let block = |(index, b): (usize, &CellBlock)| {
-            let own = material.materials().block(index);
+            let Ok(materials) = material.materials() else { return false };
+            let own = materials.block(index);
             let serves = |m: &Material| serves(*method, &b.element, &mesh.points, &b.connectivity, *m);
             // One constant for the whole body is that of one material.
             let one = material.uniform().is_some() || *method != Method::MacielUniform;

@@ -9,7 +9,7 @@ use crate::fit::objective::Objective;
 use crate::fit::rest::Rest;
 use crate::fit::settings::Fit;
 use crate::fit::weight::Weight;
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::springs::{Measure, Springs, norm};
 use crate::stiffness::{Fault, Geometry};
 use nalgebra::{DMatrix, DVector};
@@ -66,9 +66,9 @@ impl<'a> Cells<'a> {
     /// # Errors
     /// The measure of a spring has no gradient; R is singular and the weight divides by it; or the only springs in
     /// equilibrium are those without a force.
-    pub fn fit(&self, x: &[f64], geometry: &Geometry, moduli: Moduli) -> Result<CellTension, String> {
+    pub fn fit(&self, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Result<CellTension, String> {
         let springs = self.springs_at(x, geometry)?;
-        let r = geometry.stiffness(moduli);
+        let r = geometry.stiffness(hooke);
         let sizes = Sizes {
             stiffness: r.norm(),
             extent: geometry.content().powf(1.0 / geometry.dimension as f64),

@@ -5,7 +5,7 @@ use super::case::Case;
 use super::factored::Factored;
 use super::iterated::Iterated;
 use crate::error::Result;
-use crate::material::{CellMap, Moduli};
+use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, Support};
 use crate::solve::{Factor, Stability, Standing, StaticMethod, StaticSolver, System};
@@ -15,7 +15,7 @@ use crate::study::progress::{Event, Progress};
 /// The finite element solutions, and the parts of them that the comparison with a network reuses.
 pub struct LinearBody {
     answers: Vec<BodyAnswer>,
-    moduli: CellMap<Moduli>,
+    moduli: CellMap<Hooke>,
     solver: StaticSolver,
     systems: Systems,
 }
@@ -43,7 +43,7 @@ impl LinearBody {
     /// Some motion has no stiffness, the equations do not fit into memory, or iterations that were asked for stall.
     pub fn solve(
         mesh: &Mesh,
-        moduli: &CellMap<Moduli>,
+        moduli: &CellMap<Hooke>,
         cases: &[Case],
         solver: StaticSolver,
         progress: &mut Progress,
@@ -64,7 +64,7 @@ impl LinearBody {
 
     fn factorize(
         mesh: &Mesh,
-        moduli: &CellMap<Moduli>,
+        moduli: &CellMap<Hooke>,
         cases: &[Case],
         solver: StaticSolver,
         progress: &mut Progress,
@@ -102,7 +102,7 @@ impl LinearBody {
         mesh: &Mesh,
         cases: &[Case],
         network: &Network,
-        compared: &CellMap<Moduli>,
+        compared: &CellMap<Hooke>,
         progress: &mut Progress,
     ) -> Result<NetworkAnswers> {
         if cases.is_empty() {

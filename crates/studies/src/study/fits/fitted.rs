@@ -6,7 +6,7 @@ use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
 use crate::fit::{CellFits, VolumeSprings};
-use crate::material::{CellMap, MaterialMap, Moduli};
+use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Springs;
@@ -80,7 +80,7 @@ impl FittedKind {
     }
 
     /// The moduli of the finite elements with whose energies those of the network are compared.
-    pub fn compared(&self, moduli: CellMap<Moduli>) -> CellMap<Moduli> {
+    pub fn compared(&self, moduli: CellMap<Hooke>) -> CellMap<Hooke> {
         match self {
             FittedKind::Exact(outcome) => outcome.compared(moduli),
             FittedKind::Stiffness(_) | FittedKind::Sampled(_) | FittedKind::Whole(_) | FittedKind::Published(_) => {

@@ -259,7 +259,7 @@ impl Scene {
             _ => load.measured.is_some(),
         };
         let of_place = |entry: &MaterialEntry| {
-            entry.condition.is_some() || entry.distributions().any(|(_, values)| values.number().is_none())
+            entry.condition.is_some() || entry.axes.is_some() || entry.distributions().any(|(_, values)| values.number().is_none())
         };
         self.material.all.iter().any(of_place)
             || conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
@@ -270,9 +270,11 @@ impl Scene {
     pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
         let mut scene = self.clone();
         for material in &mut scene.material.all {
-            material.young.factor *= factor;
-            if let Some(poisson) = poisson {
-                material.poisson = Distribution::of_number(poisson);
+            if let Some(young) = &mut material.young {
+                young.factor *= factor;
+            }
+            if let (Some(poisson), Some(own)) = (poisson, &mut material.poisson) {
+                *own = Distribution::of_number(poisson);
             }
         }
         scene
@@ -307,9 +309,10 @@ impl Scene {
     /// The constants of a material that is the same in all cells.
     fn constants(&self) -> Result<BodyConstants> {
         let entry = self.material.first();
-        let several = || Error::new("expected one material for all cells, found several or one that varies");
+        let several = || Error::new("expected one isotropic material for all cells, found several or another");
+        let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
         let (Some(young), Some(poisson), true) =
-            (entry.young.number(), entry.poisson.number(), self.material.is_uniform())
+            (number(&entry.young), number(&entry.poisson), self.material.is_uniform())
         else {
             return Err(several());
         };

@@ -1,10 +1,11 @@
 //! The `[material]` or the `[[material]]` of a scene.
 
+use super::anisotropic::{Axis, AxisEntry, CubicEntry, OrthotropicEntry, TransverseEntry, of_rows};
 use super::distribution::{self, Distribution};
 use super::part::Part;
-use super::value;
+use super::value::{self, Pressure};
 use crate::error::{Error, Result};
-use crate::material::{Material, Plane};
+use crate::material::{Anisotropy, Material, Plane};
 use crate::range;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -23,13 +24,24 @@ pub struct MaterialEntry {
     #[serde(rename = "where")]
     pub condition: Option<String>,
     /// Young's modulus, Pa.
-    #[serde(deserialize_with = "distribution::pressure")]
+    #[serde(default, deserialize_with = "distribution::optional_pressure")]
     #[schemars(schema_with = "distribution::schema")]
-    pub young: Distribution,
+    pub young: Option<Distribution>,
     /// Poisson's ratio.
-    #[serde(deserialize_with = "distribution::ratio")]
+    #[serde(default, deserialize_with = "distribution::optional_ratio")]
     #[schemars(schema_with = "distribution::schema")]
-    pub poisson: Distribution,
+    pub poisson: Option<Distribution>,
+    /// In place of Young's modulus and Poisson's ratio.
+    pub orthotropic: Option<OrthotropicEntry>,
+    /// In place of Young's modulus and Poisson's ratio.
+    #[serde(rename = "transversely-isotropic")]
+    pub transverse: Option<TransverseEntry>,
+    /// In place of Young's modulus and Poisson's ratio.
+    pub cubic: Option<CubicEntry>,
+    /// In place of Young's modulus and Poisson's ratio: rows in the order xx, yy, zz, yz, xz, xy, Pa.
+    pub stiffness: Option<Vec<Vec<Pressure>>>,
+    /// The first two axes of the material; x and y if absent.
+    pub axes: Option<Vec<AxisEntry>>,
     pub plane: Option<Plane>,
     /// The thickness, m.
     #[serde(default, deserialize_with = "distribution::optional_length")]
@@ -109,15 +121,73 @@ impl MaterialEntry {
 
     /// The quantities that may differ from place to place, with their keys.
     pub fn distributions(&self) -> impl Iterator<Item = (&'static str, &Distribution)> {
-        let required = [("young", &self.young), ("poisson", &self.poisson)];
-        let thickness = self.thickness.as_ref().map(|thickness| ("thickness", thickness));
-        let density = self.density.as_ref().map(|density| ("density", density));
-        required.into_iter().chain(thickness).chain(density)
+        let all = [
+            ("young", &self.young),
+            ("poisson", &self.poisson),
+            ("thickness", &self.thickness),
+            ("density", &self.density),
+        ];
+        all.into_iter().filter_map(|(key, values)| Some((key, values.as_ref()?)))
+    }
+
+    /// The anisotropic law in the axes of the material; `None` if the material is isotropic.
+    ///
+    /// # Errors
+    /// Constants are missing, those of two laws are given, or the stiffness is not positive definite.
+    pub fn anisotropy(&self) -> Result<Option<Anisotropy>> {
+        let given = [
+            ("orthotropic", self.orthotropic.as_ref().map(OrthotropicEntry::anisotropy)),
+            ("transversely-isotropic", self.transverse.as_ref().map(TransverseEntry::anisotropy)),
+            ("cubic", self.cubic.as_ref().map(CubicEntry::anisotropy)),
+            ("stiffness", self.stiffness.as_deref().map(of_rows)),
+        ];
+        let mut found: Option<(&str, Anisotropy)> = None;
+        for (key, law) in given {
+            let Some(law) = law else { continue };
+            // A stiffness that is wrong has its own name as its key.
+            let law = law.map_err(|e| if e.key() == Some("stiffness") { e.at_key(key) } else { e.under(key) })?;
+            if let Some((other, _)) = found.replace((key, law)) {
+                return Err(Error::expected(key, "one law", format!("\"{other}\" as well")));
+            }
+        }
+        let isotropic = [("young", self.young.is_some()), ("poisson", self.poisson.is_some())];
+        if let Some((law, _)) = &found {
+            if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| *given) {
+                return Err(Error::at(key, format!("belongs to isotropic materials, found with \"{law}\"")));
+            }
+            if self.law.is_some() {
+                return Err(Error::at("law", format!("belongs to isotropic materials, found with \"{law}\"")));
+            }
+        } else {
+            if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| !given) {
+                return Err(Error::new(format!("missing field \"{key}\"")));
+            }
+            if self.axes.is_some() {
+                return Err(Error::at("axes", "belongs to anisotropic materials, found an isotropic one"));
+            }
+        }
+        Ok(found.map(|(_, law)| law))
+    }
+
+    /// The axes of the material; x and y if the entry names none.
+    ///
+    /// # Errors
+    /// There are not two, or one of a material with one axis of symmetry, or a vector is wrong.
+    pub fn axes(&self) -> Result<Vec<Axis>> {
+        let Some(axes) = &self.axes else { return Ok(Vec::new()) };
+        let fewest = if self.transverse.is_some() { 1 } else { 2 };
+        if !(fewest..=2).contains(&axes.len()) {
+            let expected = if fewest == 1 { "one or two vectors" } else { "two vectors" };
+            return Err(Error::expected("axes", expected, axes.len()));
+        }
+        axes.iter().enumerate().map(|(i, axis)| axis.check().map_err(|e| e.under(format!("axes[{i}]")))).collect()
     }
 
     /// The checks that do not depend on the mesh.
     fn check(&self) -> Result<()> {
         self.part()?;
+        let is_anisotropic = self.anisotropy()?.is_some();
+        self.axes()?;
         for (key, distribution) in self.distributions() {
             if let distribution::Source::Data(data) = &distribution.source {
                 data.interpolation().map_err(|e| e.under(key))?;
@@ -128,8 +198,12 @@ impl MaterialEntry {
         // Plane stress admits larger ν than a solid; a solid is checked again when the mesh is known.
         let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
         // A value that varies is checked in each cell.
-        let young = self.young.number().unwrap_or(1.0);
-        let poisson = self.poisson.number().unwrap_or(0.0);
+        let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
+        let young = number(&self.young).unwrap_or(1.0);
+        let poisson = number(&self.poisson).unwrap_or(0.0);
+        if is_anisotropic && self.area.is_some() {
+            return Err(Error::at("area", "belongs to rods, which are isotropic"));
+        }
         let thickness = self.thickness.as_ref().and_then(Distribution::number);
         Material::for_body(2, young, poisson, state, thickness)?;
         let density = self.density.as_ref().and_then(Distribution::number);
@@ -156,7 +230,8 @@ impl MaterialEntries {
     /// Whether the material is the same in all cells.
     pub fn is_uniform(&self) -> bool {
         let varies = |entry: &MaterialEntry| entry.distributions().any(|(_, values)| values.number().is_none());
-        self.all.len() == 1 && !self.all.iter().any(varies)
+        let first = self.first();
+        self.all.len() == 1 && !varies(first) && first.young.is_some()
     }
 
     /// The checks that do not depend on the mesh.

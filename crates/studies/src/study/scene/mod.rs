@@ -1,5 +1,6 @@
 //! The scene file: its entries, and the checks that can be made before the mesh is read.
 
+mod anisotropic;
 mod distribution;
 mod document;
 mod elements;

@@ -1,16 +1,18 @@
 //! The materials of a scene on its mesh: the region of each cell, and the material there.
 
+use super::anisotropic::Axis;
 use super::distribution::{DataEntry, Distribution, Source};
 use super::material::{MaterialEntries, MaterialEntry};
 use super::part::Part;
-use crate::error::{Error, Result};
-use crate::material::{CellMap, Material, MaterialMap};
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::{Anisotropy, CellMap, LinearMaterial, MaterialMap};
 use crate::mesh::{CellIndex, Holder, Interpolation, Mesh, Samples};
 use crate::model::cell_means;
 use crate::range;
 use crate::study::body_material::BodyConstants;
 use crate::symbolic::{Program, Scope};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Positions outside the box around the data, relative to the extent of the mesh, that still have the nearest values.
 const OUTSIDE: f64 = 0.1;
@@ -30,7 +32,7 @@ pub fn material_map(entries: &MaterialEntries, mesh: &Mesh, folder: &Path) -> Re
     for (block, own) in region.iter().enumerate() {
         own.iter().enumerate().for_each(|(cell, &region)| cells[region].push(CellIndex { block, cell }));
     }
-    let mut materials: Vec<Vec<Option<Material>>> = sizes.iter().map(|count| vec![None; *count]).collect();
+    let mut materials: Vec<Vec<Option<LinearMaterial>>> = sizes.iter().map(|count| vec![None; *count]).collect();
     let mut densities: Vec<Vec<f64>> = sizes.iter().map(|count| vec![0.0; *count]).collect();
     let places = Places::new(mesh, folder);
     for (i, (entry, cells)) in entries.all.iter().zip(&cells).enumerate() {
@@ -103,8 +105,10 @@ impl Values {
 
 /// The values of the quantities of one entry in its cells.
 struct RegionValues {
-    young: Values,
-    poisson: Values,
+    /// Young's modulus and Poisson's ratio of isotropic materials.
+    isotropic: Option<[Values; 2]>,
+    /// The law in the axes of the material, and the axes of each cell; one if all have the same.
+    anisotropic: Option<Vec<Arc<Anisotropy>>>,
     thickness: Option<Values>,
     density: Option<Values>,
 }
@@ -113,24 +117,38 @@ impl RegionValues {
     fn of(entry: &MaterialEntry, places: &Places, cells: &[CellIndex]) -> Result<RegionValues> {
         let of = |key: &str, values: &Distribution| places.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
         let optional = |key: &str, values: &Option<Distribution>| values.as_ref().map(|v| of(key, v)).transpose();
+        let anisotropic = entry.anisotropy()?.map(|law| places.turned(&law, &entry.axes()?, cells)).transpose()?;
+        let isotropic = match (&entry.young, &entry.poisson) {
+            (Some(young), Some(poisson)) => Some([of("young", young)?, of("poisson", poisson)?]),
+            _ => None,
+        };
         Ok(RegionValues {
-            young: of("young", &entry.young)?,
-            poisson: of("poisson", &entry.poisson)?,
+            isotropic,
+            anisotropic,
             thickness: optional("thickness", &entry.thickness)?,
             density: optional("density", &entry.density)?,
         })
     }
 
     /// The material of a cell, by its index in the region.
-    fn material(&self, entry: &MaterialEntry, mesh: &Mesh, cell: usize) -> Result<Material> {
+    fn material(&self, entry: &MaterialEntry, mesh: &Mesh, cell: usize) -> Result<LinearMaterial> {
+        // The state of an anisotropic material is that of any other.
+        let [young, poisson] = self.isotropic.as_ref().map_or([1.0, 0.0], |[young, poisson]| [young.at(cell), poisson.at(cell)]);
         let constants = BodyConstants {
-            young: self.young.at(cell),
-            poisson: self.poisson.at(cell),
+            young,
+            poisson,
             plane: entry.plane,
             thickness: self.thickness.as_ref().map(|thickness| thickness.at(cell)),
             area: entry.area,
         };
-        constants.material(mesh)
+        let material = constants.material(mesh)?;
+        let Some(laws) = &self.anisotropic else { return Ok(material.into()) };
+        if mesh.cell_dimension() != mesh.dimension || mesh.dimension == 1 {
+            let expected = "an isotropic material on surfaces and curves in space and on rods";
+            return Err(Error::expected("young", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported));
+        }
+        let law = laws.get(cell).unwrap_or(&laws[0]).clone();
+        Ok(LinearMaterial::Anisotropic(law, material.state()))
     }
 }
 
@@ -176,6 +194,50 @@ impl Places<'_> {
         Ok(Values::Each(values.into_iter().map(|value| value * distribution.factor).collect()))
     }
 
+    /// The law turned into the axes of each cell; one if all have the same.
+    fn turned(&self, law: &Anisotropy, axes: &[Axis], cells: &[CellIndex]) -> Result<Vec<Arc<Anisotropy>>> {
+        let [Some(first), second] = [axes.first(), axes.get(1)] else { return Ok(vec![Arc::new(*law)]) };
+        let (first, second) = (self.vectors(0, first, cells)?, second.map(|axis| self.vectors(1, axis, cells)).transpose()?);
+        let count = first.len().max(second.as_ref().map_or(1, Vec::len));
+        let turn = |i: usize| {
+            let a = *first.get(i).unwrap_or(&first[0]);
+            let b = second.as_ref().map_or_else(|| across(a), |all| *all.get(i).unwrap_or(&all[0]));
+            law.turned([a, b]).map(Arc::new).map_err(|e| match count {
+                1 => e,
+                _ => self.named(e, cells[i]),
+            })
+        };
+        (0..count).map(turn).collect()
+    }
+
+    /// The vectors of an axis in each cell; one if all have the same.
+    fn vectors(&self, index: usize, axis: &Axis, cells: &[CellIndex]) -> Result<Vec<[f64; 3]>> {
+        let d = self.mesh.dimension;
+        match axis {
+            Axis::Vector(components) if (0..3).all(|k| components.iter().all(|component| !component.uses(k))) => {
+                Ok(vec![components.each_ref().map(|component| component.evaluate(&[0.0; 3]))])
+            }
+            Axis::Vector(components) => {
+                if d == 2 && components.iter().any(|component| component.uses(2)) {
+                    let expected = "expressions of x and y in a plane mesh";
+                    return Err(Error::expected(format!("axes[{index}]"), expected, "z"));
+                }
+                let programs = components.each_ref().map(Program::of);
+                let vector = |cell: &CellIndex| {
+                    let mut x = [0.0; 3];
+                    x[..d].copy_from_slice(self.at(*cell));
+                    programs.each_ref().map(|program| program.evaluate(&x))
+                };
+                Ok(cells.iter().map(vector).collect())
+            }
+            Axis::Data(data) => {
+                let values = self.samples(data, 3).and_then(|samples| self.sampled(data, &samples, Interpolation::Nearest, cells));
+                let values = values.map_err(|e| e.placed(|e| e.under(format!("axes[{index}]"))))?;
+                Ok(values.iter().map(|v| [v[0], v[1], v[2]]).collect())
+            }
+        }
+    }
+
     fn of_expression(&self, text: &str, cells: &[CellIndex]) -> Result<Vec<f64>> {
         let expression = Scope::new(&["x", "y", "z"]).expression(text)?;
         if self.mesh.dimension == 2 && expression.uses(2) {
@@ -195,8 +257,7 @@ impl Places<'_> {
     }
 
     fn of_data(&self, data: &DataEntry, cells: &[CellIndex]) -> Result<Vec<f64>> {
-        let path = self.folder.join(&data.file);
-        let samples = Samples::read(&path, data.array.as_deref(), data.scale, 1)?;
+        let samples = self.samples(data, 1)?;
         let of_points = match samples.holder() {
             Holder::Points => samples.of_points(self.mesh, SAME * self.extent),
             Holder::Cells => None,
@@ -205,18 +266,40 @@ impl Places<'_> {
             let means = cell_means(self.mesh, &values);
             return Ok(cells.iter().map(|cell| means[cell.block][cell.cell]).collect());
         }
-        let interpolation = data.interpolation()?.unwrap_or(match samples.holder() {
+        let usual = match samples.holder() {
             Holder::Points => Interpolation::Linear,
             Holder::Cells => Interpolation::Nearest,
-        });
+        };
+        Ok(self.sampled(data, &samples, usual, cells)?.into_iter().map(|values| values[0]).collect())
+    }
+
+    fn samples(&self, data: &DataEntry, components: usize) -> Result<Samples> {
+        Samples::read(&self.folder.join(&data.file), data.array.as_deref(), data.scale, components)
+    }
+
+    /// The numbers of the data at the centroid of each cell; `usual` is how they are found if the data do not say so.
+    fn sampled(
+        &self,
+        data: &DataEntry,
+        samples: &Samples,
+        usual: Interpolation,
+        cells: &[CellIndex],
+    ) -> Result<Vec<Vec<f64>>> {
+        let interpolation = data.interpolation()?.unwrap_or(usual);
         let value = |&cell: &CellIndex| {
             let outside = samples.outside(self.at(cell));
             if outside > OUTSIDE * self.extent {
                 let found = format!("{} {outside:.3e} m outside; is the scale {:?} m per unit right?", self.name(cell), data.scale);
-                return Err(Error::expected("file", "values around every cell", found).in_file(&path));
+                return Err(Error::expected("file", "values around every cell", found).in_file(&self.folder.join(&data.file)));
             }
-            Ok(samples.at(self.at(cell), interpolation)[0])
+            Ok(samples.at(self.at(cell), interpolation))
         };
         cells.iter().map(value).collect()
     }
+}
+
+/// A vector that is not along this one.
+fn across(a: [f64; 3]) -> [f64; 3] {
+    let least = (0..3).fold(0, |best, k| if a[k].abs() < a[best].abs() { k } else { best });
+    std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 })
 }

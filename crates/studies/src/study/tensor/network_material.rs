@@ -6,7 +6,7 @@ use super::piece::Piece;
 use super::relaxation::{body_tensor, tensor};
 use super::sample::Stars;
 use crate::fit::CellFits;
-use crate::material::MaterialMap;
+use crate::material::{CellMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use nalgebra::DMatrix;
@@ -76,7 +76,7 @@ pub fn network_material(
 ) -> NetworkMaterial {
     let material = &material.into();
     let start = Instant::now();
-    let stars = Stars::of(mesh);
+    let (stars, dimension) = (Stars::of(mesh), mesh.cell_dimension());
     let points = mesh.point_count();
     let count = most_samples(mesh);
     let measure = |i: usize| {
@@ -93,9 +93,9 @@ pub fn network_material(
             cells => Piece::of_cells(mesh, &sample, cells, network),
         };
         let own = material.of_some(&sample.cells);
-        let asked = match own.uniform() {
-            Some(one) => of_material(one),
-            None => body_tensor(&sample, own.moduli(), &directions),
+        let asked = match own.moduli() {
+            CellMap::Uniform(one) => of_material(&one, dimension),
+            moduli => body_tensor(&sample, moduli, &directions),
         };
         (tensor(&sample, &piece, &directions), asked)
     };
@@ -108,7 +108,7 @@ pub fn network_material(
     let state = material.state();
     let found = constants(&stiffness, state);
     let (asked, wanted) = match material.uniform() {
-        Some(one) => (of_material(one), Some((one.young(), Some(one.poisson())))),
+        Some(one) => (of_material(&one.moduli().into(), dimension), Some((one.young(), Some(one.poisson())))),
         None => {
             let asked = mean(&asked);
             let wanted = constants(&asked, state);

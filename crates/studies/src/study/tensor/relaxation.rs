@@ -3,7 +3,7 @@
 use super::isotropic::basis;
 use super::piece::{PatchSpring, Piece};
 use super::sample::Sample;
-use crate::material::{CellMap, Moduli};
+use crate::material::{CellMap, Hooke};
 use crate::model::{Entries, content, finite_elements};
 use nalgebra::{DMatrix, DVector};
 
@@ -27,7 +27,7 @@ pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DM
 }
 
 /// C of the finite elements of a sample, as [`tensor`] has it of a network.
-pub(super) fn body_tensor(sample: &Sample, moduli: CellMap<Moduli>, frame: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn body_tensor(sample: &Sample, moduli: CellMap<Hooke>, frame: &DMatrix<f64>) -> DMatrix<f64> {
     let entries = finite_elements(&sample.mesh, moduli);
     relaxed(sample, &sample.mesh.points, (&entries, &entries), &[], frame)
 }

@@ -35,6 +35,7 @@ impl FitKind for ExactRecipe {
         let (mesh, material) = (task.mesh, task.material);
         let law = task.reference.large.map(|large| &large.energy);
         let fit = self.resolve(law)?;
+        let materials = material.materials()?;
         let start = Instant::now();
         let mut patches = Vec::new();
         if fit.volume == VolumeSprings::Patches {
@@ -46,7 +47,7 @@ impl FitKind for ExactRecipe {
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
         for (index, block) in mesh.blocks.iter().enumerate() {
-            let of_block = material.materials().block(index);
+            let of_block = materials.block(index);
             let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
             cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, &fit, &mut watch)?);
             done += block.cells().len();

@@ -43,9 +43,9 @@ impl ExactRecipe {
     /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
     /// patches are constructed.
     pub fn serves(&self, law: Option<&Energy>, mesh: &Mesh, material: &MaterialMap) -> bool {
-        let Ok(fit) = self.resolve(law) else { return false };
+        let (Ok(fit), Ok(materials)) = (self.resolve(law), material.materials()) else { return false };
         let block = |(index, block): (usize, &CellBlock)| {
-            let material = *material.materials().at(index, 0);
+            let material = *materials.at(index, 0);
             let cell = &block.connectivity[..block.element.nodes()];
             fit_exact(&block.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
         };

@@ -22,6 +22,7 @@ impl FitKind for Method {
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let start = Instant::now();
         let of_method = |e: Error| e.placed(|e| Error::at("objective", e.to_string()));
+        let materials = task.material.materials()?;
         let mut unmet: Option<Unmet> = None;
         for (index, block) in task.mesh.blocks.iter().enumerate() {
             let named = task.springs.iter().flat_map(|springs| block.element.select_groups(Some(springs)));
@@ -30,12 +31,12 @@ impl FitKind for Method {
                 return Err(Error::expected("springs", expected, format!("\"{}\"", group.name)));
             }
             let (points, cells) = (&task.mesh.points, &block.connectivity);
-            let material = task.material.materials().block(index);
+            let material = materials.block(index);
             let own = published::unmet(*self, &block.element, points, cells, material).map_err(of_method)?;
             unmet = Some(unmet.unwrap_or_default().and(own));
         }
         let cells = task.each_block(progress, |index, block, springs, _| {
-            let material = task.material.materials().block(index);
+            let material = materials.block(index);
             let (points, cells) = (&task.mesh.points, &block.connectivity);
             published::fit(*self, &block.element, springs, points, cells, material).map_err(of_method)
         })?;
