@@ -102,9 +102,9 @@ fn layers_in_parallel_add_their_stiffnesses() {
 /// beams are exact, and quadratic cells have the displacements `−κ x (y − y₀)` and `κ x²/2`.
 #[test]
 fn a_beam_of_two_layers_bends_as_the_theory_of_beams() {
-    let (e, h, length, moment) = ([2e3, 1e4], [0.4, 0.6], 5.0, 3.0);
+    let (e, h, length, moment) = ([2e3, 1e4], [0.4f64, 0.6], 5.0, 3.0);
     let middles = [h[0] / 2.0, h[0] + h[1] / 2.0];
-    let y0 = (e[0] * h[0] * middles[0] + e[1] * h[1] * middles[1]) / (e[0] * h[0] + e[1] * h[1]);
+    let y0: f64 = (e[0] * h[0] * middles[0] + e[1] * h[1] * middles[1]) / (e[0] * h[0] + e[1] * h[1]);
     let second = |i: usize| e[i] * (h[i].powi(3) / 12.0 + h[i] * (middles[i] - y0).powi(2));
     let curvature = moment / (second(0) + second(1));
     let load = |i: usize, part: &str| {
@@ -274,7 +274,7 @@ fn every_cell_is_fitted_to_its_own_moduli() {
             }
         }
         let few = BlockValues::Each(&moduli[1..]);
-        let fit = Fit::default();
+        let fit = Fit::new(Objective::all(false)[0]);
         let error = fit_cells(element, &springs, &mesh.points, &block.connectivity, few, &fit, &mut |_| {});
         assert!(error.unwrap_err().to_string().contains("one of each cell"));
     }
