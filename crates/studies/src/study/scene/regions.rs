@@ -111,7 +111,8 @@ struct RegionValues {
 
 impl RegionValues {
     fn of(entry: &MaterialEntry, places: &Places, cells: &[CellIndex]) -> Result<RegionValues> {
-        let of = |key: &str, values: &Distribution| places.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
+        let of =
+            |key: &str, values: &Distribution| places.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
         let optional = |key: &str, values: &Option<Distribution>| values.as_ref().map(|v| of(key, v)).transpose();
         Ok(RegionValues {
             young: of("young", &entry.young)?,
@@ -212,7 +213,11 @@ impl Places<'_> {
         let value = |&cell: &CellIndex| {
             let outside = samples.outside(self.at(cell));
             if outside > OUTSIDE * self.extent {
-                let found = format!("{} {outside:.3e} m outside; is the scale {:?} m per unit right?", self.name(cell), data.scale);
+                let found = format!(
+                    "{} {outside:.3e} m outside; is the scale {:?} m per unit right?",
+                    self.name(cell),
+                    data.scale
+                );
                 return Err(Error::expected("file", "values around every cell", found).in_file(&path));
             }
             Ok(samples.at(self.at(cell), interpolation)[0])
