@@ -56,11 +56,13 @@ const EXACT: &str = "[[fit]]\nobjective = \"exact\"\n";
 /// `u = σ Σ L_i/E_i`, for bars in series; without Poisson's ratio the state is uniaxial everywhere.
 #[test]
 fn layers_in_series_add_their_compliances() {
-    let two = "[[material]]\nwhere = \"z <= 1.00001\"\nyoung = 2e3\npoisson = 0\n[[material]]\nyoung = 7e3\npoisson = 0\n";
+    let two =
+        "[[material]]\nwhere = \"z <= 1.00001\"\nyoung = 2e3\npoisson = 0\n[[material]]\nyoung = 7e3\npoisson = 0\n";
     let three = "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 2e3\npoisson = 0\n\
                  [[material]]\nwhere = \"z > 1.99999\"\nyoung = \"1 MPa\"\npoisson = 0\n\
                  [[material]]\nyoung = 5e3\npoisson = 0\n";
-    let stiff = "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 1e3\npoisson = 0\n[[material]]\nyoung = 1e6\npoisson = 0\n";
+    let stiff =
+        "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 1e3\npoisson = 0\n[[material]]\nyoung = 1e6\npoisson = 0\n";
     for element in ["hex8", "tet4", "hex20", "wedge6"] {
         for (materials, compliance) in [
             (two, 1.0 / 2e3 + 2.0 / 7e3),
@@ -81,8 +83,10 @@ fn layers_in_series_add_their_compliances() {
 /// `F = ε Σ E_i A_i` of bars side by side under one strain.
 #[test]
 fn layers_in_parallel_add_their_stiffnesses() {
-    let materials = "[[material]]\nwhere = \"x < 0.25001\"\nyoung = 2e3\npoisson = 0\n[[material]]\nyoung = 7e3\npoisson = 0\n";
-    let text = bar("hex8", [4, 1, 3], materials, EXACT).replace("traction = [0, 0, 10.0]", "displacement = [0, 0, 0.3]");
+    let materials =
+        "[[material]]\nwhere = \"x < 0.25001\"\nyoung = 2e3\npoisson = 0\n[[material]]\nyoung = 7e3\npoisson = 0\n";
+    let text =
+        bar("hex8", [4, 1, 3], materials, EXACT).replace("traction = [0, 0, 10.0]", "displacement = [0, 0, 0.3]");
     let outcome = outcome(&text);
     let (mesh, u) = (&outcome.mesh, &outcome.loads[0].fem);
     let mut force = 0.0;
@@ -102,9 +106,9 @@ fn layers_in_parallel_add_their_stiffnesses() {
 /// beams are exact, and quadratic cells have the displacements `−κ x (y − y₀)` and `κ x²/2`.
 #[test]
 fn a_beam_of_two_layers_bends_as_the_theory_of_beams() {
-    let (e, h, length, moment) = ([2e3, 1e4], [0.4, 0.6], 5.0, 3.0);
+    let (e, h, length, moment) = ([2e3, 1e4], [0.4f64, 0.6], 5.0, 3.0);
     let middles = [h[0] / 2.0, h[0] + h[1] / 2.0];
-    let y0 = (e[0] * h[0] * middles[0] + e[1] * h[1] * middles[1]) / (e[0] * h[0] + e[1] * h[1]);
+    let y0: f64 = (e[0] * h[0] * middles[0] + e[1] * h[1] * middles[1]) / (e[0] * h[0] + e[1] * h[1]);
     let second = |i: usize| e[i] * (h[i].powi(3) / 12.0 + h[i] * (middles[i] - y0).powi(2));
     let curvature = moment / (second(0) + second(1));
     let load = |i: usize, part: &str| {
@@ -250,16 +254,9 @@ fn every_cell_is_fitted_to_its_own_moduli() {
         for objective in Objective::all(element.has_higher_modes()) {
             for nonnegative in [false, true] {
                 let fit = Fit { nonnegative, ..Fit::new(objective) };
-                let found = fit_cells(
-                    element,
-                    &springs,
-                    &mesh.points,
-                    &block.connectivity,
-                    &moduli[..],
-                    &fit,
-                    &mut |_| {},
-                )
-                .unwrap();
+                let found =
+                    fit_cells(element, &springs, &mesh.points, &block.connectivity, &moduli[..], &fit, &mut |_| {})
+                        .unwrap();
                 for (cell, nodes) in block.connectivity.chunks(n).enumerate() {
                     let x: Vec<f64> = nodes.iter().flat_map(|&p| mesh.point(p)).copied().collect();
                     let alone = fit_element(element, &springs, &x, moduli[cell], &fit).unwrap();
@@ -274,7 +271,7 @@ fn every_cell_is_fitted_to_its_own_moduli() {
             }
         }
         let few = BlockValues::Each(&moduli[1..]);
-        let fit = Fit::default();
+        let fit = Fit::new(Objective::all(false)[0]);
         let error = fit_cells(element, &springs, &mesh.points, &block.connectivity, few, &fit, &mut |_| {});
         assert!(error.unwrap_err().to_string().contains("one of each cell"));
     }
@@ -283,7 +280,8 @@ fn every_cell_is_fitted_to_its_own_moduli() {
 /// Congruent cells of other moduli are other cells.
 #[test]
 fn congruent_cells_share_constants_only_within_a_region() {
-    let materials = "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 1e3\npoisson = 0.3\n[[material]]\nyoung = 3e3\npoisson = 0.1\n";
+    let materials =
+        "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 1e3\npoisson = 0.3\n[[material]]\nyoung = 3e3\npoisson = 0.1\n";
     let outcome = outcome(&bar("hex8", [2, 2, 3], materials, "[[fit]]\nobjective = \"spectral\"\n"));
     assert_eq!(outcome.fits[0].reused, 12 - 2);
 }
@@ -353,18 +351,30 @@ fn wrong_materials_are_named() {
     };
     let young = |value: &str| format!("[material]\nyoung = {value}\npoisson = 0.3\n");
     let cases = [
-        (region("group = \"tumour\"\n", ""), "scene.toml:4: material[0].group", "expected a group of the mesh"),
-        (region("where = \"z < 9\"\n", "where = \"z < 1.1\"\n"), "material", "every cell in one region, found 1 in two"),
+        (region("group = \"tumour\"\n", ""), "scene.toml:5: material[0].group", "expected a group of the mesh"),
+        (
+            region("where = \"z < 9\"\n", "where = \"z < 1.1\"\n"),
+            "material",
+            "every cell in one region, found 1 in two",
+        ),
         (region("where = \"z < 1.1\"\n", "where = \"z > 2.1\"\n"), "material", "found 3 cells in none"),
         (region("where = \"z < -1\"\n", ""), "material[0]", "has no cells"),
         (region("", ""), "material[1]", "material[0] has what is left"),
         (region("where = \"z < 1.1\"\ngroup = \"zmin\"\n", ""), "material[0]", "found both"),
-        (region("where = \"z < 1.1\"\ndensity = 1000\n", ""), "material[1].density", "in every [[material]] or in none"),
-        (region("where = \"z < 1.1\"\nlaw = \"neo-hookean\"\n", "law = \"neo-hookean\"\n"), "material[0].law", "one material"),
+        (
+            region("where = \"z < 1.1\"\ndensity = 1000\n", ""),
+            "material[1].density",
+            "in every [[material]] or in none",
+        ),
+        (
+            region("where = \"z < 1.1\"\nlaw = \"neo-hookean\"\n", "law = \"neo-hookean\"\n"),
+            "material[0].law",
+            "one material",
+        ),
         ("material = []\n".into(), "material", "at least one"),
         (young("\"5e3*(1 - z)\""), "material.young", "hex8 cell 2 at [0.5, 0.5, 1.5"),
         (young("\"ln(z - 2)\""), "material.young", "found NaN in hex8 cell 1"),
-        (young("\"5e3*q\""), "material.young", "q"),
+        (young("\"5e3*q\""), "scene.toml:5: material.young", "\"q\""),
         (young("{ file = \"gone.csv\" }"), "gone.csv", "cannot be read"),
         (young("{ file = \"map.csv\" }"), "map.csv:3", "found \"nan\""),
         (young("{ file = \"negative.csv\" }"), "material.young", "Pa, found -1000"),

@@ -126,7 +126,12 @@ impl Report {
     /// The report of a run.
     pub fn of(outcome: &Outcome) -> Report {
         let Outcome { mesh, material, .. } = outcome;
-        let (one, thickness) = (material.uniform(), material.thicknesses().uniform().copied());
+        let thickness = material.thicknesses().uniform().copied();
+        let materials = RegionRecord::all(outcome);
+        let same = |of: fn(&RegionRecord) -> [Option<f64>; 2]| {
+            let first = materials.first().and_then(|region| of(region)[0]);
+            first.filter(|_| materials.iter().all(|region| of(region) == [first; 2]))
+        };
         let gauge = |load: &BodyLoad| load.gauge.map(GaugeResult::reading);
         let models = outcome.motion.iter().flat_map(|motion| &motion.models);
         let fit = |fit| FitRecord::of(fit, mesh.cell_count(), thickness);
@@ -143,9 +148,9 @@ impl Report {
             unused_nodes: mesh.unused_points,
             quality: QualityRecord::of(mesh),
             springs: outcome.fits.iter().map(|fit| fit.network.len()).max(),
-            young: one.map(|one| one.young()),
-            poisson: one.map(|one| one.poisson()),
-            materials: RegionRecord::all(outcome),
+            young: same(|region| region.young),
+            poisson: same(|region| region.poisson),
+            materials,
             law: outcome.law.clone(),
             loads_followed: outcome.loads.iter().filter_map(|load| Some(load.followed.as_ref()?.into())).collect(),
             deformations: DeformationRecord::all(outcome),

@@ -33,9 +33,8 @@ impl RegionRecord {
         let record = |(name, cells): (&String, &Vec<(usize, usize)>)| {
             let range = |value: &dyn Fn(usize, usize) -> f64| {
                 let values = cells.iter().map(|&(block, cell)| value(block, cell));
-                let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                    [low.min(value), high.max(value)]
-                });
+                let ends = values
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
                 ends.map(finite)
             };
             let of = |value: fn(&Material) -> f64| {

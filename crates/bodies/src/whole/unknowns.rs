@@ -41,12 +41,7 @@ impl Unknowns {
     ///
     /// # Errors
     /// Those of [`Unknowns::per_element`].
-    pub fn per_region(
-        mesh: &Mesh,
-        region: &CellMap<usize>,
-        fits: &[CellFits],
-        network: &Network,
-    ) -> Result<Unknowns> {
+    pub fn per_region(mesh: &Mesh, region: &CellMap<usize>, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
         let mut regions: Vec<Vec<Vec<&str>>> = mesh.blocks.iter().map(|b| vec![Vec::new(); b.cells().len()]).collect();
         for (name, group) in &mesh.groups {
             group.cells.iter().for_each(|cell| regions[cell.block][cell.cell].push(name));

@@ -181,7 +181,15 @@ impl CellFits {
                         unmeasured.get_or_insert(cell);
                         return;
                     }
-                    match descent::search(springs, x, geometry, moduli.at(cell), fit, weight, (method, iterations, topology)) {
+                    match descent::search(
+                        springs,
+                        x,
+                        geometry,
+                        moduli.at(cell),
+                        fit,
+                        weight,
+                        (method, iterations, topology),
+                    ) {
                         Ok(found) => constants[cell * m..(cell + 1) * m].copy_from_slice(&found),
                         Err(problem) => _ = failed.get_or_insert((cell, problem)),
                     }

@@ -61,7 +61,8 @@ impl<T: Clone + PartialEq> CellMap<T> {
         match self {
             CellMap::Uniform(value) => CellMap::Uniform(value.clone()),
             CellMap::Each(blocks) => {
-                let block = |(values, cells): (&Vec<T>, &Vec<usize>)| cells.iter().map(|&c| values[c].clone()).collect();
+                let block =
+                    |(values, cells): (&Vec<T>, &Vec<usize>)| cells.iter().map(|&c| values[c].clone()).collect();
                 CellMap::of_blocks(blocks.iter().zip(cells).map(block).collect())
             }
         }

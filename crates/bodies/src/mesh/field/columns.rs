@@ -47,7 +47,9 @@ pub(super) fn read(text: &str, array: Option<&str>, components: usize) -> Result
     }
     match columns {
         Some(_) => Ok(raw),
-        None => Err(Error::new("expected a header with the names of the columns, found none").of_kind(ErrorKind::Syntax)),
+        None => {
+            Err(Error::new("expected a header with the names of the columns, found none").of_kind(ErrorKind::Syntax))
+        }
     }
 }
 
@@ -68,7 +70,8 @@ impl Columns {
         };
         let position: Vec<usize> = [x, y].into_iter().chain(z).collect();
         let required = |name: String| {
-            column(&name)?.ok_or_else(|| Error::expected("header", format!("a column {}", quoted(name.as_bytes())), all()))
+            column(&name)?
+                .ok_or_else(|| Error::expected("header", format!("a column {}", quoted(name.as_bytes())), all()))
         };
         let values = match (array.map(str::to_lowercase), components) {
             (Some(array), 1) => vec![required(array)?],

@@ -21,7 +21,8 @@ pub(super) fn read(pieces: &[Piece], array: Option<&str>, components: usize) -> 
             continue;
         }
         let own = arrays(piece, holder).iter().find(|array| array.name == name);
-        let own = own.and_then(|array| array.values.as_ref()).filter(|values| values.len() == places.len() * components);
+        let own =
+            own.and_then(|array| array.values.as_ref()).filter(|values| values.len() == places.len() * components);
         let Some(values) = own else {
             let found = format!("a piece of {} without", places.len());
             return Err(Error::expected("pieces", format!("{} in every one", quoted(name.as_bytes())), found));

@@ -167,8 +167,7 @@ impl Coefficients {
         let (nu, t) = (material.poisson(), material.thickness());
         let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
         let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
-        let plain =
-            Coefficients { lengths: mu, areas: 0.0, tension: mu, slope: mu, lambda, law_lambda: lambda };
+        let plain = Coefficients { lengths: mu, areas: 0.0, tension: mu, slope: mu, lambda, law_lambda: lambda };
         if !is_condensed(material.state(), is_large) {
             return Ok(match (energy, material.state()) {
                 (ExactEnergy::StableMooneyRivlin { share }, State::Solid) => Coefficients {

@@ -101,8 +101,17 @@ pub fn fit_exact<'a>(
             let first = round * ROUND + i * CHUNK;
             let (springs, coefficients) = (&springs, coefficients.part(first, connectivity.len() / n));
             let has_law = form.law.is_some();
-            let batch =
-                ExactBatch { element, springs, points, connectivity, coefficients, has_law, shares, constants, parameters };
+            let batch = ExactBatch {
+                element,
+                springs,
+                points,
+                connectivity,
+                coefficients,
+                has_law,
+                shares,
+                constants,
+                parameters,
+            };
             batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
         })?;
         progress(((round + 1) * ROUND).min(cells));

@@ -51,7 +51,12 @@ impl LinearBody {
         if !cases.is_empty() && solver.iterates(mesh, cases.len()) {
             match Iterated::solve(mesh, moduli, cases, &solver, progress) {
                 Ok((iterated, answers)) => {
-                    return Ok(LinearBody { answers, moduli: moduli.clone(), solver, systems: Systems::Iterated(iterated) });
+                    return Ok(LinearBody {
+                        answers,
+                        moduli: moduli.clone(),
+                        solver,
+                        systems: Systems::Iterated(iterated),
+                    });
                 }
                 Err(error) if solver.gives_way(&error) => {
                     progress(Event::Note(&format!("{}; the equations are factorised instead", error.problem())));

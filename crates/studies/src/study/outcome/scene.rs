@@ -45,7 +45,13 @@ pub struct Outcome {
 
 impl Outcome {
     /// The outcome of one fit without loads.
-    pub fn of_fit(name: String, mesh: Mesh, material: impl Into<MaterialMap>, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
+    pub fn of_fit(
+        name: String,
+        mesh: Mesh,
+        material: impl Into<MaterialMap>,
+        masses: Option<Vec<f64>>,
+        fit: FitOutcome,
+    ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
         let (assumed, support) = Default::default();
         let material = material.into();

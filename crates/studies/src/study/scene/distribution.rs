@@ -121,7 +121,10 @@ impl<'de> Visitor<'de> for DistributionVisitor {
             Err(not_number) => match Scope::new(&["x", "y", "z"]).expression(v) {
                 Ok(_) => Ok(Distribution { source: Source::Expression(v.into()), factor: 1.0 }),
                 // What has an operator is meant as an expression.
-                Err(e) if v.contains(['*', '+', '(', '^']) || self.0.is_none() => Err(E::custom(e.problem())),
+                Err(e) if v.contains(['*', '+', '(', '^']) => Err(E::custom(e.problem())),
+                Err(_) if self.0.is_none() => {
+                    Err(E::invalid_value(de::Unexpected::Str(v), &"a number, or an expression"))
+                }
                 Err(_) => Err(E::custom(not_number.problem())),
             },
         }

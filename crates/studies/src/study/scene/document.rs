@@ -4,7 +4,8 @@ use super::distribution::Distribution;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
 use super::input::MeshInput;
-use super::load::{LoadCase, LoadEntry};
+use super::lists::{check_fits, read_fits, read_loads};
+use super::load::LoadCase;
 use super::material::{MaterialEntries, MaterialEntry};
 use super::motion::MotionRecipe;
 use super::output::Output;
@@ -20,8 +21,7 @@ use crate::mesh::Mesh;
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::{BodyConstants, assumed};
-use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
-use crate::study::own_name::expect_own_name;
+use crate::study::fits::{NamedFit, RESERVED, law_at};
 use crate::study::sweep::SweepEntry;
 use std::path::{Path, PathBuf};
 
@@ -382,47 +382,4 @@ impl Scene {
     pub(in crate::study) fn with_line(&self, error: Error) -> Error {
         self.source.with_line(error)
     }
-}
-
-/// The fits of all `[[fit]]` entries; files are relative to `folder`.
-fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
-    let mut fits: Vec<NamedFit> = Vec::new();
-    for (i, entry) in entries.iter().enumerate() {
-        for fit in entry.fits(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))? {
-            let key = format!("fit[{i}].name");
-            if fit.name.trim().is_empty() {
-                return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
-            }
-            expect_own_name(&key, &fit.name, fits.iter().map(|fit| fit.name.as_str()))?;
-            fits.push(fit.of_entry(i));
-        }
-    }
-    Ok(fits)
-}
-
-fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
-    let mut loads: Vec<LoadCase> = Vec::new();
-    for (i, load) in entries.into_iter().enumerate() {
-        let name = load.name.clone().unwrap_or_else(|| format!("load {}", i + 1));
-        expect_own_name(&format!("load[{i}].name"), &name, loads.iter().map(|load| load.name.as_str()))?;
-        loads.push(load.check(name).map_err(|e| e.under(format!("load[{i}]")))?);
-    }
-    Ok(loads)
-}
-
-/// Checks that the material and the loads are those that the fits require.
-fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCase]) -> Result<()> {
-    let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
-    let has_law = material.first().law.is_some();
-    let facts = SceneFacts { law: has_law, density: material.has_density(), loads: &names };
-    for fit in fits {
-        let place = fit.place();
-        let lawless = fit.recipe.sampled().is_some_and(|recipe| recipe.law.is_none());
-        if lawless && !has_law {
-            let expected = format!("the energy whose forces {place} samples, such as \"neo-hookean\"");
-            return Err(Error::expected("material.law", expected, "none"));
-        }
-        fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
-    }
-    Ok(())
 }

@@ -7,6 +7,7 @@ mod elements;
 mod entry;
 mod gauge;
 mod input;
+mod lists;
 mod load;
 mod material;
 mod motion;

@@ -61,7 +61,13 @@ impl TimePlan {
     }
 }
 
-fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: &MaterialMap, fixed: &Support) -> Result<Planned> {
+fn planned(
+    scene: &Scene,
+    recipe: &MotionRecipe,
+    mesh: &Mesh,
+    material: &MaterialMap,
+    fixed: &Support,
+) -> Result<Planned> {
     let d = mesh.dimension;
     if !(recipe.gravity.is_empty() || recipe.gravity.len() == d) {
         return Err(entries("gravity", d, recipe.gravity.len()));

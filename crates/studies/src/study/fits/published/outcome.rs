@@ -17,13 +17,11 @@ impl PublishedOutcome {
     /// Notes for the reader, one sentence each. The body has `cells` cells of `material`.
     pub fn notes(&self, cells: usize, material: &MaterialMap) -> Vec<String> {
         let unmet = &self.unmet;
-        let ratio = unmet.poisson.map(|assumed| {
-            match material.uniform() {
-                Some(material) => {
-                    format!("assumes Poisson's ratio {assumed:.4}, and the material has {}", material.poisson())
-                }
-                None => format!("assumes Poisson's ratio {assumed:.4}, and that of some cells is another"),
+        let ratio = unmet.poisson.map(|assumed| match material.uniform() {
+            Some(material) => {
+                format!("assumes Poisson's ratio {assumed:.4}, and the material has {}", material.poisson())
             }
+            None => format!("assumes Poisson's ratio {assumed:.4}, and that of some cells is another"),
         });
         let shape = (unmet.cells > 0).then(|| {
             let percent = 100.0 * unmet.deviation;

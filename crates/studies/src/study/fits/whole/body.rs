@@ -42,7 +42,12 @@ pub struct WholeBody<'a> {
 
 impl<'a> WholeBody<'a> {
     /// A body at small deformation, without loads of a scene.
-    pub fn new(mesh: &'a Mesh, material: impl Into<MaterialMap>, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
+    pub fn new(
+        mesh: &'a Mesh,
+        material: impl Into<MaterialMap>,
+        support: &'a Support,
+        controls: &'a Controls,
+    ) -> WholeBody<'a> {
         let material = material.into();
         let (cases, displacements, newton, masses, solved, entries, held) = Default::default();
         WholeBody { mesh, material, support, cases, displacements, newton, masses, solved, controls, entries, held }
