@@ -47,7 +47,7 @@ pub fn material_map(entries: &MaterialEntries, mesh: &Mesh, folder: &Path) -> Re
             }
         }
     }
-    let known = |own: Vec<Option<Material>>| own.into_iter().flatten().collect();
+    let known = |own: Vec<Option<LinearMaterial>>| own.into_iter().flatten().collect();
     let materials = CellMap::of_blocks(materials.into_iter().map(known).collect());
     let density = entries.has_density().then(|| CellMap::of_blocks(densities));
     Ok(MaterialMap::of_regions(materials, names, CellMap::of_blocks(region))?.with_density(density))
