@@ -1,5 +1,6 @@
 //! All tests of the library and of the program, in one binary: each file states truths about one subject.
 
+mod anisotropy;
 mod arrays;
 mod bad_input;
 mod book;
