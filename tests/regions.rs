@@ -367,9 +367,9 @@ fn wrong_materials_are_named() {
             "in every [[material]] or in none",
         ),
         (
-            region("where = \"z < 1.1\"\nlaw = \"neo-hookean\"\n", "law = \"neo-hookean\"\n"),
-            "material[0].law",
-            "one material",
+            region("where = \"z < 1.1\"\nlaw = \"neo-hookean\"\n", ""),
+            "material[1].law",
+            "in every [[material]] or in none",
         ),
         ("material = []\n".into(), "material", "at least one"),
         (young("\"5e3*(1 - z)\""), "material.young", "hex8 cell 2 at [0.5, 0.5, 1.5"),
@@ -406,4 +406,53 @@ fn a_field_on_a_hundred_thousand_cells() {
     assert_eq!(outcome.mesh.cell_count(), 103_823);
     assert!(outcome.fits[1].frobenius.unwrap().max < 1e-10);
     assert_close(outcome.masses.unwrap().iter().sum(), 1000.0, 1e-10);
+}
+
+/// The stretch of a bar of two laws under a dead load: the force is the same in both, and without Poisson's ratio each answers along its
+/// axis alone. Neo-Hookean: `P = μ (l − 1/l) + λ ln l/l` with λ = 0, `μ = E/2`.
+#[test]
+fn regions_have_laws_of_their_own() {
+    let law = |region: &str, young: f64, law: &str| {
+        format!("[[material]]\n{region}young = {young:?}\npoisson = 0\nlaw = \"{law}\"\n")
+    };
+    let stretch = |young: f64, pull: f64| {
+        let (mut low, mut high) = (1.0f64, 10.0f64);
+        for _ in 0..200 {
+            let l = (low + high) / 2.0;
+            *(if young / 2.0 * (l - 1.0 / l) < pull { &mut low } else { &mut high }) = l;
+        }
+        low
+    };
+    for element in ["hex8", "tet4"] {
+        let both = law("where = \"z < 1.00001\"\n", 200.0, "neo-hookean") + &law("", 50.0, "neo-hookean");
+        let outcome = outcome(&bar(element, [1, 1, 3], &both, EXACT));
+        // Free sides stay straight without Poisson's ratio, as σ across is μ (1 − 1) = 0.
+        let expected = stretch(200.0, 10.0) + 2.0 * stretch(50.0, 10.0) - 3.0;
+        assert_close(end(&outcome), expected, 1e-6);
+        let error = outcome.fits[0].loads[0].error.unwrap();
+        assert!(error.rms < 1e-4 && error.max < 1e-4, "{element}: {} {}", error.rms, error.max);
+    }
+    // St. Venant–Kirchhoff beside neo-Hookean: the finite elements follow both, no exact network does.
+    let two = law("where = \"z < 1.00001\"\n", 200.0, "st-venant-kirchhoff") + &law("", 200.0, "neo-hookean");
+    let offdiag = "[[fit]]\nobjective = \"offdiag\"\n";
+    let outcome = outcome(&bar("hex8", [1, 1, 3], &two, offdiag));
+    // P = E/2 l (l² − 1)
+    let (mut low, mut high) = (1.0f64, 10.0f64);
+    for _ in 0..200 {
+        let l = (low + high) / 2.0;
+        *(if 100.0 * l * (l * l - 1.0) < 10.0 { &mut low } else { &mut high }) = l;
+    }
+    assert_close(end(&outcome), low + 2.0 * stretch(200.0, 10.0) - 3.0, 1e-6);
+    assert!(outcome.law.as_ref().is_some_and(|law| law.contains("Venant") && law.contains(", ")));
+    let folder = TempDir::new().unwrap();
+    assert!(refusal(&bar("hex8", [1, 1, 3], &two, EXACT), folder.path()).contains("fit[0].objective"));
+    let varies = both_with("young = \"100*(1 + z)\"");
+    assert!(refusal(&bar("hex8", [1, 1, 3], &varies, EXACT), folder.path()).contains("material[0].law"));
+}
+
+fn both_with(young: &str) -> String {
+    format!(
+        "[[material]]\nwhere = \"z < 1.00001\"\n{young}\npoisson = 0\nlaw = \"neo-hookean\"\n\
+         [[material]]\nyoung = 50\npoisson = 0\nlaw = \"neo-hookean\"\n"
+    )
 }

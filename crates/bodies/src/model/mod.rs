@@ -30,8 +30,8 @@ mod tension;
 
 pub use blocks::BlockStiffness;
 pub use deformation::Deformation;
-pub use elastic::{Body, Elastic};
-pub use fibres::fibre_springs;
+pub use elastic::{Body, Elastic, RegionsBody};
+pub use fibres::{fibre_springs, fibre_springs_of_regions};
 pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses, masses};

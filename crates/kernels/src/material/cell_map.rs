@@ -96,6 +96,17 @@ impl<T> CellMap<T> {
         }
     }
 
+    /// The block and the index of the first cell whose value satisfies a condition.
+    pub fn position(&self, is_meant: impl Fn(&T) -> bool) -> Option<(usize, usize)> {
+        match self {
+            CellMap::Uniform(value) => is_meant(value).then_some((0, 0)),
+            CellMap::Each(blocks) => {
+                let found = |(block, values): (usize, &Vec<T>)| Some((block, values.iter().position(&is_meant)?));
+                blocks.iter().enumerate().find_map(found)
+            }
+        }
+    }
+
     /// The values: one if it is that of all cells, otherwise one for each cell.
     pub fn values(&self) -> impl Iterator<Item = &T> {
         let (one, each) = match self {

@@ -8,12 +8,14 @@
 mod anisotropy;
 mod cell_map;
 mod energy;
+mod energy_map;
 mod hooke;
 mod map;
 
 pub use anisotropy::Anisotropy;
 pub use cell_map::{BlockValues, CellMap};
 pub use energy::{Energy, Tangent, schema};
+pub use energy_map::EnergyMap;
 pub use hooke::{Hooke, Stiffness, strains, voigt};
 pub use map::{LinearMaterial, MaterialMap};
 pub use springfit_shipped::MATERIALS as SHIPPED;

@@ -15,7 +15,7 @@ use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::published::{self, Method};
 use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors};
-use crate::material::{Energy, Material, MaterialMap};
+use crate::material::{EnergyMap, Material, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Springs;
 use serde::Serialize;
@@ -144,7 +144,7 @@ pub fn measure_recipes(
 }
 
 /// The exact networks that the body can have: with volume springs at points, on cells, and on patches if these exist.
-fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: &MaterialMap) -> Vec<NamedFit> {
+fn exact_fits(law: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> Vec<NamedFit> {
     let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
     let recipes = VolumeSprings::all().map(recipe).filter(|recipe| recipe.serves(law, mesh, material));
     recipes.map(|recipe| NamedFit::of(Recipe::Exact(recipe), None)).collect()
@@ -182,7 +182,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
         held => held.is_ok(),
     };
     let whole = scene.law().is_none() && held;
-    let law = scene.energy(material)?;
+    let law = scene.laws(material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {

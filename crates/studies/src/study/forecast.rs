@@ -6,7 +6,7 @@ use super::fitting::fit_mesh;
 use super::scene::Scene;
 use super::tensor::most_samples;
 use crate::error::Result;
-use crate::material::{Energy, MaterialMap};
+use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::BlockStiffness;
 use crate::solve::{FactorCost, dense_rate, factor_cost};
@@ -79,7 +79,7 @@ impl Forecast {
             let mesh = scene.build_mesh()?;
             let material = &scene.material_of(&mesh)?;
             let (_, cases) = load_cases(scene, &mesh, material)?;
-            Forecast::of_body(scene, &mesh, material, &cases, scene.energy(material)?.as_ref())
+            Forecast::of_body(scene, &mesh, material, &cases, scene.laws(material)?.as_ref())
         };
         worked_out().map_err(|e| scene.with_line(e))
     }
@@ -90,7 +90,7 @@ impl Forecast {
         mesh: &Mesh,
         material: &MaterialMap,
         cases: &[Case],
-        energy: Option<&Energy>,
+        energy: Option<&EnergyMap>,
     ) -> Result<Forecast> {
         let held = cases.first().map_or(0, |case| case.support.prescribed.iter().flatten().count());
         let mut forecast = Forecast::of_fits(mesh, material, scene.fits(), energy);
@@ -134,10 +134,10 @@ impl Forecast {
         mesh: &Mesh,
         material: impl Into<MaterialMap>,
         fits: &[NamedFit],
-        energy: Option<&Energy>,
+        energy: Option<&EnergyMap>,
     ) -> Forecast {
         let material = &material.into();
-        let large = energy.map(|energy| LargeBody::at_rest(energy.clone(), material.state()));
+        let large = energy.map(|laws| LargeBody::at_rest(laws.clone()));
         // Threads start before the clock does.
         rayon::broadcast(|_| ());
         let stage = |fit: &NamedFit| {

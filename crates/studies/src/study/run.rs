@@ -38,7 +38,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let material = &scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, cases) = load_cases(scene, &mesh, material)?;
-    let energy = scene.energy(material)?;
+    let energy = scene.laws(material)?;
     if controls.announce
         && let Some(words) = Forecast::of_body(scene, &mesh, material, &cases, energy.as_ref())?.announcement()
     {
@@ -49,8 +49,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let in_scene = |e: Error| e.placed(|e| e.in_file(scene.path()));
     let large = match energy {
         Some(energy) => {
-            let state = material.state();
-            Some(LargeBody::solve(&mesh, state, energy, scene.newton(), &cases, progress).map_err(in_scene)?)
+            Some(LargeBody::solve(&mesh, energy, scene.newton(), &cases, progress).map_err(in_scene)?)
         }
         None => None,
     };
@@ -87,7 +86,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
             fit.moduli = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
         }
     }
-    let law = large.as_ref().map(|large| large.energy.title.clone());
+    let law = large.as_ref().map(|large| large.laws.title());
     let (fem, followed, energy) = match large {
         Some(large) => {
             for (done, fit) in fits.iter_mut().enumerate() {
@@ -95,7 +94,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
                 fit.loads = large.compare(&mesh, &cases, &fit.network)?;
             }
             let followed: Vec<_> = large.followed.into_iter().map(Some).collect();
-            (large.displacements, followed, Some(large.energy))
+            (large.displacements, followed, Some(large.laws))
         }
         None => {
             let body = body.map_or_else(|| linear(progress), Ok)?;

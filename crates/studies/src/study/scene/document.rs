@@ -4,6 +4,7 @@ use super::distribution::Distribution;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
 use super::input::MeshInput;
+use super::laws::laws_of_regions;
 use super::lists::{check_fits, read_fits, read_loads};
 use super::load::LoadCase;
 use super::material::{MaterialEntries, MaterialEntry};
@@ -16,7 +17,7 @@ use super::source::SceneSource;
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::file;
-use crate::material::{CellMap, Energy, Material, MaterialMap};
+use crate::material::{CellMap, Energy, EnergyMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
@@ -340,12 +341,22 @@ impl Scene {
         self.law().map(load).transpose()
     }
 
+    /// The energies of the laws of all regions, if there are laws.
+    ///
+    /// # Errors
+    /// There is no such law, or its file is wrong.
+    pub fn laws(&self, material: &MaterialMap) -> Result<Option<EnergyMap>> {
+        let folder = self.path().parent().unwrap_or(Path::new(""));
+        laws_of_regions(&self.material, material, folder).map_err(|e| self.placed(e))
+    }
+
     /// The scene file, and the files that it names: of the mesh, of elements, laws and data.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let folder = self.path().parent().unwrap_or(Path::new(""));
         let mut files = vec![self.path().to_path_buf()];
         files.extend(self.mesh.files(folder));
-        files.extend(self.law().map(|law| PathBuf::from(law_at(law, folder))));
+        let laws = self.material.all.iter().filter_map(|entry| entry.law.as_deref());
+        files.extend(laws.map(|law| PathBuf::from(law_at(law, folder))));
         let measured = self.loads.iter().filter_map(|load| load.measured.as_ref());
         files.extend(measured.map(|entry| folder.join(&entry.file)));
         let sampled = self.fits.iter().filter_map(|fit| fit.recipe.sampled());

@@ -183,6 +183,11 @@ impl MaterialEntry {
         axes.iter().enumerate().map(|(i, axis)| axis.check().map_err(|e| e.under(format!("axes[{i}]")))).collect()
     }
 
+    /// Whether a number differs from cell to cell. Masses may.
+    fn varies(&self) -> bool {
+        self.distributions().any(|(_, values)| values.number().is_none())
+    }
+
     /// The checks that do not depend on the mesh.
     fn check(&self) -> Result<()> {
         self.part()?;
@@ -229,9 +234,8 @@ impl MaterialEntries {
 
     /// Whether the material is the same in all cells.
     pub fn is_uniform(&self) -> bool {
-        let varies = |entry: &MaterialEntry| entry.distributions().any(|(_, values)| values.number().is_none());
         let first = self.first();
-        self.all.len() == 1 && !varies(first) && first.young.is_some()
+        self.all.len() == 1 && !first.varies() && first.young.is_some()
     }
 
     /// The checks that do not depend on the mesh.
@@ -260,15 +264,18 @@ impl MaterialEntries {
                 }
             };
             same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
-            same("law", entry.law == first.law)?;
+            if entry.law.is_some() != first.law.is_some() {
+                let expected = "a law in every [[material]] or in none";
+                return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));
+            }
+            if entry.law.is_some() && entry.varies() {
+                let expected = "a law with numbers that are the same in all cells of its region";
+                return Err(Error::expected(format!("{}.law", self.key(i)), expected, "some that vary"));
+            }
             if entry.density.is_some() != first.density.is_some() {
                 let expected = "a density in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.density", self.key(i)), expected, "one in some"));
             }
-        }
-        if self.first().law.is_some() && !self.is_uniform() {
-            let expected = "one material in all cells with a \"law\"";
-            return Err(Error::expected(format!("{}.law", self.key(0)), expected, "several, or one that varies"));
         }
         Ok(())
     }

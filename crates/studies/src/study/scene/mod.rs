@@ -7,6 +7,7 @@ mod elements;
 mod entry;
 mod gauge;
 mod input;
+mod laws;
 mod lists;
 mod load;
 mod material;

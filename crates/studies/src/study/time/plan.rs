@@ -4,7 +4,7 @@ use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
-use crate::material::{CellMap, Energy, MaterialMap};
+use crate::material::{CellMap, EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
 use crate::range;
@@ -45,7 +45,7 @@ impl TimePlan {
     pub fn follow(
         &self,
         scene: &Scene,
-        energy: Option<&Energy>,
+        energy: Option<&EnergyMap>,
         outcome: &mut Outcome,
         progress: &mut Progress,
     ) -> Result<()> {

@@ -57,9 +57,10 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
     let state = material.state();
     let own = recipe.law.as_ref().map(|law| Energy::load(law, one_material(material)?)).transpose();
     let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?;
-    let own = own.map(|energy| LargeBody::at_rest(energy, state));
+    let own = own.map(|energy| LargeBody::at_rest((energy, state)));
     let expected = "the energy whose forces are sampled";
     let large = own.as_ref().or(task.reference.large).ok_or_else(|| Error::expected("law", expected, "none"))?;
+    let (energy, state) = large.laws.uniform().ok_or_else(several_laws)?;
     let states = Arc::new(large.states(mesh, &recipe.loads)?);
     let mut known = Vec::new();
     for block in &mesh.blocks {
@@ -69,7 +70,7 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
     task.each_block(progress, |_, block, springs, progress| {
         let fit = recipe.resolve(&block.element, springs, &states)?;
         let (points, cells) = (&mesh.points, &block.connectivity);
-        fit_sampled(&block.element, springs, points, cells, &large.energy, state, &fit, progress)
+        fit_sampled(&block.element, springs, points, cells, energy, state, &fit, progress)
     })
 }
 
@@ -78,8 +79,10 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
 /// # Errors
 /// The body has several; the kind is `Unsupported`.
 fn one_material(material: &MaterialMap) -> Result<Material> {
-    material.uniform().ok_or_else(|| {
-        let expected = "one material in all cells for the law of a sampled fit";
-        Error::expected("law", expected, "several").of_kind(ErrorKind::Unsupported)
-    })
+    material.uniform().ok_or_else(several_laws)
+}
+
+fn several_laws() -> Error {
+    let expected = "one material in all cells for the law of a sampled fit";
+    Error::expected("law", expected, "several").of_kind(ErrorKind::Unsupported)
 }
