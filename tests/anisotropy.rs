@@ -202,8 +202,10 @@ fn fits_are_least_squares_of_the_whole_matrix() {
         springs.gradients(&x, &geometry, &mut g);
         let rows: Vec<DVector<f64>> = g.chunks(n * d).map(DVector::from_column_slice).collect();
         for (weight, all) in [(Weight::None, true), (Weight::OffDiagonal, false)] {
-            let entries: Vec<(usize, usize)> =
-                (0..n * d).flat_map(|i| (0..n * d).map(move |j| (i, j))).filter(|(i, j)| all || i / d != j / d).collect();
+            let entries: Vec<(usize, usize)> = (0..n * d)
+                .flat_map(|i| (0..n * d).map(move |j| (i, j)))
+                .filter(|(i, j)| all || i / d != j / d)
+                .collect();
             let a = DMatrix::from_fn(entries.len(), rows.len(), |e, s| rows[s][entries[e].0] * rows[s][entries[e].1]);
             let b = DVector::from_fn(entries.len(), |e, _| r[entries[e]]);
             let svd = a.clone().svd(true, true);
@@ -323,8 +325,8 @@ fn constants_turn_with_cell_and_material() {
             DVector::from_vec(fit_element(&element, &springs, x, hooke, &Fit::new(objective)).unwrap())
         };
         for objective in Objective::all(element.has_higher_modes()) {
-            let [plain, both, alone] = [(&x, &law), (&turned, &own), (&turned, &law)]
-                .map(|(x, law)| constants(x, law, objective));
+            let [plain, both, alone] =
+                [(&x, &law), (&turned, &own), (&turned, &law)].map(|(x, law)| constants(x, law, objective));
             assert!((&plain - &both).norm() < 1e-5 * plain.norm(), "{name} {objective:?}");
             assert!((&plain - &alone).norm() > 1e-3 * plain.norm(), "{name} {objective:?}");
         }
@@ -356,8 +358,11 @@ fn laws_are_those_of_their_constants() {
 fn networks_are_compared_with_the_anisotropic_material() {
     let objectives = ["frobenius", "offdiag", "modal", "spectral", "divergence"];
     let fits: String = objectives.iter().map(|o| format!("[[fit]]\nobjective = \"{o}\"\n")).collect();
-    let whole = "[[fit]]\nobjective = \"whole\"\nloads = [\"top\", \"bottom\"]\niterations = 3\nregularization = 0.01\n";
-    let scene = |material: &str| block("tet4", material).replace("[[fit]]\nobjective = \"frobenius\"\n", &(fits.clone() + whole));
+    let whole =
+        "[[fit]]\nobjective = \"whole\"\nloads = [\"top\", \"bottom\"]\niterations = 3\nregularization = 0.01\n";
+    let scene = |material: &str| {
+        block("tet4", material).replace("[[fit]]\nobjective = \"frobenius\"\n", &(fits.clone() + whole))
+    };
     let isotropic = "young = 3e3\npoisson = 0.25\n";
     // λ = μ = 1200
     let same = "stiffness = [[3600, 1200, 1200, 0, 0, 0], [1200, 3600, 1200, 0, 0, 0], [1200, 1200, 3600, 0, 0, 0], \
@@ -391,7 +396,8 @@ fn regions_may_be_isotropic_or_not() {
     let springs = Springs::select(&block.element, None).unwrap();
     let moduli = outcome.material.moduli();
     let connectivity = &block.connectivity;
-    let all = fit_cells(&block.element, &springs, &outcome.mesh.points, connectivity, moduli.block(0), &fit, &mut |_| {});
+    let all =
+        fit_cells(&block.element, &springs, &outcome.mesh.points, connectivity, moduli.block(0), &fit, &mut |_| {});
     let all = all.unwrap();
     for (cell, nodes) in block.cells().enumerate() {
         let x: Vec<f64> = nodes.iter().flat_map(|&p| outcome.mesh.point(p)).copied().collect();
@@ -407,7 +413,9 @@ fn wrong_laws_are_named() {
     let fibres = "x,y,z,a_x,a_y,a_z\n0,0,0,1,0,0\n1,1,1,0,0,0\n";
     std::fs::write(folder.path().join("fibres.csv"), fibres).unwrap();
     let stiffness = |first: &str, rest: &str| {
-        let rows: Vec<String> = (1..6).map(|i| format!("[{}]", (0..6).map(|j| if i == j { "1" } else { "0" }).collect::<Vec<_>>().join(", "))).collect();
+        let rows: Vec<String> = (1..6)
+            .map(|i| format!("[{}]", (0..6).map(|j| if i == j { "1" } else { "0" }).collect::<Vec<_>>().join(", ")))
+            .collect();
         format!("stiffness = [{first}, {}]\n{rest}", rows.join(", "))
     };
     let cases = [

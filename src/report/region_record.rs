@@ -45,7 +45,8 @@ impl RegionRecord {
                 cells: cells.len(),
                 young: of(Material::young),
                 poisson: of(Material::poisson),
-                thickness: (material.state() != State::Solid).then(|| range(&|block, cell| *thicknesses.at(block, cell))),
+                thickness: (material.state() != State::Solid)
+                    .then(|| range(&|block, cell| *thicknesses.at(block, cell))),
                 density: material.density().map(|density| range(&|block, cell| *density.at(block, cell))),
             }
         };

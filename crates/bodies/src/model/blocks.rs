@@ -120,7 +120,9 @@ fn bytes(pattern: &Pattern, d: usize, models: usize, levels: usize) -> u64 {
 fn body<const D: usize>(
     mesh: &Mesh,
     moduli: &CellMap<Hooke>,
-    models: usize, levels: usize) -> Result<BlockMatrix<D, D>> {
+    models: usize,
+    levels: usize,
+) -> Result<BlockMatrix<D, D>> {
     let (cells, pattern) = places(mesh);
     let bytes = bytes(&pattern, D, models, levels);
     memory::require("the stiffness with the levels of its multigrid", bytes, ADVICE).map_err(|e| e.at_key("mesh"))?;

@@ -68,9 +68,7 @@ impl Bulk {
         }
         let materials = material.materials().ok()?;
         let of_block = |(index, block): (usize, &CellBlock)| -> Vec<(Vec<usize>, f64)> {
-            let of_cell = |(cell, nodes): (usize, &[usize])| {
-                (nodes.to_vec(), bulk_modulus(*materials.at(index, cell)))
-            };
+            let of_cell = |(cell, nodes): (usize, &[usize])| (nodes.to_vec(), bulk_modulus(*materials.at(index, cell)));
             block.cells().enumerate().map(of_cell).collect()
         };
         Some(Bulk::Each(mesh.blocks.iter().enumerate().flat_map(of_block).collect()))

@@ -232,9 +232,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             return Ok(method.finish(|value| *value, || quality, constants));
         }
         let normal = match (&self.closed, hooke) {
-            (Some(closed), Hooke::Isotropic(moduli)) => {
-                closed.equations_alone(self.springs, &x, &geometry, moduli)
-            }
+            (Some(closed), Hooke::Isotropic(moduli)) => closed.equations_alone(self.springs, &x, &geometry, moduli),
             _ => off_diagonal_equations(self.springs, &x, &geometry, hooke),
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);

@@ -94,7 +94,9 @@ pub struct Verdict {
 impl<T: Real> Method<T> {
     /// None for objectives that do not require the reduced element; closed forms are those of isotropic laws.
     pub fn like(any: &T, springs: &Springs, fit: &Fit, is_anisotropic: bool) -> Option<Method<T>> {
-        let Route::Reduced(weight) = fit.objective.route(is_anisotropic || !springs.functions.is_empty()) else { return None };
+        let Route::Reduced(weight) = fit.objective.route(is_anisotropic || !springs.functions.is_empty()) else {
+            return None;
+        };
         let reduced = Reduced::like(any, springs, fit.tied);
         let m = springs.len();
         let solver = match fit.objective {

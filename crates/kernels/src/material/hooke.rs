@@ -54,7 +54,11 @@ impl Stiffness {
     pub fn new(dimension: usize, entries: &[f64]) -> Result<Stiffness> {
         let s = strains(dimension);
         if !(1..=3).contains(&dimension) || entries.len() != s * s {
-            return Err(Error::expected("stiffness", format!("{s} rows of {s} numbers"), format!("{} numbers", entries.len())));
+            return Err(Error::expected(
+                "stiffness",
+                format!("{s} rows of {s} numbers"),
+                format!("{} numbers", entries.len()),
+            ));
         }
         if let Some(found) = entries.iter().find(|entry| !entry.is_finite()) {
             return Err(Error::expected("stiffness", "finite numbers", found));
@@ -127,7 +131,8 @@ fn nearest_lambda(dimension: usize, entries: &[f64]) -> f64 {
     if dimension == 1 {
         return 0.0;
     }
-    let normal: f64 = (0..dimension).flat_map(|i| (0..dimension).map(move |j| (i, j))).map(|(i, j)| entries[i * s + j]).sum();
+    let normal: f64 =
+        (0..dimension).flat_map(|i| (0..dimension).map(move |j| (i, j))).map(|(i, j)| entries[i * s + j]).sum();
     let weight = |i: usize| if i < dimension { 1.0 } else { 2.0 };
     let trace: f64 = (0..s).map(|i| weight(i) * entries[i * s + i]).sum();
     (normal * (d + 1.0) / 2.0 - trace) / (d * d * (d + 1.0) / 2.0 - d)

@@ -92,7 +92,16 @@ impl MaterialMap {
         let none = || Error::new("some cell is anisotropic");
         let isotropic = materials.try_map(|material| material.isotropic().ok_or_else(none)).ok();
         let linear = isotropic.is_none().then_some(materials);
-        Ok(MaterialMap { state, materials: isotropic, linear, moduli, thicknesses, regions: regions.into(), region, density: None })
+        Ok(MaterialMap {
+            state,
+            materials: isotropic,
+            linear,
+            moduli,
+            thicknesses,
+            regions: regions.into(),
+            region,
+            density: None,
+        })
     }
 
     /// The same materials with the density of each cell, kg/m³, or without.

@@ -48,9 +48,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let plan = TimePlan::of(scene, &mesh, material, &support)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(scene.path()));
     let large = match energy {
-        Some(energy) => {
-            Some(LargeBody::solve(&mesh, energy, scene.newton(), &cases, progress).map_err(in_scene)?)
-        }
+        Some(energy) => Some(LargeBody::solve(&mesh, energy, scene.newton(), &cases, progress).map_err(in_scene)?),
         None => None,
     };
     let masses = material.density().map(|density| point_masses(&mesh, density, material)).transpose();

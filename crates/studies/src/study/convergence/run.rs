@@ -5,7 +5,7 @@ use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step
 use super::quantities::Quantities;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{RegionsBody, Elastic, Entries, displaced, finite_elements, masses};
+use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
 use crate::solve::Ending;
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;

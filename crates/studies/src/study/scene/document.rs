@@ -260,7 +260,9 @@ impl Scene {
             _ => load.measured.is_some(),
         };
         let of_place = |entry: &MaterialEntry| {
-            entry.condition.is_some() || entry.axes.is_some() || entry.distributions().any(|(_, values)| values.number().is_none())
+            entry.condition.is_some()
+                || entry.axes.is_some()
+                || entry.distributions().any(|(_, values)| values.number().is_none())
         };
         self.material.all.iter().any(of_place)
             || conditions.into_iter().any(|part| matches!(part, Part::Where(_)))

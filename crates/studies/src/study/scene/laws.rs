@@ -10,11 +10,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// There is no such law, or its file is wrong.
-pub fn laws_of_regions(
-    entries: &MaterialEntries,
-    material: &MaterialMap,
-    folder: &Path,
-) -> Result<Option<EnergyMap>> {
+pub fn laws_of_regions(entries: &MaterialEntries, material: &MaterialMap, folder: &Path) -> Result<Option<EnergyMap>> {
     let mut laws: Vec<(Energy, State)> = Vec::new();
     for (i, entry) in entries.all.iter().enumerate() {
         let Some(law) = &entry.law else { return Ok(None) };

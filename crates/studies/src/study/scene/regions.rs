@@ -115,7 +115,8 @@ struct RegionValues {
 
 impl RegionValues {
     fn of(entry: &MaterialEntry, places: &Places, cells: &[CellIndex]) -> Result<RegionValues> {
-        let of = |key: &str, values: &Distribution| places.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
+        let of =
+            |key: &str, values: &Distribution| places.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
         let optional = |key: &str, values: &Option<Distribution>| values.as_ref().map(|v| of(key, v)).transpose();
         let anisotropic = entry.anisotropy()?.map(|law| places.turned(&law, &entry.axes()?, cells)).transpose()?;
         let isotropic = match (&entry.young, &entry.poisson) {
@@ -133,7 +134,8 @@ impl RegionValues {
     /// The material of a cell, by its index in the region.
     fn material(&self, entry: &MaterialEntry, mesh: &Mesh, cell: usize) -> Result<LinearMaterial> {
         // The state of an anisotropic material is that of any other.
-        let [young, poisson] = self.isotropic.as_ref().map_or([1.0, 0.0], |[young, poisson]| [young.at(cell), poisson.at(cell)]);
+        let [young, poisson] =
+            self.isotropic.as_ref().map_or([1.0, 0.0], |[young, poisson]| [young.at(cell), poisson.at(cell)]);
         let constants = BodyConstants {
             young,
             poisson,
@@ -197,7 +199,8 @@ impl Places<'_> {
     /// The law turned into the axes of each cell; one if all have the same.
     fn turned(&self, law: &Anisotropy, axes: &[Axis], cells: &[CellIndex]) -> Result<Vec<Arc<Anisotropy>>> {
         let [Some(first), second] = [axes.first(), axes.get(1)] else { return Ok(vec![Arc::new(*law)]) };
-        let (first, second) = (self.vectors(0, first, cells)?, second.map(|axis| self.vectors(1, axis, cells)).transpose()?);
+        let (first, second) =
+            (self.vectors(0, first, cells)?, second.map(|axis| self.vectors(1, axis, cells)).transpose()?);
         let count = first.len().max(second.as_ref().map_or(1, Vec::len));
         let turn = |i: usize| {
             let a = *first.get(i).unwrap_or(&first[0]);
@@ -231,7 +234,9 @@ impl Places<'_> {
                 Ok(cells.iter().map(vector).collect())
             }
             Axis::Data(data) => {
-                let values = self.samples(data, 3).and_then(|samples| self.sampled(data, &samples, Interpolation::Nearest, cells));
+                let values = self
+                    .samples(data, 3)
+                    .and_then(|samples| self.sampled(data, &samples, Interpolation::Nearest, cells));
                 let values = values.map_err(|e| e.placed(|e| e.under(format!("axes[{index}]"))))?;
                 Ok(values.iter().map(|v| [v[0], v[1], v[2]]).collect())
             }
@@ -289,8 +294,14 @@ impl Places<'_> {
         let value = |&cell: &CellIndex| {
             let outside = samples.outside(self.at(cell));
             if outside > OUTSIDE * self.extent {
-                let found = format!("{} {outside:.3e} m outside; is the scale {:?} m per unit right?", self.name(cell), data.scale);
-                return Err(Error::expected("file", "values around every cell", found).in_file(&self.folder.join(&data.file)));
+                let found = format!(
+                    "{} {outside:.3e} m outside; is the scale {:?} m per unit right?",
+                    self.name(cell),
+                    data.scale
+                );
+                return Err(
+                    Error::expected("file", "values around every cell", found).in_file(&self.folder.join(&data.file))
+                );
             }
             Ok(samples.at(self.at(cell), interpolation))
         };

@@ -5,7 +5,7 @@ use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Simu
 use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
-use crate::model::{RegionsBody, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements};
+use crate::model::{Deformation, Elastic, LinearElastic, Network, RegionsBody, Support, check_body, finite_elements};
 use crate::scalar::{norm, scaled_norm};
 use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,

@@ -59,9 +59,8 @@ impl FitKind for ExactRecipe {
         let mut outcome = ExactOutcome {
             energy: fit.energy,
             volume: fit.volume,
-            is_other: laws.is_some_and(|laws| {
-                self.energy.is_some() && !laws.laws().all(|law| is_all_of(&fit.energy, law))
-            }),
+            is_other: laws
+                .is_some_and(|laws| self.energy.is_some() && !laws.laws().all(|law| is_all_of(&fit.energy, law))),
             patches: patches.len(),
             positive: None,
         };

@@ -30,15 +30,13 @@ impl ExactOutcome {
     pub fn compared(&self, moduli: CellMap<Hooke>) -> CellMap<Hooke> {
         match self.volume {
             VolumeSprings::Points => moduli,
-            VolumeSprings::Cells | VolumeSprings::Patches => {
-                moduli.map(|hooke| match hooke {
-                    Hooke::Isotropic(moduli) => {
-                        let lambda = moduli.lambda.min(UNLOCKED * moduli.mu);
-                        Hooke::Isotropic(Moduli { lambda, ..*moduli })
-                    }
-                    Hooke::Anisotropic(_) => hooke.clone(),
-                })
-            }
+            VolumeSprings::Cells | VolumeSprings::Patches => moduli.map(|hooke| match hooke {
+                Hooke::Isotropic(moduli) => {
+                    let lambda = moduli.lambda.min(UNLOCKED * moduli.mu);
+                    Hooke::Isotropic(Moduli { lambda, ..*moduli })
+                }
+                Hooke::Anisotropic(_) => hooke.clone(),
+            }),
         }
     }
 
