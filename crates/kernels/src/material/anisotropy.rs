@@ -3,6 +3,7 @@
 use super::State;
 use super::hooke::{Stiffness, voigt};
 use crate::error::{Error, ErrorKind, Result};
+use crate::range::{contains, positive};
 use nalgebra::{Matrix6, SMatrix};
 
 /// The stiffness of a solid, `σ = C ε` in Voigt's order xx, yy, zz, yz, xz, xy, with shear strains 2 ε.
@@ -11,6 +12,8 @@ pub struct Anisotropy {
     stiffness: Matrix6<f64>,
 }
 
+/// A ratio of Young's moduli beyond the square of this has no accurate compliance.
+const LARGEST_RATIO: f64 = 1e6;
 /// Two axes whose angle has a smaller sine are not independent.
 const INDEPENDENT: f64 = 1e-6;
 
@@ -21,14 +24,11 @@ impl Anisotropy {
     /// # Errors
     /// A modulus is not positive, or the stiffness is not positive definite.
     pub fn orthotropic(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3]) -> Result<Anisotropy> {
-        let positive = |key: &str, moduli: [f64; 3]| {
-            let found = moduli.into_iter().find(|modulus| !(*modulus > 0.0 && modulus.is_finite()));
-            found.map_or(Ok(()), |found| Err(Error::expected(key, "positive numbers of Pa", found)))
-        };
-        positive("young", young)?;
-        positive("shear", shear)?;
-        if let Some(found) = poisson.iter().find(|ratio| !ratio.is_finite()) {
-            return Err(Error::expected("poisson", "finite numbers", found));
+        for (key, moduli) in [("young", young), ("shear", shear)] {
+            moduli.into_iter().try_for_each(|modulus| positive(key, modulus, "Pa").map(|_| ()))?;
+        }
+        if let Some(found) = poisson.iter().find(|ratio| !(ratio.abs() <= LARGEST_RATIO)) {
+            return Err(Error::expected("poisson", format!("ratios of at most {LARGEST_RATIO} in size"), found));
         }
         let mut compliance = Matrix6::zeros();
         (0..3).for_each(|i| compliance[(i, i)] = 1.0 / young[i]);
@@ -60,6 +60,9 @@ impl Anisotropy {
         [nu_along, nu_across]: [f64; 2],
         shear: f64,
     ) -> Result<Anisotropy> {
+        if !(nu_across > -1.0 && nu_across < 1.0) {
+            return Err(Error::expected("poisson", "a ratio across above -1 and below 1", nu_across));
+        }
         let in_plane = across / (2.0 * (1.0 + nu_across));
         Anisotropy::orthotropic([along, across, across], [nu_along, nu_across, nu_along], [shear, in_plane, shear])
     }
@@ -82,6 +85,11 @@ impl Anisotropy {
     /// # Errors
     /// Those of [`Stiffness::new`].
     pub fn of_stiffness(stiffness: Matrix6<f64>) -> Result<Anisotropy> {
+        let size = stiffness.amax();
+        if !contains(size) {
+            let expected = "numbers whose largest is from 1e-30 to 1e30 Pa";
+            return Err(Error::expected("stiffness", expected, format!("{size:?}")));
+        }
         Stiffness::new(3, stiffness.transpose().as_slice())?;
         Ok(Anisotropy { stiffness: (stiffness + stiffness.transpose()) / 2.0 })
     }
@@ -152,8 +160,13 @@ impl Anisotropy {
 
 /// Orthonormal axes as columns.
 fn frame(first: [f64; 3], second: [f64; 3]) -> Result<nalgebra::Matrix3<f64>> {
-    let [a, b] = [first, second].map(nalgebra::Vector3::from);
-    let (a, b) = (a / a.norm(), b / b.norm());
+    // Scaled first, so that no square overflows.
+    let unit = |v: [f64; 3]| {
+        let v = nalgebra::Vector3::from(v);
+        let v = v / v.amax();
+        v / v.norm()
+    };
+    let (a, b) = (unit(first), unit(second));
     let across = b - a * a.dot(&b);
     if !(across.norm() > INDEPENDENT) {
         let found = format!("{first:?} and {second:?}");
