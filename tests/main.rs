@@ -1,5 +1,6 @@
 //! All tests of the library and of the program, in one binary: each file states truths about one subject.
 
+mod anisotropy;
 mod arrays;
 mod bad_input;
 mod book;
@@ -56,6 +57,7 @@ mod programs;
 mod published;
 mod quadrature;
 mod quantities;
+mod regions;
 mod report;
 mod rest;
 mod sampled;

@@ -705,7 +705,7 @@ fn scenes_with_zero_rest_lengths_are_exact_and_say_so() {
     assert!(report["fits"][0]["tension"].is_null());
     assert_eq!(report["fits"][1]["tension"]["rest_lengths"]["max"], 1.0);
     assert!(report["fits"][1]["tension"]["unbalanced"].as_f64().unwrap() < 1e-10);
-    assert!(exact.kind.notes(12, outcome.material).iter().any(|note| note.contains("rest lengths")));
+    assert!(exact.kind.notes(12, &outcome.material).iter().any(|note| note.contains("rest lengths")));
 }
 
 /// The title alone tells fits apart.

@@ -7,6 +7,7 @@ use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
+use springfit::material::{CellMap, MaterialMap};
 use springfit::mesh::{Mesh, Selection};
 use springfit::model::Support;
 use springfit::quantity::Quantity;
@@ -179,8 +180,9 @@ impl Fit {
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
         let fit = fit.map_err(|e| e.placed(of_option))?;
         let masses = density.map(|density| point_masses(&mesh, density, material)).transpose().map_err(of_option)?;
+        let material = MaterialMap::from(material).with_density(density.map(CellMap::Uniform));
         let outcome = Outcome::of_fit(self.mesh.display().to_string(), mesh, material, masses, fit);
-        let outcome = Outcome { assumed, density, command: Some(command()), ..outcome };
+        let outcome = Outcome { assumed, command: Some(command()), ..outcome };
         // The file first: who reads the table may have gone away.
         format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
         terminal.print_outcome(&outcome, self.format.json)?;

@@ -76,8 +76,8 @@ pub struct FitRecord {
 }
 
 impl FitRecord {
-    /// Of a body of `elements` elements.
-    pub(super) fn of(outcome: &FitOutcome, elements: usize, thickness: f64) -> FitRecord {
+    /// Of a body of `elements` elements of this thickness, if they have the same.
+    pub(super) fn of(outcome: &FitOutcome, elements: usize, thickness: Option<f64>) -> FitRecord {
         let certificate = outcome.kind.stiffness();
         let moduli = outcome.moduli.as_ref();
         FitRecord {
@@ -101,7 +101,7 @@ impl FitRecord {
             unreached_elements: outcome.unreached,
             energy_error_bound: certificate.and_then(|certificate| certificate.energy_error),
             as_material: NetworkMaterialRecord::of(&outcome.as_material),
-            effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness)),
+            effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness?)),
             effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
             zener: moduli.and_then(|moduli| finite(moduli.zener)),
             loads: outcome.loads.iter().map(LoadRecord::from).collect(),

@@ -7,6 +7,7 @@ use super::linear_theory::DeformationRecord;
 use super::load_record::{FollowedRecord, MeasuredRecord, ReadingRecord};
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::number::finite;
+use super::region_record::RegionRecord;
 use super::table::notes;
 use crate::mesh::Mesh;
 use crate::study::{BodyLoad, GaugeResult, Outcome, extent};
@@ -43,10 +44,12 @@ pub struct Report {
     pub quality: QualityRecord,
     /// Of the largest network.
     pub springs: Option<usize>,
-    /// Pa.
-    pub young: f64,
-    /// Poisson's ratio.
-    pub poisson: f64,
+    /// Pa; null if it differs from cell to cell.
+    pub young: Option<f64>,
+    /// Poisson's ratio; null if it differs from cell to cell.
+    pub poisson: Option<f64>,
+    /// The material of each region; one without a name if the body has no regions.
+    pub materials: Vec<RegionRecord>,
     /// The title of the material's law.
     pub law: Option<String>,
     /// How far the finite elements followed each load; empty at small deformation.
@@ -123,9 +126,15 @@ impl Report {
     /// The report of a run.
     pub fn of(outcome: &Outcome) -> Report {
         let Outcome { mesh, material, .. } = outcome;
+        let thickness = material.thicknesses().uniform().copied();
+        let materials = RegionRecord::all(outcome);
+        let same = |of: fn(&RegionRecord) -> [Option<f64>; 2]| {
+            let first = materials.first().and_then(|region| of(region)[0]);
+            first.filter(|_| materials.iter().all(|region| of(region) == [first; 2]))
+        };
         let gauge = |load: &BodyLoad| load.gauge.map(GaugeResult::reading);
         let models = outcome.motion.iter().flat_map(|motion| &motion.models);
-        let fit = |fit| FitRecord::of(fit, mesh.cell_count(), material.thickness());
+        let fit = |fit| FitRecord::of(fit, mesh.cell_count(), thickness);
         Report {
             version: VERSION,
             scene: outcome.scene.clone(),
@@ -139,8 +148,9 @@ impl Report {
             unused_nodes: mesh.unused_points,
             quality: QualityRecord::of(mesh),
             springs: outcome.fits.iter().map(|fit| fit.network.len()).max(),
-            young: material.young(),
-            poisson: material.poisson(),
+            young: same(|region| region.young),
+            poisson: same(|region| region.poisson),
+            materials,
             law: outcome.law.clone(),
             loads_followed: outcome.loads.iter().filter_map(|load| Some(load.followed.as_ref()?.into())).collect(),
             deformations: DeformationRecord::all(outcome),

@@ -31,7 +31,8 @@ pub(super) fn material_table(outcome: &Outcome) -> String {
 pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<String> {
     let (name, m) = (&fit.fit.name, &fit.as_material);
     // Near the incompressible the tensor is nearly that of changes of volume: E says what it does not.
-    let is_modulus = m.young.is_some_and(|young| (young / outcome.material.young() - 1.0).abs() <= FAR);
+    let is_near = |(young, asked): (f64, f64)| (young / asked - 1.0).abs() <= FAR;
+    let is_modulus = m.young.zip(m.asked_young).is_some_and(is_near);
     if m.distance <= FAR && is_modulus {
         return None;
     }
@@ -44,11 +45,14 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
         (Some(young), None) => format!("E = {young:.4e} Pa"),
         (None, _) => "a strain has no stiffness".into(),
     };
-    let asked = outcome.material;
+    let asked = match (outcome.material.uniform(), m.asked_young, m.asked_poisson) {
+        (Some(asked), ..) => format!("the material has {:e} Pa, {}", asked.young(), asked.poisson()),
+        (None, Some(young), Some(poisson)) => format!("the materials there have {young:.4e} Pa, {poisson:.3}"),
+        (None, Some(young), None) => format!("the materials there have {young:.4e} Pa"),
+        (None, None, _) => "the materials differ from cell to cell".into(),
+    };
     Some(format!(
-        "{name}: the network is not the material: {off} ({of}; the material has {:e} Pa, {}). The objective \"exact\" gives the material",
-        asked.young(),
-        asked.poisson()
+        "{name}: the network is not the material: {off} ({of}; {asked}). The objective \"exact\" gives the material"
     ))
 }
 

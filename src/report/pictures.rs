@@ -22,7 +22,7 @@ pub fn displacement_grid(outcome: &Outcome) -> Grid {
             if let Some(u) = &load.displacement {
                 grid.point_data.push(vectors(format!("u {} {} (m)", fit.fit.name, load.name), u, mesh.dimension));
                 let linear = outcome.law.is_none();
-                let pressure = smoothed_pressure(mesh, &fit.network, outcome.material, u, linear);
+                let pressure = smoothed_pressure(mesh, &fit.network, &outcome.material, u, linear);
                 let name = || format!("pressure, smoothed, {} {} (Pa)", fit.fit.name, load.name);
                 grid.point_data.extend(pressure.map(|values| scalar(&name(), values)));
             }

@@ -7,6 +7,7 @@ use super::linear_theory::linear_notes;
 use super::load_errors::load_error_table;
 use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
+use super::region_record::RegionRecord;
 use crate::fit::Spread;
 use crate::mesh::Quality;
 use crate::solve::{Ending, Standing};
@@ -18,19 +19,25 @@ use std::fmt::Write;
 pub(super) fn summary_line(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
-    let material = outcome.material;
     format!(
-        "{} points, {}, {}; E = {} Pa, nu = {}{}",
+        "{} points, {}, {}; {}{}",
         mesh.point_count(),
         cells.join(", "),
         size(&extent(mesh)),
-        material.young(),
-        material.poisson(),
+        material_words(outcome),
         outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
     )
 }
 
-/// What was modelled, in a line or two.
+/// The material, or the number of regions with their own.
+fn material_words(outcome: &Outcome) -> String {
+    match &RegionRecord::all(outcome)[..] {
+        [one] => one.words(),
+        regions => format!("{} materials", regions.len()),
+    }
+}
+
+/// What was modelled, in a few lines.
 pub fn summary(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
     let given =
@@ -55,6 +62,12 @@ pub fn summary(outcome: &Outcome) -> String {
             "springs name their points from 0 as \"points\" and by the numbers of the file as \"nodes\": {title}"
         )
         .expect("a String grows");
+    }
+    for region in RegionRecord::all(outcome) {
+        if let Some(name) = &region.region {
+            writeln!(text, "material of {}: {}, {} cells", printable(name), region.words(), region.cells)
+                .expect("a String grows");
+        }
     }
     for line in quality(&mesh.quality) {
         writeln!(text, "{line}").expect("a String grows");
@@ -282,17 +295,20 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         notes
             .push(format!("{name}: in {} {elements} the iteration ended before it reached the optimum", fit.unreached));
     }
-    let own = fit.kind.notes(outcome.mesh.cell_count(), outcome.material);
+    let own = fit.kind.notes(outcome.mesh.cell_count(), &outcome.material);
     notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
     notes.extend(material_note(outcome, fit));
     if let Some(m) = &fit.moduli {
-        let (young, thickness) = (outcome.material.young(), outcome.material.thickness());
+        let (of, unit) = match outcome.material.thicknesses().uniform() {
+            Some(thickness) => (m.young / thickness, "Pa"),
+            None => (m.young, "N/m"),
+        };
+        let material = outcome.material.uniform().map_or(String::new(), |material| {
+            format!("; the material has {:e} Pa, {}, 1", material.young(), material.poisson())
+        });
         notes.push(format!(
-            "{name}: the whole network has E = {:.4e} Pa, nu = {:.3}, Zener ratio {:.3}; the material has {young:e} Pa, {}, 1",
-            m.young / thickness,
-            m.poisson,
-            m.zener,
-            outcome.material.poisson()
+            "{name}: the whole network has E = {of:.4e} {unit}, nu = {:.3}, Zener ratio {:.3}{material}",
+            m.poisson, m.zener,
         ));
     }
     for load in &fit.loads {

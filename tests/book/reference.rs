@@ -55,6 +55,10 @@ fn scene_with(table: &str) -> String {
         "mesh disc" => mesh = "disc = { zzz = 1 }\n".into(),
         "mesh quality" => mesh = "file = \"a.msh\"\nquality = { zzz = 1 }\n".into(),
         "material" => young += zzz,
+        "material data" => young = "young = { zzz = 1 }\npoisson = 0.3\n".into(),
+        "material orthotropic" | "material transversely-isotropic" | "material cubic" => {
+            young = format!("{} = {{ zzz = 1 }}\n", &table[9..]);
+        }
         "fit frobenius" => fits = fit("frobenius", zzz),
         "fit exact" => fits = fit("exact", zzz),
         "fit sampled" => fits = fit("sampled", zzz),
@@ -92,7 +96,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 27);
+    assert_eq!(tables.len(), 31);
 }
 
 #[test]

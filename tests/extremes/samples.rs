@@ -81,6 +81,56 @@ axis = "x"
 area = 0.1
 "#;
 
+/// Regions with values of their own and from a file.
+pub const REGIONS: &str = r#"
+[mesh]
+box = { element = "quad4", size = [2, 1], cells = [2, 1] }
+[[material]]
+where = "x < 1.5"
+young = 10e3
+poisson = 0.3
+thickness = 0.1
+density = 1000.0
+[[material]]
+young = { file = "young.csv", scale = 1.0 }
+poisson = 0.2
+thickness = 0.2
+density = 900.0
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "xmin"
+[[load]]
+group = "xmax"
+traction = [1.0, 0]
+"#;
+
+/// Anisotropic materials of every kind, with axes.
+pub const ANISOTROPIC: &str = r#"
+[mesh]
+box = { element = "hex8", size = [4, 1, 1], cells = [4, 1, 1] }
+[[material]]
+where = "x < 1.1"
+orthotropic = { young = [9e3, 4e3, 2e3], poisson = [0.3, 0.2, 0.3], shear = [1.5e3, 1e3, 2e3] }
+axes = [[1.0, 1.0, 0], [0, 1.0, 1.0]]
+[[material]]
+where = "x > 0.9 && x < 2.1"
+transversely-isotropic = { young = [9e3, 3e3], poisson = [0.3, 0.4], shear = 1e3 }
+axes = [{ file = "fibres.csv", scale = 1.0 }]
+[[material]]
+where = "x > 1.9 && x < 3.1"
+cubic = { c11 = 5e3, c12 = 2e3, c44 = 3e3 }
+[[material]]
+stiffness = [[3600.0, 1200.0, 1200.0, 0, 0, 0], [1200.0, 3600.0, 1200.0, 0, 0, 0], [1200.0, 1200.0, 3600.0, 0, 0, 0], [0, 0, 0, 1200.0, 0, 0], [0, 0, 0, 0, 1200.0, 0], [0, 0, 0, 0, 0, 1200.0]]
+[[fit]]
+objective = "offdiag"
+[[fix]]
+group = "xmin"
+[[load]]
+group = "xmax"
+traction = [1.0, 0, 0]
+"#;
+
 /// Rods, from a file.
 pub const RODS: &str = r#"
 [mesh]
@@ -291,9 +341,11 @@ group = "zmax"
 displacement = ["free", 0, "0.01*t"]
 "#;
 
-pub const ALL: [(&str, &str); 9] = [
+pub const ALL: [(&str, &str); 11] = [
+    ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
+    ("regions", REGIONS),
     ("rods", RODS),
     ("large", LARGE),
     ("whole", WHOLE),
@@ -304,7 +356,9 @@ pub const ALL: [(&str, &str); 9] = [
 ];
 
 /// Files that the scenes name.
-pub const FILES: [(&str, &str); 2] = [
+pub const FILES: [(&str, &str); 4] = [
+    ("fibres.csv", "x,y,z,a_x,a_y,a_z\n1.5,0.5,0.5,1,0,0\n1.5,0.5,0.6,1,1,0\n"),
+    ("young.csv", "x,y,E\n0.5,0.5,5e3\n1.5,0.5,2e4\n"),
     ("measured.csv", "point,ux,uy,uz\n4,0.001,0,0.01\n5,0,0,0.01\n6,0,0.001,0.01\n7,0,0,0.01\n"),
     (
         "rods.msh",

@@ -9,7 +9,7 @@ use super::record::{
 };
 use crate::dynamics::{Dampers, largest_square};
 use crate::element::SpringKind;
-use crate::material::State;
+use crate::material::{CellMap, State};
 use crate::mesh::Mesh;
 use crate::model::{MeasureSpring, Network, Support};
 use crate::report::fit_record::FitRecord;
@@ -108,9 +108,9 @@ impl<'a> NetworkFile<'a> {
 
     fn provenance(&self) -> ProvenanceRecord {
         let outcome = self.study.map(|(outcome, _)| outcome);
-        let material = outcome.map(|outcome| {
-            let material = outcome.material;
-            MaterialDataRecord {
+        let material = outcome.and_then(|outcome| {
+            let material = outcome.material.uniform()?;
+            Some(MaterialDataRecord {
                 young: material.young(),
                 poisson: material.poisson(),
                 state: match material.state() {
@@ -121,12 +121,12 @@ impl<'a> NetworkFile<'a> {
                 }
                 .into(),
                 thickness: material.thickness(),
-                density: outcome.density,
+                density: outcome.material.density().and_then(CellMap::uniform).copied(),
                 law: outcome.law.clone(),
-            }
+            })
         });
         let fit = self.study.map(|(outcome, fit)| {
-            let record = FitRecord::of(fit, self.mesh.cell_count(), outcome.material.thickness());
+            let record = FitRecord::of(fit, self.mesh.cell_count(), outcome.material.thicknesses().uniform().copied());
             FitSummaryRecord::of(&record)
         });
         ProvenanceRecord {

@@ -76,7 +76,7 @@ pub struct ProvenanceRecord {
     pub mesh: Option<String>,
     /// CRC-32 of the points as little-endian numbers of 64 bits, followed by the cells as integers of 32 bits; eight hexadecimal digits.
     pub mesh_checksum: String,
-    /// The material that was fitted.
+    /// The material that was fitted; null if it differs from cell to cell.
     pub material: Option<MaterialDataRecord>,
     /// The fit with its errors.
     pub fit: Option<FitSummaryRecord>,

@@ -35,7 +35,7 @@ pub use arrays::MeshArrays;
 pub use boxes::BoxMesh;
 pub use disc::DiscMesh;
 pub use embedding::Embedding;
-pub use field::Field;
+pub use field::{Field, Holder, Interpolation, Samples};
 pub use mesh::{CellBlock, CellIndex, Group, Mesh, SideIndex};
 pub use numbering::{NumberOrigin, Numbering};
 pub use quality::{Below, Gate, Quality, Worst};

@@ -4,7 +4,7 @@ use super::network::{LengthSpring, Network};
 use super::size::ADVICE;
 use super::system::in_space;
 use crate::error::Result;
-use crate::material::Moduli;
+use crate::material::{CellMap, Hooke};
 use crate::memory;
 use crate::mesh::Mesh;
 use crate::stiffness;
@@ -41,7 +41,13 @@ impl BlockStiffness {
     ///
     /// # Errors
     /// They do not; kind `Limit`.
-    pub fn of_body(mesh: &Mesh, moduli: Moduli, models: usize, levels: usize) -> Result<BlockStiffness> {
+    pub fn of_body(
+        mesh: &Mesh,
+        moduli: impl Into<CellMap<Hooke>>,
+        models: usize,
+        levels: usize,
+    ) -> Result<BlockStiffness> {
+        let moduli = &moduli.into();
         Ok(match mesh.dimension {
             2 => BlockStiffness::Plane(Arc::new(body(mesh, moduli, models, levels)?)),
             _ => BlockStiffness::Space(Arc::new(body(mesh, moduli, models, levels)?)),
@@ -111,19 +117,25 @@ fn bytes(pattern: &Pattern, d: usize, models: usize, levels: usize) -> u64 {
     (blocks * d * d * size_of::<f64>()) as u64
 }
 
-fn body<const D: usize>(mesh: &Mesh, moduli: Moduli, models: usize, levels: usize) -> Result<BlockMatrix<D, D>> {
+fn body<const D: usize>(
+    mesh: &Mesh,
+    moduli: &CellMap<Hooke>,
+    models: usize,
+    levels: usize,
+) -> Result<BlockMatrix<D, D>> {
     let (cells, pattern) = places(mesh);
     let bytes = bytes(&pattern, D, models, levels);
     memory::require("the stiffness with the levels of its multigrid", bytes, ADVICE).map_err(|e| e.at_key("mesh"))?;
     let mut matrix = BlockMatrix::zero(Arc::new(pattern));
-    for (block, groups) in mesh.blocks.iter().zip(cells.iter().map(Connectivity::groups)) {
+    for (index, (block, groups)) in mesh.blocks.iter().zip(cells.iter().map(Connectivity::groups)).enumerate() {
         let table = &block.element.tabulation;
         let n = table.nodes;
         let fill = |cells: Range<usize>, entries: &mut [f64]| {
+            let first = cells.start;
             let own = &block.connectivity[cells.start * n..cells.end * n];
             let mut each = entries.chunks_exact_mut((n * D).pow(2));
             stiffness::each_cell(table, &mesh.points, own, |cell, _, geometry| {
-                let mut r = geometry.stiffness(moduli);
+                let mut r = geometry.stiffness(moduli.at(index, first + cell));
                 if table.dimension < D {
                     r = in_space(table, &mesh.points, &own[cell * n..(cell + 1) * n], &r);
                 }

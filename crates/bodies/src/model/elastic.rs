@@ -3,8 +3,8 @@
 use super::network::Network;
 use super::system::{self, dofs};
 use super::{Entries, Response};
-use crate::material::{Energy, State};
-use crate::mesh::Mesh;
+use crate::material::{Energy, EnergyMap, State};
+use crate::mesh::{CellIndex, Mesh};
 use crate::stiffness::{Geometry, gather};
 use faer::sparse::Triplet;
 
@@ -51,65 +51,106 @@ pub struct Body<'a> {
     pub state: State,
 }
 
+/// The finite element model of a hyperelastic body with a law in each region.
+#[derive(Debug)]
+pub struct RegionsBody<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// The energy per volume and the state of each cell.
+    pub laws: &'a EnergyMap,
+}
+
 impl Body<'_> {
     /// The number of cells with a quadrature point at which `det F ≤ 0`.
     pub fn inverted(&self, x: &[f64]) -> usize {
-        let mut inverted = 0;
-        self.each_cell(|nodes, geometry| {
-            let d = geometry.dimension;
-            let mut local = vec![0.0; nodes.len() * d];
-            gather(x, d, nodes, &mut local);
-            inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
-            Some(())
-        });
-        inverted
+        inverted(self.mesh, x)
     }
+}
 
-    /// Visits the cells until one has no answer.
-    fn each_cell(&self, mut visit: impl FnMut(&[usize], &Geometry) -> Option<()>) -> Option<()> {
-        let mut all = Some(());
-        system::each_cell(self.mesh, |_, nodes, geometry| {
-            if all.is_some() {
-                all = visit(nodes, geometry);
-            }
-        });
-        all
+impl RegionsBody<'_> {
+    /// The number of cells with a quadrature point at which `det F ≤ 0`.
+    pub fn inverted(&self, x: &[f64]) -> usize {
+        inverted(self.mesh, x)
     }
+}
+
+fn inverted(mesh: &Mesh, x: &[f64]) -> usize {
+    let mut inverted = 0;
+    system::each_cell(mesh, |_, nodes, geometry| {
+        let d = geometry.dimension;
+        let mut local = vec![0.0; nodes.len() * d];
+        gather(x, d, nodes, &mut local);
+        inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
+    });
+    inverted
+}
+
+/// Visits the cells until one has no answer.
+fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], &Geometry) -> Option<()>) -> Option<()> {
+    let mut all = Some(());
+    system::each_cell(mesh, |cell, nodes, geometry| {
+        if all.is_some() {
+            all = visit(cell, nodes, geometry);
+        }
+    });
+    all
+}
+
+/// The response of the cells with their laws.
+fn respond<'l>(mesh: &Mesh, law: impl Fn(CellIndex) -> (&'l Energy, State), x: &[f64]) -> Option<Response> {
+    let d = mesh.dimension;
+    let mut total = Response { energy: 0.0, force: vec![0.0; x.len()], tangent: Entries::new() };
+    each_cell(mesh, |index, nodes, geometry| {
+        let mut local = vec![0.0; nodes.len() * d];
+        gather(x, d, nodes, &mut local);
+        let (energy, state) = law(index);
+        let cell = geometry.respond(energy, state, &local)?;
+        total.energy += cell.energy;
+        for (i, row) in dofs(nodes, d).enumerate() {
+            total.force[row] += cell.force[i];
+            for (j, column) in dofs(nodes, d).enumerate().filter(|(_, column)| row >= *column) {
+                total.tangent.push(Triplet::new(row, column, cell.tangent[(i, j)]));
+            }
+        }
+        Some(())
+    })?;
+    Some(total)
+}
+
+/// The forces of the cells with their laws.
+fn forces<'l>(mesh: &Mesh, law: impl Fn(CellIndex) -> (&'l Energy, State), x: &[f64], force: &mut [f64]) -> bool {
+    let d = mesh.dimension;
+    force.fill(0.0);
+    let all = each_cell(mesh, |index, nodes, geometry| {
+        let (mut local, mut own) = (vec![0.0; nodes.len() * d], vec![0.0; nodes.len() * d]);
+        gather(x, d, nodes, &mut local);
+        let (energy, state) = law(index);
+        if !geometry.forces(energy, state, &local, f64::NEG_INFINITY, &mut own) {
+            return None;
+        }
+        dofs(nodes, d).zip(&own).for_each(|(dof, f)| force[dof] += f);
+        Some(())
+    });
+    all.is_some()
 }
 
 impl Elastic for Body<'_> {
     fn respond(&self, x: &[f64]) -> Option<Response> {
-        let d = self.mesh.dimension;
-        let mut total = Response { energy: 0.0, force: vec![0.0; x.len()], tangent: Entries::new() };
-        self.each_cell(|nodes, geometry| {
-            let mut local = vec![0.0; nodes.len() * d];
-            gather(x, d, nodes, &mut local);
-            let cell = geometry.respond(self.energy, self.state, &local)?;
-            total.energy += cell.energy;
-            for (i, row) in dofs(nodes, d).enumerate() {
-                total.force[row] += cell.force[i];
-                for (j, column) in dofs(nodes, d).enumerate().filter(|(_, column)| row >= *column) {
-                    total.tangent.push(Triplet::new(row, column, cell.tangent[(i, j)]));
-                }
-            }
-            Some(())
-        })?;
-        Some(total)
+        respond(self.mesh, |_| (self.energy, self.state), x)
     }
 
     fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
-        let d = self.mesh.dimension;
-        force.fill(0.0);
-        let all = self.each_cell(|nodes, geometry| {
-            let (mut local, mut own) = (vec![0.0; nodes.len() * d], vec![0.0; nodes.len() * d]);
-            gather(x, d, nodes, &mut local);
-            if !geometry.forces(self.energy, self.state, &local, f64::NEG_INFINITY, &mut own) {
-                return None;
-            }
-            dofs(nodes, d).zip(&own).for_each(|(dof, f)| force[dof] += f);
-            Some(())
-        });
-        all.is_some()
+        forces(self.mesh, |_| (self.energy, self.state), x, force)
+    }
+}
+
+impl Elastic for RegionsBody<'_> {
+    fn respond(&self, x: &[f64]) -> Option<Response> {
+        respond(self.mesh, |cell| self.laws.at(cell.block, cell.cell), x)
+    }
+
+    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
+        forces(self.mesh, |cell| self.laws.at(cell.block, cell.cell), x, force)
     }
 }
 

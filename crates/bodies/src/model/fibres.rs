@@ -7,17 +7,39 @@ use super::network::MeasureSpring;
 use super::system::each_cell;
 use crate::element::{SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Energy, Material, State};
-use crate::mesh::Mesh;
+use crate::material::{Energy, EnergyMap, MaterialMap, State};
+use crate::mesh::{CellIndex, Mesh};
 use crate::springs::{Law, Measure};
 use std::sync::Arc;
+
+/// The springs of the fibres of every region, each with its law; see [`fibre_springs`].
+///
+/// # Errors
+/// Those of [`fibre_springs`].
+pub fn fibre_springs_of_regions(mesh: &Mesh, material: &MaterialMap, laws: &EnergyMap) -> Result<Vec<MeasureSpring>> {
+    let mut springs = Vec::new();
+    for (i, law) in laws.laws().enumerate() {
+        springs.extend(of_cells(mesh, material, law, |cell| *laws.index().at(cell.block, cell.cell) == i)?);
+    }
+    Ok(springs)
+}
 
 /// A spring at each quadrature point that measures `c = |Σ_a x_a (∇N_a·a)|`, with a the direction of the fibres, and
 /// has the force `v ∂W/∂c` of the law, with v the volume of the point. None if the law has no fibres.
 ///
 /// # Errors
 /// The stress of the fibres depends on more than their stretch, or they point out of a plane (kind `Unsupported`).
-pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Vec<MeasureSpring>> {
+pub fn fibre_springs(mesh: &Mesh, material: impl Into<MaterialMap>, law: &Energy) -> Result<Vec<MeasureSpring>> {
+    of_cells(mesh, &material.into(), law, |_| true)
+}
+
+/// The springs of the fibres in the chosen cells.
+fn of_cells(
+    mesh: &Mesh,
+    material: &MaterialMap,
+    law: &Energy,
+    chosen: impl Fn(CellIndex) -> bool,
+) -> Result<Vec<MeasureSpring>> {
     let Some((direction, text)) = law.fibre_law()? else { return Ok(Vec::new()) };
     let d = mesh.dimension;
     let is_in_space = matches!(material.state(), State::Solid | State::PlaneStrain { .. });
@@ -27,8 +49,12 @@ pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Ve
             .of_kind(ErrorKind::Unsupported));
     }
     let law = Arc::new(Law::parse(&text)?);
-    let mut springs = Vec::new();
-    each_cell(mesh, |_, nodes, geometry| {
+    let (thicknesses, mut springs) = (material.thicknesses(), Vec::new());
+    each_cell(mesh, |cell, nodes, geometry| {
+        if !chosen(cell) {
+            return;
+        }
+        let thickness = thicknesses.at(cell.block, cell.cell);
         let size = nodes.len() * d;
         for (gradients, volume) in geometry.gradients.chunks_exact(size).zip(&geometry.volumes) {
             let along = gradients.chunks_exact(d).map(|g| g.iter().zip(&direction).map(|(g, a)| g * a).sum());
@@ -41,7 +67,7 @@ pub fn fibre_springs(mesh: &Mesh, material: Material, law: &Energy) -> Result<Ve
                 values: Vec::new(),
                 gradients: along.collect(),
             };
-            let parameters = vec![volume * material.thickness()];
+            let parameters = vec![volume * thickness];
             springs.push(MeasureSpring {
                 kind: SpringKind::Fibre,
                 points: nodes.to_vec(),

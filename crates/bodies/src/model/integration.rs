@@ -7,6 +7,7 @@ use crate::stiffness::gather;
 
 /// The quadrature points in one cell.
 pub(super) struct CellPoints<'a> {
+    pub index: CellIndex,
     /// The nodes of the cell, `[nodes]`, as points of the mesh.
     pub nodes: &'a [usize],
     /// The values `N_a(ξ_q)`, `[points × nodes]`.
@@ -38,7 +39,8 @@ pub(super) fn each_cell_points(
         let table = element.integration_table(integrand);
         let mut x = vec![0.0; table.nodes * d];
         for (cell, nodes) in block.cells().enumerate() {
-            if !chosen(CellIndex { block: index, cell }) {
+            let index = CellIndex { block: index, cell };
+            if !chosen(index) {
                 continue;
             }
             gather(&mesh.points, d, nodes, &mut x);
@@ -46,7 +48,7 @@ pub(super) fn each_cell_points(
             let first = x[..d].to_vec();
             x.chunks_exact_mut(d).for_each(|x| x.iter_mut().zip(&first).for_each(|(x, o)| *x -= o));
             let contents: Vec<f64> = (0..table.points()).map(|q| Content::of_point(&table, q, &x).value()).collect();
-            visit(&CellPoints { nodes, values: &table.values, contents: &contents });
+            visit(&CellPoints { index, nodes, values: &table.values, contents: &contents });
         }
     }
 }

@@ -5,6 +5,7 @@
 use super::integration::each_cell_points;
 use crate::element::{Integrand, SideTable, Tabulation};
 use crate::error::{Error, Result};
+use crate::material::CellMap;
 use crate::mesh::{CellIndex, Mesh, Selection, SideIndex};
 use crate::range;
 use crate::springs::{dot, norm, unit};
@@ -106,11 +107,17 @@ impl Action {
 /// stiffness is: [`crate::element::Element::integration_table`]. A load that is not a polynomial is integrated as one
 /// of degree 8.
 ///
-/// `thickness` is in m; it is 1 for a solid.
+/// `thickness` is in m, that of all cells or of each; it is 1 for a solid.
 ///
 /// # Errors
 /// The part has no sides, points or cells on which the load can act, or the load is not finite somewhere.
-pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f64) -> Result<Vec<f64>> {
+pub fn nodal_forces(
+    mesh: &Mesh,
+    part: &Selection,
+    action: &Action,
+    thickness: impl Into<CellMap<f64>>,
+) -> Result<Vec<f64>> {
+    let thickness = &thickness.into();
     let nothing = |what: &str| Err(Error::at("load", format!("acts on nothing: the selected part has no {what}")));
     let forces = match action {
         Action::Traction(traction) => {
@@ -129,7 +136,7 @@ pub fn nodal_forces(mesh: &Mesh, part: &Selection, action: &Action, thickness: f
             let weights = if sides.is_empty() {
                 part.points(mesh)?.into_iter().map(|p| (p, 1.0)).collect()
             } else {
-                side_weights(mesh, &sides)
+                side_weights(mesh, &sides, thickness)
             };
             let total: f64 = weights.iter().map(|(_, w)| w).sum();
             if weights.is_empty() {
@@ -184,11 +191,12 @@ fn not_finite(mesh: &Mesh, point: usize, place: &str, found: &str) -> Error {
     Error::at("load", format!("is not finite everywhere on the selected part: found {found} {place} {at:?} m"))
 }
 
-fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &Values, thickness: f64) -> Vec<f64> {
+fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &Values, thickness: &CellMap<f64>) -> Vec<f64> {
     let d = mesh.dimension;
     let mut forces = vec![0.0; mesh.points.len()];
     let is_chosen = |cell: CellIndex| chosen[cell.block][cell.cell];
     each_cell_points(mesh, load_of(body.components), is_chosen, |cell| {
+        let thickness = thickness.at(cell.index.block, cell.index.cell);
         for (values, volume) in cell.each() {
             let at = |k: usize| cell.nodes.iter().zip(values).map(|(&p, n)| n * mesh.point(p)[k]).sum();
             let x: Vec<f64> = (0..d).map(at).collect();
@@ -211,13 +219,16 @@ fn spread(mesh: &Mesh, weights: &[(usize, f64)], per_unit: &[f64]) -> Vec<f64> {
     forces
 }
 
-/// `∫ N_a dA` of every node of every side, m² (m in two dimensions).
-fn side_weights(mesh: &Mesh, sides: &[SideIndex]) -> Vec<(usize, f64)> {
+/// `∫ N_a dA` of every node of every side, m²; in two dimensions relative to the thickness of the first, m.
+fn side_weights(mesh: &Mesh, sides: &[SideIndex], thickness: &CellMap<f64>) -> Vec<(usize, f64)> {
+    let of = |side: &SideIndex| thickness.at(side.cell.block, side.cell.cell);
+    let first = sides.first().map_or(1.0, |side| *of(side));
     let mut weights = Vec::new();
     for index in sides {
         let (nodes, x, _) = side_points(mesh, index);
         let table = &side_of(mesh, index).tabulation;
         for (values, area) in table.values.chunks_exact(nodes.len()).zip(areas(table, &x, mesh.dimension)) {
+            let area = area * (of(index) / first);
             weights.extend(nodes.iter().zip(values).map(|(&node, n)| (node, n * area)));
         }
     }
@@ -230,9 +241,9 @@ pub type Traction<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
 
 /// The nodal forces `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N; on flat sides
 /// exact for tractions of degree 2 in the position.
-pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: f64) -> Vec<f64> {
+pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: impl Into<CellMap<f64>>) -> Vec<f64> {
     let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
-    side_forces(mesh, &sides, Integrand::Load(2), traction, thickness)
+    side_forces(mesh, &sides, Integrand::Load(2), traction, &thickness.into())
 }
 
 fn side_forces(
@@ -240,7 +251,7 @@ fn side_forces(
     sides: &[SideIndex],
     integrand: Integrand,
     traction: &Traction,
-    thickness: f64,
+    thickness: &CellMap<f64>,
 ) -> Vec<f64> {
     let d = mesh.dimension;
     let mut forces = vec![0.0; mesh.points.len()];
@@ -249,6 +260,7 @@ fn side_forces(
     for index in sides {
         let (nodes, x, centre) = side_points(mesh, index);
         let table = &tables[index.cell.block][index.side];
+        let thickness = thickness.at(index.cell.block, index.cell.cell);
         let (count, tangents) = (nodes.len(), table.dimension);
         let values = table.values.chunks_exact(count);
         let gradients = table.gradients.chunks_exact(count * tangents);

@@ -4,7 +4,8 @@
 
 use super::integration::each_cell_points;
 use crate::element::Integrand;
-use crate::mesh::Mesh;
+use crate::material::CellMap;
+use crate::mesh::{CellIndex, Mesh};
 
 /// How the mass of a cell is distributed among its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -21,10 +22,18 @@ pub enum Lumping {
 
 crate::named!(Lumping { "row-sum" => RowSum, "hrz" => Hrz });
 
-/// The nodal masses, `[points]`, kg. `thickness` is in m, 1 for a solid; `density` is in kg/m³. The quadrature rules
+/// The nodal masses, `[points]`, kg. `thickness` is in m, 1 for a solid; `density` is in kg/m³; each is that
+/// of all cells, or one of each. The quadrature rules
 /// are exact for the shape functions, whatever the rule of the stiffness is:
 /// [`crate::element::Element::integration_table`].
-pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping) -> Vec<f64> {
+pub fn lumped_masses(
+    mesh: &Mesh,
+    density: impl Into<CellMap<f64>>,
+    thickness: impl Into<CellMap<f64>>,
+    lumping: Lumping,
+) -> Vec<f64> {
+    let (density, thickness) = (density.into(), thickness.into());
+    let of = |cell: CellIndex| density.at(cell.block, cell.cell) * thickness.at(cell.block, cell.cell);
     let mut masses = vec![0.0; mesh.point_count()];
     match lumping {
         Lumping::RowSum => each_cell_points(
@@ -33,7 +42,7 @@ pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping
             |_| true,
             |cell| {
                 for (values, v) in cell.each() {
-                    cell.nodes.iter().zip(values).for_each(|(&p, n)| masses[p] += density * thickness * (v * n));
+                    cell.nodes.iter().zip(values).for_each(|(&p, n)| masses[p] += of(cell.index) * (v * n));
                 }
             },
         ),
@@ -47,7 +56,7 @@ pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping
                     diagonal.iter_mut().zip(values).for_each(|(m, n)| *m += v * n * n);
                     volume += v;
                 }
-                let scale = density * thickness * volume / diagonal.iter().sum::<f64>();
+                let scale = of(cell.index) * volume / diagonal.iter().sum::<f64>();
                 cell.nodes.iter().zip(&diagonal).for_each(|(&p, m)| masses[p] += scale * m);
             },
         ),
@@ -57,6 +66,6 @@ pub fn lumped_masses(mesh: &Mesh, density: f64, thickness: f64, lumping: Lumping
 
 /// The nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix. Each node of a
 /// linear tetrahedron gets a quarter of its mass. `thickness` is in m, 1 for a solid; `density` is in kg/m³.
-pub fn masses(mesh: &Mesh, density: f64, thickness: f64) -> Vec<f64> {
+pub fn masses(mesh: &Mesh, density: impl Into<CellMap<f64>>, thickness: impl Into<CellMap<f64>>) -> Vec<f64> {
     lumped_masses(mesh, density, thickness, Lumping::RowSum)
 }

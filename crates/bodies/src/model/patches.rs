@@ -2,17 +2,18 @@
 //! would lock.
 //!
 //! Each cell is shared among its points that are not held, because patches of held points lock as cells do. A cell
-//! whose points are all held is a patch of its own.
+//! whose points are all held is a patch of its own. A point where regions of a body meet has a patch in each of them, because the
+//! pressure may jump there.
 //!
 //! Theory: page *Exact networks and patches* of the book.
 
 use super::network::MeasureSpring;
-use crate::element::SpringKind;
+use crate::element::{Element, SpringKind};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit};
-use crate::material::{Material, State};
+use crate::material::{CellMap, Material, MaterialMap, Moduli, State};
 use crate::mesh::Mesh;
-use crate::springs::{Law, Measure, Patch};
+use crate::springs::{Content, Law, Measure, Patch};
 use crate::stiffness::gather;
 use std::sync::Arc;
 
@@ -20,12 +21,18 @@ use std::sync::Arc;
 const NEO_HOOKEAN: &str = "b*ln(c/c0)*c0/c";
 
 /// One spring per patch with the energy `V_n λ/2 (J_n − 1)²`, or that of the fit, `J_n = Σ_c s_c V_c/Σ_c s_c V_c0`,
-/// with s_c the share of cell c. `held` says of each point whether it is held, or is empty.
+/// with s_c the share of cell c, and λ the mean over the shares. `held` says of each point whether it is held, or is empty.
 ///
 /// # Errors
 /// The mesh has cells of several kinds, or cells other than triangles of three and tetrahedra of four nodes in a space
 /// of their own dimension; or the material is one in which no cell locks at large deformation (kind `Unsupported`).
-pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bool]) -> Result<Vec<MeasureSpring>> {
+pub fn patch_springs(
+    mesh: &Mesh,
+    material: impl Into<MaterialMap>,
+    fit: &ExactFit,
+    held: &[bool],
+) -> Result<Vec<MeasureSpring>> {
+    let material = material.into();
     let expected =
         "\"points\" or \"cells\": patches are for meshes of linear triangles or linear tetrahedra in their own space";
     let unsupported = |found: String| {
@@ -44,29 +51,33 @@ pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bo
         return unsupported("a law in plane stress, where no cell locks".into());
     }
     let (mut shares, mut alone) = (vec![Vec::new(); mesh.point_count()], Vec::new());
-    for nodes in block.cells() {
+    for (cell, nodes) in block.cells().enumerate() {
         let free: Vec<usize> = nodes.iter().copied().filter(|&p| !held.get(p).is_some_and(|held| *held)).collect();
-        let share = 1.0 / free.len() as f64;
-        free.iter().for_each(|&point| shares[point].push((nodes, share)));
+        let part = Part { nodes, share: 1.0 / free.len() as f64, cell };
+        free.iter().for_each(|&point| shares[point].push(part));
         if free.is_empty() {
-            alone.push(vec![(nodes, 1.0)]);
+            alone.push(vec![Part { share: 1.0, ..part }]);
         }
     }
-    let lambda = material.moduli().lambda;
+    let region = |part: &Part| *material.region().at(0, part.cell);
+    shares.iter_mut().for_each(|parts| parts.sort_by_key(region));
+    let in_regions = shares.iter().flat_map(|parts| parts.chunk_by(|a, b| region(a) == region(b)));
+    let moduli = &material.materials()?.map(Material::moduli);
     let law = match fit.energy {
         ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. } => None,
         ExactEnergy::NeoHookean => Some(Arc::new(Law::parse(NEO_HOOKEAN)?)),
     };
-    let spring = |cells: &Vec<(&[usize], f64)>| {
-        let mut points: Vec<usize> = cells.iter().flat_map(|(nodes, _)| *nodes).copied().collect();
+    let spring = |parts: &[Part]| {
+        let mut points: Vec<usize> = parts.iter().flat_map(|part| part.nodes).copied().collect();
         points.sort_unstable();
         points.dedup();
         let place = |node: &usize| points.binary_search(node).expect("the points of the patch are those of its cells");
-        let cells = cells.iter().map(|(nodes, share)| (nodes.iter().map(place).collect(), *share)).collect();
+        let cells = parts.iter().map(|part| (part.nodes.iter().map(place).collect(), part.share)).collect();
         let measure = Measure::Patch(Arc::new(Patch { element: element.clone(), cells }));
         let mut x = vec![0.0; points.len() * d];
         gather(&mesh.points, d, &points, &mut x);
         let rest = measure.value(&x, d);
+        let lambda = mean_lambda(mesh, element, moduli, parts);
         let parameters = if law.is_some() { vec![lambda] } else { Vec::new() };
         MeasureSpring {
             kind: SpringKind::Patch,
@@ -78,6 +89,30 @@ pub fn patch_springs(mesh: &Mesh, material: Material, fit: &ExactFit, held: &[bo
             parameters,
         }
     };
-    let patches = shares.iter().chain(&alone).filter(|cells| !cells.is_empty() && lambda != 0.0);
-    Ok(patches.map(spring).collect())
+    let patches = in_regions.chain(alone.iter().map(|parts| &parts[..])).filter(|parts| !parts.is_empty());
+    Ok(patches.map(spring).filter(|spring| spring.constant != 0.0).collect())
+}
+
+/// A cell in a patch.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    nodes: &'a [usize],
+    share: f64,
+    cell: usize,
+}
+
+/// `Σ_c s_c V_c λ_c/Σ_c s_c V_c`.
+fn mean_lambda(mesh: &Mesh, element: &Element, moduli: &CellMap<Moduli>, parts: &[Part]) -> f64 {
+    if let CellMap::Uniform(moduli) = moduli {
+        return moduli.lambda;
+    }
+    let mut x = vec![0.0; element.nodes() * mesh.dimension];
+    let (mut sum, mut whole) = (0.0, 0.0);
+    for part in parts {
+        gather(&mesh.points, mesh.dimension, part.nodes, &mut x);
+        let content = part.share * Content::of_cell(&element.tabulation, &x).value();
+        sum += content * moduli.at(0, part.cell).lambda;
+        whole += content;
+    }
+    sum / whole
 }

@@ -3,11 +3,11 @@
 //! Theory: page *Exact networks and patches* of the book.
 
 use super::network::{MeasureSpring, Network};
-use crate::material::{Material, State};
-use crate::mesh::Mesh;
+use crate::material::{Material, MaterialMap, State};
+use crate::mesh::{CellBlock, Mesh};
 use crate::springs::{Content, Measure, Patch};
 use crate::stiffness::gather;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// The mean pressure `−(σ₁ + σ₂ + σ₃)/3` under the displacements u, `[points]`, Pa; `None` for networks without
 /// patches.
@@ -18,16 +18,18 @@ use std::collections::BTreeMap;
 pub fn smoothed_pressure(
     mesh: &Mesh,
     network: &Network,
-    material: Material,
+    material: impl Into<MaterialMap>,
     u: &[f64],
     linear: bool,
 ) -> Option<Vec<f64>> {
-    let bulk = bulk_modulus(material);
+    let material = material.into();
+    let bulk = Bulk::of(mesh, &material)?;
     let mut cells: BTreeMap<Vec<usize>, [f64; 2]> = BTreeMap::new();
     for spring in &network.others {
         let Measure::Patch(patch) = &spring.measure else { continue };
-        let pressure = -bulk * dilatation(mesh, spring, u, linear);
+        let dilatation = dilatation(mesh, spring, u, linear);
         for (nodes, share, content) in contents(mesh, spring, patch) {
+            let pressure = -bulk.at(&nodes) * dilatation;
             cells.entry(nodes).or_insert([content, 0.0])[1] += share * pressure;
         }
     }
@@ -50,6 +52,35 @@ fn of_points<'a>(mesh: &Mesh, cells: impl Iterator<Item = (&'a [usize], f64, f64
         }
     }
     sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect()
+}
+
+/// The bulk modulus of each cell.
+enum Bulk {
+    Uniform(f64),
+    Each(HashMap<Vec<usize>, f64>),
+}
+
+impl Bulk {
+    /// `None` of anisotropic materials, whose pressure is not that of the content alone.
+    fn of(mesh: &Mesh, material: &MaterialMap) -> Option<Bulk> {
+        if let Some(material) = material.uniform() {
+            return Some(Bulk::Uniform(bulk_modulus(material)));
+        }
+        let materials = material.materials().ok()?;
+        let of_block = |(index, block): (usize, &CellBlock)| -> Vec<(Vec<usize>, f64)> {
+            let of_cell = |(cell, nodes): (usize, &[usize])| (nodes.to_vec(), bulk_modulus(*materials.at(index, cell)));
+            block.cells().enumerate().map(of_cell).collect()
+        };
+        Some(Bulk::Each(mesh.blocks.iter().enumerate().flat_map(of_block).collect()))
+    }
+
+    /// That of the cell with these nodes.
+    fn at(&self, nodes: &[usize]) -> f64 {
+        match self {
+            Bulk::Uniform(bulk) => *bulk,
+            Bulk::Each(all) => all.get(nodes).copied().unwrap_or(f64::NAN),
+        }
+    }
 }
 
 /// K in `p = −K (J − 1)`, with J the ratio of the volume, or of the area in a plane, to that at rest.

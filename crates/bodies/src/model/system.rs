@@ -4,7 +4,7 @@
 
 use super::Entries;
 use crate::element::Tabulation;
-use crate::material::Moduli;
+use crate::material::{CellMap, Hooke};
 use crate::mesh::{CellBlock, CellIndex, Mesh};
 use crate::stiffness::{self, Geometry, Placement};
 use faer::sparse::Triplet;
@@ -41,12 +41,13 @@ pub(super) fn body_entries(mesh: &Mesh) -> usize {
     mesh.blocks.iter().map(block).sum()
 }
 
-/// The assembled stiffness of the mesh, N/m. A degree of freedom has the number `point · dimension + direction`.
-pub fn finite_elements(mesh: &Mesh, moduli: Moduli) -> Entries {
+/// The assembled stiffness of the mesh, N/m, with the moduli of all cells or of each. A degree of freedom has the number `point · dimension + direction`.
+pub fn finite_elements(mesh: &Mesh, moduli: impl Into<CellMap<Hooke>>) -> Entries {
+    let moduli = moduli.into();
     let d = mesh.dimension;
     let mut entries = Entries::with_capacity(body_entries(mesh));
     each_cell(mesh, |cell, nodes, geometry| {
-        let mut r = geometry.stiffness(moduli);
+        let mut r = geometry.stiffness(moduli.at(cell.block, cell.cell));
         let table = &mesh.blocks[cell.block].element.tabulation;
         if table.dimension < d {
             r = in_space(table, &mesh.points, nodes, &r);

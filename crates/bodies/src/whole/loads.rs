@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
+use crate::material::CellMap;
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
 use crate::springs::{distance, dot, norm, unit};
@@ -31,7 +32,8 @@ const PATCH: std::ops::Range<f64> = 0.1..0.5;
 ///   a points from the support to the middle of the object, and r is the position from there in units of the object's
 ///   size; both are in equilibrium inside the object;
 /// - "gravity x", …: a body force.
-pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLoad> {
+pub fn made_loads(mesh: &Mesh, support: &Support, thickness: impl Into<CellMap<f64>>) -> Vec<NodalLoad> {
+    let thickness = &thickness.into();
     let d = mesh.dimension;
     let names = ["x", "y", "z"];
     let e = |k: usize| (0..d).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
@@ -81,7 +83,13 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: f64) -> Vec<NodalLo
 
 /// "random 1", …: smooth body forces, each component a sum of sines with up to half a wave across the object. The same
 /// seed always gives the same loads.
-pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize, seed: u64) -> Vec<NodalLoad> {
+pub fn random_loads(
+    mesh: &Mesh,
+    support: &Support,
+    thickness: impl Into<CellMap<f64>>,
+    count: usize,
+    seed: u64,
+) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);
@@ -106,7 +114,7 @@ pub fn random_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize
 
 /// "pressure" on the whole boundary, then "patch 1", …: tractions of random direction around a random place of the boundary, and
 /// "field 1", …: body forces that are linear in the position. Every third is a field. The same seed always gives the same loads.
-pub fn varied_loads(mesh: &Mesh, support: &Support, thickness: f64, count: usize, seed: u64) -> Vec<NodalLoad> {
+pub fn varied_loads(mesh: &Mesh, support: &Support, thickness: &CellMap<f64>, count: usize, seed: u64) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);

@@ -8,9 +8,9 @@
 
 use super::parts::{PartVectors, Places};
 use super::unknowns::Unknowns;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fit::{CellFits, ExactFit, VolumeSprings, fit_exact};
-use crate::material::{Material, Moduli};
+use crate::material::{CellMap, Material, MaterialMap};
 use crate::mesh::{CellIndex, Mesh};
 use crate::model::{Entries, MeasureSpring, Network, dofs, patch_springs};
 use faer::sparse::Triplet;
@@ -63,21 +63,33 @@ impl<'a> ModuliParts<'a> {
     ///
     /// # Errors
     /// The body has no such network.
-    pub fn new(mesh: &'a Mesh, material: Material, volume: VolumeSprings, held: &[bool]) -> Result<ModuliParts<'a>> {
+    pub fn new(
+        mesh: &'a Mesh,
+        material: impl Into<MaterialMap>,
+        volume: VolumeSprings,
+        held: &[bool],
+    ) -> Result<ModuliParts<'a>> {
+        let material = material.into();
+        material.check(&mesh.blocks.iter().map(|block| block.cells().len()).collect::<Vec<_>>())?;
         let fit = ExactFit { volume, ..ExactFit::default() };
         let patched = volume == VolumeSprings::Patches;
-        let mut patches = if patched { patch_springs(mesh, material, &fit, held)? } else { Vec::new() };
+        let mut patches = if patched { patch_springs(mesh, material.clone(), &fit, held)? } else { Vec::new() };
         patches.iter_mut().for_each(|patch| patch.constant *= HALF);
         // Where patches carry λ, cells that carry it too are those with a spring for each cell.
         let fit = ExactFit { volume: if patched { VolumeSprings::Cells } else { volume }, ..fit };
         let share = if patched { HALF } else { 1.0 };
         // λ vanishes where ν does, so that what remains is μ.
-        let shear = Material::new(2.0 * material.young() / (2.0 * (1.0 + material.poisson())), 0.0, material.state())?;
+        let materials = material.materials()?;
+        let shear = materials.try_map(|material| {
+            Material::new(2.0 * material.young() / (2.0 * (1.0 + material.poisson())), 0.0, material.state())
+        })?;
         let mut fits = Vec::new();
-        for block in &mesh.blocks {
-            let of =
-                |material| fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {});
-            let (all, shear) = (of(material)?, of(shear)?);
+        for (index, block) in mesh.blocks.iter().enumerate() {
+            let of = |materials: &CellMap<Material>| {
+                let cells = &block.connectivity;
+                fit_exact(&block.element, &mesh.points, cells, materials.block(index), &fit, &mut |_| {})
+            };
+            let (all, shear) = (of(materials)?, of(&shear)?);
             let rest = |all: &[f64], own: &[f64]| all.iter().zip(own).map(|(a, b)| share * (a - b)).collect();
             let volume = CellFits {
                 constants: rest(&all.constants, &shear.constants),
@@ -196,27 +208,6 @@ impl<'a> ModuliParts<'a> {
         }
         scaled.tangents = Arc::new(tangents);
         scaled
-    }
-
-    /// The moduli of each cell of each block, Pa (in planes N/m), which patches do not count in.
-    ///
-    /// # Errors
-    /// The lengths of the factors differ from those of the parts.
-    pub fn moduli(&self, base: Moduli, factors: &[f64]) -> Result<Vec<Vec<Moduli>>> {
-        if factors.len() != self.parts.len() {
-            return Err(Error::expected("factors", format!("{} numbers", self.parts.len()), factors.len()));
-        }
-        let none = Moduli { lambda: 0.0, mu: 0.0 };
-        let mut all: Vec<Vec<Moduli>> = self.mesh.blocks.iter().map(|block| vec![none; block.cells().len()]).collect();
-        let share = if self.patches.is_empty() { 1.0 } else { HALF };
-        for (part, factor) in self.parts.iter().zip(factors) {
-            match *part {
-                Part::Shear(block, cell) => all[block][cell].mu = base.mu * factor,
-                Part::Volume(block, cell) => all[block][cell].lambda = share * base.lambda * factor,
-                Part::Patch(_) => {}
-            }
-        }
-        Ok(all)
     }
 
     /// The network of the parts as they are.

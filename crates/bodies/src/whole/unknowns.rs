@@ -4,6 +4,7 @@
 
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
+use crate::material::CellMap;
 use crate::mesh::{CellIndex, Mesh};
 use crate::model::Network;
 use crate::springs::Force;
@@ -42,14 +43,15 @@ impl Unknowns {
     }
 
     /// One unknown for each spring group in each region of the mesh, which consists of the cells that belong to the
-    /// same physical groups.
+    /// same physical groups and have the same number in `region`.
     ///
     /// # Errors
     /// Those of [`Unknowns::per_element`].
-    pub fn per_region(mesh: &Mesh, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
+    pub fn per_region(mesh: &Mesh, region: &CellMap<usize>, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
         let regions = mesh.regions();
         Unknowns::labelled(mesh, fits, network, |cell, spring| {
-            (regions[cell.block][cell.cell].clone(), group(&fits[cell.block], spring))
+            let region = *region.at(cell.block, cell.cell);
+            (region, regions[cell.block][cell.cell].clone(), group(&fits[cell.block], spring))
         })
     }
 

@@ -8,10 +8,11 @@ use super::delicate::DelicateCells;
 use super::least_squares::off_diagonal_equations;
 use super::method::{Certificate, Method, Verdict};
 use super::normal::{Normal, Rank};
+use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
 use super::settings::Fit;
 use crate::element::Element;
-use crate::material::Moduli;
+use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, PackedWork, distance, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
@@ -24,7 +25,8 @@ pub struct Batch<'a> {
     pub points: &'a [f64],
     /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
-    pub moduli: Moduli,
+    /// Those of each cell.
+    pub hooke: BlockValues<'a, Hooke>,
     pub fit: Fit,
     /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
@@ -76,14 +78,14 @@ impl PackedWork for Batch<'_> {
             let count = if cell < alone { 1 } else { T::COUNT.min(cells - cell) };
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             let constants = &mut self.constants[cell * m..(cell + count) * m];
-            if workspace.fit(nodes, constants, &mut tally) {
+            if workspace.fit(cell, nodes, constants, &mut tally) {
                 cell += count;
             } else if count > 1 {
                 // One of the cells has no regular equations. Each is solved alone in all lanes, so that its digits do
                 // not depend on the others.
                 alone = cell + count;
             } else {
-                tally.add(workspace.fit_alone(nodes, constants, false).map_err(|fault| (cell, fault))?);
+                tally.add(workspace.fit_alone(cell, nodes, constants, false).map_err(|fault| (cell, fault))?);
                 cell += 1;
             }
         }
@@ -95,12 +97,14 @@ impl PackedWork for Batch<'_> {
 struct Workspace<'a, T: Packed> {
     element: &'a Element,
     springs: &'a Springs,
-    moduli: Moduli,
+    hooke: PackedHooke<'a, T>,
     fit: Fit,
     /// For objectives with a closed form.
     closed: Option<Closed<T>>,
     /// For objectives that need the reduced element.
     method: Option<Method<T>>,
+    /// For anisotropic laws, of which no objective has a closed form.
+    anisotropic: Option<Method<T>>,
     packing: Packing<'a, T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
     measured: Vec<T>,
@@ -109,31 +113,39 @@ struct Workspace<'a, T: Packed> {
 
 impl<'a, T: Packed> Workspace<'a, T> {
     fn new(zero: T, batch: &Batch<'a>) -> Workspace<'a, T> {
-        let Batch { element, springs, points, moduli, fit, .. } = *batch;
+        let Batch { element, springs, points, ref hooke, fit, .. } = *batch;
         Workspace {
             element,
             springs,
-            moduli,
+            hooke: PackedHooke::new(&zero, element.dimension(), hooke.clone()),
             fit,
             closed: Closed::of(springs, &fit),
-            method: Method::like(&zero, springs, &fit),
+            method: Method::like(&zero, springs, &fit, false),
+            anisotropic: None,
             packing: Packing::new(&zero, element, points),
             measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
             geometry: Geometry::like(&zero, &element.tabulation),
         }
     }
 
-    /// Writes the constants of the given cells, at most one per lane. Returns false, with nothing written, if the
+    /// Writes the constants of the given cells, at most one per lane, of which the first has the number `first`. Returns false, with nothing written, if the
     /// Jacobian of a cell is not safely positive or its equations are not regular.
-    fn fit(&mut self, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
-        if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
+    fn fit(&mut self, first: usize, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
+        self.hooke.set(first, nodes.len() / self.element.nodes());
+        let is_anisotropic = self.hooke.lanes.is_anisotropic();
+        if is_anisotropic && self.anisotropic.is_none() {
+            self.anisotropic = Method::like(&self.geometry.volumes[0], self.springs, &self.fit, true);
+        }
+        let none = self.closed.is_none() && self.method.is_none() || is_anisotropic && self.anisotropic.is_none();
+        if none || !self.packing.gather(nodes) {
             return false;
         }
-        let Some(mut method) = self.method.take() else { return self.fit_closed(constants, tally) };
+        let own = if is_anisotropic { &mut self.anisotropic } else { &mut self.method };
+        let Some(mut method) = own.take() else { return self.fit_closed(constants, tally) };
         let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
             && self.measure(nodes.len() / self.element.nodes());
         if regular {
-            method.solve(self.springs, &self.packing.x, &self.geometry, &self.moduli, &self.measured);
+            method.solve(self.springs, &self.packing.x, &self.geometry, &self.hooke.lanes, &self.measured);
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.packing.lane(lane));
@@ -141,20 +153,20 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 if verdict.delicate || self.are_near(&self.packing.lane(lane)) {
                     let nodes = &nodes[lane * n..(lane + 1) * n];
                     let unreached = Verdict { reached: false, ..verdict };
-                    verdict = self.fit_alone(nodes, constants, true).unwrap_or(unreached);
+                    verdict = self.fit_alone(first + lane, nodes, constants, true).unwrap_or(unreached);
                 }
                 tally.add(verdict);
             }
         }
-        self.method = Some(method);
+        *(if is_anisotropic { &mut self.anisotropic } else { &mut self.method }) = Some(method);
         regular
     }
 
     /// [`Workspace::fit`] for objectives with a closed form.
     fn fit_closed(&mut self, constants: &mut [f64], tally: &mut Tally) -> bool {
-        let Workspace { element, springs, moduli, fit, .. } = *self;
-        let Some(closed) = &mut self.closed else { return false };
-        if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, &moduli) {
+        let Workspace { element, springs, fit, .. } = *self;
+        let (Some(closed), Hooke::Isotropic(moduli)) = (&mut self.closed, &self.hooke.lanes) else { return false };
+        if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, moduli) {
             return false;
         }
         let m = springs.len();
@@ -167,7 +179,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
-        let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, &moduli) else {
+        let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, moduli) else {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
@@ -184,7 +196,14 @@ impl<'a, T: Packed> Workspace<'a, T> {
     }
 
     /// Fits a single cell; in double-double numbers if its equations or its shape are delicate.
-    fn fit_alone(&mut self, nodes: &[usize], constants: &mut [f64], is_delicate: bool) -> Result<Verdict, Fault> {
+    fn fit_alone(
+        &mut self,
+        cell: usize,
+        nodes: &[usize],
+        constants: &mut [f64],
+        is_delicate: bool,
+    ) -> Result<Verdict, Fault> {
+        let hooke = &self.hooke.of_cell(cell);
         let mut x = vec![0.0; self.packing.x.len()];
         self.packing.place(nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
@@ -194,10 +213,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
             return Err(Fault::Unmeasured);
         }
         let are_near = self.are_near(&x);
-        let Workspace { element, springs, moduli, fit, .. } = self;
+        let Workspace { element, springs, fit, .. } = self;
         let quality = Geometry::quality(&element.tabulation, &x);
         if is_delicate || quality <= T::delicate() || are_near {
-            let delicate = DelicateCells { element, springs, moduli, fit };
+            let delicate = DelicateCells { element, springs, hooke, fit };
             let d = element.dimension();
             let mut given = x.clone();
             if element.space() == d {
@@ -208,13 +227,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 return Ok(verdict);
             }
         }
-        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit) {
-            method.solve(self.springs, &x, &geometry, &self.moduli, &measured);
+        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit, hooke.is_anisotropic()) {
+            method.solve(self.springs, &x, &geometry, &hooke.of_kind(&0.0), &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }
-        let normal = match &self.closed {
-            Some(closed) => closed.equations_alone(self.springs, &x, &geometry, &self.moduli),
-            None => off_diagonal_equations(self.springs, &x, &geometry, self.moduli),
+        let normal = match (&self.closed, hooke) {
+            (Some(closed), Hooke::Isotropic(moduli)) => closed.equations_alone(self.springs, &x, &geometry, moduli),
+            _ => off_diagonal_equations(self.springs, &x, &geometry, hooke),
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };

@@ -14,7 +14,7 @@ use super::tension::fit_tensions;
 use super::visit::{cell_fault, cell_name, each_cell};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Moduli;
+use crate::material::{BlockValues, Hooke};
 use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
@@ -49,19 +49,20 @@ pub struct CellFits {
     pub certificates: Vec<Certificate>,
 }
 
-/// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
+/// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m. The moduli are those of all cells, or
+/// one pair for each.
 ///
 /// `progress` is called from time to time with the number of finished cells.
 ///
 /// # Errors
 /// An array has a wrong length; a number is not finite or is out of its range; the springs belong to another element;
 /// or a cell is reversed, tangled or flat. The error names the cell, counted from 1.
-pub fn fit_cells(
+pub fn fit_cells<'a>(
     element: &Element,
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    moduli: Moduli,
+    moduli: impl Into<BlockValues<'a, Hooke>>,
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
@@ -103,15 +104,16 @@ impl CellFits {
     ///
     /// # Errors
     /// Those of [`fit_cells`].
-    pub fn refit(
+    pub fn refit<'a>(
         &mut self,
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
-        moduli: Moduli,
+        moduli: impl Into<BlockValues<'a, Hooke>>,
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
+        let moduli = moduli.into();
         check_fit(element, &self.springs, points, connectivity, &moduli)?;
         if !self.springs.points.is_empty() {
             return Err(Error::at("springs", "are those of an exact network, which is not fitted"));
@@ -137,7 +139,7 @@ impl CellFits {
             return Ok(());
         }
         if fit.is_costly() && cells > 1 {
-            let congruence = Congruence::of(element, points, connectivity)?;
+            let congruence = Congruence::of(element, points, connectivity, &moduli)?;
             let shapes = congruence.representatives.len();
             if shapes < cells {
                 let nodes = |&cell: &usize| &connectivity[cell * n..(cell + 1) * n];
@@ -145,7 +147,9 @@ impl CellFits {
                 let mut fitted = CellFits::new(self.springs.clone());
                 fitted.constants.resize(shapes * m, 0.0);
                 let mut share = |done: usize| progress(done * cells / shapes);
-                fitted.fit_each(element, points, &few, moduli, fit, &mut share)?;
+                let own = moduli.of_cells(&congruence.representatives);
+                let own = BlockValues::listed(&own, matches!(moduli, BlockValues::Uniform(_)));
+                fitted.fit_each(element, points, &few, own, fit, &mut share)?;
                 self.copy_by_shape(&fitted, &congruence.shapes);
                 return Ok(());
             }
@@ -159,7 +163,7 @@ impl CellFits {
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
-        moduli: Moduli,
+        moduli: BlockValues<Hooke>,
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
@@ -168,6 +172,7 @@ impl CellFits {
         let (n, m) = (element.nodes(), springs.len());
         let cells = connectivity.len() / n;
         let chunk = |first: usize, connectivity: &[usize], constants: &mut [f64]| {
+            let moduli = moduli.part(first, connectivity.len() / n);
             if let Solver::General { method, iterations, topology } = fit.solver {
                 let weight = fit.objective.of_motions()?;
                 let (mut unmeasured, mut failed) = (None, None);
@@ -176,7 +181,15 @@ impl CellFits {
                         unmeasured.get_or_insert(cell);
                         return;
                     }
-                    match descent::search(springs, x, geometry, &moduli, fit, weight, (method, iterations, topology)) {
+                    match descent::search(
+                        springs,
+                        x,
+                        geometry,
+                        moduli.at(cell),
+                        fit,
+                        weight,
+                        (method, iterations, topology),
+                    ) {
                         Ok(found) => constants[cell * m..(cell + 1) * m].copy_from_slice(&found),
                         Err(problem) => _ = failed.get_or_insert((cell, problem)),
                     }
@@ -191,7 +204,8 @@ impl CellFits {
                 check_constants(element, first, m, constants)?;
                 return Ok(Tally::default());
             }
-            let batch = Batch { element, springs, points, connectivity, moduli, fit: *fit, constants: &mut *constants };
+            let hooke = moduli;
+            let batch = Batch { element, springs, points, connectivity, hooke, fit: *fit, constants: &mut *constants };
             let tally = batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))?;
             check_constants(element, first, m, constants)?;
             Ok(tally)
@@ -243,7 +257,14 @@ fn check_constants(element: &Element, first: usize, springs: usize, values: &[f6
 ///
 /// # Errors
 /// Those of [`fit_cells`]; or the springs pull at rest, so that constants alone do not describe them.
-pub fn fit_element(element: &Element, springs: &Springs, x: &[f64], moduli: Moduli, fit: &Fit) -> Result<Vec<f64>> {
+pub fn fit_element(
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: impl Into<Hooke>,
+    fit: &Fit,
+) -> Result<Vec<f64>> {
+    let moduli = moduli.into();
     check_nodes(element, element.space(), x)?;
     fit.check_constants_alone()?;
     let connectivity: Vec<usize> = (0..element.nodes()).collect();

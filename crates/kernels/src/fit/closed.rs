@@ -68,7 +68,7 @@ impl<T: Real> Closed<T> {
         springs: &Springs,
         x: &[T],
         geometry: &mut Geometry<T>,
-        moduli: &Moduli,
+        moduli: &Moduli<T>,
     ) -> bool
     where
         T: Real,
@@ -90,7 +90,7 @@ impl<T: Real> Closed<T> {
         springs: &Springs,
         x: &[T],
         geometry: &mut Geometry<T>,
-        moduli: &Moduli,
+        moduli: &Moduli<T>,
     ) -> bool {
         if !geometry.update_in::<D>(n, table, x) {
             return false;
@@ -143,7 +143,7 @@ impl<T: Real> Closed<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli,
+        moduli: &Moduli<T>,
     ) -> Option<&Normal<T>> {
         match self.steps {
             Steps::Decoupled => None,

@@ -121,7 +121,7 @@ impl ClosedForm {
         let classes = classes(element, springs, &x);
         let equations = |moduli: Moduli<BigRational>| {
             let mut normal = Normal::default();
-            normal_equations(ClosedWeight::None, springs, &x, &geometry, &moduli, &mut normal);
+            normal_equations(ClosedWeight::None, springs, &x, &geometry, &moduli.of_kind(&x[0]), &mut normal);
             normal
         };
         let plain = units().map(equations);
@@ -171,6 +171,7 @@ impl ClosedForm {
         };
         let weighted = |moduli: Moduli<BigRational>| {
             let mut normal = Normal::default();
+            let moduli = moduli.of_kind(&self.positions[0]);
             normal_equations(closed, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
             solve(&normal)
         };

@@ -3,14 +3,16 @@
 use super::visit::each_cell;
 use crate::element::Element;
 use crate::error::Result;
+use crate::material::{BlockValues, Hooke, Moduli};
 use crate::springs::distance;
 use std::collections::HashMap;
+use std::hash::Hash;
 
 /// The relative difference below which lengths are equal; rounding in generated boxes is about 1e-14.
 const EQUAL: f64 = 1e-12;
 
-/// Cells grouped by the distances of their nodes. These are equal for cells that a rigid motion or a mirror maps onto
-/// each other, and such cells have the same constants.
+/// Cells grouped by their moduli and the distances of their nodes. These are equal for cells that a rigid motion or a mirror
+/// maps onto each other, and such cells have the same constants.
 pub struct Congruence {
     /// One cell of each shape.
     pub representatives: Vec<usize>,
@@ -19,13 +21,30 @@ pub struct Congruence {
 }
 
 impl Congruence {
-    /// Groups cells that a rigid motion or a mirror maps onto each other.
+    /// Groups cells of the same moduli that a rigid motion or a mirror maps onto each other; under anisotropic laws those that a
+    /// translation does.
     ///
     /// # Errors
     /// A cell is reversed, tangled or flat.
-    pub fn of(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
+    pub fn of(
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        hooke: &BlockValues<Hooke>,
+    ) -> Result<Congruence> {
         let d = element.dimension();
-        Congruence::by(element, points, connectivity, |x| {
+        let material = |cell: usize| match hooke {
+            BlockValues::Uniform(_) => Vec::new(),
+            BlockValues::Each(all) => match &all[cell] {
+                Hooke::Isotropic(Moduli { lambda, mu }) => vec![lambda.to_bits(), mu.to_bits()],
+                Hooke::Anisotropic(stiffness) => stiffness.bits(),
+            },
+        };
+        if hooke.values().iter().any(Hooke::is_anisotropic) {
+            // The axes of the material do not turn with the cell.
+            return Congruence::by(element, points, connectivity, material, |x| differences(x, d));
+        }
+        Congruence::by(element, points, connectivity, material, |x| {
             let nodes: Vec<&[f64]> = x.chunks_exact(d).collect();
             let pairs = (0..nodes.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
             pairs.map(|(a, b)| distance(nodes[a], nodes[b])).collect()
@@ -38,18 +57,20 @@ impl Congruence {
     /// A cell is reversed, tangled or flat.
     pub fn by_translation(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
         let d = element.dimension();
-        Congruence::by(element, points, connectivity, |x| (d..x.len()).map(|i| x[i] - x[i % d]).collect())
+        Congruence::by(element, points, connectivity, |_| (), |x| differences(x, d))
     }
 
-    /// `lengths` computes, from the node positions, the numbers that are equal for cells of one shape.
-    fn by(
+    /// `lengths` computes, from the node positions, the numbers that are equal for cells of one shape; `material` is equal
+    /// for cells that may be of one shape.
+    fn by<M: Eq + Hash>(
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
+        material: impl Fn(usize) -> M,
         lengths: impl Fn(&[f64]) -> Vec<f64>,
     ) -> Result<Congruence> {
         let mut congruence = Congruence { representatives: Vec::new(), shapes: Vec::new() };
-        let mut known: HashMap<Vec<i64>, usize> = HashMap::new();
+        let mut known: HashMap<(M, Vec<i64>), usize> = HashMap::new();
         let mut unit = 0.0;
         each_cell(element, points, connectivity, 0, |cell, x, _| {
             let lengths = lengths(x);
@@ -57,7 +78,7 @@ impl Congruence {
                 unit = EQUAL * lengths.iter().fold(0.0, |a, length| length.abs().max(a));
             }
             let key = lengths.iter().map(|length| (length / unit).round() as i64).collect();
-            let shape = *known.entry(key).or_insert_with(|| {
+            let shape = *known.entry((material(cell), key)).or_insert_with(|| {
                 congruence.representatives.push(cell);
                 congruence.representatives.len() - 1
             });
@@ -65,4 +86,9 @@ impl Congruence {
         })?;
         Ok(congruence)
     }
+}
+
+/// The positions of the nodes relative to the first.
+fn differences(x: &[f64], d: usize) -> Vec<f64> {
+    (d..x.len()).map(|i| x[i] - x[i % d]).collect()
 }

@@ -11,7 +11,7 @@ use super::precision::{differences, measured, solved};
 use super::settings::Fit;
 use super::weight::Route;
 use crate::element::Element;
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::scalar::{DoubleDouble, Scalar};
 use crate::springs::{Springs, dot};
 use crate::stiffness::Geometry;
@@ -20,7 +20,7 @@ use crate::stiffness::Geometry;
 pub struct DelicateCells<'a> {
     pub element: &'a Element,
     pub springs: &'a Springs,
-    pub moduli: &'a Moduli,
+    pub hooke: &'a Hooke,
     pub fit: &'a Fit,
 }
 
@@ -30,21 +30,21 @@ impl DelicateCells<'_> {
     /// gradient, or the objective is that of the blocks and springs measure functions, which is implemented for `f64`
     /// only.
     pub fn constants(&self, x: &[f64], (plain, shape): (&[f64], &Geometry), constants: &mut [f64]) -> Option<Verdict> {
-        let DelicateCells { element, springs, moduli, fit } = *self;
+        let DelicateCells { element, springs, hooke, fit } = *self;
         let any = DoubleDouble::from(0.0);
         let x = differences(&any, element.dimension(), x);
         let mut geometry = Geometry::like(&any, &element.tabulation);
         if !geometry.update(&element.tabulation, &x) {
             return None;
         }
-        let route = fit.objective.route(!springs.functions.is_empty());
-        let Route::Closed(weight) = route else {
+        let route = fit.objective.route(hooke.is_anisotropic() || !springs.functions.is_empty());
+        let (Route::Closed(weight), Hooke::Isotropic(moduli)) = (route, hooke) else {
             let measured = measured(springs, &x)?;
-            let method = solved(springs, &x, &geometry, moduli, &measured, fit)?;
+            let method = solved(springs, &x, &geometry, hooke, &measured, fit)?;
             return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
         };
         let mut normal = Normal::default();
-        normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
+        normal_equations(weight, springs, &x, &geometry, &moduli.of_kind(&any), &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         fit.spread(springs, constants, &k);

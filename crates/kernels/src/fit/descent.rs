@@ -12,7 +12,7 @@ use super::reduction::Reduced;
 use super::settings::Fit;
 use super::solver::{Search, Topology};
 use super::weight::MotionWeight;
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use argmin::core::{CostFunction, Executor};
@@ -123,7 +123,7 @@ pub fn search(
     springs: &Springs,
     x: &[f64],
     geometry: &Geometry,
-    moduli: &Moduli,
+    hooke: &Hooke,
     fit: &Fit,
     weight: MotionWeight,
     (method, iterations, topology): (Search, u64, Option<Topology>),
@@ -131,7 +131,7 @@ pub fn search(
     let mut reduced = Reduced::like(&0.0, springs, fit.tied);
     let mut measured = vec![0.0; springs.functions.len() * x.len()];
     springs.function_gradients(x, &mut measured);
-    reduced.set(weight, springs, x, geometry, moduli, &measured);
+    reduced.set(weight, springs, x, geometry, hooke, &measured);
     let count = reduced.scales.len();
     let mut start = vec![reduced.uniform(); count];
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;

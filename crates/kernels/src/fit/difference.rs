@@ -5,18 +5,19 @@
 //! the shape functions.
 
 use super::cells::CellFits;
+use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
 use crate::element::Element;
-use crate::material::Moduli;
+use crate::material::{BlockValues, Hooke, Moduli};
 use crate::scalar::{Packed, difference, dot};
 use crate::springs::{Force, Measure};
-use crate::stiffness::{Fault, Geometry, add_isotropic};
+use crate::stiffness::{Fault, Geometry, add_anisotropic, add_isotropic};
 use std::sync::Arc;
 
 /// Memory for as many cells as there are lanes.
 pub struct Differences<'a, T> {
     element: &'a Element,
-    moduli: Moduli,
+    hooke: PackedHooke<'a, T>,
     fits: &'a CellFits,
     packing: Packing<'a, T>,
     geometry: Geometry<T>,
@@ -38,7 +39,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         zero: &T,
         element: &'a Element,
         points: &'a [f64],
-        moduli: Moduli,
+        hooke: BlockValues<'a, Hooke>,
         fits: &'a CellFits,
     ) -> Differences<'a, T> {
         let size = element.nodes() * element.dimension();
@@ -49,7 +50,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         let single = fits.springs.functions.len() + fits.springs.areas.len();
         Differences {
             element,
-            moduli,
+            hooke: PackedHooke::new(zero, element.dimension(), hooke),
             fits,
             packing: Packing::new(zero, element, points),
             geometry: Geometry::like(zero, &element.tabulation),
@@ -60,6 +61,11 @@ impl<'a, T: Packed> Differences<'a, T> {
             gradients: vec![zero.clone(); single * size],
             single: (Geometry::new(&element.tabulation), vec![0.0; size]),
         }
+    }
+
+    /// Takes the laws of `count` cells from `first` on, as they are numbered in the laws.
+    pub fn set_hooke(&mut self, first: usize, count: usize) {
+        self.hooke.set(first, count);
     }
 
     /// Fills in these cells, at most one per lane, of which the first has this number; lanes without a cell repeat the first.
@@ -166,8 +172,13 @@ impl<'a, T: Packed> Differences<'a, T> {
             *entry = zero.clone();
         }
         for (grad, v, w) in self.geometry.each_point() {
-            let (lambda, mu) = (w.clone().scaled(&self.moduli.lambda), v.clone().scaled(&self.moduli.mu));
-            add_isotropic(&mut self.stiffness, grad.as_chunks::<D>().0, &lambda, &mu);
+            let grad = grad.as_chunks::<D>().0;
+            match &self.hooke.lanes {
+                Hooke::Isotropic(Moduli { lambda, mu }) => {
+                    add_isotropic(&mut self.stiffness, grad, &(w.clone() * lambda), &(v.clone() * mu));
+                }
+                Hooke::Anisotropic(stiffness) => add_anisotropic(&mut self.stiffness, grad, stiffness, v, w),
+            }
         }
         self.left.clone_from_slice(&self.stiffness);
         let pulls = !self.measures.is_empty();

@@ -1,8 +1,8 @@
 //! The checks that the public functions of the fits make once, before any cell is computed.
 
 use crate::element::Element;
-use crate::error::{Error, Result};
-use crate::material::Moduli;
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::{BlockValues, Hooke, Moduli};
 use crate::springs::Springs;
 
 /// The number of values that are checked without a branch between them.
@@ -80,6 +80,25 @@ pub fn check_moduli(moduli: &Moduli, dimension: usize) -> Result<()> {
     Ok(())
 }
 
+/// Checks that no strain has a negative energy; an anisotropic law is proved where it is made.
+///
+/// # Errors
+/// Those of [`check_moduli`]; or the law is one of another dimension, or of cells of a surface or curve in space.
+pub fn check_hooke(hooke: &Hooke, element: &Element) -> Result<()> {
+    match hooke {
+        Hooke::Isotropic(moduli) => check_moduli(moduli, element.dimension()),
+        Hooke::Anisotropic(stiffness) if stiffness.dimension() != element.dimension() => {
+            let expected = format!("that of a body of {} dimensions", element.dimension());
+            Err(Error::expected("stiffness", expected, stiffness.dimension()))
+        }
+        Hooke::Anisotropic(_) if element.space() != element.dimension() => {
+            let expected = "an isotropic law on surfaces and curves in space";
+            Err(Error::expected("stiffness", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported))
+        }
+        Hooke::Anisotropic(_) => Ok(()),
+    }
+}
+
 /// Checks the cells, springs and moduli of one fit.
 ///
 /// # Errors
@@ -89,10 +108,11 @@ pub fn check_fit(
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    moduli: &Moduli,
+    hooke: &BlockValues<Hooke>,
 ) -> Result<()> {
     springs.check(element)?;
-    check_moduli(moduli, element.dimension())?;
+    hooke.check("moduli", connectivity.len() / element.nodes())?;
+    hooke.values().iter().try_for_each(|hooke| check_hooke(hooke, element))?;
     check_cells(element, points, connectivity)
 }
 

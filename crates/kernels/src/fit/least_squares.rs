@@ -18,7 +18,7 @@ use super::normal::Normal;
 use super::weight::{ClosedWeight, Higher, Weight};
 use crate::element::Tabulation;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli};
 use crate::scalar::{Scalar, difference, dot, plus_multiple};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -49,7 +49,7 @@ pub fn constants_in<T: Scalar>(
         return Err(none("the Jacobian is not positive everywhere"));
     }
     let mut normal = Normal::default();
-    normal_equations(weight, springs, x, &geometry, moduli, &mut normal);
+    normal_equations(weight, springs, x, &geometry, &moduli.of_kind(&x[0]), &mut normal);
     // NaN is not equal to itself plus one.
     let is_finite = |k: &T| (k.one() + &(k.clone() - k)).exceeds(&k.zero());
     if !(normal.solve_regular() && normal.rhs.iter().all(is_finite)) {
@@ -64,7 +64,7 @@ pub fn normal_equations<T: Scalar>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli<T::Constant>,
+    moduli: &Moduli<T>,
     normal: &mut Normal<T>,
 ) {
     let n = springs.nodes;
@@ -86,7 +86,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli<T::Constant>,
+    moduli: &Moduli<T>,
     normal: &mut Normal<T>,
 ) {
     let x = &x.as_chunks::<D>().0[..n];
@@ -174,11 +174,11 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     }
 }
 
-/// The equations of the blocks of different nodes if springs measure functions, of which only g is known:
+/// The equations of the blocks of different nodes if springs measure functions, of which only g is known, or R is that of an anisotropic law:
 /// `M_st = (g_s·g_t)² − Σ_a (g_sa·g_ta)²`, `b_s = g_sᵀ R g_s − Σ_a g_saᵀ R_aa g_sa`.
-pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, moduli: Moduli) -> Normal {
+pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
     let (d, m, size) = (springs.dimension, springs.len(), x.len());
-    let r = geometry.stiffness(moduli);
+    let r = geometry.stiffness(hooke);
     let mut g = Vec::new();
     springs.gradients(x, geometry, &mut g);
     let row = |s: usize| &g[s * size..(s + 1) * size];
@@ -217,7 +217,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
         springs: &'a Springs,
         x: &'a [[T; D]],
         geometry: &'a Geometry<T>,
-        moduli: &Moduli<T::Constant>,
+        moduli: &Moduli<T>,
         edges: &'a mut Vec<T>,
         q: &'a mut Vec<T>,
         rhs: &mut Vec<T>,
@@ -233,7 +233,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
             *d = difference(&x[j], &x[i]);
             *q = zero.one() / &dot(d, d);
         }
-        let (lambda, mu) = (zero.constant(&moduli.lambda), zero.constant(&moduli.mu));
+        let (lambda, mu) = (moduli.lambda.clone(), moduli.mu.clone());
         EdgeCell { springs, x, edges, q: &q[..lengths], geometry, lambda, mu }
     }
 

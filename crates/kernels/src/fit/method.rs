@@ -12,7 +12,7 @@ use super::reduction::Reduced;
 use super::settings::Fit;
 use super::spectral::{EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
 use super::weight::{MotionWeight, Route};
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::scalar::Real;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -92,9 +92,11 @@ pub struct Verdict {
 }
 
 impl<T: Real> Method<T> {
-    /// None for objectives that do not require the reduced element.
-    pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
-        let Route::Reduced(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
+    /// None for objectives that do not require the reduced element; closed forms are those of isotropic laws.
+    pub fn like(any: &T, springs: &Springs, fit: &Fit, is_anisotropic: bool) -> Option<Method<T>> {
+        let Route::Reduced(weight) = fit.objective.route(is_anisotropic || !springs.functions.is_empty()) else {
+            return None;
+        };
         let reduced = Reduced::like(any, springs, fit.tied);
         let m = springs.len();
         let solver = match fit.objective {
@@ -112,8 +114,8 @@ impl<T: Real> Method<T> {
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
-    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, moduli: &Moduli, measured: &[T]) {
-        self.reduced.set(self.weight, springs, x, geometry, moduli, measured);
+    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, hooke: &Hooke<T>, measured: &[T]) {
+        self.reduced.set(self.weight, springs, x, geometry, hooke, measured);
         match &mut self.solver {
             Solver::LeastSquares { normal, products } => {
                 let (c, zero) = (self.reduced.scales.len(), x[0].zero());

@@ -30,6 +30,7 @@ mod nodal;
 mod normal;
 mod norms;
 mod objective;
+mod packed_hooke;
 mod packing;
 mod precision;
 pub mod published;

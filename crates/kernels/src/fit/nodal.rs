@@ -48,7 +48,7 @@ impl<T: Scalar> Nodal<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli<T::Constant>,
+        moduli: &Moduli<T>,
         normal: &mut Normal<T>,
     ) -> bool {
         x[0].vectorize(
@@ -66,7 +66,7 @@ impl<T: Scalar> Nodal<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli<T::Constant>,
+        moduli: &Moduli<T>,
         normal: &mut Normal<T>,
     ) -> bool {
         let (n, m, lengths) = (springs.nodes, springs.len(), springs.pairs.len());

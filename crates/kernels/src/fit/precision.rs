@@ -11,7 +11,7 @@ use super::settings::Fit;
 use super::weight::{Route, Weight};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli};
 use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -60,7 +60,7 @@ fn closed_equations<T: Real>(
         return Err(no_answer("the Jacobian is not positive everywhere"));
     }
     let mut normal = Normal::default();
-    normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
+    normal_equations(weight, springs, &x, &geometry, &moduli.of_kind(any), &mut normal);
     Ok(Some(normal.by_unknowns(springs, fit.tied)))
 }
 
@@ -151,7 +151,7 @@ fn shaped<T: Real>(
     }
     let known = |g: DoubleDouble| any.constant(&g.hi) + &any.constant(&g.lo);
     let measured: Vec<T> = measured(springs, &precise)?.into_iter().map(known).collect();
-    solved(springs, &x, &geometry, moduli, &measured, fit)
+    solved(springs, &x, &geometry, &Hooke::Isotropic(*moduli), &measured, fit)
 }
 
 /// The gradients of the springs on functions, `[functions × nodes·dimension]`; None if one is zero or not finite.
@@ -166,12 +166,12 @@ pub(super) fn solved<T: Real>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli,
+    hooke: &Hooke,
     measured: &[T],
     fit: &Fit,
 ) -> Option<Method<T>> {
-    let mut method = Method::like(&x[0], springs, fit)?;
-    method.solve(springs, x, geometry, moduli, measured);
+    let mut method = Method::like(&x[0], springs, fit, hooke.is_anisotropic())?;
+    method.solve(springs, x, geometry, &hooke.of_kind(&x[0]), measured);
     Some(method)
 }
 

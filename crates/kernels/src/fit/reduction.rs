@@ -4,10 +4,10 @@
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;
 use super::weight::MotionWeight;
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli};
 use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
 use crate::springs::Springs;
-use crate::stiffness::{Geometry, add_isotropic};
+use crate::stiffness::{Geometry, add_anisotropic, add_isotropic};
 
 /// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`, one unknown κ_I per spring, or per group if
 /// tied.
@@ -71,15 +71,15 @@ impl<T: Real> Reduced<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli,
+        hooke: &Hooke<T>,
         measured: &[T],
     ) {
         x[0].vectorize(
             #[inline(always)]
             || match springs.dimension {
-                1 => self.set_in::<1>(weight, springs, x, geometry, moduli, measured),
-                2 => self.set_in::<2>(weight, springs, x, geometry, moduli, measured),
-                _ => self.set_in::<3>(weight, springs, x, geometry, moduli, measured),
+                1 => self.set_in::<1>(weight, springs, x, geometry, hooke, measured),
+                2 => self.set_in::<2>(weight, springs, x, geometry, hooke, measured),
+                _ => self.set_in::<3>(weight, springs, x, geometry, hooke, measured),
             },
         );
     }
@@ -91,13 +91,13 @@ impl<T: Real> Reduced<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli,
+        hooke: &Hooke<T>,
         measured: &[T],
     ) {
         let n = springs.nodes;
         let x = &x.as_chunks::<D>().0[..n];
         self.set_mix(weight, x);
-        self.set_stiffness::<D>(n, geometry, moduli);
+        self.set_stiffness::<D>(n, geometry, hooke);
         self.set_gradients(springs, x, geometry, measured);
         self.take_out_rotations::<D>(n);
         if weight.divides_by_stiffness() {
@@ -141,9 +141,9 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// `Σ_q v (λ ∇_a ∇_bᵀ + μ (∇_b ∇_aᵀ + ∇_a·∇_b I))`, with the gradients of the differences.
+    /// `Σ_q v Bᵀ D B`, if isotropic `Σ_q v (λ ∇_a ∇_bᵀ + μ (∇_b ∇_aᵀ + ∇_a·∇_b I))`, with the gradients of the differences.
     #[inline(always)]
-    fn set_stiffness<const D: usize>(&mut self, n: usize, geometry: &Geometry<T>, moduli: &Moduli) {
+    fn set_stiffness<const D: usize>(&mut self, n: usize, geometry: &Geometry<T>, hooke: &Hooke<T>) {
         let full = (n - 1) * D;
         let zero = geometry.volumes[0].zero();
         let r = &mut self.stiffness[..full * full];
@@ -153,8 +153,12 @@ impl<T: Real> Reduced<T> {
         let differences = self.work[..full].as_chunks_mut::<D>().0;
         for (grad, v, w) in geometry.each_point() {
             mixed(&self.mix, grad.as_chunks::<D>().0, differences);
-            let (lambda, mu) = (w.clone().scaled(&moduli.lambda), v.clone().scaled(&moduli.mu));
-            add_isotropic(r, differences, &lambda, &mu);
+            match hooke {
+                Hooke::Isotropic(Moduli { lambda, mu }) => {
+                    add_isotropic(r, differences, &(w.clone() * lambda), &(v.clone() * mu));
+                }
+                Hooke::Anisotropic(stiffness) => add_anisotropic(r, differences, stiffness, v, w),
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use super::input::{check_fit, check_length};
 use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::Result;
-use crate::material::Moduli;
+use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, PackedWork, widest};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
@@ -53,13 +53,14 @@ impl Spread {
 /// # Errors
 /// An array has a wrong length; a coordinate or modulus is not finite or is out of its range; the springs belong to
 /// another element; or a cell is reversed, tangled or flat.
-pub fn element_errors(
+pub fn element_errors<'a>(
     element: &Element,
     points: &[f64],
     connectivity: &[usize],
-    moduli: Moduli,
+    moduli: impl Into<BlockValues<'a, Hooke>>,
     fits: &CellFits,
 ) -> Result<ElementErrors> {
+    let moduli = moduli.into();
     check_fit(element, &fits.springs, points, connectivity, &moduli)?;
     let cells = connectivity.len() / element.nodes();
     check_length("constants", fits.constants.len(), cells * fits.springs.len())?;
@@ -68,6 +69,7 @@ pub fn element_errors(
     check_length("parameters", fits.parameters.len(), parameters)?;
     let n = element.nodes();
     let chunk = |(i, nodes): (usize, &[usize])| {
+        let moduli = moduli.part(i * CHUNK, nodes.len() / n);
         let batch = ErrorBatch { element, points, connectivity: nodes, moduli, fits, first: i * CHUNK };
         widest(batch).map_err(|(cell, fault)| cell_fault(element, i * CHUNK + cell, fault))
     };
@@ -84,7 +86,7 @@ struct ErrorBatch<'a> {
     element: &'a Element,
     points: &'a [f64],
     connectivity: &'a [usize],
-    moduli: Moduli,
+    moduli: BlockValues<'a, Hooke>,
     fits: &'a CellFits,
     first: usize,
 }
@@ -100,6 +102,7 @@ impl PackedWork for ErrorBatch<'_> {
         let mut errors = ElementErrors::default();
         for (i, nodes) in self.connectivity.chunks(T::COUNT * n).enumerate() {
             let done = i * T::COUNT;
+            both.set_hooke(done, nodes.len() / n);
             both.update(self.first + done, nodes).map_err(|(lane, fault)| (done + lane, fault))?;
             let frobenius = (frobenius_square(&both.left, size) / &frobenius_square(&both.stiffness, size)).sqrt();
             let spectral = extremes.norm(&mut both.left) / &extremes.norm(&mut both.stiffness);

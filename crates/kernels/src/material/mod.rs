@@ -5,13 +5,24 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+mod anisotropy;
+mod cell_map;
 mod energy;
+mod energy_map;
+mod hooke;
+mod map;
 
+pub use anisotropy::Anisotropy;
+pub use cell_map::{BlockValues, CellMap};
 pub use energy::{Energy, Tangent, schema};
+pub use energy_map::EnergyMap;
+pub use hooke::{Hooke, Stiffness, strains, voigt};
+pub use map::{LinearMaterial, MaterialMap};
 pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};
 use crate::range::positive;
+use crate::scalar::Scalar;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -102,6 +113,13 @@ pub struct Moduli<C = f64> {
     pub mu: C,
 }
 
+impl<C> Moduli<C> {
+    /// The moduli as numbers of the kind of `any`.
+    pub fn of_kind<T: Scalar<Constant = C>>(&self, any: &T) -> Moduli<T> {
+        Moduli { lambda: any.constant(&self.lambda), mu: any.constant(&self.mu) }
+    }
+}
+
 impl Material {
     /// A material with Young's modulus `young` (Pa) and Poisson's ratio `poisson`.
     ///
@@ -114,7 +132,12 @@ impl Material {
             _ => poisson > -1.0 && poisson < 0.5,
         };
         if !in_range {
-            return Err(Error::expected("poisson", "a ratio above -1 and below 0.5", poisson));
+            let incompressible = if poisson == 0.5 {
+                " (a solid needs a finite bulk modulus, such as that of 0.4999 with volume = \"patches\" or \"cells\" of exact networks)"
+            } else {
+                ""
+            };
+            return Err(Error::expected("poisson", format!("a ratio above -1 and below 0.5{incompressible}"), poisson));
         }
         if let State::PlaneStress { thickness } | State::PlaneStrain { thickness } = state {
             positive("thickness", thickness, "m")?;

@@ -11,7 +11,7 @@ pub use large::ElementResponse;
 pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli, Stiffness, strains, voigt};
 use crate::scalar::{Scalar, adjugate, dot, multiple, plus_multiple, zeros};
 use nalgebra::DMatrix;
 
@@ -213,10 +213,14 @@ impl Geometry {
         Fault::Tangled { point, determinant, largest: determinants().fold(f64::NEG_INFINITY, f64::max) }
     }
 
-    /// `R = ∫ Bᵀ D B dV` of an isotropic material, `[nodes·dimension × nodes·dimension]`, N/m:
+    /// `R = ∫ Bᵀ D B dV`, `[nodes·dimension × nodes·dimension]`, N/m; of an isotropic material
     /// `R_ab = ∫ λ ∇N_a ∇N_bᵀ + μ (∇N_b ∇N_aᵀ + ∇N_a·∇N_b I) dV`, the same matrix without the products with zeros.
     /// Natsupakpong and Çavuşoğlu (2010), (13).
-    pub fn stiffness(&self, Moduli { lambda, mu }: Moduli) -> DMatrix<f64> {
+    pub fn stiffness(&self, hooke: impl Into<Hooke>) -> DMatrix<f64> {
+        let Moduli { lambda, mu } = match hooke.into() {
+            Hooke::Isotropic(moduli) => moduli,
+            Hooke::Anisotropic(stiffness) => return self.anisotropic(&stiffness),
+        };
         let (n, d) = (self.nodes, self.dimension);
         let mut r = DMatrix::zeros(n * d, n * d);
         for (grad, v, w) in self.each_point() {
@@ -236,6 +240,60 @@ impl Geometry {
         }
         r.fill_upper_triangle_with_lower_triangle();
         r
+    }
+
+    fn anisotropic(&self, stiffness: &Stiffness) -> DMatrix<f64> {
+        let size = self.nodes * self.dimension;
+        let mut r = vec![0.0; size * size];
+        for (grad, v, w) in self.each_point() {
+            match self.dimension {
+                1 => add_anisotropic::<f64, 1>(&mut r, grad.as_chunks().0, stiffness, v, w),
+                2 => add_anisotropic::<f64, 2>(&mut r, grad.as_chunks().0, stiffness, v, w),
+                _ => add_anisotropic::<f64, 3>(&mut r, grad.as_chunks().0, stiffness, v, w),
+            }
+        }
+        DMatrix::from_fn(size, size, |i, j| r[i.max(j) * size + i.min(j)])
+    }
+}
+
+/// Adds `v B_aᵀ D B_b + (w − v) λ g_a g_bᵀ` for all b ≤ a to r, `[nodes·D × nodes·D]`, with D and the λ of the nearest isotropic law;
+/// blocks above the diagonal stay. v is the volume of the point, w that for changes of volume.
+#[inline(always)]
+pub(crate) fn add_anisotropic<T: Scalar, const D: usize>(
+    r: &mut [T],
+    g: &[[T; D]],
+    stiffness: &Stiffness<T>,
+    v: &T,
+    w: &T,
+) {
+    let (zero, size, s) = (v.zero(), g.len() * D, strains(D));
+    let entries = stiffness.entries();
+    let volumetric = (w.clone() - v) * stiffness.lambda();
+    for (a, ga) in g.iter().enumerate() {
+        // v D B_a, by the direction of the node and the strain.
+        let mut stress: [[T; 6]; D] = zero.repeated_rows();
+        for k in 0..D {
+            for strain in 0..s {
+                let mut sum = zero.clone();
+                for j in 0..D {
+                    sum = sum.plus_product(&ga[j], &entries[voigt(D, k, j) * s + strain]);
+                }
+                stress[k][strain] = sum * v;
+            }
+        }
+        for (b, gb) in g[..a + 1].iter().enumerate() {
+            for k in 0..D {
+                let across = volumetric.clone() * &ga[k];
+                for l in 0..D {
+                    let place = (a * D + k) * size + b * D + l;
+                    let mut entry = r[place].clone().plus_product(&across, &gb[l]);
+                    for m in 0..D {
+                        entry = entry.plus_product(&stress[k][voigt(D, l, m)], &gb[m]);
+                    }
+                    r[place] = entry;
+                }
+            }
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::published::{self, Method};
 use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors};
-use crate::material::{Energy, Material};
+use crate::material::{EnergyMap, Material, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Springs;
 use serde::Serialize;
@@ -144,7 +144,7 @@ pub fn measure_recipes(
 }
 
 /// The exact networks that the body can have: with volume springs at points, on cells, and on patches if these exist.
-fn exact_fits(law: Option<&Energy>, mesh: &Mesh, material: Material) -> Vec<NamedFit> {
+fn exact_fits(law: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> Vec<NamedFit> {
     let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
     let recipes = VolumeSprings::all().map(recipe).filter(|recipe| recipe.serves(law, mesh, material));
     recipes.map(|recipe| NamedFit::of(Recipe::Exact(recipe), None)).collect()
@@ -173,7 +173,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
     // Generated loads are linear, and require supports that hold the body without those of the scene.
-    let material = scene.material_of(&mesh)?;
+    let material = &scene.material_of(&mesh)?;
     let support = load_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
@@ -182,12 +182,19 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
         held => held.is_ok(),
     };
     let whole = scene.law().is_none() && held;
-    let law = scene.energy(material)?;
+    let law = scene.laws(material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {
-        let block = |b: &CellBlock| serves(*method, &b.element, &mesh.points, &b.connectivity, material);
-        mesh.blocks.iter().all(block)
+        let block = |(index, b): (usize, &CellBlock)| {
+            let Ok(materials) = material.materials() else { return false };
+            let own = materials.block(index);
+            let serves = |m: &Material| serves(*method, &b.element, &mesh.points, &b.connectivity, *m);
+            // One constant for the whole body is that of one material.
+            let one = material.uniform().is_some() || *method != Method::MacielUniform;
+            one && own.values().first().is_some_and(serves)
+        };
+        mesh.blocks.iter().enumerate().all(block)
     };
     for groups in std::iter::once(None).chain(all) {
         let at_rest =

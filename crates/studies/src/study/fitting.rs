@@ -6,7 +6,7 @@ use super::progress::Progress;
 use super::tensor::network_material;
 use crate::error::Result;
 use crate::fit::{ElementErrors, Spread, element_errors};
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 
 /// Fits one recipe on every cell and assembles the network; `reference` is required by sampled and whole-object fits.
@@ -15,19 +15,22 @@ use crate::mesh::Mesh;
 /// The elements have no such spring group, a law does not belong to the groups, or there is nothing to sample.
 pub fn fit_mesh(
     mesh: &Mesh,
-    material: Material,
+    material: impl Into<MaterialMap>,
     reference: &Reference,
     named: &NamedFit,
     progress: &mut Progress,
 ) -> Result<FitOutcome> {
+    let material = &material.into();
     // Threads are started before the clock.
     rayon::broadcast(|_| ());
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let fitted = named.recipe.kind().fit(&task, progress)?;
     let mut errors = ElementErrors::default();
     let of_cells = if fitted.kind.is_of_cells() { &fitted.cells[..] } else { &[] };
-    for (block, fit) in mesh.blocks.iter().zip(of_cells) {
-        errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, material.moduli(), fit)?);
+    let moduli = material.moduli();
+    for (index, (block, fit)) in mesh.blocks.iter().zip(of_cells).enumerate() {
+        let moduli = moduli.block(index);
+        errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit)?);
     }
     let spread = |values: &[f64]| (!of_cells.is_empty()).then(|| Spread::of(values));
     let as_material = network_material(mesh, material, &fitted.cells, &fitted.network);

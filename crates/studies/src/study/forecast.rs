@@ -6,7 +6,7 @@ use super::fitting::fit_mesh;
 use super::scene::Scene;
 use super::tensor::most_samples;
 use crate::error::Result;
-use crate::material::{Energy, Material};
+use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::BlockStiffness;
 use crate::solve::{FactorCost, dense_rate, factor_cost};
@@ -77,9 +77,9 @@ impl Forecast {
     pub fn of(scene: &Scene) -> Result<Forecast> {
         let worked_out = || {
             let mesh = scene.build_mesh()?;
-            let material = scene.material_of(&mesh)?;
+            let material = &scene.material_of(&mesh)?;
             let (_, cases) = load_cases(scene, &mesh, material)?;
-            Forecast::of_body(scene, &mesh, material, &cases, scene.energy(material)?.as_ref())
+            Forecast::of_body(scene, &mesh, material, &cases, scene.laws(material)?.as_ref())
         };
         worked_out().map_err(|e| scene.with_line(e))
     }
@@ -88,9 +88,9 @@ impl Forecast {
     pub(in crate::study) fn of_body(
         scene: &Scene,
         mesh: &Mesh,
-        material: Material,
+        material: &MaterialMap,
         cases: &[Case],
-        energy: Option<&Energy>,
+        energy: Option<&EnergyMap>,
     ) -> Result<Forecast> {
         let held = cases.first().map_or(0, |case| case.support.prescribed.iter().flatten().count());
         let mut forecast = Forecast::of_fits(mesh, material, scene.fits(), energy);
@@ -130,8 +130,14 @@ impl Forecast {
     }
 
     /// The fits alone.
-    pub fn of_fits(mesh: &Mesh, material: Material, fits: &[NamedFit], energy: Option<&Energy>) -> Forecast {
-        let large = energy.map(|energy| LargeBody::at_rest(energy.clone(), material.state()));
+    pub fn of_fits(
+        mesh: &Mesh,
+        material: impl Into<MaterialMap>,
+        fits: &[NamedFit],
+        energy: Option<&EnergyMap>,
+    ) -> Forecast {
+        let material = &material.into();
+        let large = energy.map(|laws| LargeBody::at_rest(laws.clone()));
         // Threads start before the clock does.
         rayon::broadcast(|_| ());
         let stage = |fit: &NamedFit| {
@@ -185,7 +191,7 @@ fn entries(mesh: &Mesh) -> f64 {
 
 /// The seconds of a fit and the bytes of its network: it is made on more and more cells until that takes `TRIAL`, and all cells have the
 /// pace of the last trial. `None` of fits to the whole object and to states of loads, which are no sum over cells.
-fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &NamedFit) -> Option<(f64, f64)> {
+fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &NamedFit) -> Option<(f64, f64)> {
     let kind = fit.recipe.kind();
     let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
     if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
@@ -196,10 +202,12 @@ fn of_fit(mesh: &Mesh, material: Material, large: Option<&LargeBody>, fit: &Name
     let mut count = 8;
     loop {
         let some = first_cells(mesh, count);
+        let first = |block: &CellBlock| (0..block.cells().len()).collect();
+        let own = material.of_some(&some.blocks.iter().map(first).collect::<Vec<_>>());
         // What is wrong is reported where the fit is made.
         let trial = || {
             let start = Instant::now();
-            let fit = fit_mesh(&some, material, &reference, fit, &mut |_| {}).ok()?;
+            let fit = fit_mesh(&some, &own, &reference, fit, &mut |_| {}).ok()?;
             let (whole, sampling) = (start.elapsed().as_secs_f64(), fit.as_material.seconds);
             Some((whole - sampling, sampling / fit.as_material.samples as f64, fit.network.len()))
         };

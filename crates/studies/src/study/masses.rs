@@ -1,18 +1,23 @@
 //! The masses of the points of a body.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Material;
+use crate::material::{CellMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::masses;
 use crate::range;
 
-/// The row sums of the mass matrix for a `density` in kg/m³, `[points]`, kg.
+/// The row sums of the mass matrix for a `density` in kg/m³, of all cells or of each, `[points]`, kg.
 ///
 /// # Errors
 /// The density is out of range, a mass is not finite, or the body has no mass; the key is `density`.
-pub fn point_masses(mesh: &Mesh, density: f64, material: Material) -> Result<Vec<f64>> {
-    range::positive("density", density, "kg/m³")?;
-    let masses = masses(mesh, density, material.thickness());
+pub fn point_masses(
+    mesh: &Mesh,
+    density: impl Into<CellMap<f64>>,
+    material: impl Into<MaterialMap>,
+) -> Result<Vec<f64>> {
+    let density = density.into();
+    density.values().try_for_each(|density| range::positive("density", *density, "kg/m³").map(|_| ()))?;
+    let masses = masses(mesh, density, material.into().thicknesses());
     let total: f64 = masses.iter().sum();
     match masses.iter().all(|m| m.is_finite()) && total.is_normal() {
         true => Ok(masses),

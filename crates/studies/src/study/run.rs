@@ -35,10 +35,10 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
 fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     controls.check()?;
     let mesh = scene.build_mesh()?;
-    let material = scene.material_of(&mesh)?;
+    let material = &scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, mut cases) = load_cases(scene, &mesh, material)?;
-    let energy = scene.energy(material)?;
+    let energy = scene.laws(material)?;
     if controls.announce
         && let Some(words) = Forecast::of_body(scene, &mesh, material, &cases, energy.as_ref())?.announcement()
     {
@@ -47,21 +47,18 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
     let plan = TimePlan::of(scene, &mesh, material, &support)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(scene.path()));
-    let fine = FineBody::of(scene, &mesh, material)?;
+    let fine = FineBody::of(scene, &mesh)?;
     if let Some(fine) = &fine {
         fine.measure(scene, &mut cases, progress)?;
     }
     let large = match energy {
-        Some(energy) => {
-            let state = material.state();
-            Some(LargeBody::solve(&mesh, state, energy, scene.newton(), &cases, progress).map_err(in_scene)?)
-        }
+        Some(energy) => Some(LargeBody::solve(&mesh, energy, scene.newton(), &cases, progress).map_err(in_scene)?),
         None => None,
     };
-    let masses = scene.density().map(|density| point_masses(&mesh, density, material)).transpose();
+    let masses = material.density().map(|density| point_masses(&mesh, density, material)).transpose();
     let masses = masses.map_err(|e| scene.at("material", e))?;
     let linear = |progress: &mut Progress| {
-        LinearBody::solve(&mesh, material.moduli(), &cases, scene.solver(), progress).map_err(in_scene)
+        LinearBody::solve(&mesh, &material.moduli(), &cases, scene.solver(), progress).map_err(in_scene)
     };
     // Only fits to the whole object need the displacements of the body.
     let needed = large.is_none() && scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
@@ -92,7 +89,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
             fit.moduli = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
         }
     }
-    let law = large.as_ref().map(|large| large.energy.title.clone());
+    let law = large.as_ref().map(|large| large.laws.title());
     let (fem, followed, energy) = match large {
         Some(large) => {
             for (done, fit) in fits.iter_mut().enumerate() {
@@ -100,14 +97,14 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
                 fit.loads = large.compare(&mesh, &cases, &fit.network)?;
             }
             let followed: Vec<_> = large.followed.into_iter().map(Some).collect();
-            (large.displacements, followed, Some(large.energy))
+            (large.displacements, followed, Some(large.laws))
         }
         None => {
             let body = body.map_or_else(|| linear(progress), Ok)?;
             for (done, fit) in fits.iter_mut().enumerate() {
                 progress(Event::stage("networks", done, count));
                 let compared = fit.kind.compared(material.moduli());
-                let answers = body.compare(&mesh, &cases, &fit.network, compared, progress).map_err(in_scene)?;
+                let answers = body.compare(&mesh, &cases, &fit.network, &compared, progress).map_err(in_scene)?;
                 (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
             }
             (body.into_displacements(), vec![None; cases.len()], None)
@@ -137,8 +134,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         assumed: scene.assumption(&mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
-        material,
-        density: scene.density(),
+        material: material.clone(),
         support: Some(support),
         masses,
         law,

@@ -29,9 +29,9 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
     if !scene.loads().is_empty() && scene.law().is_none() {
         stages.push(run("compare the energies of each network with the body's".into()));
     }
-    match scene.density() {
-        Some(_) => stages.push(run("masses".into())),
-        None => stages.push(skip("masses", "the material has no density")),
+    match scene.has_density() {
+        true => stages.push(run("masses".into())),
+        false => stages.push(skip("masses", "the material has no density")),
     }
     match scene.motion() {
         Some(motion) => {

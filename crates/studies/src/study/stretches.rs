@@ -89,14 +89,15 @@ pub fn compare_stretches(
     let d = element.dimension();
     let cells = vec![if d == 3 { 3 } else { 6 }; d];
     let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
-    let pulled = Pulled { mesh, material, large: LargeBody::at_rest(energy, material.state()) };
+    let pulled = Pulled { mesh, material, large: LargeBody::at_rest((energy, material.state())) };
     let exact = Some(ExactRecipe::default());
-    let exact = exact.filter(|exact| exact.serves(Some(&pulled.large.energy), &pulled.mesh, material));
+    let exact = exact.filter(|exact| exact.serves(Some(&pulled.large.laws), &pulled.mesh, &material.into()));
     let exact = exact.map(|exact| NamedFit::of(Recipe::Exact(exact), None));
     let recipes: Vec<NamedFit> = exact.into_iter().chain(recipes(element, sampled)).collect();
     let total = recipes.len() + 1;
     progress(Event::stage("finite elements", 0, total));
-    let body = pulled.follow(&Body { mesh: &pulled.mesh, energy: &pulled.large.energy, state: material.state() })?;
+    let body =
+        pulled.follow(&Body { mesh: &pulled.mesh, energy: pulled.large.laws.first(), state: material.state() })?;
     let mut fits = Vec::new();
     for (done, named) in recipes.iter().enumerate() {
         progress(Event::stage(&named.name, done + 1, total));
@@ -124,7 +125,7 @@ pub fn compare_stretches(
             runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), shapes)?);
         }
     }
-    Ok(Stretches { element: element.name.clone(), law: pulled.large.energy.title.clone(), fits, runs })
+    Ok(Stretches { element: element.name.clone(), law: pulled.large.laws.first().title.clone(), fits, runs })
 }
 
 /// An equilibrium of the box.
@@ -235,7 +236,7 @@ impl Pulled {
                     &springs,
                     &self.mesh.points,
                     nodes,
-                    &self.large.energy,
+                    self.large.laws.first(),
                     state,
                     fit,
                     &mut |_| {},

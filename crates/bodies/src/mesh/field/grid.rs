@@ -3,7 +3,7 @@
 use super::reading::{Reading, listed};
 use crate::error::{Error, Result};
 use crate::mesh::reader::quoted;
-use crate::mesh::vtk::{Piece, PointArray};
+use crate::mesh::vtk::{DataArray, Piece};
 
 /// The names of arrays of displacements, in lower case.
 const NAMES: [&str; 4] = ["displacement", "displacements", "u", "disp"];
@@ -19,7 +19,7 @@ pub(super) fn read(mut pieces: Vec<Piece>, array: Option<&str>, reading: &mut Re
     let mut first = 0;
     for piece in &pieces {
         let named = piece.point_arrays.iter().find(|array| array.name == name);
-        let vectors = named.and_then(|array| Some((array.components as usize, array.vectors.as_deref()?)));
+        let vectors = named.and_then(|array| Some((array.components as usize, array.vectors()?)));
         let Some((components, vectors)) = vectors.filter(|(n, values)| values.len() == n * piece.points.len()) else {
             let found = format!("a piece of {} points without", piece.points.len());
             return Err(Error::expected("pieces", format!("{} in every one", quoted(name.as_bytes())), found));
@@ -71,15 +71,15 @@ fn points_of_cells(piece: &Piece) -> Vec<bool> {
 }
 
 fn name_of_array<'a>(pieces: &'a [Piece], wanted: Option<&str>) -> Result<&'a str> {
-    let mut arrays: Vec<&PointArray> = Vec::new();
+    let mut arrays: Vec<&DataArray> = Vec::new();
     for array in pieces.iter().flat_map(|piece| &piece.point_arrays) {
         if !arrays.iter().any(|other| other.name == array.name) {
             arrays.push(array);
         }
     }
-    let vectors: Vec<&PointArray> = arrays.iter().filter(|array| array.vectors.is_some()).copied().collect();
-    let called = |names: &[&str]| -> Vec<&PointArray> {
-        let is_called = |array: &&&PointArray| names.iter().any(|name| array.name.eq_ignore_ascii_case(name));
+    let vectors: Vec<&DataArray> = arrays.iter().filter(|array| array.vectors().is_some()).copied().collect();
+    let called = |names: &[&str]| -> Vec<&DataArray> {
+        let is_called = |array: &&&DataArray| names.iter().any(|name| array.name.eq_ignore_ascii_case(name));
         vectors.iter().filter(is_called).copied().collect()
     };
     let (candidates, expected) = match wanted {
@@ -101,8 +101,8 @@ fn name_of_array<'a>(pieces: &'a [Piece], wanted: Option<&str>) -> Result<&'a st
     match candidates[..] {
         [array] => Ok(&array.name),
         _ => {
-            let about = |array: &&PointArray| {
-                let real = !PointArray::is_vector(array.components) || array.vectors.is_some();
+            let about = |array: &&DataArray| {
+                let real = !DataArray::is_vector(array.components) || array.vectors().is_some();
                 let kind = if real { "" } else { ", not real" };
                 format!("{} (components: {}{kind})", quoted(array.name.as_bytes()), array.components)
             };

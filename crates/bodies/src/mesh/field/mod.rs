@@ -1,9 +1,16 @@
-//! Displacements of the points of a mesh, read from files of measurements and of other programs.
+//! Displacements of the points of a mesh and numbers at places, read from files of measurements and of other programs.
 
+mod columns;
 mod displacements;
 mod grid;
 mod locator;
+mod neighbours;
+mod pieces;
+mod raw;
 mod reading;
+mod samples;
 mod table;
 
 pub use displacements::Field;
+pub use raw::Holder;
+pub use samples::{Interpolation, Samples};

@@ -68,7 +68,7 @@ pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Re
 }
 
 /// The separator between the names of the header.
-fn separator(text: &str) -> u8 {
+pub(super) fn separator(text: &str) -> u8 {
     let header = text.lines().find(|line| !is_passed_over(line)).unwrap_or_default();
     [b';', b'\t'].into_iter().find(|&mark| header.as_bytes().contains(&mark)).unwrap_or(b',')
 }
@@ -78,7 +78,7 @@ fn is_passed_over(line: &str) -> bool {
 }
 
 /// The line, from 1, of the first row at or after this byte.
-fn line_from(text: &str, byte: usize) -> usize {
+pub(super) fn line_from(text: &str, byte: usize) -> usize {
     let (before, rest) = text.split_at_checked(byte).unwrap_or((text, ""));
     // The end of the previous row may still follow.
     let passed = rest.split_inclusive('\n').take_while(|line| is_passed_over(line)).count();
@@ -181,6 +181,6 @@ impl Columns {
     }
 }
 
-fn cell(row: &StringRecord, column: usize) -> String {
+pub(super) fn cell(row: &StringRecord, column: usize) -> String {
     quoted(row[column].trim().as_bytes())
 }

@@ -1,6 +1,6 @@
 //! Legacy `.vtk` files with an unstructured grid, file versions 1 to 5.
 
-use super::piece::{self, Labels, Piece, PointArray};
+use super::piece::{self, DataArray, Labels, Piece};
 use super::scalar_type::ScalarType;
 use crate::error::{Error, Result};
 use crate::mesh::reader::{Encoding, Reader, quoted};
@@ -274,7 +274,7 @@ impl File<'_> {
         self.values(scalar, name, components, tuples)
     }
 
-    /// Reads the values of an array, and keeps them if they can name groups of cells or are displacements of points.
+    /// Reads the values of an array, and keeps them if they are few per cell or point.
     fn values(&mut self, scalar: ScalarType, name: String, components: u64, tuples: u64) -> Result<()> {
         let count = components.saturating_mul(tuples);
         if scalar == ScalarType::Text {
@@ -283,19 +283,25 @@ impl File<'_> {
             self.reader.start_data()?;
         }
         match self.place {
-            Place::Cells(cells) if cells == tuples && components == 1 => {
+            Place::Cells(cells) if cells == tuples && components == 1 && !scalar.is_real() => {
                 if let Some(values) = scalar.whole_numbers(&mut self.reader, count, "a whole number")? {
-                    self.piece.labels.push(Labels { name, values });
+                    let labels = Labels { name, values };
+                    self.piece.cell_arrays.push(labels.as_array());
+                    self.piece.labels.push(labels);
                 }
             }
-            Place::Points(points) if points == tuples => {
-                let mut vectors = None;
-                if scalar.is_real() && PointArray::is_vector(components) {
-                    vectors = Some(scalar.reals(&mut self.reader, count)?);
+            Place::Points(places) | Place::Cells(places) if places == tuples => {
+                let mut values = None;
+                if scalar.is_real() && DataArray::is_kept(components) {
+                    values = Some(scalar.reals(&mut self.reader, count)?);
                 } else {
                     scalar.skip(&mut self.reader, count)?;
                 }
-                self.piece.point_arrays.push(PointArray { name, components, vectors });
+                let array = DataArray { name, components, values };
+                match self.place {
+                    Place::Cells(_) => self.piece.cell_arrays.push(array),
+                    Place::Points(_) | Place::File => self.piece.point_arrays.push(array),
+                }
             }
             _ => scalar.skip(&mut self.reader, count)?,
         }

@@ -12,7 +12,7 @@ mod xml_tag;
 
 pub use legacy::parse as parse_legacy;
 pub(super) use legacy::piece as legacy_piece;
-pub(super) use piece::{Piece, PointArray};
+pub(super) use piece::{DataArray, Piece};
 pub use write::{Array, Grid, write};
 pub use xml::parse as parse_xml;
 pub(super) use xml::pieces as xml_pieces;

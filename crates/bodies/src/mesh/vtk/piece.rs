@@ -18,7 +18,8 @@ pub(in crate::mesh) struct Piece {
     pub ends: Vec<u64>,
     pub connectivity: Vec<u64>,
     pub labels: Vec<Labels>,
-    pub point_arrays: Vec<PointArray>,
+    pub point_arrays: Vec<DataArray>,
+    pub cell_arrays: Vec<DataArray>,
 }
 
 /// An array with one whole number per cell.
@@ -27,18 +28,36 @@ pub(in crate::mesh) struct Labels {
     pub values: Vec<i128>,
 }
 
-/// An array with the same number of components for each point.
-pub(in crate::mesh) struct PointArray {
-    pub name: String,
-    pub components: u64,
-    /// All components of the first point, then of the next; `None` if the array is not one of real vectors.
-    pub vectors: Option<Vec<f64>>,
+impl Labels {
+    /// The same numbers as reals.
+    pub fn as_array(&self) -> DataArray {
+        let values = self.values.iter().map(|value| *value as f64).collect();
+        DataArray { name: self.name.clone(), components: 1, values: Some(values) }
+    }
 }
 
-impl PointArray {
+/// An array with the same number of components for each point or each cell.
+pub(in crate::mesh) struct DataArray {
+    pub name: String,
+    pub components: u64,
+    /// All components of the first, then of the next; `None` if they are not one to three real numbers, or one whole number of a cell.
+    pub values: Option<Vec<f64>>,
+}
+
+impl DataArray {
     /// Whether this is the number of components of vectors in the plane or in space.
     pub fn is_vector(components: u64) -> bool {
         components == 2 || components == 3
+    }
+
+    /// Whether arrays of real numbers with so many components are kept.
+    pub fn is_kept(components: u64) -> bool {
+        (1..=3).contains(&components)
+    }
+
+    /// The vectors, if the array is one of real vectors.
+    pub fn vectors(&self) -> Option<&[f64]> {
+        self.values.as_deref().filter(|_| DataArray::is_vector(self.components))
     }
 }
 

@@ -1,7 +1,7 @@
 //! XML `.vtu` files.
 
 use super::document::{ArrayTag, Content, Document, PieceTag, Section};
-use super::piece::{self, Labels, Piece, PointArray};
+use super::piece::{self, DataArray, Labels, Piece};
 use super::storage::Stored;
 use crate::error::{Error, Result};
 use crate::mesh::reader::{Encoding, Reader};
@@ -63,8 +63,15 @@ impl Arrays<'_> {
         for array in &tag.arrays {
             match array.section {
                 Section::Points | Section::Cells => {}
-                Section::PointData => piece.point_arrays.push(self.point_array(array, tag.points)?),
-                Section::CellData => piece.labels.extend(self.labels(array, tag.cells)?),
+                Section::PointData => piece.point_arrays.push(self.data_array(array, tag.points)?),
+                Section::CellData if array.scalar.is_real() => {
+                    piece.cell_arrays.push(self.data_array(array, tag.cells)?);
+                }
+                Section::CellData => {
+                    let labels = self.labels(array, tag.cells)?;
+                    piece.cell_arrays.extend(labels.as_ref().map(Labels::as_array));
+                    piece.labels.extend(labels);
+                }
             }
         }
         Ok(piece)
@@ -86,17 +93,17 @@ impl Arrays<'_> {
         })
     }
 
-    fn point_array(&mut self, array: &ArrayTag, points: u64) -> Result<PointArray> {
-        let count = points.saturating_mul(array.components);
-        let is_vector = array.scalar.is_real() && PointArray::is_vector(array.components);
-        let vectors = match array.scalar.size() {
+    fn data_array(&mut self, array: &ArrayTag, places: u64) -> Result<DataArray> {
+        let count = places.saturating_mul(array.components);
+        let is_kept = array.scalar.is_real() && DataArray::is_kept(array.components);
+        let values = match array.scalar.size() {
             None => None,
-            Some(_) => self.values(array, count, |reader| match is_vector {
+            Some(_) => self.values(array, count, |reader| match is_kept {
                 true => array.scalar.reals(reader, count).map(Some),
                 false => array.scalar.skip(reader, count).map(|()| None),
             })?,
         };
-        Ok(PointArray { name: array.name.clone(), components: array.components, vectors })
+        Ok(DataArray { name: array.name.clone(), components: array.components, values })
     }
 
     /// The numbers of the cells, if there is one for each.

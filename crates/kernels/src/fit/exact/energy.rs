@@ -4,6 +4,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, Material, Moduli, State};
+use crate::scalar::{Packed, Real};
 use crate::springs::Law;
 use std::sync::Arc;
 
@@ -85,25 +86,30 @@ impl ExactEnergy {
     }
 }
 
-/// The coefficients of an exact network, per volume of the cell, thickness included.
+/// The form of an exact network: what is the same in all cells of one energy and state.
 #[derive(Debug, Clone)]
-pub(super) struct Coefficients {
-    /// The coefficient of `½ |F|²`, which the springs between nodes represent.
-    pub lengths: f64,
-    /// The coefficient of `½ |cof F|²`, which the springs on areas represent.
-    pub areas: f64,
-    /// `−U'(1)`: the force with which springs on content pull at rest.
-    pub tension: f64,
-    /// `slope + lambda = U''(1)`. `slope` remains in the cells if λ is given to patches of cells.
-    pub slope: f64,
-    pub lambda: f64,
+pub(super) struct Form {
     /// The force law of springs on content, if it is not linear. Its parameters are `a` (μ per content of the spring)
     /// and `b` (λ).
     pub law: Option<Arc<Law>>,
-    /// The λ in the law.
-    pub law_lambda: f64,
     /// Whether the law contains the stretches across a plane or rod; then it must contain both terms.
     pub is_condensed: bool,
+}
+
+/// The coefficients of an exact network, per volume of the cell, thickness included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Coefficients<C = f64> {
+    /// The coefficient of `½ |F|²`, which the springs between nodes represent.
+    pub lengths: C,
+    /// The coefficient of `½ |cof F|²`, which the springs on areas represent.
+    pub areas: C,
+    /// `−U'(1)`: the force with which springs on content pull at rest.
+    pub tension: C,
+    /// `slope + lambda = U''(1)`. `slope` remains in the cells if λ is given to patches of cells.
+    pub slope: C,
+    pub lambda: C,
+    /// The λ in the law.
+    pub law_lambda: C,
 }
 
 /// `T = U'(J)/c₀` of the compressible neo-Hookean energy.
@@ -119,46 +125,18 @@ const ACROSS_PLANE: &str = "((b + 2*a)*c/c0/(a + (a + b)*(c/c0)^2))";
 /// The same energy with both stretches across a rod, `g² = ((λ + 2 μ) J − μ)/((λ + μ) J²)`, and the slope `−μ g²/J`.
 const STABLE_IN_ROD: &str = "-a*((b + 2*a)*c/c0 - a)/((a + b)*(c/c0)^3)";
 
-impl Coefficients {
-    /// The coefficients for small deformations or, with `is_large`, for any deformation.
+impl Form {
+    /// The form for small deformations or, with `is_large`, for any deformation.
     ///
     /// # Errors
     /// The energy has no form with springs in this state; the kind is `Unsupported`.
-    pub fn of(energy: ExactEnergy, material: Material, is_large: bool) -> Result<Coefficients> {
-        let Moduli { lambda, mu } = material.moduli();
-        let (nu, t) = (material.poisson(), material.thickness());
-        let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
-        let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
+    pub fn of(energy: ExactEnergy, state: State, is_large: bool) -> Result<Form> {
         let law = |text: &str| Some(Arc::new(Law::parse(text).expect("the laws of this file are expressions")));
-        let neo_hookean = Coefficients {
-            lengths: mu,
-            areas: 0.0,
-            tension: mu,
-            slope: mu,
-            lambda,
-            law: None,
-            law_lambda: lambda,
-            is_condensed: false,
-        };
-        let condensed = match material.state() {
-            State::PlaneStress { .. } if is_large => true,
-            State::Rod { .. } => is_large,
-            State::PlaneStress { .. } | State::PlaneStrain { .. } | State::Solid => false,
-        };
-        if !condensed {
-            return Ok(match (energy, material.state()) {
-                (ExactEnergy::NeoHookean, _) => Coefficients { law: law(NEO_HOOKEAN), ..neo_hookean },
-                (ExactEnergy::StableMooneyRivlin { share }, State::Solid) => Coefficients {
-                    lengths: mu * (1.0 - share),
-                    areas: mu * share,
-                    tension: mu * (1.0 + share),
-                    slope: mu * (1.0 - share),
-                    ..neo_hookean
-                },
-                (ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. }, _) => neo_hookean,
-            });
+        if !is_condensed(state, is_large) {
+            let law = if energy == ExactEnergy::NeoHookean { law(NEO_HOOKEAN) } else { None };
+            return Ok(Form { law, is_condensed: false });
         }
-        let text = match (energy, material.state()) {
+        let text = match (energy, state) {
             (ExactEnergy::StableNeoHookean, State::Rod { .. }) => STABLE_IN_ROD.to_string(),
             (ExactEnergy::StableNeoHookean, _) => STABLE_IN_PLANE_STRESS.replace('g', ACROSS_PLANE),
             (ExactEnergy::NeoHookean | ExactEnergy::StableMooneyRivlin { .. }, _) => {
@@ -167,6 +145,44 @@ impl Coefficients {
                     .of_kind(ErrorKind::Unsupported));
             }
         };
+        Ok(Form { law: law(&text), is_condensed: true })
+    }
+}
+
+/// Whether the network has the stretches across a plane or rod.
+fn is_condensed(state: State, is_large: bool) -> bool {
+    match state {
+        State::PlaneStress { .. } | State::Rod { .. } => is_large,
+        State::PlaneStrain { .. } | State::Solid => false,
+    }
+}
+
+impl Coefficients {
+    /// The coefficients for small deformations or, with `is_large`, for any deformation.
+    ///
+    /// # Errors
+    /// Poisson's ratio is 0.5 where the stretch across a plane or rod has no formula then.
+    pub fn of(energy: ExactEnergy, material: Material, is_large: bool) -> Result<Coefficients> {
+        let Moduli { lambda, mu } = material.moduli();
+        let (nu, t) = (material.poisson(), material.thickness());
+        let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
+        let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
+        let plain = Coefficients { lengths: mu, areas: 0.0, tension: mu, slope: mu, lambda, law_lambda: lambda };
+        if !is_condensed(material.state(), is_large) {
+            return Ok(match (energy, material.state()) {
+                (ExactEnergy::StableMooneyRivlin { share }, State::Solid) => Coefficients {
+                    lengths: mu * (1.0 - share),
+                    areas: mu * share,
+                    tension: mu * (1.0 + share),
+                    slope: mu * (1.0 - share),
+                    ..plain
+                },
+                (
+                    ExactEnergy::NeoHookean | ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. },
+                    _,
+                ) => plain,
+            });
+        }
         if nu == 0.5 {
             let expected = "a ratio below 0.5 for exact networks at large deformation";
             return Err(Error::expected("poisson", expected, nu));
@@ -174,7 +190,34 @@ impl Coefficients {
         // In the linear theory a rod has only λ + 2 μ, so that μ is arbitrary.
         let lambda = if let State::Rod { .. } = material.state() { 2.0 * mu - 2.0 * solid_mu } else { lambda };
         let (lengths, tension, slope) = (solid_mu, solid_mu, solid_mu);
-        let (law, law_lambda) = (law(&text), solid_lambda);
-        Ok(Coefficients { lengths, tension, slope, lambda, law, law_lambda, is_condensed: true, ..neo_hookean })
+        Ok(Coefficients { lengths, areas: 0.0, tension, slope, lambda, law_lambda: solid_lambda })
+    }
+
+    /// The coefficients as numbers of the kind of `any`.
+    pub fn of_kind<T: Real>(&self, any: &T) -> Coefficients<T> {
+        let Coefficients { lengths, areas, tension, slope, lambda, law_lambda } = self;
+        Coefficients {
+            lengths: any.constant(lengths),
+            areas: any.constant(areas),
+            tension: any.constant(tension),
+            slope: any.constant(slope),
+            lambda: any.constant(lambda),
+            law_lambda: any.constant(law_lambda),
+        }
+    }
+}
+
+impl<T: Packed> Coefficients<T> {
+    /// Sets the coefficients of one lane.
+    pub fn set_lane(&mut self, lane: usize, of: &Coefficients) {
+        let lanes = [
+            (&mut self.lengths, of.lengths),
+            (&mut self.areas, of.areas),
+            (&mut self.tension, of.tension),
+            (&mut self.slope, of.slope),
+            (&mut self.lambda, of.lambda),
+            (&mut self.law_lambda, of.law_lambda),
+        ];
+        lanes.into_iter().for_each(|(lanes, value)| lanes.as_mut_slice()[lane] = value);
     }
 }

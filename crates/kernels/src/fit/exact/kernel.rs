@@ -8,6 +8,7 @@ use crate::element::Element;
 use crate::fit::packing::Packing;
 use crate::fit::precision::differences;
 use crate::fit::sizes::of_size;
+use crate::material::BlockValues;
 use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
@@ -24,7 +25,10 @@ pub struct ExactBatch<'a> {
     pub points: &'a [f64],
     /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
-    pub coefficients: &'a Coefficients,
+    /// Those of each cell.
+    pub coefficients: BlockValues<'a, Coefficients>,
+    /// Whether the springs on content have a law.
+    pub has_law: bool,
     pub shares: Shares,
     /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
@@ -57,12 +61,21 @@ impl PackedWork for ExactBatch<'_> {
         let mut own = vec![zero.clone(); n];
         let (mut plain, mut plain_own, mut plain_numbers) = (Geometry::new(table), vec![0.0; n], vec![0.0; m + p]);
         let mut x = vec![0.0; packing.x.len()];
+        let Some(mut coefficients) = self.coefficients.values().first().map(|some| some.of_kind(&zero)) else {
+            return Ok(());
+        };
         let mut cell = 0;
         while cell < cells {
             let count = T::COUNT.min(cells - cell);
             let nodes = &self.connectivity[cell * n..(cell + count) * n];
             let (constants, parameters) = numbers.split_at_mut(m);
-            if packing.gather(nodes) && self.solve(&packing.x, &mut geometry, constants, parameters, &mut own) {
+            if let BlockValues::Each(all) = self.coefficients {
+                let of_lane = |lane| &all[cell + if lane < count { lane } else { 0 }];
+                (0..T::COUNT).for_each(|lane| coefficients.set_lane(lane, of_lane(lane)));
+            }
+            if packing.gather(nodes)
+                && self.solve(&coefficients, &packing.x, &mut geometry, constants, parameters, &mut own)
+            {
                 for lane in 0..count {
                     let at = cell + lane;
                     let stored = self.constants[at * m..][..m].iter_mut().zip(&*constants);
@@ -86,7 +99,8 @@ impl PackedWork for ExactBatch<'_> {
                         plain = precise;
                     }
                     let (constants, parameters) = plain_numbers.split_at_mut(m);
-                    self.constants_of(&plain, constants, parameters, &mut plain_own);
+                    let own = *self.coefficients.at(at);
+                    self.constants_of(&own, &plain, constants, parameters, &mut plain_own);
                     self.constants[at * m..][..m].copy_from_slice(constants);
                     self.parameters[at * p..][..p].copy_from_slice(parameters);
                     self.areas(at, &x, |q| plain.volumes[q]);
@@ -129,6 +143,7 @@ impl ExactBatch<'_> {
     /// areas. `own` is memory for one number per node. False if a Jacobian is not safely positive.
     fn solve<T: Real>(
         &self,
+        coefficients: &Coefficients<T>,
         x: &[T],
         geometry: &mut Geometry<T>,
         constants: &mut [T],
@@ -137,15 +152,22 @@ impl ExactBatch<'_> {
     ) -> bool {
         let table = &self.element.tabulation;
         of_size!(T, x[0], (table.dimension, table.nodes), |D, n| geometry.update_in::<D>(n, table, x) && {
-            self.constants_in::<T, D>(n, geometry, constants, parameters, own);
+            self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
             true
         })
     }
 
     /// The constants and parameters of a cell with this geometry, as [`ExactBatch::solve`] computes them.
-    fn constants_of<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T], own: &mut [T]) {
+    fn constants_of<T: Real>(
+        &self,
+        coefficients: &Coefficients<T>,
+        geometry: &Geometry<T>,
+        constants: &mut [T],
+        parameters: &mut [T],
+        own: &mut [T],
+    ) {
         of_size!(T, geometry.volumes[0], (geometry.dimension, geometry.nodes), |D, n| {
-            self.constants_in::<T, D>(n, geometry, constants, parameters, own)
+            self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own)
         });
     }
 
@@ -153,28 +175,35 @@ impl ExactBatch<'_> {
     fn constants_in<T: Real, const D: usize>(
         &self,
         n: usize,
+        coefficients: &Coefficients<T>,
         geometry: &Geometry<T>,
         constants: &mut [T],
         parameters: &mut [T],
         own: &mut [T],
     ) {
         let (edges, rest) = constants.split_at_mut(n * (n - 1) / 2);
-        stiffen_in::<T, D>(n, geometry, self.coefficients.lengths, edges, own);
-        self.contents(geometry, &mut rest[self.springs.areas.len()..], parameters);
+        stiffen_in::<T, D>(n, geometry, &coefficients.lengths, edges, own);
+        self.contents(coefficients, geometry, &mut rest[self.springs.areas.len()..], parameters);
     }
 
     /// The constants and parameters of the springs on content: first those at the quadrature points, then that of the
     /// cell.
     #[inline(always)]
-    fn contents<T: Real>(&self, geometry: &Geometry<T>, constants: &mut [T], parameters: &mut [T]) {
-        let (volumes, count) = (&geometry.volumes, if self.coefficients.law.is_some() { 2 } else { 1 });
+    fn contents<T: Real>(
+        &self,
+        coefficients: &Coefficients<T>,
+        geometry: &Geometry<T>,
+        constants: &mut [T],
+        parameters: &mut [T],
+    ) {
+        let (volumes, count) = (&geometry.volumes, if self.has_law { 2 } else { 1 });
         let volumetric = if geometry.volumetric.is_empty() { volumes } else { &geometry.volumetric };
         let mut springs = constants.iter_mut().zip(parameters.chunks_exact_mut(count));
         for &q in &self.springs.points {
             if let Some((constant, parameters)) = springs.next() {
                 let content = volumes[q].magnitude().choose(&volumes[q], &volumetric[q]);
                 let volumes = [&volumes[q], &volumetric[q]];
-                self.content(self.shares.points, &content, volumes, constant, parameters);
+                self.content(coefficients, self.shares.points, &content, volumes, constant, parameters);
             }
         }
         if let Some((constant, parameters)) = springs.next() {
@@ -183,7 +212,7 @@ impl ExactBatch<'_> {
                 content = content + v;
                 whole = whole + w;
             }
-            self.content(self.shares.cell, &content, [&content, &whole], constant, parameters);
+            self.content(coefficients, self.shares.cell, &content, [&content, &whole], constant, parameters);
         }
     }
 
@@ -192,21 +221,23 @@ impl ExactBatch<'_> {
     #[inline(always)]
     fn content<T: Real>(
         &self,
+        coefficients: &Coefficients<T>,
         shares: [f64; 2],
         content: &T,
         [volume, volumetric]: [&T; 2],
         constant: &mut T,
         parameters: &mut [T],
     ) {
-        let Coefficients { tension, slope, lambda, law_lambda, .. } = self.coefficients;
-        let pull = volume.clone().scaled(&(shares[0] * tension));
-        let slope = volume.clone().scaled(&(shares[0] * slope)) + &volumetric.clone().scaled(&(shares[1] * lambda));
+        let Coefficients { tension, slope, lambda, law_lambda, .. } = coefficients;
+        let share = |of: &T, share: f64| of.clone().scaled(&share);
+        let pull = volume.clone() * &share(tension, shares[0]);
+        let slope = volume.clone() * &share(slope, shares[0]) + &(volumetric.clone() * &share(lambda, shares[1]));
         *constant = slope.clone() / &(content.clone() * content);
         match parameters {
             [rest] => *rest = (slope + &pull) / content,
             [a, b] => {
                 *a = pull / content;
-                *b = volumetric.clone().scaled(&(shares[1] * law_lambda)) / content;
+                *b = volumetric.clone() * &share(law_lambda, shares[1]) / content;
             }
             _ => {}
         }
@@ -228,7 +259,7 @@ impl ExactBatch<'_> {
                 let nodes = x.chunks_exact(3).zip(table.gradients[q * size..(q + 1) * size].chunks_exact(3));
                 nodes.map(|(x, dn)| x[k] * dn[l]).sum::<f64>()
             });
-            let metric = j.transpose() * j * (self.coefficients.areas * volume(q) / j.determinant().powi(2));
+            let metric = j.transpose() * j * (self.coefficients.at(cell).areas * volume(q) / j.determinant().powi(2));
             let pairs = [(0, 1), (0, 2), (1, 2)];
             let least = ROUNDING * metric.amax();
             let mixed = pairs.map(|pair| if metric[pair].abs() > least { metric[pair] } else { 0.0 });
@@ -253,7 +284,7 @@ pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
     let (zero, n) = (geometry.volumes[0].zero(), geometry.nodes);
     let (mut pairs, mut own) = (vec![zero.clone(); n * (n - 1) / 2], vec![zero; n]);
     of_size!(T, geometry.volumes[0], (geometry.dimension, n), |D, n| {
-        stiffen_in::<T, D>(n, geometry, mu, &mut pairs, &mut own)
+        stiffen_in::<T, D>(n, geometry, &geometry.volumes[0].constant(&mu), &mut pairs, &mut own)
     });
     pairs
 }
@@ -261,7 +292,7 @@ pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
 /// `k_ab = −μ Σ_q w_q ∇N_a·∇N_b` of all pairs; rounding errors are set to zero. `own` is memory for the same product of
 /// each node with itself.
 #[inline(always)]
-fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64, pairs: &mut [T], own: &mut [T]) {
+fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: &T, pairs: &mut [T], own: &mut [T]) {
     let zero = geometry.volumes[0].zero();
     let pairs = &mut pairs[..n * (n - 1) / 2];
     pairs.fill(zero.clone());
@@ -269,7 +300,7 @@ fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: f64
     own.fill(zero.clone());
     for (gradients, volume) in geometry.gradients.chunks_exact(n * D).zip(&geometry.volumes) {
         let gradients = &gradients.as_chunks::<D>().0[..n];
-        let factor = volume.clone().scaled(&-mu);
+        let factor = (volume.clone() * mu).negated();
         let mut s = 0;
         for a in 0..n {
             own[a] = own[a].clone().plus_product(&factor, &dot(&gradients[a], &gradients[a]));

@@ -27,10 +27,10 @@ use super::input::check_cells;
 use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Material;
+use crate::material::{BlockValues, Material};
 use crate::springs::{Force, Springs};
 use crate::stiffness::Placement;
-use energy::Coefficients;
+use energy::{Coefficients, Form};
 use kernel::ExactBatch;
 use rayon::prelude::*;
 
@@ -46,7 +46,8 @@ pub struct ExactFit {
     pub large: bool,
 }
 
-/// The springs of every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The result has
+/// The springs of every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The material is that of all
+/// cells, or one for each, in the same kind of state. The result has
 /// [`Force::Exact`]. Constants that are only rounding errors, as at right angles, are set to zero.
 ///
 /// `progress` is called from time to time with the number of finished cells.
@@ -54,18 +55,29 @@ pub struct ExactFit {
 /// # Errors
 /// An array has a wrong length; a number is not finite; a cell is reversed, tangled, flat or curved in space; or the
 /// energy has no form with springs in this state (kind `Unsupported`).
-pub fn fit_exact(
+pub fn fit_exact<'a>(
     element: &Element,
     points: &[f64],
     connectivity: &[usize],
-    material: Material,
+    material: impl Into<BlockValues<'a, Material>>,
     fit: &ExactFit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
-    material.state().check(element.dimension()).map_err(|e| e.at_key("state"))?;
+    let material = material.into();
     check_cells(element, points, connectivity)?;
-    let coefficients = Coefficients::of(fit.energy, material, fit.large)?;
-    if coefficients.is_condensed && fit.volume != VolumeSprings::Points {
+    let cells = connectivity.len() / element.nodes();
+    material.check("material", cells)?;
+    let mut coefficients = Vec::with_capacity(material.values().len());
+    for material in material.values() {
+        material.state().check(element.dimension()).map_err(|e| e.at_key("state"))?;
+        coefficients.push(Coefficients::of(fit.energy, *material, fit.large)?);
+    }
+    let (Some(first), Some(some)) = (material.values().first(), coefficients.first()) else {
+        return Ok(CellFits::new(Springs::exact(element, false, false)));
+    };
+    let form = Form::of(fit.energy, first.state(), fit.large)?;
+    let coefficients = BlockValues::listed(&coefficients, matches!(material, BlockValues::Uniform(_)));
+    if form.is_condensed && fit.volume != VolumeSprings::Points {
         let expected = "\"points\" at large deformation without stress across a plane or rod";
         return Err(
             Error::expected("volume", expected, format!("\"{}\"", fit.volume.name())).of_kind(ErrorKind::Unsupported)
@@ -73,13 +85,12 @@ pub fn fit_exact(
     }
     // The only content of a line is its length.
     let volume = if element.dimension() == 1 { VolumeSprings::Points } else { fit.volume };
-    let springs = Springs::exact(element, coefficients.areas > 0.0, volume == VolumeSprings::Cells);
+    let springs = Springs::exact(element, some.areas > 0.0, volume == VolumeSprings::Cells);
     let shares = volume.shares(springs.points.is_empty());
     check_flat(element, points, connectivity)?;
-    let force = Force::Exact { content: coefficients.law.clone() };
+    let force = Force::Exact { content: form.law.clone() };
     let (n, m) = (element.nodes(), springs.len());
     let p = force.places(&springs)[m];
-    let cells = connectivity.len() / n;
     let (mut constants, mut parameters) = (vec![0.0; cells * m], vec![0.0; cells * p]);
     let rounds =
         connectivity.chunks(ROUND * n).zip(constants.chunks_mut(ROUND * m)).zip(parameters.chunks_mut(ROUND * p));
@@ -87,10 +98,20 @@ pub fn fit_exact(
         let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m));
         let chunks = chunks.zip(parameters.par_chunks_mut(CHUNK * p)).enumerate();
         chunks.try_for_each(|(i, ((connectivity, constants), parameters))| {
-            let (springs, coefficients) = (&springs, &coefficients);
-            let batch =
-                ExactBatch { element, springs, points, connectivity, coefficients, shares, constants, parameters };
             let first = round * ROUND + i * CHUNK;
+            let (springs, coefficients) = (&springs, coefficients.part(first, connectivity.len() / n));
+            let has_law = form.law.is_some();
+            let batch = ExactBatch {
+                element,
+                springs,
+                points,
+                connectivity,
+                coefficients,
+                has_law,
+                shares,
+                constants,
+                parameters,
+            };
             batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
         })?;
         progress(((round + 1) * ROUND).min(cells));

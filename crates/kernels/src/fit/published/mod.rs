@@ -31,7 +31,7 @@ use super::input::check_cells;
 use super::visit::each_cell;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Material;
+use crate::material::{BlockValues, Material};
 use crate::springs::{Springs, distance};
 use cell_shape::CellShape;
 use corners::Corners;
@@ -49,25 +49,32 @@ use pattern::Pattern;
 /// ratio is out of the method's range; the material has another dimension; or a cell is reversed, tangled or flat. A
 /// cell of another [`Shape`] than the method assumes, or another Poisson's ratio, is not an error: [`unmet`] reports
 /// it.
-pub fn fit(
+pub fn fit<'a>(
     method: Method,
     element: &Element,
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    material: Material,
+    material: impl Into<BlockValues<'a, Material>>,
 ) -> Result<CellFits> {
+    let material = material.into();
     springs.check(element)?;
     check_cells(element, points, connectivity)?;
     let cover = method.cover(element)?;
     let corners = Corners::of(element)?;
-    let bulk = Elasticity::of(element, material)?;
-    if let Ratio::AtLeast(least) = cover.poisson
-        && bulk.poisson < least - 1e-12
-    {
-        let expected = format!("a ratio of at least {least:.4} for {}", method.name());
-        return Err(Error::expected("poisson", expected, bulk.poisson));
+    material.check("material", connectivity.len() / element.nodes())?;
+    let mut bulks = Vec::with_capacity(material.values().len());
+    for material in material.values() {
+        let bulk = Elasticity::of(element, *material)?;
+        if let Ratio::AtLeast(least) = cover.poisson
+            && bulk.poisson < least - 1e-12
+        {
+            let expected = format!("a ratio of at least {least:.4} for {}", method.name());
+            return Err(Error::expected("poisson", expected, bulk.poisson));
+        }
+        bulks.push(bulk);
     }
+    let bulks = BlockValues::listed(&bulks, matches!(material, BlockValues::Uniform(_)));
     let Pattern { pairs, springs } = Pattern::new(method, cover, &corners, element, springs)?;
     let (m, d) = (springs.len(), element.dimension());
     let mut fits = CellFits::new(springs);
@@ -83,10 +90,14 @@ pub fn fit(
             content: geometry.content(),
         };
         content += shape.content;
-        constants(method, cover.cell, &shape, &bulk, &mut fits.constants[cell * m..(cell + 1) * m]);
+        constants(method, cover.cell, &shape, bulks.at(cell), &mut fits.constants[cell * m..(cell + 1) * m]);
     })?;
     if method == Method::MacielUniform {
-        maciel::constants(&fits.springs, points, connectivity, content, &bulk, &mut fits.constants);
+        let BlockValues::Uniform(bulk) = &bulks else {
+            let expected = "one material in all cells: the method has one constant for the whole body";
+            return Err(Error::expected(method.name(), expected, "several").of_kind(ErrorKind::Unsupported));
+        };
+        maciel::constants(&fits.springs, points, connectivity, content, bulk, &mut fits.constants);
     }
     Ok(fits)
 }

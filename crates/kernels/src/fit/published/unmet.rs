@@ -6,7 +6,7 @@ use super::method::{Method, Ratio};
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::visit::each_cell;
-use crate::material::Material;
+use crate::material::{BlockValues, Material};
 use crate::springs::distance;
 
 /// The assumptions of a method that cells and material do not meet; none if it equals `Unmet::default()`.
@@ -40,19 +40,24 @@ const ROUNDING: f64 = 1e-6;
 ///
 /// # Errors
 /// The method has no formula for the element, or a cell is reversed, tangled or flat.
-pub fn unmet(
+pub fn unmet<'a>(
     method: Method,
     element: &Element,
     points: &[f64],
     connectivity: &[usize],
-    material: Material,
+    material: impl Into<BlockValues<'a, Material>>,
 ) -> Result<Unmet> {
+    let material = material.into();
     let cover = method.cover(element)?;
     let corners = Corners::of(element)?;
-    let ratio = Elasticity::of(element, material)?.poisson;
     let mut unmet = Unmet::default();
-    if let Ratio::Only(assumed) = cover.poisson {
-        unmet.poisson = Some(assumed).filter(|assumed| (assumed - ratio).abs() > ROUNDING);
+    for material in material.values() {
+        let ratio = Elasticity::of(element, *material)?.poisson;
+        if let Ratio::Only(assumed) = cover.poisson
+            && (assumed - ratio).abs() > ROUNDING
+        {
+            unmet.poisson = Some(assumed);
+        }
     }
     let Some(shape) = cover.shape else { return Ok(unmet) };
     let d = element.dimension();

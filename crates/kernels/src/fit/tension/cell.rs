@@ -9,7 +9,7 @@ use crate::fit::objective::Objective;
 use crate::fit::rest::Rest;
 use crate::fit::settings::Fit;
 use crate::fit::weight::Weight;
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::springs::{Measure, Springs, norm};
 use crate::stiffness::{Fault, Geometry};
 use nalgebra::{DMatrix, DVector};
@@ -25,7 +25,6 @@ const UNSTORED: f64 = 1e-12;
 pub struct Cells<'a> {
     springs: &'a Springs,
     measures: Vec<(Vec<usize>, Measure)>,
-    moduli: Moduli,
     fit: Fit,
     weight: Weight,
 }
@@ -53,13 +52,13 @@ struct Spring {
 
 impl<'a> Cells<'a> {
     /// The objective of the fit must be a Frobenius norm.
-    pub fn new(element: &Arc<Element>, springs: &'a Springs, moduli: Moduli, fit: &Fit) -> Cells<'a> {
+    pub fn new(element: &Arc<Element>, springs: &'a Springs, fit: &Fit) -> Cells<'a> {
         let weight = match fit.objective {
             Objective::Frobenius(weight) => weight,
             Objective::Spectral(weight) => weight.into(),
             Objective::Divergence(_) => Weight::Relative,
         };
-        Cells { springs, measures: springs.measures(element), moduli, fit: *fit, weight }
+        Cells { springs, measures: springs.measures(element), fit: *fit, weight }
     }
 
     /// The springs of the cell with nodes at `x`, `[nodes × dimension]`, m.
@@ -67,9 +66,9 @@ impl<'a> Cells<'a> {
     /// # Errors
     /// The measure of a spring has no gradient; R is singular and the weight divides by it; or the only springs in
     /// equilibrium are those without a force.
-    pub fn fit(&self, x: &[f64], geometry: &Geometry) -> Result<CellTension, String> {
+    pub fn fit(&self, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Result<CellTension, String> {
         let springs = self.springs_at(x, geometry)?;
-        let r = geometry.stiffness(self.moduli);
+        let r = geometry.stiffness(hooke);
         let sizes = Sizes {
             stiffness: r.norm(),
             extent: geometry.content().powf(1.0 / geometry.dimension as f64),

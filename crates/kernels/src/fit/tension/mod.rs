@@ -18,7 +18,7 @@ use super::settings::Fit;
 use super::visit::{cell_name, each_cell};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Moduli;
+use crate::material::{BlockValues, Hooke};
 use crate::springs::Springs;
 use cell::{CellTension, Cells};
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ pub fn fit_tensions(
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    moduli: Moduli,
+    moduli: BlockValues<Hooke>,
     fit: &Fit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Tensions> {
@@ -66,14 +66,14 @@ pub fn fit_tensions(
     }
     let n = element.nodes();
     let cells = connectivity.len() / n;
-    let Congruence { representatives, shapes } = Congruence::of(element, points, connectivity)?;
-    let all = Cells::new(&Arc::new(element.clone()), springs, moduli, fit);
+    let Congruence { representatives, shapes } = Congruence::of(element, points, connectivity, &moduli)?;
+    let all = Cells::new(&Arc::new(element.clone()), springs, fit);
     let chunk = |chunk: &[usize]| {
         let mut found = Vec::new();
         for &cell in chunk {
             let mut outcome = None;
             each_cell(element, points, &connectivity[cell * n..(cell + 1) * n], cell, |_, x, geometry| {
-                outcome = Some(all.fit(x, geometry));
+                outcome = Some(all.fit(x, geometry, moduli.at(cell)));
             })?;
             let placed = |problem: String| Error::at(cell_name(element, cell), problem).of_kind(ErrorKind::Infeasible);
             found.extend(outcome.transpose().map_err(placed)?);

@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Material;
+use crate::material::{CellMap, MaterialMap};
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
 use crate::study::scene::{LoadKind, MeasuredEntry, Part, Scene};
@@ -37,13 +37,13 @@ pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
 ///
 /// # Errors
 /// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
-pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Support, Vec<Case>)> {
+pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<(Support, Vec<Case>)> {
     let fixed = held(scene, mesh)?;
-    let mut cases = Vec::new();
+    let (mut cases, thicknesses) = (Vec::new(), material.thicknesses());
     for (i, load) in scene.loads().iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);
         let (forces, support) = match load.single() {
-            Some((part, action)) => acting(mesh, material, &fixed, (part, action)).map_err(at)?,
+            Some((part, action)) => acting(mesh, &thicknesses, &fixed, (part, action)).map_err(at)?,
             None => (Vec::new(), fixed.clone()),
         };
         if let Some(body) = unheld_bodies(mesh, &support).first() {
@@ -73,7 +73,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: Material) -> Result<(Sup
 /// The nodal forces of an action, and the supports under it.
 fn acting(
     mesh: &Mesh,
-    material: Material,
+    thicknesses: &CellMap<f64>,
     fixed: &Support,
     (part, action): (&Part, &Action),
 ) -> Result<(Vec<f64>, Support)> {
@@ -95,7 +95,7 @@ fn acting(
     let selection: Selection = part.selection(d)?;
     let points = selection.points(mesh)?;
     // The part has been checked: any other error is about the load.
-    let forces = nodal_forces(mesh, &selection, action, material.thickness()).map_err(|e| Error::new(e.problem()))?;
+    let forces = nodal_forces(mesh, &selection, action, thicknesses).map_err(|e| Error::new(e.problem()))?;
     let mut support = fixed.clone();
     if let Action::Displacement(given) = action {
         for p in points {

@@ -3,7 +3,7 @@
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
 use crate::error::Result;
-use crate::material::Moduli;
+use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, check_body, finite_elements};
 use crate::solve::{Factor, Solved, Stability, Standing, System, compare_energies};
@@ -24,7 +24,7 @@ impl Factored {
     /// Some motion has no stiffness, the factor does not fit into memory, or the equations are too badly conditioned.
     pub fn solve(
         mesh: &Mesh,
-        moduli: Moduli,
+        moduli: &CellMap<Hooke>,
         cases: &[Case],
         progress: &mut Progress,
     ) -> Result<(Factored, Vec<BodyAnswer>)> {
@@ -72,7 +72,7 @@ impl Factored {
         mesh: &Mesh,
         cases: &[Case],
         network: &Network,
-        (moduli, compared): (Moduli, Moduli),
+        (moduli, compared): (&CellMap<Hooke>, &CellMap<Hooke>),
     ) -> Result<(Vec<NetworkAnswer>, Stability)> {
         network.check_size()?;
         let start = Instant::now();

@@ -4,7 +4,7 @@ use super::case::Case;
 use super::cases::{held, load_cases};
 use super::linear::LinearBody;
 use crate::error::{Error, Result};
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::{Embedding, Field, Mesh};
 use crate::model::Support;
 use crate::solve::StaticSolver;
@@ -24,7 +24,7 @@ pub struct FineBody {
     sampling: Embedding,
     /// The support of the `[[fix]]` entries.
     pub support: Support,
-    material: Material,
+    material: MaterialMap,
     solver: StaticSolver,
     /// The answers so far, by what was asked.
     known: Mutex<HashMap<String, Answers>>,
@@ -38,7 +38,7 @@ impl FineBody {
     ///
     /// # Errors
     /// The mesh is wrong, is of another body, or lacks the parts that are held.
-    pub fn of(scene: &Scene, mesh: &Mesh, material: Material) -> Result<Option<FineBody>> {
+    pub fn of(scene: &Scene, mesh: &Mesh) -> Result<Option<FineBody>> {
         let Some(entry) = scene.reference() else { return Ok(None) };
         let at = |e: Error| e.placed(|e| scene.at("reference", e));
         let fine = entry.build(scene.path(), mesh).map_err(at)?;
@@ -51,6 +51,7 @@ impl FineBody {
         let embedding = Embedding::of(&fine.points, mesh).map_err(another)?;
         let sampling = Embedding::of(&mesh.points, &fine).map_err(another)?;
         let support = held(scene, &fine)?;
+        let material = scene.material_of(&fine)?;
         Ok(Some(FineBody {
             mesh: fine,
             embedding,
@@ -68,7 +69,7 @@ impl FineBody {
     /// # Errors
     /// A load has measured displacements of its own, or the finer body has no solution under it.
     pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
-        let (_, own) = load_cases(scene, &self.mesh, self.material)?;
+        let (_, own) = load_cases(scene, &self.mesh, &self.material)?;
         if let Some(i) = cases.iter().position(|case| case.measured.is_some()) {
             let problem = "does not go with [reference], whose finite elements give the displacements";
             return Err(scene.at(&format!("load[{i}]"), Error::at("measured", problem)));
@@ -123,7 +124,7 @@ impl FineBody {
 
     fn displacements(&self, cases: &[Case], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
         progress(Event::stage("finer body", 0, cases.len()));
-        let body = LinearBody::solve(&self.mesh, self.material.moduli(), cases, self.solver, progress)?;
+        let body = LinearBody::solve(&self.mesh, &self.material.moduli(), cases, self.solver, progress)?;
         Ok(body.into_displacements())
     }
 }

@@ -3,7 +3,7 @@
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
 use crate::error::Result;
-use crate::material::Moduli;
+use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
 use crate::solve::{Levels, Solved, Stability, Standing, StaticSolver, compare_levels};
@@ -26,7 +26,7 @@ impl Iterated {
     /// Some motion has no stiffness, the equations do not fit into memory, or the iterations stall.
     pub fn solve(
         mesh: &Mesh,
-        moduli: Moduli,
+        moduli: &CellMap<Hooke>,
         cases: &[Case],
         solver: &StaticSolver,
         progress: &mut Progress,
@@ -75,7 +75,7 @@ impl Iterated {
         mesh: &Mesh,
         cases: &[Case],
         network: &Network,
-        (moduli, compared): (Moduli, Moduli),
+        (moduli, compared): (&CellMap<Hooke>, &CellMap<Hooke>),
         solver: &StaticSolver,
         progress: &mut Progress,
     ) -> Result<(Vec<NetworkAnswer>, Stability)> {

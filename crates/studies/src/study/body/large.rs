@@ -2,10 +2,10 @@
 
 use super::case::Case;
 use crate::error::{Error, Result};
-use crate::material::{Energy, State};
+use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Network;
-use crate::model::{Body, Elastic, check_body, displaced};
+use crate::model::{Elastic, RegionsBody, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton};
 use crate::study::metrics::product;
 use crate::study::outcome::{Followed, LoadOutcome};
@@ -14,9 +14,8 @@ use std::time::Instant;
 
 /// The finite element solutions of a scene whose material has a law.
 pub struct LargeBody {
-    /// The energy of the law.
-    pub energy: Energy,
-    state: State,
+    /// The energies of the laws.
+    pub laws: EnergyMap,
     newton: Newton,
     /// The displacements, one list per load, at the last load that was reached; `[points · dimension]`, m.
     pub displacements: Vec<Vec<f64>>,
@@ -31,9 +30,10 @@ pub struct LargeBody {
 
 impl LargeBody {
     /// A body without loads.
-    pub fn at_rest(energy: Energy, state: State) -> LargeBody {
+    pub fn at_rest(laws: impl Into<EnergyMap>) -> LargeBody {
+        let laws = laws.into();
         let (newton, displacements, followed, seconds, works, paths) = Default::default();
-        LargeBody { energy, state, newton, displacements, followed, seconds, works, paths }
+        LargeBody { laws, newton, displacements, followed, seconds, works, paths }
     }
 
     /// Solves every load.
@@ -43,8 +43,7 @@ impl LargeBody {
     /// error.
     pub fn solve(
         mesh: &Mesh,
-        state: State,
-        energy: Energy,
+        laws: EnergyMap,
         newton: Newton,
         cases: &[Case],
         progress: &mut Progress,
@@ -56,11 +55,11 @@ impl LargeBody {
         if !cases.is_empty() {
             check_body(mesh)?;
         }
-        let mut body = LargeBody { newton, ..LargeBody::at_rest(energy, state) };
+        let mut body = LargeBody { newton, ..LargeBody::at_rest(laws) };
         for (done, case) in cases.iter().enumerate() {
             progress(Event::stage("finite elements", done, cases.len()));
             let start = Instant::now();
-            let model = Body { mesh, energy: &body.energy, state };
+            let model = RegionsBody { mesh, laws: &body.laws };
             let found = newton.solve(&model, &mesh.points, &case.support, &case.forces)?;
             body.seconds.push(start.elapsed().as_secs_f64());
             body.followed.push(Followed::of(&found, &model));
@@ -106,7 +105,7 @@ impl LargeBody {
             let model: &dyn Elastic = network;
             let found = self.newton.solve(model, &mesh.points, &case.support, &case.forces)?;
             let seconds_lem = start.elapsed().as_secs_f64();
-            let followed = Followed::of(&found, &Body { mesh, energy: &self.energy, state: self.state });
+            let followed = Followed::of(&found, &RegionsBody { mesh, laws: &self.laws });
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
             let known = case.measured.is_some() || complete(&self.followed[i]);
@@ -138,7 +137,7 @@ fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f
 
 impl Followed {
     /// `body` has the cells that may be inverted.
-    fn of(found: &Equilibrium, body: &Body) -> Followed {
+    fn of(found: &Equilibrium, body: &RegionsBody) -> Followed {
         Followed {
             ending: found.ending,
             load: found.load,

@@ -5,7 +5,7 @@ use super::case::Case;
 use super::factored::Factored;
 use super::iterated::Iterated;
 use crate::error::Result;
-use crate::material::Moduli;
+use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, Support};
 use crate::solve::{Factor, Stability, Standing, StaticMethod, StaticSolver, System};
@@ -15,7 +15,7 @@ use crate::study::progress::{Event, Progress};
 /// The finite element solutions, and the parts of them that the comparison with a network reuses.
 pub struct LinearBody {
     answers: Vec<BodyAnswer>,
-    moduli: Moduli,
+    moduli: CellMap<Hooke>,
     solver: StaticSolver,
     systems: Systems,
 }
@@ -43,7 +43,7 @@ impl LinearBody {
     /// Some motion has no stiffness, the equations do not fit into memory, or iterations that were asked for stall.
     pub fn solve(
         mesh: &Mesh,
-        moduli: Moduli,
+        moduli: &CellMap<Hooke>,
         cases: &[Case],
         solver: StaticSolver,
         progress: &mut Progress,
@@ -51,7 +51,12 @@ impl LinearBody {
         if !cases.is_empty() && solver.iterates(mesh, cases.len()) {
             match Iterated::solve(mesh, moduli, cases, &solver, progress) {
                 Ok((iterated, answers)) => {
-                    return Ok(LinearBody { answers, moduli, solver, systems: Systems::Iterated(iterated) });
+                    return Ok(LinearBody {
+                        answers,
+                        moduli: moduli.clone(),
+                        solver,
+                        systems: Systems::Iterated(iterated),
+                    });
                 }
                 Err(error) if solver.gives_way(&error) => {
                     progress(Event::Note(&format!("{}; the equations are factorised instead", error.problem())));
@@ -64,13 +69,13 @@ impl LinearBody {
 
     fn factorize(
         mesh: &Mesh,
-        moduli: Moduli,
+        moduli: &CellMap<Hooke>,
         cases: &[Case],
         solver: StaticSolver,
         progress: &mut Progress,
     ) -> Result<LinearBody> {
         let (factored, answers) = Factored::solve(mesh, moduli, cases, progress)?;
-        Ok(LinearBody { answers, moduli, solver, systems: Systems::Factored(factored) })
+        Ok(LinearBody { answers, moduli: moduli.clone(), solver, systems: Systems::Factored(factored) })
     }
 
     /// The displacements under each load.
@@ -102,13 +107,13 @@ impl LinearBody {
         mesh: &Mesh,
         cases: &[Case],
         network: &Network,
-        compared: Moduli,
+        compared: &CellMap<Hooke>,
         progress: &mut Progress,
     ) -> Result<NetworkAnswers> {
         if cases.is_empty() {
             return Ok(NetworkAnswers::default());
         }
-        let moduli = (self.moduli, compared);
+        let moduli = (&self.moduli, compared);
         let found = match &self.systems {
             Systems::Factored(factored) => factored.compare(mesh, cases, network, moduli),
             Systems::Iterated(iterated) => iterated.compare(mesh, cases, network, moduli, &self.solver, progress),
@@ -117,7 +122,7 @@ impl LinearBody {
             Err(error) if matches!(self.systems, Systems::Iterated(_)) && self.solver.gives_way(&error) => {
                 progress(Event::Note(&format!("{}; the equations are factorised instead", error.problem())));
                 let solver = StaticSolver { method: StaticMethod::Cholesky, ..self.solver };
-                let body = LinearBody::factorize(mesh, self.moduli, cases, solver, progress)?;
+                let body = LinearBody::factorize(mesh, &self.moduli, cases, solver, progress)?;
                 return body.compare(mesh, cases, network, compared, progress);
             }
             other => other?,

@@ -2,7 +2,7 @@
 //! part.
 
 use crate::error::Result;
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Action, nodal_forces};
 use crate::scalar::Sum;
@@ -25,7 +25,7 @@ impl Quantities {
     ///
     /// # Errors
     /// Those of a run of the scene.
-    pub fn of(scene: &Scene, mesh: &Mesh, material: Material) -> Result<Vec<Quantities>> {
+    pub fn of(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<Vec<Quantities>> {
         let (_, cases) = load_cases(scene, mesh, material)?;
         let weigh = |load: &LoadCase| -> Result<Option<Vec<f64>>> {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();

@@ -5,7 +5,7 @@ use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step
 use super::quantities::Quantities;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
+use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
 use crate::solve::Ending;
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
@@ -136,14 +136,14 @@ fn cell_size(mesh: &Mesh) -> f64 {
 
 /// The results of the finite elements and of each fit, for each load.
 fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
-    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let (mesh, material) = (&outcome.mesh, &outcome.material);
     let quantities = Quantities::of(scene, mesh, material)?;
     let prescribed = quantities.iter().any(Quantities::is_prescribed);
     // Forces at points with prescribed displacements do work only there.
-    let energy = scene.energy(material)?;
+    let energy = scene.laws(material)?;
     let stiffness =
         |linear: &dyn Fn() -> Entries| if prescribed && energy.is_none() { linear() } else { Entries::new() };
-    let body = energy.as_ref().map(|energy| Body { mesh, energy, state: material.state() });
+    let body = energy.as_ref().map(|laws| RegionsBody { mesh, laws });
     let body_stiffness = stiffness(&|| finite_elements(mesh, material.moduli()));
     let mut steps: Vec<Vec<Step>> = Vec::new();
     let compliance = |quantity: &Quantities, u: &[f64], stiffness: &Entries, large: Option<&dyn Elastic>| {

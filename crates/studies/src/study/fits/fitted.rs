@@ -6,7 +6,7 @@ use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
 use crate::fit::{CellFits, VolumeSprings};
-use crate::material::{Material, Moduli};
+use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Springs;
@@ -63,7 +63,7 @@ impl Fitted {
 
 impl FittedKind {
     /// Notes for the reader, one sentence each. The body has `cells` cells of `material`.
-    pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
+    pub fn notes(&self, cells: usize, material: &MaterialMap) -> Vec<String> {
         match self {
             FittedKind::Stiffness(outcome) => outcome.notes(),
             FittedKind::Sampled(outcome) => outcome.notes(),
@@ -80,7 +80,7 @@ impl FittedKind {
     }
 
     /// The moduli of the finite elements with whose energies those of the network are compared.
-    pub fn compared(&self, moduli: Moduli) -> Moduli {
+    pub fn compared(&self, moduli: CellMap<Hooke>) -> CellMap<Hooke> {
         match self {
             FittedKind::Exact(outcome) => outcome.compared(moduli),
             FittedKind::Stiffness(_) | FittedKind::Sampled(_) | FittedKind::Whole(_) | FittedKind::Published(_) => {

@@ -8,7 +8,7 @@ use super::whole::WholeBody;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::CellFits;
-use crate::material::Material;
+use crate::material::{Material, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Springs;
 use crate::study::body::LargeBody;
@@ -94,28 +94,28 @@ pub struct Task<'a> {
     pub springs: Option<&'a [String]>,
     /// The mesh of the body.
     pub mesh: &'a Mesh,
-    /// The material of the body.
-    pub material: Material,
+    /// The materials of the body.
+    pub material: &'a MaterialMap,
     /// What else is known of the body.
     pub reference: &'a Reference<'a>,
 }
 
 impl Task<'_> {
-    /// Runs `fit` on every block of cells with its springs; the progress is that of all cells.
+    /// Runs `fit` on every block of cells, with its index and its springs; the progress is that of all cells.
     ///
     /// # Errors
     /// Those of `fit`; or the elements have no such spring group.
     pub fn each_block<T>(
         &self,
         progress: &mut Progress,
-        fit: impl Fn(&CellBlock, &Springs, &mut dyn FnMut(usize)) -> Result<T>,
+        fit: impl Fn(usize, &CellBlock, &Springs, &mut dyn FnMut(usize)) -> Result<T>,
     ) -> Result<Vec<T>> {
         let total = self.mesh.cell_count();
         let mut done = 0;
         let mut all = Vec::new();
-        for block in &self.mesh.blocks {
+        for (index, block) in self.mesh.blocks.iter().enumerate() {
             let springs = Springs::select(&block.element, self.springs)?;
-            all.push(fit(block, &springs, &mut |n| progress(Event::stage(self.name, done + n, total)))?);
+            all.push(fit(index, block, &springs, &mut |n| progress(Event::stage(self.name, done + n, total)))?);
             done += block.cells().len();
         }
         Ok(all)

@@ -4,7 +4,7 @@ use super::fit::FitOutcome;
 use super::frequencies::FrequencyOutcome;
 use super::load::BodyLoad;
 use super::motion::MotionOutcome;
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::Support;
 
@@ -23,10 +23,8 @@ pub struct Outcome {
     pub assumed: Option<String>,
     /// The mesh.
     pub mesh: Mesh,
-    /// The material.
-    pub material: Material,
-    /// The density, kg/m³, if it is given.
-    pub density: Option<f64>,
+    /// The materials, with the density if it is given.
+    pub material: MaterialMap,
     /// The support of `[[fix]]`; `None` if there is no scene.
     pub support: Option<Support>,
     /// The masses, `[points]`, kg; `None` if the scene gives no density.
@@ -47,9 +45,16 @@ pub struct Outcome {
 
 impl Outcome {
     /// The outcome of one fit without loads.
-    pub fn of_fit(name: String, mesh: Mesh, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Outcome {
+    pub fn of_fit(
+        name: String,
+        mesh: Mesh,
+        material: impl Into<MaterialMap>,
+        masses: Option<Vec<f64>>,
+        fit: FitOutcome,
+    ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
-        let (assumed, density, support) = Default::default();
+        let (assumed, support) = Default::default();
+        let material = material.into();
         Outcome {
             source: name.clone(),
             scene: name,
@@ -58,7 +63,6 @@ impl Outcome {
             assumed,
             mesh,
             material,
-            density,
             support,
             masses,
             law,

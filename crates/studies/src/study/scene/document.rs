@@ -1,25 +1,29 @@
 //! A scene that has been read and checked.
 
-use super::entry::{FixEntry, MaterialEntry};
+use super::distribution::Distribution;
+use super::entry::FixEntry;
 use super::gauge::Gauge;
 use super::input::MeshInput;
+use super::laws::laws_of_regions;
+use super::lists::{check_fits, read_fits};
 use super::load::{LoadCase, read_loads};
+use super::material::{MaterialEntries, MaterialEntry};
 use super::motion::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
 use super::reference::ReferenceEntry;
+use super::regions::material_map;
 use super::setting::Setting;
 use super::source::SceneSource;
 use crate::bound::{self, check_count};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
-use crate::material::{Energy, Material};
+use crate::material::{CellMap, Energy, EnergyMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::{BodyConstants, assumed};
-use crate::study::fits::{FitEntry, NamedFit, RESERVED, SceneFacts, law_at};
-use crate::study::own_name::expect_own_name;
+use crate::study::fits::{NamedFit, RESERVED, law_at};
 use crate::study::sweep::SweepEntry;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +34,7 @@ pub struct Scene {
     source: SceneSource,
     title: String,
     mesh: MeshInput,
-    material: MaterialEntry,
+    material: MaterialEntries,
     fits: Vec<NamedFit>,
     supports: Vec<(Part, Option<Vec<usize>>)>,
     loads: Vec<LoadCase>,
@@ -93,19 +97,19 @@ impl Scene {
         let fix = |(i, fix): (usize, FixEntry)| fix.check().map_err(|e| e.under(format!("fix[{i}]")));
         let supports = entry.fix.into_iter().enumerate().map(fix).collect::<Result<_>>()?;
         let loads = read_loads(entry.load)?;
-        if entry.newton.is_some() && entry.material.law.is_none() {
+        if entry.newton.is_some() && entry.material.first().law.is_none() {
             return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
         }
         let newton = entry.newton.map_or(Ok(Newton::default()), |e| e.check().map_err(|e| e.under("newton")))?;
-        if entry.solver.is_some() && entry.material.law.is_some() {
+        if entry.solver.is_some() && entry.material.first().law.is_some() {
             return Err(Error::at("solver", "belongs to small deformation, found a material with a \"law\""));
         }
         let solver = entry.solver.map_or(Ok(StaticSolver::default()), |e| e.check().map_err(|e| e.under("solver")))?;
         let motion = entry.motion.map(|e| e.check().map_err(|e| e.under("motion"))).transpose()?;
-        if motion.is_some() && entry.material.density.is_none() {
+        if motion.is_some() && !entry.material.has_density() {
             return Err(Error::expected("material.density", "a number of kg/m³, for [motion] moves masses", "none"));
         }
-        if entry.output.frequencies > 0 && entry.material.density.is_none() {
+        if entry.output.frequencies > 0 && !entry.material.has_density() {
             return Err(Error::expected("output.frequencies", "a density in [material]", "none"));
         }
         check_count("output.frequencies", entry.output.frequencies as u64, 0, bound::MODES)?;
@@ -271,7 +275,13 @@ impl Scene {
             Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
             Action::Force(_) | Action::Displacement(_) => false,
         };
-        conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
+        let of_place = |entry: &MaterialEntry| {
+            entry.condition.is_some()
+                || entry.axes.is_some()
+                || entry.distributions().any(|(_, values)| values.number().is_none())
+        };
+        self.material.all.iter().any(of_place)
+            || conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
             || actions().any(|(_, action)| varies(action))
             || self.loads.iter().any(|load| load.measured.is_some())
     }
@@ -279,48 +289,84 @@ impl Scene {
     /// The same scene with Young's modulus multiplied by `factor`, and with another Poisson's ratio if one is given.
     pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
         let mut scene = self.clone();
-        scene.material.young.0 *= factor;
-        scene.material.poisson = poisson.unwrap_or(scene.material.poisson);
+        for material in &mut scene.material.all {
+            if let Some(young) = &mut material.young {
+                young.factor *= factor;
+            }
+            if let (Some(poisson), Some(own)) = (poisson, &mut material.poisson) {
+                *own = Distribution::of_number(poisson);
+            }
+        }
         scene
     }
 
-    /// The material of the meshed body.
+    /// The materials of the meshed body, with their density if the scene gives one.
     ///
     /// # Errors
-    /// Those of [`Scene::material`]; or a surface in space has no thickness.
-    pub fn material_of(&self, mesh: &Mesh) -> Result<Material> {
-        self.constants().material(mesh).map_err(|e| self.at("material", e))
+    /// A cell is in two regions or in none, a region is empty or unknown, data are wrong or do not cover the mesh, or a value is out of
+    /// its range; or a surface in space has no thickness.
+    pub fn material_of(&self, mesh: &Mesh) -> Result<MaterialMap> {
+        let entry = self.material.first();
+        if !self.material.is_uniform() || entry.part()? != Part::Everything {
+            let folder = self.path().parent().unwrap_or(Path::new(""));
+            return material_map(&self.material, mesh, folder).map_err(|e| self.placed(e));
+        }
+        let material = self.constants().and_then(|constants| constants.material(mesh));
+        let material = MaterialMap::from(material.map_err(|e| self.at(&self.material.key(0), e))?);
+        let density = entry.density.as_ref().and_then(Distribution::number);
+        Ok(material.with_density(density.map(CellMap::Uniform)))
     }
 
     /// The material of a body of this dimension, one metre thick if the scene gives no thickness.
     ///
     /// # Errors
-    /// A constant is out of range, or bodies of this dimension have no plane state.
+    /// A constant is out of range, bodies of this dimension have no plane state, or the material differs from cell to cell.
     pub fn material(&self, dimension: usize) -> Result<Material> {
-        self.constants().of_dimension(dimension).map_err(|e| self.at("material", e))
+        let material = self.constants().and_then(|constants| constants.of_dimension(dimension));
+        material.map_err(|e| self.at(&self.material.key(0), e))
     }
 
-    fn constants(&self) -> BodyConstants {
-        let MaterialEntry { young, poisson, plane, thickness, area, .. } = &self.material;
-        BodyConstants { young: young.0, poisson: *poisson, plane: *plane, thickness: *thickness, area: *area }
+    /// The constants of a material that is the same in all cells.
+    fn constants(&self) -> Result<BodyConstants> {
+        let entry = self.material.first();
+        let several = || Error::new("expected one isotropic material for all cells, found several or another");
+        let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
+        let (Some(young), Some(poisson), true) =
+            (number(&entry.young), number(&entry.poisson), self.material.is_uniform())
+        else {
+            return Err(several());
+        };
+        let thickness = entry.thickness.as_ref().and_then(Distribution::number);
+        Ok(BodyConstants { young, poisson, plane: entry.plane, thickness, area: entry.area })
     }
 
     /// The name of the material's law, if the scene gives one; deformations are large then.
     pub fn law(&self) -> Option<&str> {
-        self.material.law.as_deref()
+        self.material.first().law.as_deref()
     }
 
     /// The energy of the law for a body of this material, if there is a law.
     ///
     /// # Errors
     /// There is no such law, or its file is wrong.
-    pub fn energy(&self, material: Material) -> Result<Option<Energy>> {
+    pub fn energy(&self, material: impl Into<MaterialMap>) -> Result<Option<Energy>> {
+        let material = material.into();
         let folder = self.path().parent().unwrap_or(Path::new(""));
         let load = |law: &str| {
-            Energy::load(&law_at(law, folder), material)
-                .map_err(|e| e.placed(|e| self.placed(e.at_key("material.law"))))
+            let one = material.uniform().ok_or_else(|| Error::new("belongs to one material in all cells"))?;
+            let key = format!("{}.law", self.material.key(0));
+            Energy::load(&law_at(law, folder), one).map_err(|e| e.placed(|e| self.placed(e.at_key(key))))
         };
         self.law().map(load).transpose()
+    }
+
+    /// The energies of the laws of all regions, if there are laws.
+    ///
+    /// # Errors
+    /// There is no such law, or its file is wrong.
+    pub fn laws(&self, material: &MaterialMap) -> Result<Option<EnergyMap>> {
+        let folder = self.path().parent().unwrap_or(Path::new(""));
+        laws_of_regions(&self.material, material, folder).map_err(|e| self.placed(e))
     }
 
     /// The scene file, and the files that it names: of the mesh, of elements, laws and data.
@@ -329,22 +375,28 @@ impl Scene {
         let mut files = vec![self.path().to_path_buf()];
         files.extend(self.mesh.files(folder));
         files.extend(self.reference.iter().flat_map(|reference| reference.files(folder)));
-        files.extend(self.law().map(|law| PathBuf::from(law_at(law, folder))));
+        let laws = self.material.all.iter().filter_map(|entry| entry.law.as_deref());
+        files.extend(laws.map(|law| PathBuf::from(law_at(law, folder))));
         let measured = self.loads.iter().filter_map(|load| load.measured.as_ref());
         files.extend(measured.map(|entry| folder.join(&entry.file)));
         let sampled = self.fits.iter().filter_map(|fit| fit.recipe.sampled());
         files.extend(sampled.flat_map(|recipe| recipe.files()));
+        let distributions = self.material.all.iter().flat_map(|entry| entry.distributions());
+        files.extend(distributions.filter_map(|(_, values)| values.file()).map(|file| folder.join(file)));
         files
     }
 
     /// A sentence about the defaults on which the results depend, if there are any.
     pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
-        assumed(mesh, self.material.thickness, self.material.area)
+        let without = |has: fn(&MaterialEntry) -> bool| self.material.all.iter().find(|entry| !has(entry));
+        let thickness = without(|entry| entry.thickness.is_some()).is_none().then_some(1.0);
+        let area = without(|entry| entry.area.is_some()).is_none().then_some(1.0);
+        assumed(mesh, thickness, area)
     }
 
-    /// The density, kg/m³, if the scene gives one.
-    pub fn density(&self) -> Option<f64> {
-        self.material.density
+    /// Whether the scene gives a density.
+    pub fn has_density(&self) -> bool {
+        self.material.has_density()
     }
 
     /// The error with the scene and the line of one of its entries.
@@ -361,36 +413,4 @@ impl Scene {
     pub(in crate::study) fn with_line(&self, error: Error) -> Error {
         self.source.with_line(error)
     }
-}
-
-/// The fits of all `[[fit]]` entries; files are relative to `folder`.
-fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
-    let mut fits: Vec<NamedFit> = Vec::new();
-    for (i, entry) in entries.iter().enumerate() {
-        for fit in entry.fits(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))? {
-            let key = format!("fit[{i}].name");
-            if fit.name.trim().is_empty() {
-                return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
-            }
-            expect_own_name(&key, &fit.name, fits.iter().map(|fit| fit.name.as_str()))?;
-            fits.push(fit.of_entry(i));
-        }
-    }
-    Ok(fits)
-}
-
-/// Checks that the material and the loads are those that the fits require.
-fn check_fits(fits: &[NamedFit], material: &MaterialEntry, loads: &[LoadCase]) -> Result<()> {
-    let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
-    let facts = SceneFacts { law: material.law.is_some(), density: material.density.is_some(), loads: &names };
-    for fit in fits {
-        let place = fit.place();
-        let lawless = fit.recipe.sampled().is_some_and(|recipe| recipe.law.is_none());
-        if lawless && material.law.is_none() {
-            let expected = format!("the energy whose forces {place} samples, such as \"neo-hookean\"");
-            return Err(Error::expected("material.law", expected, "none"));
-        }
-        fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
-    }
-    Ok(())
 }

@@ -3,15 +3,13 @@
 use super::gauge::GaugeEntry;
 use super::input::MeshInput;
 use super::load::LoadEntry;
+use super::material::MaterialEntries;
 use super::motion::MotionEntry;
 use super::output::Output;
 use super::part::Part;
 use super::reference::ReferenceEntry;
-use super::value::{self, Pressure};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
-use crate::material::{Material, Plane};
-use crate::range;
 use crate::solve::{Newton, StaticMethod, StaticSolver};
 use crate::study::choice::choice;
 use crate::study::fits::FitEntry;
@@ -28,7 +26,7 @@ const LARGEST_TOLERANCE: f64 = 1e-3;
 pub struct SceneFile {
     pub title: Option<String>,
     pub mesh: MeshInput,
-    pub material: MaterialEntry,
+    pub material: MaterialEntries,
     #[serde(default)]
     pub fit: Vec<FitEntry>,
     pub newton: Option<NewtonEntry>,
@@ -45,28 +43,6 @@ pub struct SceneFile {
     pub output: Output,
     /// What `springfit sweep` runs; other commands run the scene as it is.
     pub sweep: Option<SweepEntry>,
-}
-
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MaterialEntry {
-    pub young: Pressure,
-    pub poisson: f64,
-    pub plane: Option<Plane>,
-    /// The thickness, m.
-    #[serde(default, deserialize_with = "value::optional_length")]
-    #[schemars(schema_with = "value::quantity")]
-    pub thickness: Option<f64>,
-    /// The cross-section of rods, m².
-    #[serde(default, deserialize_with = "value::optional_area")]
-    #[schemars(schema_with = "value::quantity")]
-    pub area: Option<f64>,
-    /// The density, kg/m³.
-    #[serde(default, deserialize_with = "value::optional_density")]
-    #[schemars(schema_with = "value::quantity")]
-    pub density: Option<f64>,
-    /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
-    pub law: Option<String>,
 }
 
 /// How loads are applied at large deformation.
@@ -101,17 +77,6 @@ pub struct FixEntry {
 /// The JSON Schema of scene files.
 pub fn scene_schema() -> serde_json::Value {
     schema_for!(SceneFile).to_value()
-}
-
-impl MaterialEntry {
-    /// The checks that do not depend on the dimension.
-    pub fn check(&self) -> Result<()> {
-        let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
-        // Plane stress admits larger ν than a solid; a solid is checked again when the mesh is known.
-        let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
-        Material::for_body(2, self.young.0, self.poisson, state, self.thickness).map_err(|e| e.under("material"))?;
-        self.density.map_or(Ok(()), |density| range::positive("material.density", density, "kg/m³").map(|_| ()))
-    }
 }
 
 impl NewtonEntry {

@@ -1,15 +1,21 @@
 //! The scene file: its entries, and the checks that can be made before the mesh is read.
 
+mod anisotropic;
+mod distribution;
 mod document;
 mod elements;
 mod entry;
 mod gauge;
 mod input;
+mod laws;
+mod lists;
 mod load;
+mod material;
 mod motion;
 mod output;
 mod part;
 mod reference;
+mod regions;
 mod setting;
 mod source;
 mod value;

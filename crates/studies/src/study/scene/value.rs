@@ -149,7 +149,6 @@ macro_rules! quantities {
 quantities! {
     length, optional_length: Length,
     area, optional_area: Area,
-    density, optional_density: Density,
     time, optional_time: Time,
     mesh_unit, optional_mesh_unit: MeshUnit,
 }

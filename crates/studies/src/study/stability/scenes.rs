@@ -103,7 +103,7 @@ fn of_fit(
     };
     row.negative = Some([fit.network.negative(), fit.network.len()]);
     row.softest = fit.stability.as_ref().map(|stability| stability.energy_ratio[0]);
-    let (mesh, thickness) = (&outcome.mesh, outcome.material.thickness());
+    let (mesh, thickness) = (&outcome.mesh, outcome.material.thicknesses());
     let masses = lumped_masses(mesh, DENSITY, thickness, Lumping::Hrz);
     let masses: Vec<f64> = masses.iter().flat_map(|m| vec![*m; mesh.dimension]).collect();
     let entries = fit.network.stiffness(&mesh.points);

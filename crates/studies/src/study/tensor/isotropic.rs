@@ -1,6 +1,6 @@
 //! Elasticity tensors as matrices in Kelvin's notation, whose norms are those of the tensors in any axes.
 
-use crate::material::{Material, State};
+use crate::material::{Hooke, Moduli, State, strains};
 use nalgebra::DMatrix;
 
 /// The orthonormal strains `e_k e_k`, then `(e_k e_l + e_l e_k)/√2`, each `[d × d]`.
@@ -15,12 +15,21 @@ pub(super) fn basis(d: usize) -> Vec<DMatrix<f64>> {
     (0..d).map(|k| (k, k)).chain(shears).map(|(k, l)| unit(k, l)).collect()
 }
 
-/// `C₀ = λ I ⊗ I + 2μ`, Pa; in the plane multiplied by the thickness, for a rod by its cross-section.
-pub(super) fn of_material(material: Material) -> DMatrix<f64> {
-    let (moduli, d) = (material.moduli(), material.state().dimension());
-    let size = d * (d + 1) / 2;
-    let volumetric = |i: usize, j: usize| if i < d && j < d { moduli.lambda } else { 0.0 };
-    DMatrix::from_fn(size, size, |i, j| volumetric(i, j) + if i == j { 2.0 * moduli.mu } else { 0.0 })
+/// `C₀`, of isotropic materials `λ I ⊗ I + 2μ`, Pa; in the plane multiplied by the thickness, for a rod by its cross-section.
+pub(super) fn of_material(hooke: &Hooke, d: usize) -> DMatrix<f64> {
+    let size = strains(d);
+    match hooke {
+        Hooke::Isotropic(Moduli { lambda, mu }) => {
+            let volumetric = |i: usize, j: usize| if i < d && j < d { *lambda } else { 0.0 };
+            DMatrix::from_fn(size, size, |i, j| volumetric(i, j) + if i == j { 2.0 * mu } else { 0.0 })
+        }
+        Hooke::Anisotropic(stiffness) => {
+            // Voigt's order has yz, xz, xy, that of the basis xy, xz, yz.
+            let place = |i: usize| if i < d { i } else { size - 1 - (i - d) };
+            let kelvin = stiffness.kelvin();
+            DMatrix::from_fn(size, size, |i, j| kelvin[(place(i), place(j))])
+        }
+    }
 }
 
 /// `‖C − C₀‖/‖C₀‖`.

@@ -3,10 +3,10 @@
 use super::frame::frame;
 use super::isotropic::{constants, distance, of_material};
 use super::piece::Piece;
-use super::relaxation::tensor;
+use super::relaxation::{body_tensor, tensor};
 use super::sample::Stars;
 use crate::fit::CellFits;
-use crate::material::Material;
+use crate::material::{CellMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use nalgebra::DMatrix;
@@ -41,8 +41,13 @@ pub struct NetworkMaterial {
     /// Poisson's ratio of the mean tensor, the mean over all directions; `None` as for `young`, and for a rod.
     pub poisson: Option<f64>,
     /// The relative distance `‖C − C₀‖/‖C₀‖` in the Frobenius norm, which does not depend on the axes; root mean square
-    /// over the samples. C₀ is the tensor of the material.
+    /// over the samples. C₀ is the tensor of the material; in samples of several materials that of their finite elements,
+    /// strained in the same way.
     pub distance: f64,
+    /// Young's modulus of the mean of the C₀, Pa, as `young`.
+    pub asked_young: Option<f64>,
+    /// Poisson's ratio of the mean of the C₀, as `poisson`.
+    pub asked_poisson: Option<f64>,
     /// The relative distance of the mean tensor: the part that does not vary in space.
     pub mean_distance: f64,
     /// The relative distance of the worst sample.
@@ -63,9 +68,15 @@ pub(in crate::study) fn most_samples(mesh: &Mesh) -> usize {
 /// cells that have all of its points.
 ///
 /// On curved surfaces and curves the samples are single cells, each in its own plane.
-pub fn network_material(mesh: &Mesh, material: Material, cells: &[CellFits], network: &Network) -> NetworkMaterial {
+pub fn network_material(
+    mesh: &Mesh,
+    material: impl Into<MaterialMap>,
+    cells: &[CellFits],
+    network: &Network,
+) -> NetworkMaterial {
+    let material = &material.into();
     let start = Instant::now();
-    let stars = Stars::of(mesh);
+    let (stars, dimension) = (Stars::of(mesh), mesh.cell_dimension());
     let points = mesh.point_count();
     let count = most_samples(mesh);
     let measure = |i: usize| {
@@ -81,16 +92,34 @@ pub fn network_material(mesh: &Mesh, material: Material, cells: &[CellFits], net
             [] => Piece::of_network(mesh, &stars, &sample, network),
             cells => Piece::of_cells(mesh, &sample, cells, network),
         };
-        tensor(&sample, &piece, &directions)
+        let own = material.of_some(&sample.cells);
+        let asked = match own.moduli() {
+            CellMap::Uniform(one) => of_material(&one, dimension),
+            moduli => body_tensor(&sample, moduli, &directions),
+        };
+        (tensor(&sample, &piece, &directions), asked)
     };
-    let tensors: Vec<DMatrix<f64>> = (0..count).into_par_iter().map(measure).collect();
-    let asked = of_material(material);
-    let stiffness = tensors.iter().fold(DMatrix::zeros(asked.nrows(), asked.ncols()), |sum, c| sum + c) / count as f64;
-    let distances: Vec<f64> = tensors.iter().map(|c| distance(c, &asked)).collect();
-    let constants = constants(&stiffness, material.state());
+    let (tensors, asked): (Vec<DMatrix<f64>>, Vec<DMatrix<f64>>) = (0..count).into_par_iter().map(measure).unzip();
+    let mean = |all: &[DMatrix<f64>]| -> DMatrix<f64> {
+        all.iter().skip(1).fold(all[0].clone(), |sum, c| sum + c) / count as f64
+    };
+    let stiffness = mean(&tensors);
+    let distances: Vec<f64> = tensors.iter().zip(&asked).map(|(c, asked)| distance(c, asked)).collect();
+    let state = material.state();
+    let found = constants(&stiffness, state);
+    let (asked, wanted) = match material.uniform() {
+        Some(one) => (of_material(&one.moduli().into(), dimension), Some((one.young(), Some(one.poisson())))),
+        None => {
+            let asked = mean(&asked);
+            let wanted = constants(&asked, state);
+            (asked, wanted)
+        }
+    };
     NetworkMaterial {
-        young: constants.map(|(young, _)| young),
-        poisson: constants.and_then(|(_, poisson)| poisson),
+        young: found.map(|(young, _)| young),
+        poisson: found.and_then(|(_, poisson)| poisson),
+        asked_young: wanted.map(|(young, _)| young),
+        asked_poisson: wanted.and_then(|(_, poisson)| poisson),
         distance: (distances.iter().map(|d| d * d).sum::<f64>() / count as f64).sqrt(),
         mean_distance: distance(&stiffness, &asked),
         largest_distance: distances.iter().copied().fold(0.0, f64::max),

@@ -3,7 +3,8 @@
 use super::isotropic::basis;
 use super::piece::{PatchSpring, Piece};
 use super::sample::Sample;
-use crate::model::{Entries, content};
+use crate::material::{CellMap, Hooke};
+use crate::model::{Entries, content, finite_elements};
 use nalgebra::{DMatrix, DVector};
 
 /// C of a sample, `[strains × strains]`, Pa, from the energies `V/2 ε : C : ε` under `u = ε x` of all points except
@@ -19,10 +20,30 @@ use nalgebra::{DMatrix, DVector};
 /// geometric stiffness of springs that pull at rest. The columns of `frame`, `[space × dimension of the cells]`, are
 /// orthonormal: for flat samples in space only motions in their plane count.
 pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DMatrix<f64> {
+    let entries = piece.network.stiffness(&piece.points);
+    let is_whole = piece.shares.iter().all(|share| *share == 1.0);
+    let own = (!is_whole).then(|| piece.network.scaled(&piece.shares).stiffness(&piece.points));
+    relaxed(sample, &piece.points, (&entries, own.as_ref().unwrap_or(&entries)), &piece.patches, frame)
+}
+
+/// C of the finite elements of a sample, as [`tensor`] has it of a network.
+pub(super) fn body_tensor(sample: &Sample, moduli: CellMap<Hooke>, frame: &DMatrix<f64>) -> DMatrix<f64> {
+    let entries = finite_elements(&sample.mesh, moduli);
+    relaxed(sample, &sample.mesh.points, (&entries, &entries), &[], frame)
+}
+
+/// C from the stiffness of all that acts on the points inside, and from the share of it that belongs to the sample.
+fn relaxed(
+    sample: &Sample,
+    points: &[f64],
+    (entries, own): (&Entries, &Entries),
+    patches: &[PatchSpring],
+    frame: &DMatrix<f64>,
+) -> DMatrix<f64> {
     let (space, d) = (sample.mesh.dimension, frame.ncols());
     let basis = basis(d);
     // Relative to one of its own points, so that bodies far from the origin lose no digits.
-    let x = DMatrix::from_fn(space, piece.points.len() / space, |k, p| piece.points[p * space + k] - piece.points[k]);
+    let x = DMatrix::from_fn(space, points.len() / space, |k, p| points[p * space + k] - points[k]);
     let volume = content(&sample.mesh);
     let strained: Vec<DVector<f64>> = basis
         .iter()
@@ -32,18 +53,16 @@ pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DM
         })
         .collect();
     let strained = DMatrix::from_columns(&strained);
-    let entries = piece.network.stiffness(&piece.points);
-    let mut forces = product(&entries, &strained);
-    let mut affine = if piece.shares.iter().all(|share| *share == 1.0) {
-        strained.tr_mul(&forces)
-    } else {
-        strained.tr_mul(&product(&piece.network.scaled(&piece.shares).stiffness(&piece.points), &strained))
+    let mut forces = product(entries, &strained);
+    let mut affine = match std::ptr::eq(entries, own) {
+        true => strained.tr_mul(&forces),
+        false => strained.tr_mul(&product(own, &strained)),
     };
-    let mut place = vec![usize::MAX; piece.points.len() / space];
+    let mut place = vec![usize::MAX; points.len() / space];
     sample.interior.iter().enumerate().for_each(|(i, &point)| place[point] = i);
     let count = sample.interior.len();
     let mut inner = DMatrix::zeros(count * space, count * space);
-    for entry in &entries {
+    for entry in entries {
         let (i, j) = (place[entry.row / space], place[entry.col / space]);
         if i != usize::MAX && j != usize::MAX {
             let (i, j) = (i * space + entry.row % space, j * space + entry.col % space);
@@ -53,7 +72,7 @@ pub(super) fn tensor(sample: &Sample, piece: &Piece, frame: &DMatrix<f64>) -> DM
             }
         }
     }
-    for PatchSpring { points, gradient, slope, share } in &piece.patches {
+    for PatchSpring { points, gradient, slope, share } in patches {
         let dofs: Vec<usize> = points.iter().flat_map(|&point| point * space..(point + 1) * space).collect();
         let along = |case: usize| dofs.iter().zip(gradient).map(|(&dof, g)| g * strained[(dof, case)]).sum::<f64>();
         let stretch = DVector::from_fn(basis.len(), |case, _| along(case));

@@ -2,6 +2,7 @@
 
 use super::raised::{RELEASE, Raised};
 use crate::error::{Error, Result};
+use crate::material::CellMap;
 use crate::mesh::Mesh;
 use crate::model::{
     BlockStiffness, Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies,
@@ -25,8 +26,9 @@ pub fn natural_frequencies(
     outcome: &Outcome,
     progress: &mut Progress,
 ) -> Result<Vec<FrequencyOutcome>> {
-    let (mesh, material) = (&outcome.mesh, outcome.material);
-    let lumped = |lumping| lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), lumping);
+    let (mesh, material) = (&outcome.mesh, &outcome.material);
+    let density = material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
+    let lumped = |lumping| lumped_masses(mesh, &density, material.thicknesses(), lumping);
     let masses = match scene.motion() {
         Some(motion) => lumped(motion.lumping),
         None => {

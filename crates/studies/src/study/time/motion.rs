@@ -3,9 +3,9 @@
 use super::raised::{RELEASE, Raised};
 use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use crate::error::{Error, Result};
-use crate::material::Energy;
+use crate::material::EnergyMap;
 use crate::mesh::Mesh;
-use crate::model::{Body, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements};
+use crate::model::{Deformation, Elastic, LinearElastic, Network, RegionsBody, Support, check_body, finite_elements};
 use crate::scalar::{norm, scaled_norm};
 use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
@@ -45,11 +45,11 @@ pub struct Planned {
 /// A step exceeds the limit of an explicit method, or the equations do not fit into memory.
 pub fn move_models(
     planned: &Planned,
-    energy: Option<&Energy>,
+    energy: Option<&EnergyMap>,
     outcome: &Outcome,
     progress: &mut Progress,
 ) -> Result<MotionOutcome> {
-    let (mesh, material) = (&outcome.mesh, outcome.material);
+    let (mesh, material) = (&outcome.mesh, &outcome.material);
     let run = Run { planned, mesh };
     let mut models = Vec::new();
     let mut reference = Vec::new();
@@ -58,8 +58,8 @@ pub fn move_models(
         let mut options = planned.recipe.options;
         let damping = planned.damping(None, mesh)?;
         let (mut made, states) = match energy {
-            Some(energy) => {
-                let body = Body { mesh, energy, state: material.state() };
+            Some(laws) => {
+                let body = RegionsBody { mesh, laws };
                 run.follow((name, None), &body, damping, options, true, progress)?
             }
             None => {

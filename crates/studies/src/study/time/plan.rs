@@ -4,7 +4,7 @@ use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
-use crate::material::{Energy, Material};
+use crate::material::{CellMap, EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
 use crate::range;
@@ -31,7 +31,7 @@ impl TimePlan {
     /// # Errors
     /// A part of the mesh is empty or unknown, a list has the wrong length, a driven degree of freedom is held, or a
     /// point that moves has no mass.
-    pub fn of(scene: &Scene, mesh: &Mesh, material: Material, support: &Support) -> Result<TimePlan> {
+    pub fn of(scene: &Scene, mesh: &Mesh, material: &MaterialMap, support: &Support) -> Result<TimePlan> {
         let at = |e: Error| e.placed(|e| scene.at("motion", e));
         let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
         Ok(TimePlan { support: support.clone(), motion: scene.motion().map(plan).transpose()? })
@@ -45,7 +45,7 @@ impl TimePlan {
     pub fn follow(
         &self,
         scene: &Scene,
-        energy: Option<&Energy>,
+        energy: Option<&EnergyMap>,
         outcome: &mut Outcome,
         progress: &mut Progress,
     ) -> Result<()> {
@@ -61,7 +61,13 @@ impl TimePlan {
     }
 }
 
-fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material, fixed: &Support) -> Result<Planned> {
+fn planned(
+    scene: &Scene,
+    recipe: &MotionRecipe,
+    mesh: &Mesh,
+    material: &MaterialMap,
+    fixed: &Support,
+) -> Result<Planned> {
     let d = mesh.dimension;
     if !(recipe.gravity.is_empty() || recipe.gravity.len() == d) {
         return Err(entries("gravity", d, recipe.gravity.len()));
@@ -76,7 +82,7 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
         recipe: recipe.clone(),
         support: fixed.clone(),
         drive: Drive::default().gravity(&recipe.gravity),
-        masses: lumped_masses(mesh, scene.density().unwrap_or(0.0), material.thickness(), recipe.lumping),
+        masses: lumped_masses(mesh, densities(material), material.thicknesses(), recipe.lumping),
         forces: Vec::new(),
         pulls: Vec::new(),
         watched: Vec::new(),
@@ -104,6 +110,11 @@ fn planned(scene: &Scene, recipe: &MotionRecipe, mesh: &Mesh, material: Material
         ));
     }
     Ok(planned)
+}
+
+/// The density of each cell; zero without one.
+fn densities(material: &MaterialMap) -> CellMap<f64> {
+    material.density().cloned().unwrap_or(CellMap::Uniform(0.0))
 }
 
 fn entries(key: &str, d: usize, found: usize) -> Error {

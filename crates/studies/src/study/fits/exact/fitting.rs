@@ -7,7 +7,7 @@ use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, ExactEnergy, VolumeSprings, fit_exact};
 use crate::material::{Energy, Material};
-use crate::model::{Network, fibre_springs, patch_springs};
+use crate::model::{Network, fibre_springs_of_regions, patch_springs};
 use crate::positive::{PositiveFit, Route, nearest_positive};
 use crate::springs::Springs;
 use crate::study::fits::fitted::{Fitted, FittedKind};
@@ -33,21 +33,23 @@ impl FitKind for ExactRecipe {
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let (mesh, material) = (task.mesh, task.material);
-        let law = task.reference.large.map(|large| &large.energy);
-        let fit = self.resolve(law)?;
+        let laws = task.reference.large.map(|large| &large.laws);
+        let fit = self.resolve_all(laws)?;
+        let materials = material.materials()?;
         let start = Instant::now();
         let mut patches = Vec::new();
         if fit.volume == VolumeSprings::Patches {
             patches = patch_springs(mesh, material, &fit, task.reference.held)?;
         }
         // A fit that names an energy is that of a body without fibres.
-        let fibres = law.filter(|_| self.energy.is_none()).map(|law| fibre_springs(mesh, material, law));
+        let fibres = laws.filter(|_| self.energy.is_none()).map(|laws| fibre_springs_of_regions(mesh, material, laws));
         let fibres = fibres.transpose()?.unwrap_or_default();
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
-        for block in &mesh.blocks {
+        for (index, block) in mesh.blocks.iter().enumerate() {
+            let of_block = materials.block(index);
             let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
-            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut watch)?);
+            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, &fit, &mut watch)?);
             done += block.cells().len();
         }
         let mut seconds = start.elapsed().as_secs_f64();
@@ -57,7 +59,8 @@ impl FitKind for ExactRecipe {
         let mut outcome = ExactOutcome {
             energy: fit.energy,
             volume: fit.volume,
-            is_other: law.is_some_and(|law| self.energy.is_some() && !is_all_of(&fit.energy, law)),
+            is_other: laws
+                .is_some_and(|laws| self.energy.is_some() && !laws.laws().all(|law| is_all_of(&fit.energy, law))),
             patches: patches.len(),
             positive: None,
         };

@@ -2,7 +2,7 @@
 
 use super::positive::positive_note;
 use crate::fit::{ExactEnergy, VolumeSprings};
-use crate::material::Moduli;
+use crate::material::{CellMap, Hooke, Moduli};
 use crate::positive::PositiveOutcome;
 
 /// λ/μ at Poisson's ratio 1/3.
@@ -27,12 +27,16 @@ pub struct ExactOutcome {
 impl ExactOutcome {
     /// The moduli of finite elements that do not lock. For nearly incompressible materials networks with volume springs
     /// on cells or patches are softer than finite elements with the moduli of the material, and should be.
-    pub fn compared(&self, moduli: Moduli) -> Moduli {
+    pub fn compared(&self, moduli: CellMap<Hooke>) -> CellMap<Hooke> {
         match self.volume {
             VolumeSprings::Points => moduli,
-            VolumeSprings::Cells | VolumeSprings::Patches => {
-                Moduli { lambda: moduli.lambda.min(UNLOCKED * moduli.mu), ..moduli }
-            }
+            VolumeSprings::Cells | VolumeSprings::Patches => moduli.map(|hooke| match hooke {
+                Hooke::Isotropic(moduli) => {
+                    let lambda = moduli.lambda.min(UNLOCKED * moduli.mu);
+                    Hooke::Isotropic(Moduli { lambda, ..*moduli })
+                }
+                Hooke::Anisotropic(_) => hooke.clone(),
+            }),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
-use crate::material::{Energy, Material};
+use crate::material::{Energy, EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::patch_springs;
 use crate::positive::PositiveFit;
@@ -19,6 +19,24 @@ pub struct ExactRecipe {
 }
 
 impl ExactRecipe {
+    /// The exact network of a body with these laws, if the material has some.
+    ///
+    /// # Errors
+    /// A law is not an energy of springs, and no other energy is named; or the laws of two regions are two energies.
+    pub fn resolve_all(&self, laws: Option<&EnergyMap>) -> Result<ExactFit> {
+        let Some(laws) = laws else { return self.resolve(None) };
+        let first = self.resolve(Some(laws.first()))?;
+        for law in laws.laws().skip(1) {
+            let other = self.resolve(Some(law))?;
+            if other != first {
+                let expected = "one energy of springs in all regions";
+                let found = format!("\"{}\" and \"{}\"", first.energy.name(), other.energy.name());
+                return Err(Error::expected("objective", expected, found).of_kind(ErrorKind::Unsupported));
+            }
+        }
+        Ok(first)
+    }
+
     /// The exact network of a body with this law, if the material has one.
     ///
     /// # Errors
@@ -42,13 +60,14 @@ impl ExactRecipe {
 
     /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
     /// patches are constructed.
-    pub fn serves(&self, law: Option<&Energy>, mesh: &Mesh, material: Material) -> bool {
-        let Ok(fit) = self.resolve(law) else { return false };
-        let block = |block: &CellBlock| {
+    pub fn serves(&self, laws: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> bool {
+        let (Ok(fit), Ok(materials)) = (self.resolve_all(laws), material.materials()) else { return false };
+        let block = |(index, block): (usize, &CellBlock)| {
+            let material = *materials.at(index, 0);
             let cell = &block.connectivity[..block.element.nodes()];
             fit_exact(&block.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
         };
         let patches = fit.volume == VolumeSprings::Patches;
-        mesh.blocks.iter().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
+        mesh.blocks.iter().enumerate().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
     }
 }

@@ -22,20 +22,23 @@ impl FitKind for Method {
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let start = Instant::now();
         let of_method = |e: Error| e.placed(|e| Error::at("objective", e.to_string()));
+        let materials = task.material.materials()?;
         let mut unmet: Option<Unmet> = None;
-        for block in &task.mesh.blocks {
+        for (index, block) in task.mesh.blocks.iter().enumerate() {
             let named = task.springs.iter().flat_map(|springs| block.element.select_groups(Some(springs)));
             if let Some(group) = named.flatten().find(|group| group.kind != SpringKind::Length) {
                 let expected = format!("groups of length springs, beside which {} adds its own", self.name());
                 return Err(Error::expected("springs", expected, format!("\"{}\"", group.name)));
             }
             let (points, cells) = (&task.mesh.points, &block.connectivity);
-            let own = published::unmet(*self, &block.element, points, cells, task.material).map_err(of_method)?;
+            let material = materials.block(index);
+            let own = published::unmet(*self, &block.element, points, cells, material).map_err(of_method)?;
             unmet = Some(unmet.unwrap_or_default().and(own));
         }
-        let cells = task.each_block(progress, |block, springs, _| {
+        let cells = task.each_block(progress, |index, block, springs, _| {
+            let material = materials.block(index);
             let (points, cells) = (&task.mesh.points, &block.connectivity);
-            published::fit(*self, &block.element, springs, points, cells, task.material).map_err(of_method)
+            published::fit(*self, &block.element, springs, points, cells, material).map_err(of_method)
         })?;
         let kind = FittedKind::Published(PublishedOutcome { method: *self, unmet: unmet.unwrap_or_default() });
         Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))

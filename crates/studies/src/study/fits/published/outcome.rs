@@ -1,7 +1,7 @@
 //! The assumptions of a published formula that a body does not meet.
 
 use crate::fit::published::{Method, Unmet};
-use crate::material::Material;
+use crate::material::MaterialMap;
 
 /// The assumptions of the method that are not met.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,14 +15,14 @@ pub struct PublishedOutcome {
 
 impl PublishedOutcome {
     /// Notes for the reader, one sentence each. The body has `cells` cells of `material`.
-    pub fn notes(&self, cells: usize, material: Material) -> Vec<String> {
+    pub fn notes(&self, cells: usize, material: &MaterialMap) -> Vec<String> {
         let unmet = &self.unmet;
-        let ratio = unmet.poisson.map(|assumed| {
-            format!(
-                "{} assumes Poisson's ratio {assumed:.4}, and the material has {}",
-                self.method.name(),
-                material.poisson()
-            )
+        let name = self.method.name();
+        let ratio = unmet.poisson.map(|assumed| match material.uniform() {
+            Some(material) => {
+                format!("{name} assumes Poisson's ratio {assumed:.4}, and the material has {}", material.poisson())
+            }
+            None => format!("{name} assumes Poisson's ratio {assumed:.4}, and that of some cells is another"),
         });
         let shape = (unmet.cells > 0).then(|| {
             let percent = 100.0 * unmet.deviation;

@@ -57,7 +57,8 @@ impl FitKind for Fit {
 /// The elements have no such spring group, or the objective does not apply to them.
 pub fn fit_at_rest(fit: &Fit, task: &Task, progress: &mut Progress) -> Result<Vec<CellFits>> {
     let moduli = task.material.moduli();
-    task.each_block(progress, |block, springs, progress| {
+    task.each_block(progress, |index, block, springs, progress| {
+        let moduli = moduli.block(index);
         fit_cells(&block.element, springs, &task.mesh.points, &block.connectivity, moduli, fit, progress)
     })
 }

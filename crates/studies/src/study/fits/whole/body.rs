@@ -5,7 +5,7 @@ use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
-use crate::material::Material;
+use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Entries, Network, Support, check_body, finite_elements, unheld_bodies};
 use crate::solve::{Factor, Newton, System, lowest_modes};
@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 /// The body to which the whole-object fits of a scene are fitted.
 pub struct WholeBody<'a> {
     pub(super) mesh: &'a Mesh,
-    pub(super) material: Material,
+    pub(super) material: MaterialMap,
     /// The support of the `[[fix]]` entries.
     pub(super) support: &'a Support,
     pub(in crate::study) cases: &'a [Case],
@@ -40,7 +40,13 @@ pub struct WholeBody<'a> {
 
 impl<'a> WholeBody<'a> {
     /// A body at small deformation, without loads of a scene.
-    pub fn new(mesh: &'a Mesh, material: Material, support: &'a Support, controls: &'a Controls) -> WholeBody<'a> {
+    pub fn new(
+        mesh: &'a Mesh,
+        material: impl Into<MaterialMap>,
+        support: &'a Support,
+        controls: &'a Controls,
+    ) -> WholeBody<'a> {
+        let material = material.into();
         let (cases, displacements, newton, masses, solved, fine, entries, held) = Default::default();
         WholeBody {
             mesh,

@@ -51,7 +51,7 @@ impl WholeBody<'_> {
         fitted: &Network,
         progress: &mut Progress,
     ) -> Result<Vec<HeldOut>> {
-        let thickness = self.material.thickness();
+        let thickness = &self.material.thicknesses();
         let mut supports: Vec<_> =
             self.supports("supports", &recipe.supports)?.into_iter().map(|held| (held, true)).collect();
         if !recipe.validation_supports.is_empty() {

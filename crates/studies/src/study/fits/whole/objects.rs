@@ -41,7 +41,7 @@ impl WholeBody<'_> {
     pub(super) fn springs(&self, recipe: &WholeRecipe, fits: &[CellFits], network: &Network) -> Result<Object<'_>> {
         let unknowns = match recipe.unknowns {
             Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
-            Sharing::Region => Unknowns::per_region(self.mesh, fits, network)?,
+            Sharing::Region => Unknowns::per_region(self.mesh, self.material.region(), fits, network)?,
             Sharing::Element => Unknowns::per_element(self.mesh, fits, network)?,
             Sharing::Spring | Sharing::Moduli | Sharing::RegionModuli | Sharing::BodyModuli => {
                 Unknowns::per_spring(network)
@@ -53,7 +53,7 @@ impl WholeBody<'_> {
     /// The moduli of the exact network. Those of cells or regions start from those of the body that fit best.
     pub(super) fn moduli(&self, recipe: &WholeRecipe, held: &[bool], wanted: &Wanted) -> Result<Object<'_>> {
         let volume = if let Start::Exact(volume) = recipe.start { volume } else { VolumeSprings::default() };
-        let parts = ModuliParts::new(self.mesh, self.material, volume, held).map_err(|e| e.at_key("start"))?;
+        let parts = ModuliParts::new(self.mesh, self.material.clone(), volume, held).map_err(|e| e.at_key("start"))?;
         let of_body = parts.unknowns(ModuliSharing::Body);
         let sharing = recipe.unknowns.moduli().unwrap_or(ModuliSharing::Element);
         let points = &self.mesh.points;

@@ -44,7 +44,7 @@ impl WholeBody<'_> {
         if self.fine.is_some() && recipe.frequencies > 0 {
             return Err(Error::at("frequencies", "does not go with [reference], whose body has others"));
         }
-        let thickness = self.material.thickness();
+        let thickness = &self.material.thicknesses();
         let is_varied = self.is_varied(recipe);
         let supports = self.supports("supports", &recipe.supports)?;
         let make = |mesh: &Mesh, support: &Support| {

@@ -1,0 +1,71 @@
+//! The energies of a body at large deformation.
+
+use super::{CellMap, Energy, State};
+use std::sync::Arc;
+
+/// The energy and the state of each cell of a body: one for each region. Copies share the values.
+#[derive(Debug, Clone)]
+pub struct EnergyMap {
+    laws: Arc<[(Energy, State)]>,
+    /// The law of each cell.
+    of: CellMap<usize>,
+}
+
+impl EnergyMap {
+    /// The laws of the regions of a body, and the region of each cell. A region without a law has that of the first.
+    ///
+    /// `None` if there is no law.
+    pub fn new(laws: Vec<(Energy, State)>, of: CellMap<usize>) -> Option<EnergyMap> {
+        let count = laws.len();
+        (count > 0).then(|| EnergyMap { laws: laws.into(), of: of.map(|law| if *law < count { *law } else { 0 }) })
+    }
+
+    /// The laws, each once.
+    pub fn laws(&self) -> impl Iterator<Item = &Energy> {
+        self.laws.iter().map(|(energy, _)| energy)
+    }
+
+    /// The law of the first region.
+    pub fn first(&self) -> &Energy {
+        &self.laws[0].0
+    }
+
+    /// The law of all cells, if they have the same.
+    pub fn uniform(&self) -> Option<(&Energy, State)> {
+        let (energy, state) = &self.laws[*self.of.uniform()?];
+        Some((energy, *state))
+    }
+
+    /// The law of a cell and its state.
+    pub fn at(&self, block: usize, cell: usize) -> (&Energy, State) {
+        let (energy, state) = &self.laws[*self.of.at(block, cell)];
+        (energy, *state)
+    }
+
+    /// The index of the law of each cell, in the order of [`EnergyMap::laws`].
+    pub fn index(&self) -> &CellMap<usize> {
+        &self.of
+    }
+
+    /// The titles of the laws, each once.
+    pub fn title(&self) -> String {
+        let mut titles: Vec<&str> = Vec::new();
+        for energy in self.laws() {
+            if !titles.contains(&energy.title.as_str()) {
+                titles.push(&energy.title);
+            }
+        }
+        titles.join(", ")
+    }
+
+    /// The laws of some of the cells, which are given by block.
+    pub fn of_some(&self, cells: &[Vec<usize>]) -> EnergyMap {
+        EnergyMap { laws: self.laws.clone(), of: self.of.of_cells(cells) }
+    }
+}
+
+impl From<(Energy, State)> for EnergyMap {
+    fn from(law: (Energy, State)) -> EnergyMap {
+        EnergyMap { laws: [law].into(), of: CellMap::Uniform(0) }
+    }
+}

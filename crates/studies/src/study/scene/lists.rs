@@ -1,0 +1,41 @@
+//! The fits and loads of a scene, each with a name of its own, and what fits require of the rest.
+
+use super::load::LoadCase;
+use super::material::MaterialEntries;
+use crate::error::{Error, Result};
+use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
+use crate::study::own_name::expect_own_name;
+use std::path::Path;
+
+/// The fits of all `[[fit]]` entries; files are relative to `folder`.
+pub fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
+    let mut fits: Vec<NamedFit> = Vec::new();
+    for (i, entry) in entries.iter().enumerate() {
+        for fit in entry.fits(folder).map_err(|e| e.placed(|e| e.under(format!("fit[{i}]"))))? {
+            let key = format!("fit[{i}].name");
+            if fit.name.trim().is_empty() {
+                return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
+            }
+            expect_own_name(&key, &fit.name, fits.iter().map(|fit| fit.name.as_str()))?;
+            fits.push(fit.of_entry(i));
+        }
+    }
+    Ok(fits)
+}
+
+/// Checks that the material and the loads are those that the fits require.
+pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCase]) -> Result<()> {
+    let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
+    let has_law = material.first().law.is_some();
+    let facts = SceneFacts { law: has_law, density: material.has_density(), loads: &names };
+    for fit in fits {
+        let place = fit.place();
+        let lawless = fit.recipe.sampled().is_some_and(|recipe| recipe.law.is_none());
+        if lawless && !has_law {
+            let expected = format!("the energy whose forces {place} samples, such as \"neo-hookean\"");
+            return Err(Error::expected("material.law", expected, "none"));
+        }
+        fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
+    }
+    Ok(())
+}

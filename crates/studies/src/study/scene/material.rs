@@ -1,0 +1,282 @@
+//! The `[material]` or the `[[material]]` of a scene.
+
+use super::anisotropic::{Axis, AxisEntry, CubicEntry, OrthotropicEntry, TransverseEntry, of_rows};
+use super::distribution::{self, Distribution};
+use super::part::Part;
+use super::value::{self, Pressure};
+use crate::error::{Error, Result};
+use crate::material::{Anisotropy, Material, Plane};
+use crate::range;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use std::borrow::Cow;
+use std::fmt;
+
+/// The material of a body, or of one of its regions.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialEntry {
+    /// The group of cells that have the material.
+    pub group: Option<String>,
+    /// The condition on the nodes of the cells that have the material.
+    #[serde(rename = "where")]
+    pub condition: Option<String>,
+    /// Young's modulus, Pa.
+    #[serde(default, deserialize_with = "distribution::optional_pressure")]
+    #[schemars(schema_with = "distribution::schema")]
+    pub young: Option<Distribution>,
+    /// Poisson's ratio.
+    #[serde(default, deserialize_with = "distribution::optional_ratio")]
+    #[schemars(schema_with = "distribution::schema")]
+    pub poisson: Option<Distribution>,
+    /// In place of Young's modulus and Poisson's ratio.
+    pub orthotropic: Option<OrthotropicEntry>,
+    /// In place of Young's modulus and Poisson's ratio.
+    #[serde(rename = "transversely-isotropic")]
+    pub transverse: Option<TransverseEntry>,
+    /// In place of Young's modulus and Poisson's ratio.
+    pub cubic: Option<CubicEntry>,
+    /// In place of Young's modulus and Poisson's ratio: rows in the order xx, yy, zz, yz, xz, xy, Pa.
+    pub stiffness: Option<Vec<Vec<Pressure>>>,
+    /// The first two axes of the material; x and y if absent.
+    pub axes: Option<Vec<AxisEntry>>,
+    pub plane: Option<Plane>,
+    /// The thickness, m.
+    #[serde(default, deserialize_with = "distribution::optional_length")]
+    #[schemars(schema_with = "distribution::schema")]
+    pub thickness: Option<Distribution>,
+    /// The cross-section of rods, m².
+    #[serde(default, deserialize_with = "value::optional_area")]
+    #[schemars(schema_with = "value::quantity")]
+    pub area: Option<f64>,
+    /// The density, kg/m³.
+    #[serde(default, deserialize_with = "distribution::optional_density")]
+    #[schemars(schema_with = "distribution::schema")]
+    pub density: Option<Distribution>,
+    /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
+    pub law: Option<String>,
+}
+
+/// One material for the whole body, or one for each region.
+#[derive(Debug, Clone)]
+pub struct MaterialEntries {
+    pub all: Vec<MaterialEntry>,
+    /// Whether they are written as a list.
+    pub is_list: bool,
+}
+
+impl<'de> Deserialize<'de> for MaterialEntries {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<MaterialEntries, D::Error> {
+        struct OneOrMany;
+        impl<'de> Visitor<'de> for OneOrMany {
+            type Value = MaterialEntries;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a table [material] or tables [[material]]")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<MaterialEntries, A::Error> {
+                let one = MaterialEntry::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(MaterialEntries { all: vec![one], is_list: false })
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<MaterialEntries, A::Error> {
+                let all = Deserialize::deserialize(SeqAccessDeserializer::new(list))?;
+                Ok(MaterialEntries { all, is_list: true })
+            }
+        }
+        deserializer.deserialize_any(OneOrMany)
+    }
+}
+
+impl JsonSchema for MaterialEntries {
+    fn schema_name() -> Cow<'static, str> {
+        "MaterialEntries".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<MaterialEntry>();
+        json_schema!({
+            "description": "One material for the whole body, or one for each region.",
+            "anyOf": [one, { "type": "array", "items": one }],
+        })
+    }
+}
+
+impl MaterialEntry {
+    /// The part of the mesh that has the material; the rest of the mesh if the entry names none.
+    ///
+    /// # Errors
+    /// Two parts are given, or the condition is wrong.
+    pub fn part(&self) -> Result<Part> {
+        Part::optional(self.group.clone(), self.condition.clone())
+    }
+
+    /// The name of the region in reports.
+    pub fn name(&self) -> String {
+        self.group.clone().or_else(|| self.condition.clone()).unwrap_or_else(|| "rest".into())
+    }
+
+    /// The quantities that may differ from place to place, with their keys.
+    pub fn distributions(&self) -> impl Iterator<Item = (&'static str, &Distribution)> {
+        let all = [
+            ("young", &self.young),
+            ("poisson", &self.poisson),
+            ("thickness", &self.thickness),
+            ("density", &self.density),
+        ];
+        all.into_iter().filter_map(|(key, values)| Some((key, values.as_ref()?)))
+    }
+
+    /// The anisotropic law in the axes of the material; `None` if the material is isotropic.
+    ///
+    /// # Errors
+    /// Constants are missing, those of two laws are given, or the stiffness is not positive definite.
+    pub fn anisotropy(&self) -> Result<Option<Anisotropy>> {
+        let given = [
+            ("orthotropic", self.orthotropic.as_ref().map(OrthotropicEntry::anisotropy)),
+            ("transversely-isotropic", self.transverse.as_ref().map(TransverseEntry::anisotropy)),
+            ("cubic", self.cubic.as_ref().map(CubicEntry::anisotropy)),
+            ("stiffness", self.stiffness.as_deref().map(of_rows)),
+        ];
+        let mut found: Option<(&str, Anisotropy)> = None;
+        for (key, law) in given {
+            let Some(law) = law else { continue };
+            // A stiffness that is wrong has its own name as its key.
+            let law = law.map_err(|e| if e.key() == Some("stiffness") { e.at_key(key) } else { e.under(key) })?;
+            if let Some((other, _)) = found.replace((key, law)) {
+                return Err(Error::expected(key, "one law", format!("\"{other}\" as well")));
+            }
+        }
+        let isotropic = [("young", self.young.is_some()), ("poisson", self.poisson.is_some())];
+        if let Some((law, _)) = &found {
+            if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| *given) {
+                return Err(Error::at(key, format!("belongs to isotropic materials, found with \"{law}\"")));
+            }
+            if self.law.is_some() {
+                return Err(Error::at("law", format!("belongs to isotropic materials, found with \"{law}\"")));
+            }
+        } else {
+            if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| !given) {
+                return Err(Error::new(format!("missing field \"{key}\"")));
+            }
+            if self.axes.is_some() {
+                return Err(Error::at("axes", "belongs to anisotropic materials, found an isotropic one"));
+            }
+        }
+        Ok(found.map(|(_, law)| law))
+    }
+
+    /// The axes of the material; x and y if the entry names none.
+    ///
+    /// # Errors
+    /// There are not two, or one of a material with one axis of symmetry, or a vector is wrong.
+    pub fn axes(&self) -> Result<Vec<Axis>> {
+        let Some(axes) = &self.axes else { return Ok(Vec::new()) };
+        let fewest = if self.transverse.is_some() { 1 } else { 2 };
+        if !(fewest..=2).contains(&axes.len()) {
+            let expected = if fewest == 1 { "one or two vectors" } else { "two vectors" };
+            return Err(Error::expected("axes", expected, axes.len()));
+        }
+        axes.iter().enumerate().map(|(i, axis)| axis.check().map_err(|e| e.under(format!("axes[{i}]")))).collect()
+    }
+
+    /// Whether a number differs from cell to cell. Masses may.
+    fn varies(&self) -> bool {
+        self.distributions().any(|(_, values)| values.number().is_none())
+    }
+
+    /// The checks that do not depend on the mesh.
+    fn check(&self) -> Result<()> {
+        self.part()?;
+        let is_anisotropic = self.anisotropy()?.is_some();
+        self.axes()?;
+        for (key, distribution) in self.distributions() {
+            if let distribution::Source::Data(data) = &distribution.source {
+                data.interpolation().map_err(|e| e.under(key))?;
+                range::positive("scale", data.scale, "metres per unit of the file").map_err(|e| e.under(key))?;
+            }
+        }
+        let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
+        // Plane stress admits larger ν than a solid; a solid is checked again when the mesh is known.
+        let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
+        // A value that varies is checked in each cell.
+        let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
+        let young = number(&self.young).unwrap_or(1.0);
+        let poisson = number(&self.poisson).unwrap_or(0.0);
+        if is_anisotropic && self.area.is_some() {
+            return Err(Error::at("area", "belongs to rods, which are isotropic"));
+        }
+        let thickness = self.thickness.as_ref().and_then(Distribution::number);
+        Material::for_body(2, young, poisson, state, thickness)?;
+        let density = self.density.as_ref().and_then(Distribution::number);
+        density.map_or(Ok(()), |density| range::positive("density", density, "kg/m³").map(|_| ()))
+    }
+}
+
+impl MaterialEntries {
+    /// The key of an entry.
+    pub fn key(&self, entry: usize) -> String {
+        if self.is_list { format!("material[{entry}]") } else { "material".into() }
+    }
+
+    /// The first entry; there is one after [`MaterialEntries::check`].
+    pub fn first(&self) -> &MaterialEntry {
+        &self.all[0]
+    }
+
+    /// Whether all entries have a density.
+    pub fn has_density(&self) -> bool {
+        self.all.iter().all(|entry| entry.density.is_some())
+    }
+
+    /// Whether the material is the same in all cells.
+    pub fn is_uniform(&self) -> bool {
+        let first = self.first();
+        self.all.len() == 1 && !first.varies() && first.young.is_some()
+    }
+
+    /// The checks that do not depend on the mesh.
+    ///
+    /// # Errors
+    /// There is no entry, several have no part of the mesh, they do not go together, or a number is out of its range.
+    pub fn check(&self) -> Result<()> {
+        if self.all.is_empty() {
+            return Err(Error::expected("material", "at least one [[material]]", "none"));
+        }
+        let mut rest = None;
+        for (i, entry) in self.all.iter().enumerate() {
+            entry.check().map_err(|e| e.under(self.key(i)))?;
+            let first = self.first();
+            if entry.part()? == Part::Everything
+                && let Some(other) = rest.replace(i)
+            {
+                let expected = format!("\"group\" or \"where\": {} has what is left of the body", self.key(other));
+                return Err(Error::expected(self.key(i), expected, "neither"));
+            }
+            let same = |key: &str, is_same: bool| match is_same {
+                true => Ok(()),
+                false => {
+                    let expected = format!("that of {}", self.key(0));
+                    Err(Error::expected(format!("{}.{key}", self.key(i)), expected, "another"))
+                }
+            };
+            same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
+            if entry.law.is_some() != first.law.is_some() {
+                let expected = "a law in every [[material]] or in none";
+                return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));
+            }
+            if entry.law.is_some() && entry.varies() {
+                let expected = "a law with numbers that are the same in all cells of its region";
+                return Err(Error::expected(format!("{}.law", self.key(i)), expected, "some that vary"));
+            }
+            if entry.density.is_some() != first.density.is_some() {
+                let expected = "a density in every [[material]] or in none";
+                return Err(Error::expected(format!("{}.density", self.key(i)), expected, "one in some"));
+            }
+        }
+        Ok(())
+    }
+}
