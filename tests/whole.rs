@@ -201,7 +201,7 @@ fn moduli_of_two_halves_come_back() {
         let u = system.solve(&factor, &load.forces).0;
         Target::new(load.name, body.support.clone(), load.forces, u)
     };
-    let loads = varied_loads(&body.mesh, &body.support, &CellMap::Uniform(1.0), 24, 5);
+    let loads = varied_loads(&body.mesh, &body.support, 1.0, 24, 5);
     let trained: Vec<Target> = loads.into_iter().map(moved).collect();
     let wanted = Wanted { trained, ..Wanted::default() };
     let settings = WholeSettings {
@@ -241,7 +241,7 @@ fn intervals_of_moduli_hold_the_truth() {
     let network = object.network(&truth);
     let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
     let factor = system.factorize().unwrap().unwrap();
-    let loads = varied_loads(&body.mesh, &body.support, &CellMap::Uniform(1.0), 6, 5);
+    let loads = varied_loads(&body.mesh, &body.support, 1.0, 6, 5);
     let exact: Vec<Target> = loads
         .into_iter()
         .map(|load| {

@@ -114,7 +114,14 @@ pub fn random_loads(
 
 /// "pressure" on the whole boundary, then "patch 1", …: tractions of random direction around a random place of the boundary, and
 /// "field 1", …: body forces that are linear in the position. Every third is a field. The same seed always gives the same loads.
-pub fn varied_loads(mesh: &Mesh, support: &Support, thickness: &CellMap<f64>, count: usize, seed: u64) -> Vec<NodalLoad> {
+pub fn varied_loads(
+    mesh: &Mesh,
+    support: &Support,
+    thickness: impl Into<CellMap<f64>>,
+    count: usize,
+    seed: u64,
+) -> Vec<NodalLoad> {
+    let thickness = &thickness.into();
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);
