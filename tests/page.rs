@@ -103,11 +103,16 @@ fn no_script_writes_html() {
 fn a_run_without_loads_and_one_of_a_single_spring_have_pages() {
     let bare = record(&page(&outcome(&[PLANE, FIT].concat())));
     assert_eq!(bare["view"]["loads"].as_array().unwrap().len(), 0);
-    let rod =
-        "[mesh]\nbox = { element = \"bar2\", size = [1], cells = [1] }\n[material]\nyoung = 1\npoisson = 0\narea = 1\n";
-    let single = record(&page(&outcome(&[rod, FIT].concat())));
+    let folder = tempfile::tempdir().unwrap();
+    let nodes = "$Nodes\n2\n1 0 0 0\n2 1 0 0\n$EndNodes\n$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n";
+    let mesh = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{nodes}");
+    std::fs::write(folder.path().join("rod.msh"), mesh).unwrap();
+    let rod = "[mesh]\nfile = \"rod.msh\"\n[material]\nyoung = 1\npoisson = 0\n";
+    let scene = Scene::parse(&[rod, FIT].concat(), &folder.path().join("scene.toml")).unwrap();
+    let single = record(&page(&run(&scene, &mut |_| {}).unwrap()));
     assert_eq!(single["report"]["fits"][0]["springs"], 1);
-    assert_eq!(single["view"]["dimension"], 1);
+    // One edge of one cell: two places of 32 bits in base64.
+    assert_eq!(single["view"]["edges"], "AAAAAAEAAAA=");
 }
 
 #[test]

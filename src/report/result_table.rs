@@ -118,7 +118,7 @@ fn fits(report: &Report) -> ResultTable {
         numbers("2-norm, mean", ""),
         numbers("max", ""),
         numbers("fit", "µs/element"),
-        numbers("fit", "s"),
+        numbers("all", "ms"),
     ];
     let row = |fit: &FitRecord| {
         let share = |value| number(value, Fixed(4));
@@ -132,7 +132,7 @@ fn fits(report: &Report) -> ResultTable {
             share(fit.relative_spectral.mean),
             share(fit.relative_spectral.max),
             number(Some(1e6 * fit.seconds_per_element), Fixed(2)),
-            number(Some(fit.seconds), Significant(3)),
+            number(Some(1e3 * fit.seconds), Significant(3)),
         ]
     };
     ResultTable::new(

@@ -1,5 +1,8 @@
 // The body in a state: where its points are, and what its springs show. No drawing.
 
+/** The slider goes to so many times the factor by which the largest displacement is a sixth of the body. */
+const MOST_FACTOR = 1.5;
+
 class Body {
   constructor(view) {
     this.view = view;
@@ -8,7 +11,26 @@ class Body {
     this.size = Math.max(...this.box.map(([a, b]) => b - a)) || 1;
     this.cases = view.loads.map((load, i) => ({ name: load.name, load: i }));
     if (view.motion) this.cases.push({ name: "motion", isMotion: true });
-    this.cases.forEach((own) => { own.largest = this.largest(own); });
+    for (const own of this.cases) {
+      [own.largest, own.peak] = this.largest(own);
+      own.factor = own.largest > 0 ? Math.max(1, Number((this.size / 6 / own.largest).toPrecision(2))) : 1;
+      own.room = this.reach(own);
+    }
+  }
+
+  /** The box around the body at rest and in a case as far as the slider goes; a network that flies away may leave it. */
+  reach(own) {
+    const found = this.box.map((range) => [...range]);
+    const margin = 0.04 * this.size;
+    const states = own?.isMotion ? this.view.motion.times.keys() : own ? [0] : [];
+    for (const state of states) {
+      for (const network of [null, ...this.view.networks.keys()]) {
+        const u = this.displacement(own, network, state);
+        if (!u || !(longest(u) <= 2 * own.largest)) continue;
+        bounds(this.moved(u, MOST_FACTOR * own.factor)).forEach(([a, b], k) => { found[k] = [Math.min(found[k][0], a), Math.max(found[k][1], b)]; });
+      }
+    }
+    return found.map(([a, b]) => [a - margin, b + margin]);
   }
 
   /** The displacements of a model, `null` for the finite elements, in a case and state; null where there are none. */
@@ -18,16 +40,12 @@ class Body {
     return this.view.motion.models.find((model) => model.network === network)?.states[state] ?? null;
   }
 
-  /** The largest displacement of a case in all its states. */
+  /** The largest displacement of the finite elements in a case, and the state that has it; of the first model where they do not move. */
   largest(own) {
-    const reference = own.isMotion ? this.view.motion.models[0].states : [this.view.loads[own.load].displacement];
-    return Math.max(0, ...reference.map((u) => { let most = 0; for (let p = 0; p < this.count; p++) most = Math.max(most, length(u, p)); return most; }));
-  }
-
-  /** The factor by which the largest displacement is drawn a sixth of the body; 1 where it is larger. */
-  factor(own) {
-    if (!own || !(own.largest > 0)) return 1;
-    return Math.max(1, Number((this.size / 6 / own.largest).toPrecision(2)));
+    const states = own.isMotion ? this.view.motion.models[0].states : [this.view.loads[own.load].displacement];
+    const found = states.map(longest);
+    const most = found.filter(Number.isFinite).reduce((a, b) => Math.max(a, b), 0);
+    return [most, Math.max(0, found.indexOf(most))];
   }
 
   moved(u, factor) {
@@ -51,6 +69,13 @@ class Body {
     for (let s = 0; s < found.length; s++) found[s] = (at(ends[2 * s]) + at(ends[2 * s + 1])) / 2;
     return found;
   }
+}
+
+/** The largest of the vectors. */
+function longest(u) {
+  let most = 0;
+  for (let p = 0; p < u.length / 3; p++) most = Math.max(most, length(u, p));
+  return most;
 }
 
 function length(u, p) {

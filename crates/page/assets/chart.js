@@ -23,7 +23,7 @@ function layout(extra = {}) {
   };
 }
 
-const CONFIG = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["lasso2d", "select2d", "sendDataToCloud"], toImageButtonOptions: { format: "svg" } };
+const CONFIG = { displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "sendDataToCloud"], toImageButtonOptions: { format: "svg" } };
 
 /**
  * Adds a figure. `draw` returns the traces and the layout, and is called again when the theme changes, or what it draws does.
@@ -39,6 +39,8 @@ function addChart(name, title, draw, tools = []) {
   };
   show();
   theme.changed.push(show);
+  // Figures beside it, and the reader's window, change its place.
+  new ResizeObserver(() => Plotly.Plots.resize(plot)).observe(plot);
   return show;
 }
 

@@ -13,6 +13,9 @@ class Controls {
     this.build();
     await this.view.start();
     byId("view").addEventListener("keydown", (event) => this.key(event));
+    byId("view").addEventListener("pointerdown", () => this.turning(true), true);
+    addEventListener("pointerup", () => this.turning(false));
+    byId("view").addEventListener("wheel", () => this.turningForAWhile(), { capture: true, passive: true });
     this.form.addEventListener("submit", (event) => event.preventDefault());
     this.say();
   }
@@ -31,7 +34,7 @@ class Controls {
     this.factor = element("output", { for: "deformation" });
     const deformation = element("label", { class: "field", for: "deformation" }, element("span", {}, "Deformation ", this.factor), this.slider);
     const motion = body.view.motion;
-    this.time = element("input", { type: "range", id: "time", min: 0, max: Math.max(0, (motion?.times.length ?? 1) - 1), value: 0, oninput: () => { this.stop(); this.seek(Number(this.time.value)); }, onchange: () => this.settle() });
+    this.time = element("input", { type: "range", id: "time", min: 0, max: Math.max(0, (motion?.times.length ?? 1) - 1), value: this.state.time, oninput: () => { this.stop(); this.state.fresh = false; this.seek(Number(this.time.value)); }, onchange: () => this.settle() });
     this.clock = element("output", { for: "time" });
     this.button = element("button", { type: "button", id: "play", onclick: () => this.play() }, "▶ Play");
     this.motion = element("div", { class: "motion" }, element("label", { class: "field", for: "time" }, element("span", {}, "Time ", this.clock), this.time), this.button);
@@ -81,7 +84,7 @@ class Controls {
     if (!network) words.push("The run has no network.");
     else if (own && body.displacement(own, state.network, state.time) === null) words.push(`${network.name} has no displacements ${own.isMotion ? "at this time" : "under this load"}: it is shown undeformed.`);
     if (network && !network.constants.length) words.push("No spring of this network joins two points.");
-    if (network && view.drawn && view.drawn.length < network.constants.length && !state.moving) words.push(`Drawn are ${view.drawn.length} of ${network.constants.length} springs.`);
+    if (network && view.drawn && view.drawn.length < network.constants.length ) words.push(`While it moves, ${view.drawn.length} of ${network.constants.length} springs are drawn.`);
     if (!own) words.push("The run has no load, so nothing is deformed.");
     byId("view-state").textContent = words.join(" ");
   }
@@ -92,14 +95,15 @@ class Controls {
     state.case = place;
     state.time = 0;
     this.time.value = 0;
-    state.factor = body.factor(body.cases[place]);
+    state.factor = body.cases[place].factor;
     this.slider.value = 100;
-    if (body.cases[place].isMotion) this.seek(0); else this.show();
+    state.fresh = true;
+    if (body.cases[place].isMotion) this.seek(body.cases[place].peak); else this.show();
   }
 
   deform() {
     const own = this.body.cases[this.state.case];
-    this.state.factor = this.body.factor(own) * Number(this.slider.value) / 100;
+    this.state.factor = own.factor * Number(this.slider.value) / 100;
     this.state.moving = true;
     this.show();
   }
@@ -117,16 +121,32 @@ class Controls {
     return this.show();
   }
 
+  /** While the body is turned where drawing is slow, it has fewer springs. */
+  turning(begins) {
+    const { body, state, view } = this;
+    const network = body.view.networks[state.network];
+    if (!view.isSlow || this.playing || begins === state.moving || !(network?.constants.length > MOST_MOVING)) return;
+    state.moving = begins;
+    view.draw().then(() => this.say());
+  }
+
+  turningForAWhile() {
+    this.turning(true);
+    clearTimeout(this.pause);
+    this.pause = setTimeout(() => this.turning(false), 400);
+  }
+
   stop() {
     this.playing = false;
     this.button.textContent = "▶ Play";
   }
 
-  /** Once through, in ten seconds or as long as it takes; again from the start where it had ended. */
+  /** Once through, from the start where the reader has not chosen a time; in ten seconds or as long as it takes; */
   async play() {
     if (this.playing) { this.stop(); return this.settle(); }
     const last = this.body.view.motion.times.length - 1;
-    const start = this.state.time >= last ? 0 : this.state.time;
+    const start = this.state.time >= last || this.state.fresh ? 0 : this.state.time;
+    this.state.fresh = false;
     const span = 10000 * (last - start) / Math.max(1, last);
     this.playing = this.state.moving = true;
     this.button.textContent = "❚❚ Pause";
@@ -159,7 +179,7 @@ class Controls {
     const network = body.view.networks[state.network];
     const rows = [];
     const vector = (values, p) => Array.from({ length: body.view.dimension }, (_, k) => short(values[3 * p + k], 4)).join(", ");
-    if (picked === null) rows.push(["", "Click a spring or a point, or give its number."]);
+    if (picked === null) rows.push(["none", "click a spring or a point, or give its number"]);
     else if (picked.spring !== undefined) {
       const s = picked.spring;
       const mesh = body.view.meshes[network.mesh];
@@ -190,6 +210,7 @@ class Controls {
     const act = acts[event.key];
     if (!act) return;
     event.preventDefault();
+    if (event.key !== " ") this.turningForAWhile();
     act();
   }
 }

@@ -65,9 +65,9 @@ function solid(fit, young) {
   const n = (t, p) => [Math.sin(t) * Math.cos(p), Math.sin(t) * Math.sin(p), Math.cos(t)];
   const modulus = grid((t, p) => fit.of(n(t, p)) / factor);
   const at = (k) => modulus.map((row, i) => row.map((value, j) => value * n(Math.PI * i / (rows - 1), 2 * Math.PI * j / (columns - 1))[k]));
-  const largest = Math.max(...modulus.flat());
+  const [low, largest] = [Math.min(...modulus.flat()), Math.max(...modulus.flat())];
   const axis = (title) => ({ title: { text: title }, range: [-1.1 * largest, 1.1 * largest], gridcolor: theme.color("line"), showspikes: false, nticks: 5, backgroundcolor: "rgba(0,0,0,0)" });
-  const surface = { type: "surface", x: at(0), y: at(1), z: at(2), surfacecolor: modulus, colorscale: theme.ramp(), contours: { x: { highlight: false }, y: { highlight: false }, z: { highlight: false } }, colorbar: { title: { text: `E, ${prefix}Pa` }, thickness: 12, len: 0.8 }, lighting: { ambient: 0.8, diffuse: 0.5, specular: 0.05 }, hovertemplate: "E = %{surfacecolor:.4g}<extra></extra>" };
+  const surface = { type: "surface", x: at(0), y: at(1), z: at(2), surfacecolor: modulus, colorscale: theme.ramp(), contours: { x: { highlight: false }, y: { highlight: false }, z: { highlight: false } }, cmin: Math.min(low, 0.98 * largest), cmax: largest, colorbar: { title: { text: `E, ${prefix}Pa` }, thickness: 12, len: 0.8, tickformat: ".4~g", nticks: 6 }, lighting: { ambient: 0.8, diffuse: 0.5, specular: 0.05 }, hovertemplate: "E = %{surfacecolor:.4g}<extra></extra>" };
   return { data: [surface], layout: { ...layout({ margin: { l: 0, r: 0, t: 0, b: 0 } }), scene: { xaxis: axis("x"), yaxis: axis("y"), zaxis: axis("z"), aspectmode: "cube", camera: { eye: { x: 1.4, y: -1.4, z: 0.9 } } } } };
 }
 

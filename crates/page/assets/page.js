@@ -50,12 +50,11 @@ async function start() {
   if (!hasWebGL()) missing(byId("view"), "This browser has no WebGL, so the body is not drawn. Figures and tables are below.");
   else {
     const body = new Body(record.view);
-    const factor = body.factor(body.cases[0]);
+    const first = body.cases[0];
     const state = {
-      network: 0, case: 0, time: 0, color: "constant", factor, moving: false, picked: null,
+      network: 0, case: 0, time: first?.peak ?? 0, color: "constant", factor: first?.factor ?? 1, moving: false, fresh: true, picked: null,
       layers: { rest: body.cases.length > 0, fem: true, network: true, points: false, axes: true },
     };
-    body.cases.forEach((own) => { own.room = 1.5 * body.factor(own) * own.largest; });
     controls = new Controls(body, state);
     await controls.start();
     theme.changed.push(() => controls.view.draw());

@@ -21,10 +21,10 @@ const theme = {
       : ["#440154", "#443983", "#31688e", "#21918c", "#2ba06f", "#5aa83c", "#8fa31e"];
     return colors.map((color, i) => [i / (colors.length - 1), color]);
   },
-  /** From below to above zero: blue and orange, which all eyes tell apart. */
+  /** From below to above zero: violet and orange, which all eyes tell apart. */
   balance() {
-    const middle = this.isDark() ? "#6b6b6b" : "#b5b5b5";
-    const ends = this.isDark() ? ["#ff9d3b", "#c97f3e", middle, "#4f94c4", "#6cc3ff"] : ["#b34700", "#d98a4d", middle, "#4f8fbd", "#005a9c"];
+    const middle = this.isDark() ? "#75797e" : "#b5b5b5";
+    const ends = this.isDark() ? ["#ffa23e", "#c98745", middle, "#a08cd8", "#cbb5ff"] : ["#b35806", "#d98f3f", middle, "#7d6bb0", "#542788"];
     return ends.map((color, i) => [i / 4, color]);
   },
 };

@@ -2,23 +2,39 @@
 
 /** Springs that are drawn while something moves: more would take longer than a frame. */
 const MOST_MOVING = 6000;
+/** A frame that takes longer, s, is one of fewer springs while the reader turns the body. */
+const SLOW = 0.1;
 /** Points that are drawn as dots. */
 const MOST_DOTS = 5000;
 
 class View {
   constructor(body, state, pick) {
     Object.assign(this, { body, state, pick, plot: byId("view") });
-    this.home = body.view.dimension === 3 ? { eye: { x: 1.25, y: -1.5, z: 0.85 }, up: { x: 0, y: 0, z: 1 }, center: { x: 0, y: 0, z: -0.05 } } : { eye: { x: 0, y: 0, z: 1.8 }, up: { x: 0, y: 1, z: 0 }, center: { x: 0, y: 0, z: 0 } };
+    this.home = body.view.dimension === 3 ? { eye: { x: 0.95, y: -1.45, z: 0.75 }, up: { x: 0, y: 0, z: 1 }, center: { x: 0, y: 0, z: -0.03 } } : { eye: { x: 0, y: 0, z: 1.8 }, up: { x: 0, y: 1, z: 0 }, center: { x: 0, y: 0, z: 0 } };
+    // In a narrow place the body is farther away, or its sides would be cut off.
+    const away = 1.12 * Math.min(2, Math.max(1, 1.15 * this.plot.clientHeight / this.plot.clientWidth));
+    for (const axis of "xyz") this.home.eye[axis] *= away;
     this.home.projection = { type: body.view.dimension === 3 ? "perspective" : "orthographic" };
   }
 
   async start() {
     await Plotly.newPlot(this.plot, this.traces(), this.layout(), { displaylogo: false, responsive: true, scrollZoom: true, modeBarButtonsToRemove: ["hoverClosest3d", "resetCameraLastSave3d"], toImageButtonOptions: { filename: "springfit", scale: 2 } });
+    this.isSlow = this.frameTime() > SLOW;
     this.plot.on("plotly_click", ({ points: [point] }) => {
       const name = point.data.meta;
       if (name === "network") this.pick({ spring: this.drawn[Math.floor(point.pointNumber / 3)] });
       else if (name === "points") this.pick({ point: point.pointNumber });
     });
+  }
+
+  /** The time to draw once more, s; a card that draws lines without delay needs a few milliseconds. */
+  frameTime() {
+    const drawing = this.plot._fullLayout.scene?._scene?.glplot;
+    if (!drawing) return 0;
+    const start = performance.now();
+    drawing.redraw();
+    drawing.gl.readPixels(0, 0, 1, 1, drawing.gl.RGBA, drawing.gl.UNSIGNED_BYTE, new Uint8Array(4));
+    return (performance.now() - start) / 1000;
   }
 
   /** Which springs are drawn: fewer while something moves. */
@@ -33,11 +49,12 @@ class View {
     const fem = body.moved(body.displacement(own, null, state.time), state.factor);
     const hasFem = own !== null && body.displacement(own, null, state.time) !== null;
     const rest = body.view.points;
-    const shown = [];
+    // One point that is not seen: a scene without any trace is none.
+    const shown = [{ type: "scatter3d", mode: "markers", x: [rest[0]], y: [rest[1]], z: [rest[2]], showlegend: false, hoverinfo: "skip", marker: { size: 0.01, opacity: 0 } }];
     if (state.layers.rest) shown.push(lines("rest", rest, body.view.edges, theme.color("rest"), 1.5));
     if (state.layers.fem && hasFem) {
-      shown.push(surface(fem, body.view.triangles, theme.color("fem"), body.view.dimension === 3 ? 0.22 : 0.15));
-      shown.push(lines("fem", fem, body.view.edges, theme.color("fem"), 2.5));
+      shown.push(surface(fem, body.view.triangles, theme.color("fem"), body.view.dimension === 3 ? 0.14 : 0.1));
+      shown.push(lines("fem", fem, body.view.edges, theme.color("fem"), 2));
     } else if (state.layers.fem && body.view.triangles.length) {
       shown.push(surface(rest, body.view.triangles, theme.color("rest"), 0.12));
     }
@@ -100,17 +117,17 @@ class View {
 
   layout() {
     const { body, state } = this;
-    // The box holds the body at rest and as far as the slider moves it, and is fixed, so that nothing jumps.
-    const room = Math.max(...body.cases.map((own) => own.room), 0.02 * body.size);
-    const ranges = body.box.map(([a, b]) => [a - room, b + room]);
+    // The box is fixed, so that nothing jumps while the body moves.
+    const ranges = body.cases[state.case]?.room ?? body.reach(null);
     const longest = Math.max(...ranges.map(([a, b]) => b - a));
     const ratio = ranges.map(([a, b]) => (b - a) / longest);
-    const axis = (k) => ({ range: ranges[k], title: { text: `${"xyz"[k]}, m` }, visible: state.layers.axes && k < body.view.dimension, showbackground: false, gridcolor: theme.color("line"), zerolinecolor: theme.color("line"), showspikes: false, nticks: 5, tickfont: { size: 10 } });
+    const size = body.view.dimension === 3 ? 1.2 : 1.6;
+    const axis = (k) => ({ range: ranges[k], title: { text: `${"xyz"[k]}, m` }, visible: state.layers.axes && k < body.view.dimension, showbackground: false, gridcolor: theme.color("line"), zerolinecolor: theme.color("line"), showspikes: false, nticks: 5, tickangle: 0, tickformat: "~g", tickfont: { size: 10, color: theme.color("soft") } });
     return {
       ...layout({ margin: { l: 0, r: 0, t: 0, b: 0 } }),
       showlegend: false,
       uirevision: "view",
-      scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: 1.5 * ratio[0], y: 1.5 * ratio[1], z: 1.5 * ratio[2] }, camera: this.home, dragmode: body.view.dimension === 3 ? "orbit" : "pan", uirevision: "view" },
+      scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: size * ratio[0], y: size * ratio[1], z: size * ratio[2] }, camera: this.home, dragmode: body.view.dimension === 3 ? "orbit" : "pan", uirevision: "view" },
     };
   }
 

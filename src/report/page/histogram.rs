@@ -6,7 +6,7 @@ use crate::model::Network;
 
 /// Intervals of a histogram.
 const INTERVALS: usize = 48;
-/// The share of springs at each end that may lie outside: a single far spring would leave the others one interval.
+/// The share of springs at each end that may lie outside, where they lie far out: a single far spring would leave the others one interval.
 const OUTSIDE: f64 = 0.01;
 
 impl HistogramRecord {
@@ -17,14 +17,16 @@ impl HistogramRecord {
             let others = network.others.iter().filter(|spring| spring.kind == kind).map(|spring| spring.constant);
             lengths.chain(others).filter(|constant| constant.is_finite()).collect()
         };
-        SpringKind::all().into_iter().filter_map(|kind| HistogramRecord::of(kind, constants(kind))).collect()
+        SpringKind::all().filter_map(|kind| HistogramRecord::of(kind, constants(kind))).collect()
     }
 
     fn of(kind: SpringKind, mut constants: Vec<f64>) -> Option<HistogramRecord> {
         constants.sort_by(f64::total_cmp);
         let (least, largest) = (*constants.first()?, *constants.last()?);
         let skipped = (OUTSIDE * constants.len() as f64) as usize;
-        let (first, last) = (constants[skipped], constants[constants.len() - 1 - skipped]);
+        let inner = [constants[skipped], constants[constants.len() - 1 - skipped]];
+        let is_far = largest - least > 3.0 * (inner[1] - inner[0]);
+        let [first, last] = if is_far && inner[0] < inner[1] { inner } else { [least, largest] };
         // Where nearly all are equal, an interval has a width all the same.
         let span = (last - first).max(1e-6 * first.abs().max(last.abs())).max(f64::MIN_POSITIVE);
         let width = span * (1.0 + 1e-9) / INTERVALS as f64;
