@@ -51,10 +51,12 @@ class View {
     const rest = body.view.points;
     // One point that is not seen: a scene without any trace is none.
     const shown = [{ type: "scatter3d", mode: "markers", x: [rest[0]], y: [rest[1]], z: [rest[2]], showlegend: false, hoverinfo: "skip", marker: { size: 0.01, opacity: 0 } }];
-    if (state.layers.rest) shown.push(lines("rest", rest, body.view.edges, theme.color("rest"), 1.5));
+    // Edges cost as much as springs.
+    const isLight = state.moving && this.isSlow;
+    if (state.layers.rest && !isLight) shown.push(lines("rest", rest, body.view.edges, theme.color("rest"), 1.5));
     if (state.layers.fem && hasFem) {
       shown.push(surface(fem, body.view.triangles, theme.color("fem"), body.view.dimension === 3 ? 0.14 : 0.1));
-      shown.push(lines("fem", fem, body.view.edges, theme.color("fem"), 2));
+      if (!isLight) shown.push(lines("fem", fem, body.view.edges, theme.color("fem"), 2));
     } else if (state.layers.fem && body.view.triangles.length) {
       shown.push(surface(rest, body.view.triangles, theme.color("rest"), 0.12));
     }
@@ -127,7 +129,7 @@ class View {
       ...layout({ margin: { l: 0, r: 0, t: 0, b: 0 } }),
       showlegend: false,
       uirevision: "view",
-      scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: size * ratio[0], y: size * ratio[1], z: size * ratio[2] }, camera: this.home, dragmode: body.view.dimension === 3 ? "orbit" : "pan", uirevision: "view" },
+      scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: size * ratio[0], y: size * ratio[1], z: size * ratio[2] }, camera: structuredClone(this.plot.layout?.scene?.camera ?? this.home), dragmode: body.view.dimension === 3 ? "orbit" : "pan", uirevision: "view" },
     };
   }
 
