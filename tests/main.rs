@@ -51,6 +51,7 @@ mod nonlinear;
 mod nonnegative;
 mod numbering;
 mod outputs;
+mod page;
 mod paper;
 mod prepared;
 mod programs;

@@ -26,6 +26,9 @@ pub struct Run {
     /// Print what would be done, with estimates of time and memory, and stop
     #[arg(long)]
     explain: bool,
+    /// Write the report as a page as well, OUT/report.html: tables, figures and a view of the body in one file that needs no network
+    #[arg(long, help_heading = "Output")]
+    report: bool,
     /// Folder of report.json, of the networks and of the files that [output] asks for [default: out/NAME of the scene]
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
@@ -36,13 +39,17 @@ pub struct Run {
 const EXAMPLES: &str = "\
 Examples:
   springfit run scene.toml
+  springfit run scene.toml --report                      # and a page to look at: out/scene/report.html
   springfit run scene.toml --explain                     # sizes, stages, estimates; nothing is run
   springfit run scene.toml --set material.poisson=0.45 --out out/soft
   springfit run scene.toml --json | jq '.fits[].name'    # the keys of report.json: springfit schema report";
 
 impl Run {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let scene = self.settings.scene(&self.scene)?;
+        let mut scene = self.settings.scene(&self.scene)?;
+        if self.report {
+            scene.output_mut().report = Some(true);
+        }
         if self.explain {
             let forecast = Forecast::of(&scene)?;
             match self.output.json {

@@ -1,10 +1,8 @@
 //! Shapes of a body under a load: at rest, with finite elements, and with springs.
 
-use crate::element::Element;
-use crate::mesh::{CellBlock, Mesh, Selection, SideIndex};
+use super::outline::edges_of_sides;
 use crate::springs::norm;
 use crate::study::{DisplacementError, Outcome};
-use std::collections::BTreeSet;
 use svg::Document;
 use svg::node::element::path::Data;
 use svg::node::element::{Path, Text};
@@ -37,7 +35,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     if panels.is_empty() || largest == 0.0 {
         return None;
     }
-    let edges = boundary_edges(mesh);
+    let edges = edges_of_sides(mesh, faces_viewer);
     let size = extent(&mesh.points, d);
     // At large deformation shapes are drawn as they are.
     let factor = if outcome.law.is_some() { 1.0 } else { round(SHOWN * size / largest) };
@@ -121,37 +119,4 @@ fn faces_viewer(corners: &[&[f64]], centre: [f64; 3]) -> bool {
     let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let outward = inner(normal, from(corners[0], &centre)).signum();
     outward * inner(normal, [0.35, -1.0, 0.25]) > 0.0
-}
-
-/// The edges of all cells in the plane, of the visible surface of a solid; straight between corners.
-fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let mut edges = BTreeSet::new();
-    let mut add = |element: &Element, nodes: &[usize], corners: &[usize]| {
-        let around = (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]);
-        for ends in around {
-            let at = ends.map(|corner| element.corner_node(corner).map(|a| nodes[a]));
-            if let [Some(a), Some(b)] = at {
-                edges.insert([a.min(b), a.max(b)]);
-            }
-        }
-    };
-    if mesh.cell_dimension() < 3 {
-        for block in &mesh.blocks {
-            let sides = block.element.cell.sides();
-            block.cells().for_each(|cell| sides.iter().for_each(|side| add(&block.element, cell, side.corners)));
-        }
-    } else {
-        for SideIndex { cell, side } in Selection::Everything.sides(mesh).unwrap_or_default() {
-            let CellBlock { element, connectivity } = &mesh.blocks[cell.block];
-            let nodes = &connectivity[cell.cell * element.nodes()..][..element.nodes()];
-            let corners = element.cell.sides()[side].corners;
-            let points: Option<Vec<&[f64]>> =
-                corners.iter().map(|&c| element.corner_node(c).map(|a| mesh.point(nodes[a]))).collect();
-            let centre = |k: usize| nodes.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / nodes.len() as f64;
-            if points.is_some_and(|points| faces_viewer(&points, [centre(0), centre(1), centre(2)])) {
-                add(element, nodes, corners);
-            }
-        }
-    }
-    edges.into_iter().collect()
 }

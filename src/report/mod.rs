@@ -23,10 +23,13 @@ mod motion;
 mod motion_record;
 mod network;
 mod number;
+mod outline;
 mod outputs;
+pub mod page;
 mod paper;
 mod pictures;
 mod region_record;
+mod result_table;
 mod rows;
 mod series;
 mod stability;
@@ -56,9 +59,11 @@ pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::*;
 pub use outputs::{check_outputs, check_scene_outputs};
+pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use region_record::RegionRecord;
+pub use result_table::{CellRecord, ColumnRecord, ResultTable};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_text, write_stability};
 pub use stretches::{STRETCHES_FILES, stretches_text, write_stretches};
@@ -72,7 +77,7 @@ use crate::file::{create_folder, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
 use crate::text::printable_lines;
-use outputs::{POINTS, Stems};
+use outputs::{PAGE, POINTS, Stems};
 use std::path::{Path, PathBuf};
 
 /// Writes what `output` asks for into `folder`, and returns the paths.
@@ -128,6 +133,11 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     if reports {
         let path = folder.join("report.json");
         write_whole(&path, report(outcome).as_bytes())?;
+        written.push(path);
+    }
+    if output.has_page() {
+        let path = folder.join(PAGE);
+        write_with(&path, |to| page_html(outcome, to))?;
         written.push(path);
     }
     Ok(written)

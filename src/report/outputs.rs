@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 const BODY: &str = "finite elements";
 /// The table of the points, which all networks of a run have in common.
 pub(super) const POINTS: &str = "points.csv";
+/// The report as a page.
+pub(super) const PAGE: &str = "report.html";
 
 /// Checks that these files can be written into `folder`, which need not exist yet, and that no file is also an input.
 ///
@@ -49,6 +51,9 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
     }
     if output.report != Some(false) {
         names.push("report.json".into());
+    }
+    if output.has_page() {
+        names.push(PAGE.into());
     }
     let inputs: Vec<PathBuf> = scene.inputs().into_iter().chain(more.iter().cloned()).collect();
     check_outputs(folder, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)

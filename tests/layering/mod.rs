@@ -10,9 +10,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 29] = [
+const LAYERS: [&str; 30] = [
     "shipped",
     "multigrid",
+    "page",
     "text",
     "error",
     "bound",
@@ -67,13 +68,17 @@ fn sources() -> Vec<Source> {
         };
         if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
     };
-    ["shipped", "multigrid", "foundation", "kernels", "bodies", "studies", ""].into_iter().flat_map(read).collect()
+    ["shipped", "multigrid", "page", "foundation", "kernels", "bodies", "studies", ""]
+        .into_iter()
+        .flat_map(read)
+        .collect()
 }
 
 /// The layer of a source; `None` for the roots of libraries, which only declare and pass on.
 fn layer<'a>(source: &'a Source, in_crate: &'a str) -> Option<&'a str> {
     match (in_crate, source.path.as_str()) {
         ("springfit_shipped", _) => Some("shipped"),
+        ("springfit_page", _) => Some("page"),
         ("springfit_multigrid", "lib.rs") => None,
         ("springfit_multigrid", _) => Some("multigrid"),
         (PROGRAM, _) => Some("program"),

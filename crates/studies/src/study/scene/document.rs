@@ -212,6 +212,11 @@ impl Scene {
         &self.output
     }
 
+    /// The same, to be changed.
+    pub fn output_mut(&mut self) -> &mut Output {
+        &mut self.output
+    }
+
     /// Which studies a sweep makes of the scene, if it says so.
     pub fn sweep(&self) -> Option<&SweepEntry> {
         self.sweep.as_ref()

@@ -17,6 +17,18 @@ pub struct Output {
     pub moduli: bool,
     /// The number of natural frequencies of each model, besides those of rigid motions.
     pub frequencies: usize,
-    /// Whether report.json is written; it is unless switched off.
+    /// Which reports are written: `true` report.json and the page report.html, `false` neither; by default report.json alone.
     pub report: Option<bool>,
+}
+
+impl Output {
+    /// Whether the report is written as a page.
+    pub fn has_page(&self) -> bool {
+        self.report == Some(true)
+    }
+
+    /// Whether the states of a motion are kept for pictures.
+    pub fn has_pictures(&self) -> bool {
+        self.vtu || self.has_page()
+    }
 }

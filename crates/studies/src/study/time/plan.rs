@@ -72,7 +72,7 @@ fn planned(
     if !(recipe.gravity.is_empty() || recipe.gravity.len() == d) {
         return Err(entries("gravity", d, recipe.gravity.len()));
     }
-    let kept = if scene.output().vtu { scene.fits().len() + 1 } else { 1 };
+    let kept = if scene.output().has_pictures() { scene.fits().len() + 1 } else { 1 };
     let (state, written) = ((8 * mesh.points.len() * kept) as f64, recipe.written());
     if state * written.len() as f64 > MOST_BYTES {
         let expected = format!("at most {:.0} states, which fill {MOST_BYTES:e} bytes", MOST_BYTES / state);
@@ -87,7 +87,7 @@ fn planned(
         pulls: Vec::new(),
         watched: Vec::new(),
         written,
-        draws: scene.output().vtu,
+        draws: scene.output().has_pictures(),
     };
     let mut prescribed_by: Vec<Option<usize>> = vec![None; mesh.points.len()];
     for (i, pull) in recipe.pulls.iter().enumerate() {

@@ -1,0 +1,112 @@
+// The figures of a run; each only where the run has its numbers.
+
+function addHistogram(record) {
+  const networks = record.view.networks.filter((network) => network.histograms.length);
+  if (!networks.length) return;
+  let network = networks[0];
+  let kind = network.histograms[0].kind;
+  const draw = () => {
+    const h = network.histograms.find((h) => h.kind === kind) ?? network.histograms[0];
+    const middles = h.counts.map((_, i) => h.first + (i + 0.5) * h.width);
+    const bar = (name, color, keep, pattern) => ({
+      type: "bar", name, x: middles.filter(keep), y: h.counts.filter((_, i) => keep(middles[i])), width: h.width,
+      marker: { color, pattern: { shape: pattern, solidity: 0.25, fgcolor: theme.color("paper") }, line: { width: 0 } }, hovertemplate: `k ≈ %{x:.4g} ${h.unit}<br>%{y} springs<extra></extra>`,
+    });
+    const data = [bar("k ≥ 0", HUES[0], (k) => k >= 0, ""), bar("k < 0", HUES[1], (k) => k < 0, "/")].filter((bar) => bar.x.length);
+    const beyond = h.outside[0] + h.outside[1];
+    const more = beyond ? `; ${beyond} beyond the axis, from ${short(h.range[0])} to ${short(h.range[1])}` : "";
+    return { data, layout: layout({ xaxis: { title: { text: `constant, ${h.unit}${more}` } }, yaxis: { title: { text: "springs" }, rangemode: "tozero" }, bargap: 0, barmode: "overlay", showlegend: data.length > 1 }) };
+  };
+  const kinds = chooser("histogram-kind", "Springs", [], (value) => { kind = value; show(); });
+  const fill = () => kinds.select.replaceChildren(...network.histograms.map((h) => element("option", { value: h.kind }, h.kind)));
+  const names = chooser("histogram-fit", "Network", networks.map((n, i) => [i, cut(n.name)]), (value) => {
+    network = networks[value];
+    fill();
+    if (!network.histograms.some((h) => h.kind === kind)) kind = network.histograms[0].kind;
+    kinds.select.value = kind;
+    show();
+  });
+  fill();
+  const show = addChart("constants", "Spring constants", draw, [element("div", { class: "tools" }, names.field, kinds.field)]);
+}
+
+/** Errors below this share of the figure's largest are drawn at its lower edge. */
+const DECADES = 4;
+
+function addPrecision(record) {
+  const fits = record.report.fits.filter((fit) => fit.loads.some((load) => load.e_rms !== null));
+  if (!fits.length) return;
+  const loads = fits[0].loads.map((load) => load.name);
+  let chosen = 0;
+  const draw = () => {
+    const points = fits.map((fit) => ({ name: fit.name, time: 1e6 * fit.seconds_per_element, error: fit.loads[chosen]?.e_rms ?? null })).filter((p) => p.error !== null && p.time > 0);
+    const largest = Math.max(...points.map((p) => p.error), 1e-9);
+    const floor = Math.min(largest * 10 ** -DECADES, 0.01);
+    const data = points.map((p, i) => {
+      const below = p.error < floor;
+      return {
+        type: "scatter", mode: "markers", name: label(cut(p.name)), x: [p.time], y: [Math.max(p.error, floor)], text: [label(p.name)], customdata: [p.error],
+        marker: { size: 11, color: HUES[i % HUES.length], symbol: below ? "triangle-down-open" : MARKS[i % MARKS.length], line: { width: below ? 2 : 1, color: below ? HUES[i % HUES.length] : theme.color("paper") } },
+        hovertemplate: "%{text}<br>%{customdata:.3g} % e_rms<br>%{x:.3g} µs/element<extra></extra>",
+      };
+    });
+    const least = points.some((p) => p.error < floor) ? floor : Math.min(...points.map((p) => p.error));
+    const span = (values) => { const [a, b] = [Math.log10(Math.min(...values)), Math.log10(Math.max(...values))]; const room = Math.max(0.08 * (b - a), 0.15); return [a - room, b + room]; };
+    return { data, layout: layout({
+      xaxis: { type: "log", title: { text: "time to fit, µs per element" }, range: span(points.map((p) => p.time)), dtick: 1 },
+      yaxis: { type: "log", title: { text: `e_rms under ${label(loads[chosen])}, %` }, range: span([least, largest]), dtick: 1 },
+      hovermode: "closest",
+    }) };
+  };
+  const load = chooser("precision-load", "Load", loads.map((name, i) => [i, cut(name)]), (value) => { chosen = Number(value); show(); });
+  const note = element("p", { class: "hint" }, "An open triangle at the lower edge: the error is below the axis.");
+  const show = addChart("precision", "Error against time to fit", draw, [load.field, note]);
+}
+
+function addWhole(record) {
+  const rows = record.report.fits.filter((fit) => fit.whole).flatMap((fit) => [
+    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: `${fit.name}, ${load.load}` })),
+    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${fit.name}, ${load.load} (validation)` })),
+  ]);
+  if (!rows.length) return;
+  addChart("whole", "Whole-object fits: relative error before and after", () => {
+    const names = rows.map((row) => label(cut(row.name)));
+    const dots = (name, key, color, symbol) => ({ type: "scatter", mode: "markers", name, y: names, x: rows.map((row) => row[key] === null ? null : 100 * row[key]), marker: { size: 10, color, symbol }, hovertemplate: "%{y}<br>%{x:.3g} %<extra></extra>" });
+    const line = { type: "scatter", mode: "lines", y: names.flatMap((name) => [name, name, null]), x: rows.flatMap((row) => [100 * row.before, 100 * row.after, null]), line: { color: theme.color("soft") }, showlegend: false, hoverinfo: "skip" };
+    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed" }, height: 180 + 26 * rows.length }) };
+  });
+}
+
+function addMotion(record) {
+  const models = record.report.motion.filter((model) => model.time.length > 1);
+  if (!models.length) return;
+  const curve = (model, y, i, more = {}) => ({ type: "scatter", mode: "lines", name: label(model.name), x: model.time, y, line: { color: i === 0 ? theme.color("ink") : HUES[(i - 1) % HUES.length], dash: DASHES[i % DASHES.length], width: 2 }, ...more });
+  const axes = (what) => layout({ xaxis: { title: { text: "time, s" } }, yaxis: { title: { text: what } }, hovermode: "x unified" });
+  const compared = models.filter((model) => model.e_rms.some((error) => error !== null && error > 0));
+  if (compared.length) addChart("motion-error", "Motion: distance from the finite elements", () => ({ data: compared.map((model, i) => curve(model, model.e_rms, i + 1)), layout: axes("e_rms, % of the largest displacement") }));
+  if (models.some((model) => model.watched[0]?.length)) {
+    const size = models[0].watched[0].length;
+    const largest = Array.from({ length: size }, (_, k) => Math.max(...models.flatMap((model) => model.watched.map((u) => Math.abs(u[k] ?? 0)))));
+    let axis = largest.indexOf(Math.max(...largest));
+    const [factor, prefix] = prefixFor(largest[axis]);
+    const pick = chooser("watched-axis", "Direction", Array.from({ length: size }, (_, k) => [k, "xyz"[k]]), (value) => { axis = Number(value); show(); });
+    const show = addChart("watched", "Motion: mean displacement of the watched points", () => ({ data: models.map((model, i) => curve(model, model.watched.map((u) => u[axis] === null ? null : u[axis] / factor), i)), layout: axes(`u_${"xyz"[axis]}, ${prefix}m`) }), [pick.field]);
+    pick.select.value = String(axis);
+  }
+  addChart("energy", "Motion: kinetic and elastic energy", () => {
+    const largest = Math.max(...models.flatMap((model) => [...model.kinetic, ...model.elastic].map((value) => value ?? 0)));
+    const [factor, prefix] = prefixFor(largest);
+    const scaled = (values) => values.map((value) => value === null ? null : value / factor);
+    return { data: models.map((model, i) => curve(model, scaled(model.kinetic.map((value, t) => value === null || model.elastic[t] === null ? null : value + model.elastic[t])), i)), layout: axes(`kinetic + elastic energy, ${prefix}J`) };
+  });
+}
+
+function showCharts(record) {
+  addPrecision(record);
+  addHistogram(record);
+  addModuli(record);
+  addWhole(record);
+  addMotion(record);
+  if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has neither loads nor fits, so there is nothing to draw."));
+}
+

@@ -1,0 +1,174 @@
+"""Proves pages of reports in a browser: python prove.py PAGE...
+
+Each page is opened offline in headless Chromium. It must ask for nothing, report no error, draw the body, and answer its controls.
+With --pictures FOLDER the views are kept as PNG files; with --frame SECONDS, turning a view must take at most so long for each frame.
+"""
+
+import argparse
+import pathlib
+import shutil
+import sys
+import time
+
+from playwright.sync_api import sync_playwright
+
+# A machine without a graphics card draws with its processor.
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+
+# How many pixels of the view differ from its most frequent one: of a blank view none.
+PIXELS = """() => {
+  const scene = document.getElementById('view')._fullLayout.scene._scene;
+  const picture = new Image();
+  picture.src = scene.toImage('png');
+  return picture.decode().then(() => {
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [picture.width, picture.height];
+    const context = canvas.getContext('2d');
+    context.drawImage(picture, 0, 0);
+    const data = new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+    const counts = new Map();
+    data.forEach((pixel) => counts.set(pixel, (counts.get(pixel) ?? 0) + 1));
+    return { drawn: data.length - Math.max(...counts.values()), sum: data.reduce((a, b) => (31 * a + b) % 4294967291, 7) };
+  });
+}"""
+
+# The mean time of a frame while the camera turns, s.
+FRAMES = """async () => {
+  const view = document.getElementById('view');
+  const scene = view._fullLayout.scene._scene;
+  const count = 5;
+  const start = performance.now();
+  for (let i = 0; i < count; i++) {
+    const eye = { x: 1.8 * Math.cos(i / 5), y: 1.8 * Math.sin(i / 5), z: 0.8 };
+    scene.setViewport({ camera: { eye, center: { x: 0, y: 0, z: 0 }, up: { x: 0, y: 0, z: 1 }, projection: { type: 'perspective' } }, aspectmode: 'manual', aspectratio: view._fullLayout.scene.aspectratio });
+    scene.glplot.redraw();
+    const gl = scene.glplot.gl;
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+  return (performance.now() - start) / count / 1000;
+}"""
+
+# Controls without a name for readers of screens, and pictures without words.
+UNNAMED = """() => [...document.querySelectorAll('button, select, input, [role], img, nav')].filter((e) => !e.closest('.plot, #view > *')).filter((e) =>
+  !(e.labels?.length || e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() || e.getAttribute('role') === 'status')).map((e) => e.outerHTML.slice(0, 80))"""
+
+
+class Prover:
+    def __init__(self, browser, page, size, scheme):
+        self.faults = []
+        self.name = page.parent.name
+        context = browser.new_context(viewport=size, color_scheme=scheme, offline=True)
+        self.page = context.new_page()
+        self.page.set_default_timeout(120_000)
+        self.page.on("pageerror", lambda error: self.faults.append(f"error: {error}"))
+        self.page.on("console", lambda said: said.type == "error" and self.faults.append(f"console: {said.text}"))
+        self.page.on("request", lambda asked: asked.url.startswith(("file:", "data:", "blob:")) or self.faults.append(f"asks for {asked.url}"))
+        start = time.time()
+        self.page.goto(page.resolve().as_uri())
+        self.page.wait_for_function("document.documentElement.dataset.ready === 'true'", timeout=120_000)
+        self.seconds = time.time() - start
+
+    def check(self, holds, what):
+        if not holds:
+            self.faults.append(what)
+
+    def pixels(self):
+        self.page.wait_for_timeout(300)
+        return self.page.evaluate(PIXELS)
+
+    def changes(self, what, act):
+        """That the picture is another after the act."""
+        before = self.pixels()["sum"]
+        act()
+        self.check(self.pixels()["sum"] != before, f"{what} changes nothing in the view")
+
+    def controls(self):
+        page = self.page
+        # Nothing is asked of controls that the run has no use for.
+        has = lambda selector: page.locator(selector).count() > 0 and page.locator(selector).is_visible()
+        for select in ["#network", "#load", "#color"]:
+            if has(select) and page.locator(f"{select} option").count() > 1:
+                self.changes(select, lambda: page.select_option(select, index=1))
+                page.select_option(select, index=0)
+        if has("#deformation"):
+            self.changes("the slider", lambda: page.locator("#deformation").fill("20"))
+        if has("#layer-network"):
+            self.changes("the layer of springs", lambda: page.locator("#layer-network").uncheck())
+            page.locator("#layer-network").check()
+        if has("#find-spring"):
+            page.fill("#find-spring", "0")
+            page.keyboard.press("Enter")
+            page.wait_for_timeout(200)
+            self.check("N/m" in page.inner_text("#picked") or "not among" in page.inner_text("#picked"), "a spring is not found")
+        page.focus("#view")
+        self.changes("an arrow key", lambda: page.keyboard.press("ArrowLeft"))
+        self.changes("plus", lambda: page.keyboard.press("+"))
+        page.click("#reset")
+        motion = page.locator("#load option", has_text="motion")
+        if motion.count():
+            page.select_option("#load", label="motion")
+            self.changes("play", lambda: (page.click("#play"), page.wait_for_timeout(1500), page.click("#play")))
+        heading = page.locator("#tables table th.number button").first
+        if heading.count():
+            first = lambda: page.locator("#tables table").first.locator("tbody td.number").first.inner_text()
+            heading.click()
+            least = first()
+            heading.click()
+            rows = page.locator("#tables table").first.locator("tbody tr").count()
+            self.check(rows < 2 or first() != least or least == "0", "a heading does not sort")
+        was = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        page.click("#theme")
+        self.check(was != page.evaluate("getComputedStyle(document.body).backgroundColor"), "the theme does not change")
+
+
+def prove(browser, path, arguments):
+    faults = []
+    for size, scheme in [((1280, 900), "light"), ((390, 844), "dark")]:
+        prover = Prover(browser, path, {"width": size[0], "height": size[1]}, scheme)
+        page = prover.page
+        if page.locator("#view canvas").count():
+            drawn = prover.pixels()["drawn"]
+            prover.check(drawn > 500, f"the view is blank: {drawn} pixels")
+        else:
+            prover.check(False, "the view has no canvas")
+        wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        prover.check(wide <= 0, f"the page is {wide} pixels wider than the screen")
+        prover.check(not page.evaluate(UNNAMED), f"controls without a name: {page.evaluate(UNNAMED)}")
+        if arguments.pictures:
+            folder = pathlib.Path(arguments.pictures)
+            folder.mkdir(parents=True, exist_ok=True)
+            page.screenshot(path=folder / f"{prover.name}-{scheme}.png", full_page=True)
+        frame = page.evaluate(FRAMES)
+        box = page.locator("#view").bounding_box()
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.mouse.down()
+        page.wait_for_timeout(500)
+        turned = page.evaluate(FRAMES)
+        page.mouse.up()
+        if arguments.frame and scheme == "light":
+            prover.check(turned <= arguments.frame, f"a frame takes {turned:.3f} s while the body is turned")
+        # A processor draws a large body too slowly to try each control on it.
+        if scheme == "light" and page.evaluate("document.getElementById('view').data.reduce((n, t) => n + t.x.length, 0)") < 100_000:
+            prover.controls()
+        print(f"{prover.name}, {size[0]} pixels, {scheme}: {path.stat().st_size / 1e6:.2f} MB, ready after {prover.seconds:.1f} s, {frame * 1000:.0f} ms per frame, {turned * 1000:.0f} while turned")
+        faults += [f"{prover.name}, {scheme}: {fault}" for fault in prover.faults]
+        page.context.close()
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("pages", nargs="+", type=pathlib.Path)
+    parser.add_argument("--pictures")
+    parser.add_argument("--frame", type=float)
+    arguments = parser.parse_args()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS)
+        faults = [fault for path in arguments.pages for fault in prove(browser, path, arguments)]
+        browser.close()
+    print("\n".join(faults))
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

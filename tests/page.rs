@@ -1,0 +1,170 @@
+//! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
+
+use springfit::report::page::{PageRecord, page_html};
+use springfit::report::{Report, write_outputs};
+use springfit::study::{Outcome, Scene, run};
+use std::path::Path;
+
+fn outcome(scene: &str) -> Outcome {
+    run(&Scene::parse(scene, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+}
+
+fn page(outcome: &Outcome) -> String {
+    let mut text = Vec::new();
+    page_html(outcome, &mut text).unwrap();
+    String::from_utf8(text).unwrap()
+}
+
+/// The record that the scripts of a page read.
+fn record(page: &str) -> serde_json::Value {
+    let begin = page.split_once("<script type=\"application/json\" id=\"record\">").unwrap().1;
+    serde_json::from_str(begin.split_once("</script>").unwrap().0).unwrap()
+}
+
+/// All of a page but the compressed library.
+fn own(page: &str) -> String {
+    let (before, rest) = page.split_once("id=\"library\">").unwrap();
+    format!("{before}{}", rest.split_once("</script>").unwrap().1)
+}
+
+const PLANE: &str = r#"
+[mesh]
+box = { element = "quad4", size = [2, 1], cells = [2, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+plane = "stress"
+"#;
+const FIT: &str = "[[fit]]\nobjective = \"frobenius\"\n";
+const LOAD: &str = "[[fix]]\ngroup = \"xmin\"\n[[load]]\ngroup = \"xmax\"\ntraction = [1.0, 0]\n";
+
+#[test]
+fn the_page_of_a_cube_is_below_5_mb_and_holds_its_report() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cube_tet.toml");
+    let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+    let page = page(&outcome);
+    assert!(page.len() < 5_000_000, "{} bytes", page.len());
+    let record = record(&page);
+    assert_eq!(record["report"], serde_json::to_value(Report::of(&outcome)).unwrap());
+    let view = PageRecord::of(&outcome).view;
+    assert_eq!(view.points.0.len(), 3 * 147);
+    assert_eq!(view.networks.len(), outcome.fits.len());
+    for (network, fit) in view.networks.iter().zip(&outcome.fits) {
+        let constants: Vec<f32> = fit.network.lengths.iter().map(|spring| spring.constant as f32).collect();
+        assert_eq!(network.constants.0, constants, "{}", network.name);
+        let counted: usize = network.histograms.iter().flat_map(|h| h.counts.iter().chain(&h.outside)).sum();
+        assert_eq!(counted, fit.network.len(), "{}", network.name);
+    }
+    // The springs of a mesh are written once, whatever the number of networks.
+    assert!(view.meshes.len() < view.networks.len());
+}
+
+#[test]
+fn a_page_asks_for_nothing() {
+    let page = own(&page(&outcome(&[PLANE, FIT, LOAD].concat())));
+    assert!(page.contains("default-src 'none'"));
+    for source in ["src=\"http", "href=\"http", "url(", "@import", "src=\"//", "fetch(", "XMLHttpRequest", "import("] {
+        assert!(!page.contains(source), "{source}");
+    }
+}
+
+#[test]
+fn no_text_of_a_file_is_read_as_html() {
+    let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\u{1b}[31m";
+    let title = format!("title = {evil:?}\n").replace("\\u{1b}", "\\u001b");
+    let fit = FIT.to_string() + &format!("name = {:?}\n", "<b onclick='alert(3)'>&amp;");
+    let load = LOAD.replace("[[load]]\n", &format!("[[load]]\nname = {:?}\n", "</title><svg onload=alert(4)>"));
+    let outcome = outcome(&[&title, PLANE, &fit, &load].concat());
+    let page = page(&outcome);
+    for markup in ["<script>alert", "<img src", "<b onclick", "<svg"] {
+        assert!(!page.contains(markup), "{markup}");
+    }
+    assert!(page.contains("<title>&lt;/script&gt;"), "the title is shown as it is");
+    assert!(!page.contains('\u{1b}'), "a terminal that prints the page is left alone");
+    assert_eq!(record(&page)["report"]["fits"][0]["name"], outcome.fits[0].fit.name);
+}
+
+/// The script sets texts of nodes alone: nothing that reads HTML.
+#[test]
+fn no_script_writes_html() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/page/assets");
+    // A published package has no other packages in its folder.
+    let Ok(files) = std::fs::read_dir(folder) else { return };
+    for file in files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "js")) {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for word in ["innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval("] {
+            assert!(!text.contains(word), "{} has {word}", file.display());
+        }
+        assert!(text.lines().count() <= 400, "{}", file.display());
+    }
+}
+
+#[test]
+fn a_run_without_loads_and_one_of_a_single_spring_have_pages() {
+    let bare = record(&page(&outcome(&[PLANE, FIT].concat())));
+    assert_eq!(bare["view"]["loads"].as_array().unwrap().len(), 0);
+    let folder = tempfile::tempdir().unwrap();
+    let nodes = "$Nodes\n2\n1 0 0 0\n2 1 0 0\n$EndNodes\n$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n";
+    let mesh = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{nodes}");
+    std::fs::write(folder.path().join("rod.msh"), mesh).unwrap();
+    let rod = "[mesh]\nfile = \"rod.msh\"\n[material]\nyoung = 1\npoisson = 0\n";
+    let scene = Scene::parse(&[rod, FIT].concat(), &folder.path().join("scene.toml")).unwrap();
+    let single = record(&page(&run(&scene, &mut |_| {}).unwrap()));
+    assert_eq!(single["report"]["fits"][0]["springs"], 1);
+    // One edge of one cell: two places of 32 bits in base64.
+    assert_eq!(single["view"]["edges"], "AAAAAAEAAAA=");
+}
+
+#[test]
+fn only_who_asks_has_a_page() {
+    for (given, expected) in
+        [("", vec!["report.json"]), ("true", vec!["report.json", "report.html"]), ("false", vec![])]
+    {
+        let output = if given.is_empty() { String::new() } else { format!("report = {given}\n") };
+        let text = [PLANE, FIT, "[output]\njson = false\n", &output].concat();
+        let scene = Scene::parse(&text, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let written = write_outputs(&outcome(&text), scene.output(), folder.path()).unwrap();
+        let names: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
+        assert_eq!(names, expected);
+    }
+}
+
+/// Relative luminance and contrast of two colours, WCAG 2.2; 4.5 is asked of text, 3 of lines.
+fn contrast(a: &str, b: &str) -> f64 {
+    let luminance = |color: &str| {
+        let channel = |i: usize| {
+            let value = f64::from(u8::from_str_radix(&color[2 * i + 1..2 * i + 3], 16).unwrap()) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * channel(0) + 0.7152 * channel(1) + 0.0722 * channel(2)
+    };
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+#[test]
+fn text_and_lines_stand_out_in_light_and_dark() {
+    let page = page(&outcome(&[PLANE, FIT].concat()));
+    let style = page.split_once("<style>").unwrap().1.split_once("</style>").unwrap().0;
+    let screens: Vec<&str> = style.split_once("@media print").unwrap().0.split("--paper:").skip(1).collect();
+    assert_eq!(screens.len(), 3, "light, dark by the system, dark by the button");
+    for screen in screens {
+        let screen = format!("--paper:{screen}");
+        let color = |name: &str| {
+            let value = screen.split_once(&format!("--{name}:")).unwrap().1.trim_start();
+            value[..7].to_string()
+        };
+        for paper in ["paper", "card"] {
+            for ink in ["ink", "soft", "link"] {
+                let found = contrast(&color(ink), &color(paper));
+                assert!(found >= 4.5, "--{ink} on --{paper}: {found:.2}");
+            }
+            for line in ["rest", "fem", "accent"] {
+                let found = contrast(&color(line), &color(paper));
+                assert!(found >= 3.0, "--{line} on --{paper}: {found:.2}");
+            }
+        }
+        assert!(contrast(&color("warn"), &color("warn-paper")) >= 4.5);
+    }
+}
