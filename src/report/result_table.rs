@@ -189,7 +189,11 @@ fn materials(report: &Report) -> ResultTable {
             number(fit.zener, Fixed(3)),
         ]
     };
-    let title = format!("Networks as materials; asked for are E = {} Pa, ν = {}", report.young, report.poisson);
+    let asked = match (report.young, report.poisson) {
+        (Some(young), Some(poisson)) => format!("asked for are E = {young} Pa, ν = {poisson}"),
+        _ => "those that are asked for differ from cell to cell".into(),
+    };
+    let title = format!("Networks as materials; {asked}");
     let whole = report.fits.iter().any(|fit| fit.effective_young.is_some());
     let shown = if whole { columns.len() } else { columns.len() - 3 };
     let rows = report.fits.iter().map(row).map(|row: Vec<_>| row.into_iter().take(shown).collect()).collect();

@@ -40,7 +40,7 @@ function addModuli(record) {
   let chosen = fits[0];
   const isPlane = chosen.stiffness.length === 3;
   // In the plane the tensor is times the thickness: shown is the share of the mean, which has none.
-  const draw = isPlane ? () => plane(chosen) : () => solid(chosen, record.report.young);
+  const draw = isPlane ? () => plane(chosen) : () => solid(chosen, record.report.young ?? chosen.of([0, 0, 1]));
   if (!isPlane && !hasWebGL()) return;
   const { select, field } = chooser("moduli-fit", "Network", fits.map((fit, i) => [i, cut(fit.name)]), (value) => { chosen = fits[value]; show(); });
   const title = isPlane ? "Young's modulus by direction, as a share of its largest" : "Young's modulus by direction: radius and colour";

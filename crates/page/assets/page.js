@@ -4,9 +4,15 @@ function showSummary(record) {
   const { report } = record;
   const types = [...new Set(report.element_types)].join(", ");
   const given = report.settings.length ? `; with ${report.settings.join(", ")}` : "";
-  byId("summary").textContent = `${report.nodes} points, ${report.elements} ${types}, ${report.extent.map((x) => short(x, 3)).join(" × ")} m; E = ${withUnit(report.young, "Pa")}, ν = ${report.poisson}, ${report.law ?? record.state}${given}`;
+  byId("summary").textContent = `${report.nodes} points, ${report.elements} ${types}, ${report.extent.map((x) => short(x, 3)).join(" × ")} m; ${material(report)}, ${report.law ?? record.state}${given}`;
   const origin = [record.program, record.mesh, record.command].filter(Boolean);
   byId("origin").append(...origin.flatMap((text, i) => [i ? " · " : "", element(i === 2 ? "code" : "span", {}, text)]));
+}
+
+function material(report) {
+  return report.young === null || report.poisson === null
+    ? "materials that differ from cell to cell"
+    : `E = ${withUnit(report.young, "Pa")}, ν = ${report.poisson}`;
 }
 
 function showNotes(record) {

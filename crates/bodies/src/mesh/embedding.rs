@@ -43,8 +43,7 @@ impl Embedding {
             );
         }
         let bins = Bins::of(mesh);
-        let found: Vec<Option<Found>> =
-            points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
+        let found: Vec<Option<Found>> = points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
         let (mut rows, mut outside) = (Vec::with_capacity(found.len()), 0);
         for (found, x) in found.into_iter().zip(points.chunks_exact(d)) {
             let far = || {

@@ -120,7 +120,7 @@ impl Scene {
         }
         if let Some(reference) = &entry.reference {
             reference.check().map_err(|e| e.under("reference"))?;
-            if entry.material.law.is_some() {
+            if entry.material.first().law.is_some() {
                 let problem = "belongs to small deformation, found a material with a \"law\"";
                 return Err(Error::at("reference", problem).of_kind(ErrorKind::Unsupported));
             }
