@@ -38,7 +38,7 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
     line("");
     groups(mesh).iter().for_each(|listed| line(listed));
     line("[material]");
-    line("young   = \"10 kPa\"        # Young's modulus");
+    line("young   = \"10 kPa\"        # Young's modulus; or \"1e4*(1 + 20*z)\" with z in m, or { file = \"map.csv\" }");
     line("poisson = 0.3             # Poisson's ratio, below 0.5");
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
     match mesh.cell_dimension() {
@@ -50,7 +50,8 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
         _ => {}
     }
     line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it");
-    line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies\n");
+    line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies");
+    line("# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n");
     let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
     let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
         true => ("least squares", "frobenius", "bent cells of a surface or curve have no exact network"),
