@@ -51,7 +51,9 @@ pub fn draft(mesh: &Mesh, file: &str, unit: &str, elements: &[String], title: &s
     }
     line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it");
     line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies");
-    line("# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n");
+    line(
+        "# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n",
+    );
     let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
     let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
         true => ("least squares", "frobenius", "bent cells of a surface or curve have no exact network"),

@@ -122,12 +122,9 @@ fn joined(mut regions: Vec<(Vec<usize>, SampledFits)>) -> SampledFits {
     let width = |values: &[f64]| values.len() / cells.len();
     let [m, p] = [width(&all.fits.constants), width(&all.fits.parameters)];
     let own = all.clone();
-    for (values, width) in [
-        (&mut all.fits.constants, m),
-        (&mut all.fits.parameters, p),
-        (&mut all.trained, 1),
-        (&mut all.held_out, 1),
-    ] {
+    for (values, width) in
+        [(&mut all.fits.constants, m), (&mut all.fits.parameters, p), (&mut all.trained, 1), (&mut all.held_out, 1)]
+    {
         *values = vec![0.0; count * width];
     }
     regions.insert(0, (cells, own));
