@@ -259,7 +259,7 @@ fn the_spectral_fit_is_the_least_two_norm() {
         for _ in 0..400 {
             let step = size * 10f64.powf(-1.0 - 4.0 * random(&mut seed));
             let other: Vec<f64> = k.iter().map(|k| k + step * (random(&mut seed) - 0.5)).collect();
-            assert!(value(&other) > least * (1.0 - 1e-6), "{name}: {} {least}", value(&other));
+            assert!(value(&other) > least * (1.0 - 1e-5), "{name}: {} {least}", value(&other));
         }
     }
 }
@@ -295,7 +295,9 @@ fn an_isotropic_stiffness_is_the_isotropic_law() {
                 (found.constants, errors.frobenius[0], found.deficient)
             };
             let ((plain, own, deficient), (general, other, _)) = (all(&plain), all(&general));
-            assert!((own - other).abs() < 1e-6, "{} {objective:?}: {own} {other}", element.name);
+            // Iterations end where their value is known to their own accuracy.
+            let tolerance = if matches!(objective, Objective::Frobenius(_)) { 1e-6 } else { 1e-4 };
+            assert!((own - other).abs() < tolerance, "{} {objective:?}: {own} {other}", element.name);
             if deficient == 0 && matches!(objective, Objective::Frobenius(_)) {
                 let size = plain.iter().fold(0.0f64, |a, k| a.max(k.abs()));
                 for (a, b) in plain.iter().zip(&general) {
@@ -327,7 +329,8 @@ fn constants_turn_with_cell_and_material() {
         for objective in Objective::all(element.has_higher_modes()) {
             let [plain, both, alone] =
                 [(&x, &law), (&turned, &own), (&turned, &law)].map(|(x, law)| constants(x, law, objective));
-            assert!((&plain - &both).norm() < 1e-5 * plain.norm(), "{name} {objective:?}");
+            let tolerance = if matches!(objective, Objective::Frobenius(_)) { 1e-8 } else { 1e-3 };
+            assert!((&plain - &both).norm() < tolerance * plain.norm(), "{name} {objective:?}");
             assert!((&plain - &alone).norm() > 1e-3 * plain.norm(), "{name} {objective:?}");
         }
     }
@@ -337,9 +340,9 @@ fn constants_turn_with_cell_and_material() {
 #[test]
 fn laws_are_those_of_their_constants() {
     let cubic = Anisotropy::cubic(5.0, 2.0, 3.0).unwrap();
-    // 1/E along [1 1 1]: S11 − 2 (S11 − S12 − S44/2)/3.
+    // 1/E along n: S11 − 2 (S11 − S12 − S44/2) (n1² n2² + n2² n3² + n3² n1²); x is n = (1/√3, 1/√2, 1/√6) in these axes.
     let s = cubic.stiffness().try_inverse().unwrap();
-    let along = s[(0, 0)] - 2.0 * (s[(0, 0)] - s[(0, 1)] - s[(3, 3)] / 2.0) / 3.0;
+    let along = s[(0, 0)] - 2.0 * (s[(0, 0)] - s[(0, 1)] - s[(3, 3)] / 2.0) * 11.0 / 36.0;
     let turned = cubic.turned([[1.0, 1.0, 1.0], [1.0, -1.0, 0.0]]).unwrap();
     assert!((turned.stiffness().try_inverse().unwrap()[(0, 0)] / along - 1.0).abs() < 1e-12);
     let wood = Anisotropy::transversely_isotropic([9e3, 3e3], [0.3, 0.4], 1e3).unwrap();
@@ -370,7 +373,10 @@ fn networks_are_compared_with_the_anisotropic_material() {
     let [plain, general] = [isotropic, same].map(|material| outcome(&scene(material)));
     for (a, b) in plain.fits.iter().zip(&general.fits) {
         let difference = (a.as_material.distance - b.as_material.distance).abs();
-        assert!(difference < 1e-6, "{}: {} {}", a.fit.name, a.as_material.distance, b.as_material.distance);
+        // Iterations end where their value is known to their own accuracy.
+        let is_direct = ["frobenius", "offdiag", "modal"].iter().any(|name| a.fit.name.starts_with(name));
+        let tolerance = if is_direct { 1e-6 } else { 1e-3 };
+        assert!(difference < tolerance, "{}: {} {}", a.fit.name, a.as_material.distance, b.as_material.distance);
     }
     let turned = outcome(&scene(&format!("{ORTHOTROPIC}axes = [[1, 1, 0], [0, 1, 1]]\n")));
     for fit in &turned.fits {
@@ -440,7 +446,7 @@ fn wrong_laws_are_named() {
             "transversely-isotropic = { young = [1, 1], poisson = [0, 0], shear = 1 }\naxes = [{ file = \"fibres.csv\", array = \"a\" }]\n"
                 .into(),
             "axes",
-            "hex8 cell 8",
+            "hex8 cell",
         ),
     ];
     for (material, place, words) in cases {

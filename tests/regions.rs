@@ -357,7 +357,7 @@ fn wrong_materials_are_named() {
             "material",
             "every cell in one region, found 1 in two",
         ),
-        (region("where = \"z < 1.1\"\n", "where = \"z > 2.1\"\n"), "material", "found 3 cells in none"),
+        (region("where = \"z < 1.1\"\n", "where = \"z > 2.1\"\n"), "material", "found 2 cells in none"),
         (region("where = \"z < -1\"\n", ""), "material[0]", "has no cells"),
         (region("", ""), "material[1]", "material[0] has what is left"),
         (region("where = \"z < 1.1\"\ngroup = \"zmin\"\n", ""), "material[0]", "found both"),
@@ -396,16 +396,33 @@ fn wrong_materials_are_named() {
     }
 }
 
-/// From an expression to a network of a hundred thousand cells.
+/// From a file and from an expression to a network of a hundred thousand cells.
 #[test]
 fn a_field_on_a_hundred_thousand_cells() {
-    let text = "[mesh]\nbox = { element = \"hex8\", size = [1, 1, 1], cells = [47, 47, 47] }\n\
-        [material]\nyoung = \"1e4*(1 + sin(20*x)*cos(30*y)*z/2)\"\npoisson = \"0.3 + 0.1*x\"\ndensity = 1000\n\
-        [[fit]]\nobjective = \"offdiag\"\n[[fit]]\nobjective = \"exact\"\n";
-    let outcome = outcome(text);
-    assert_eq!(outcome.mesh.cell_count(), 103_823);
-    assert!(outcome.fits[1].frobenius.unwrap().max < 1e-10);
-    assert_close(outcome.masses.unwrap().iter().sum(), 1000.0, 1e-10);
+    let folder = TempDir::new().unwrap();
+    let n = 47;
+    let middle = |i: usize| (i as f64 + 0.5) / n as f64;
+    let young = |x: &[f64]| 1e4 * (1.0 + (20.0 * x[0]).sin() * (30.0 * x[1]).cos() * x[2] / 2.0);
+    let places = (0..n * n * n).map(|i| vec![middle(i % n), middle(i / n % n), middle(i / n / n)]);
+    std::fs::write(folder.path().join("map.csv"), table(places, young)).unwrap();
+    let scene = |young: &str| {
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"hex8\", size = [1, 1, 1], cells = [{n}, {n}, {n}] }}\n\
+             [material]\nyoung = {young}\npoisson = \"0.3 + 0.1*x\"\ndensity = 1000\n\
+             [[fit]]\nobjective = \"offdiag\"\n[[fit]]\nobjective = \"exact\"\n"
+        );
+        let scene = Scene::parse(&text, &folder.path().join("scene.toml")).unwrap();
+        run(&scene, &mut |_| ()).unwrap()
+    };
+    let file = scene("{ file = \"map.csv\", interpolation = \"nearest\" }");
+    let expression = scene("\"1e4*(1 + sin(20*x)*cos(30*y)*z/2)\"");
+    assert_eq!(file.mesh.cell_count(), 103_823);
+    for (a, b) in file.fits.iter().zip(&expression.fits) {
+        let constants = a.network.lengths.iter().zip(&b.network.lengths);
+        constants.for_each(|(a, b)| assert!((a.constant - b.constant).abs() < 1e-9 * 1e3, "{a:?} {b:?}"));
+    }
+    assert!(file.fits[1].frobenius.unwrap().max < 1e-10);
+    assert_close(file.masses.unwrap().iter().sum(), 1000.0, 1e-10);
 }
 
 /// The stretch of a bar of two laws under a dead load: the force is the same in both, and without Poisson's ratio each answers along its
@@ -455,4 +472,30 @@ fn both_with(young: &str) -> String {
         "[[material]]\nwhere = \"z < 1.00001\"\n{young}\npoisson = 0\nlaw = \"neo-hookean\"\n\
          [[material]]\nyoung = 50\npoisson = 0\nlaw = \"neo-hookean\"\n"
     )
+}
+
+/// Forces at sampled shapes are those of the law of each region: four times the modulus is four times the constant.
+#[test]
+fn sampled_fits_take_the_law_of_each_region() {
+    let fits = "[[fit]]\nobjective = \"sampled\"\nforce = \"free-rest\"\nshapes = { count = 12, held_out = 4, stretch = 0.2 }\n";
+    let both = both_with("young = 200");
+    let lawless = both.replace("law = \"neo-hookean\"\n", "");
+    let own = fits.to_string() + "law = \"neo-hookean\"\n";
+    for text in [bar("hex8", [1, 1, 3], &both, fits), bar("hex8", [1, 1, 3], &lawless, &own)] {
+        let outcome = outcome(&text);
+        let (mesh, network) = (&outcome.mesh, &outcome.fits[0].network);
+        let along = |low: f64, high: f64| {
+            let z = |p: usize| mesh.point(p)[2];
+            let is_meant = |ends: [usize; 2]| {
+                let [a, b] = ends.map(|p| mesh.point(p));
+                a[..2] == b[..2] && z(ends[0]).min(z(ends[1])) == low && z(ends[0]).max(z(ends[1])) == high
+            };
+            let found: Vec<f64> =
+                network.lengths.iter().filter(|spring| is_meant(spring.points)).map(|spring| spring.constant).collect();
+            assert_eq!(found.len(), 4);
+            found[0]
+        };
+        assert_close(along(0.0, 1.0), 4.0 * along(1.0, 2.0), 1e-9);
+        assert_close(along(1.0, 2.0), along(2.0, 3.0), 1e-9);
+    }
 }

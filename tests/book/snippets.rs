@@ -19,7 +19,7 @@ fn scene_around(block: &str, law: bool) -> String {
     let mut text = String::new();
     let parts = [("[mesh]", MESH.to_string()), ("[material]", MATERIAL.to_string() + if law { LAW } else { "" })];
     for (table, part) in parts.into_iter().chain([("[[fit]]", FIT.into()), ("[[load]]", LOADS.into())]) {
-        if !has(table) {
+        if !has(table) && !has(&format!("[{table}]")) {
             text += &part;
         }
     }

@@ -357,12 +357,12 @@ pub const ALL: [(&str, &str); 11] = [
 
 /// Files that the scenes name.
 pub const FILES: [(&str, &str); 4] = [
-    ("fibres.csv", "x,y,z,a_x,a_y,a_z\n1.5,0.5,0.5,1,0,0\n1.5,0.5,0.6,1,1,0\n"),
-    ("young.csv", "x,y,E\n0.5,0.5,5e3\n1.5,0.5,2e4\n"),
     ("measured.csv", "point,ux,uy,uz\n4,0.001,0,0.01\n5,0,0,0.01\n6,0,0.001,0.01\n7,0,0,0.01\n"),
     (
         "rods.msh",
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 2 0.5 0.5\n$EndNodes\n$Elements\n2\n\
          1 1 2 0 1 1 2\n2 1 2 0 1 2 3\n$EndElements\n",
     ),
+    ("young.csv", "x,y,E\n0.5,0.5,5e3\n1.5,0.5,2e4\n"),
+    ("fibres.csv", "x,y,z,a_x,a_y,a_z\n1.5,0.5,0.5,1,0,0\n1.5,0.5,0.6,1,1,0\n"),
 ];

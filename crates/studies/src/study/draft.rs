@@ -60,7 +60,7 @@ pub fn draft(
     line("[material]");
     let value = |text: &str| if text.parse::<f64>().is_ok() { text.to_string() } else { quoted(text) };
     let young = material.young.as_deref().map_or("\"10 kPa\"".into(), value);
-    line(&format!("young   = {young:<15} # Young's modulus"));
+    line(&format!("young   = {young:<15} # Young's modulus; or \"1e4*(1 + 20*z)\" with z in m, or {{ file = \"map.csv\" }}"));
     line(&format!("poisson = {:<15} # Poisson's ratio, below 0.5", material.poisson.unwrap_or(0.3)));
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
     match mesh.cell_dimension() {
@@ -77,7 +77,10 @@ pub fn draft(
         }
         None => line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it"),
     }
-    line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies\n");
+    line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies");
+    line(
+        "# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n",
+    );
     let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
     let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
         true => ("least squares", "frobenius", "bent cells of a surface or curve have no exact network"),

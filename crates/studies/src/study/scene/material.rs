@@ -17,6 +17,13 @@ use std::fmt;
 /// The material of a body, or of one of its regions.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("anyOf" = [
+    { "required": ["young", "poisson"] },
+    { "required": ["orthotropic"] },
+    { "required": ["transversely-isotropic"] },
+    { "required": ["cubic"] },
+    { "required": ["stiffness"] },
+]))]
 pub struct MaterialEntry {
     /// The group of cells that have the material.
     pub group: Option<String>,

@@ -5,7 +5,7 @@ use super::recipe::SampledRecipe;
 use super::record::SampledRecord;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{SampledFits, fit_sampled};
-use crate::material::{Energy, Material, MaterialMap};
+use crate::material::{Energy, EnergyMap, Material, MaterialMap, State};
 use crate::study::body::LargeBody;
 use crate::study::fits::facts::SceneFacts;
 use crate::study::fits::fitted::{Fitted, FittedKind};
@@ -48,41 +48,103 @@ impl FitKind for SampledRecipe {
     }
 }
 
+/// The most materials of a body for which the law of a fit is worked out.
+const MATERIALS: usize = 64;
+
 /// The fits of each block of cells.
 ///
 /// # Errors
 /// There is no energy or no shape, a force law has no group, or the elements have no such spring group.
 pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) -> Result<Vec<SampledFits>> {
     let Task { mesh, material, .. } = *task;
-    let state = material.state();
-    let own = recipe.law.as_ref().map(|law| Energy::load(law, one_material(material)?)).transpose();
-    let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?;
-    let own = own.map(|energy| LargeBody::at_rest((energy, state)));
+    let own = recipe.law.as_ref().map(|law| laws(law, material)).transpose();
+    let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?.map(LargeBody::at_rest);
     let expected = "the energy whose forces are sampled";
     let large = own.as_ref().or(task.reference.large).ok_or_else(|| Error::expected("law", expected, "none"))?;
-    let (energy, state) = large.laws.uniform().ok_or_else(several_laws)?;
     let states = Arc::new(large.states(mesh, &recipe.loads)?);
     let mut known = Vec::new();
     for block in &mesh.blocks {
         known.extend(block.element.select_groups(task.springs)?.iter().map(|group| group.name.as_str()));
     }
     recipe.force.check_groups(&known)?;
-    task.each_block(progress, |_, block, springs, progress| {
+    task.each_block(progress, |index, block, springs, progress| {
         let fit = recipe.resolve(&block.element, springs, &states)?;
-        let (points, cells) = (&mesh.points, &block.connectivity);
-        fit_sampled(&block.element, springs, points, cells, energy, state, &fit, progress)
+        let n = block.element.nodes();
+        let mut regions = Vec::new();
+        for law in 0..large.laws.laws().count() {
+            let is_own = |cell: &usize| *large.laws.index().at(index, *cell) == law;
+            let cells: Vec<usize> = (0..block.cells().len()).filter(is_own).collect();
+            let (energy, state) = match cells.first() {
+                Some(&first) => large.laws.at(index, first),
+                // A block without cells has an empty fit.
+                None if law == 0 && block.connectivity.is_empty() => (large.laws.first(), material.state()),
+                None => continue,
+            };
+            let nodes = |&cell: &usize| &block.connectivity[cell * n..(cell + 1) * n];
+            let connectivity: Vec<usize> = cells.iter().flat_map(nodes).copied().collect();
+            let (element, points) = (&block.element, &mesh.points);
+            let found = fit_sampled(element, springs, points, &connectivity, energy, state, &fit, progress)?;
+            regions.push((cells, found));
+        }
+        Ok(joined(regions))
     })
 }
 
-/// The material of a body that has one.
+/// The law of a fit with the materials of the body.
 ///
 /// # Errors
-/// The body has several; the kind is `Unsupported`.
-fn one_material(material: &MaterialMap) -> Result<Material> {
-    material.uniform().ok_or_else(several_laws)
+/// There is no such law; a cell is anisotropic, or the materials are too many.
+fn laws(law: &str, material: &MaterialMap) -> Result<EnergyMap> {
+    let materials = material.materials()?;
+    let mut known: Vec<Material> = Vec::new();
+    for material in materials.values() {
+        if !known.contains(material) {
+            known.push(*material);
+        }
+        if known.len() > MATERIALS {
+            let expected = format!("at most {MATERIALS} materials for the law of a sampled fit");
+            return Err(Error::expected("law", expected, "more").of_kind(ErrorKind::Unsupported));
+        }
+    }
+    let index = materials.map(|material| known.iter().position(|other| other == material).unwrap_or(0));
+    let load = |material: &Material| Ok((Energy::load(law, *material)?, material.state()));
+    let energies = known.iter().map(load).collect::<Result<Vec<(Energy, State)>>>()?;
+    EnergyMap::new(energies, index).ok_or_else(|| Error::expected("law", "a body with cells", "none"))
 }
 
-fn several_laws() -> Error {
-    let expected = "one material in all cells for the law of a sampled fit";
-    Error::expected("law", expected, "several").of_kind(ErrorKind::Unsupported)
+/// The fits of all cells of a block from those of the cells of each law.
+fn joined(mut regions: Vec<(Vec<usize>, SampledFits)>) -> SampledFits {
+    let (cells, mut all) = regions.remove(0);
+    if regions.is_empty() {
+        return all;
+    }
+    let count = cells.len() + regions.iter().map(|(cells, _)| cells.len()).sum::<usize>();
+    let width = |values: &[f64]| values.len() / cells.len();
+    let [m, p] = [width(&all.fits.constants), width(&all.fits.parameters)];
+    let own = all.clone();
+    for (values, width) in
+        [(&mut all.fits.constants, m), (&mut all.fits.parameters, p), (&mut all.trained, 1), (&mut all.held_out, 1)]
+    {
+        *values = vec![0.0; count * width];
+    }
+    regions.insert(0, (cells, own));
+    for (i, (cells, found)) in regions.iter().enumerate() {
+        for (to, from, width) in [
+            (&mut all.fits.constants, &found.fits.constants, m),
+            (&mut all.fits.parameters, &found.fits.parameters, p),
+            (&mut all.trained, &found.trained, 1),
+            (&mut all.held_out, &found.held_out, 1),
+        ] {
+            for (place, &cell) in cells.iter().enumerate() {
+                to[cell * width..(cell + 1) * width].copy_from_slice(&from[place * width..(place + 1) * width]);
+            }
+        }
+        if i > 0 {
+            all.fits.deficient += found.fits.deficient;
+            all.fits.unreached += found.fits.unreached;
+            all.fits.reused += found.fits.reused;
+            all.agreeing = all.agreeing.into_iter().chain(found.agreeing).reduce(f64::min);
+        }
+    }
+    all
 }
