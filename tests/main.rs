@@ -51,6 +51,7 @@ mod numbering;
 mod outputs;
 mod page;
 mod paper;
+mod plot;
 mod prepared;
 mod programs;
 mod published;
