@@ -13,9 +13,9 @@ use svg::node::element::{Rectangle, Text, Title};
 /// Pixels of one case in a map, and beside and above them.
 const CELL: (usize, usize) = (9, 20);
 const BESIDE: usize = 190;
-const ABOVE: usize = 116;
+const ABOVE: usize = 132;
 /// What an error of 1e-16, 1e-14, … 1e-2 and more is drawn as: light where all digits are right (Crameri's lajolla, turned).
-const SHADES: [&str; 8] = ["#fffbe0", "#fbe6a1", "#f6ca69", "#e99f51", "#dd7350", "#b64a4a", "#6d3632", "#1f1a0c"];
+const SHADES: [&str; 8] = ["#fbf1c2", "#f8dc8c", "#f2c25c", "#e99f51", "#dd7350", "#b64a4a", "#6d3632", "#1f1a0c"];
 const REFUSED: &str = "#c8ccd4";
 const TOLD: &str = "#9db8d9";
 
