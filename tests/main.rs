@@ -53,6 +53,7 @@ mod numbering;
 mod outputs;
 mod page;
 mod paper;
+mod plot;
 mod prepared;
 mod programs;
 mod published;

@@ -17,6 +17,7 @@ mod mesh_file;
 mod new;
 mod output;
 mod paper;
+mod plot;
 mod run;
 mod scene_file;
 mod schema;
@@ -62,6 +63,7 @@ commands! {
     Compare: compare::Compare,
     Converge: converge::Converge,
     Sweep: sweep::Sweep,
+    Plot: plot::Plot,
     Paper: paper::Paper,
     Stability: stability::Stability,
     Elements: elements::Elements,

@@ -153,15 +153,28 @@ impl Comparison {
     /// # Errors
     /// No method has a time and an error above zero.
     pub fn plot(&self) -> Result<String> {
-        let shown: Vec<_> = self.points.iter().filter(|(_, s, e)| *s > 0.0 && *e > 0.0).collect();
+        let known: Vec<_> = self.points.iter().filter(|(_, s, e)| *s > 0.0 && *e > 0.0).collect();
+        // Errors of rounding are drawn under the others, with their numbers: an axis down to them would show nothing else.
+        let largest = known.iter().map(|(_, _, e)| *e).fold(0.0, f64::max);
+        let least = known.iter().map(|(_, _, e)| *e).filter(|e| *e >= largest * 1e-4).fold(largest, f64::min);
+        let placed = |(name, s, e): &(String, f64, f64)| match *e < largest * 1e-4 {
+            true => (format!("{name} ({e:.0e})"), *s, least / 3.0),
+            false => (name.clone(), *s, *e),
+        };
+        let shown: Vec<_> = known.into_iter().map(placed).collect();
+        let shown: Vec<_> = shown.iter().collect();
         if shown.is_empty() {
             return Err(Error::new("nothing to plot: no fit has an error above zero"));
         }
         let range = |values: &dyn Fn(&(String, f64, f64)) -> f64| {
             let least = shown.iter().map(|p| values(p)).fold(f64::INFINITY, f64::min);
             let largest = shown.iter().map(|p| values(p)).fold(0.0, f64::max);
-            // Whole decades, so that the axis has at least two numbers.
-            10f64.powf((least / 1.3).log10().floor())..10f64.powf((largest * 1.3).log10().ceil())
+            let fitted = least / 1.3..largest * 1.3;
+            // Whole decades where the axis had less than two numbers.
+            match fitted.end.log10().floor() - fitted.start.log10().ceil() >= 1.0 {
+                true => fitted,
+                false => 10f64.powf(fitted.start.log10().floor())..10f64.powf(fitted.end.log10().ceil()),
+            }
         };
         let mut text = String::new();
         draw(&mut text, self, &shown, range(&|p| 1e6 * p.1), range(&|p| p.2))

@@ -11,11 +11,11 @@ use svg::Document;
 use svg::node::element::{Rectangle, Text, Title};
 
 /// Pixels of one case in a map, and beside and above them.
-const CELL: (usize, usize) = (22, 20);
+const CELL: (usize, usize) = (9, 20);
 const BESIDE: usize = 190;
-const ABOVE: usize = 116;
+const ABOVE: usize = 132;
 /// What an error of 1e-16, 1e-14, … 1e-2 and more is drawn as: light where all digits are right (Crameri's lajolla, turned).
-const SHADES: [&str; 8] = ["#fffbe0", "#fbe6a1", "#f6ca69", "#e99f51", "#dd7350", "#b64a4a", "#6d3632", "#1f1a0c"];
+const SHADES: [&str; 8] = ["#fbf1c2", "#f8dc8c", "#f2c25c", "#e99f51", "#dd7350", "#b64a4a", "#6d3632", "#1f1a0c"];
 const REFUSED: &str = "#c8ccd4";
 const TOLD: &str = "#9db8d9";
 
@@ -174,7 +174,7 @@ fn map(subject: &str, rows: &[&StabilityRow]) -> String {
         if last != Some(*family) {
             let (x, _) = place(row);
             let name = words(x + 4, ABOVE - 6, 12, family.name());
-            picture = picture.add(name.set("transform", format!("rotate(-32 {} {})", x + 4, ABOVE - 6)));
+            picture = picture.add(name.set("transform", format!("rotate(-55 {} {})", x + 4, ABOVE - 6)));
         }
         last = Some(*family);
     }
@@ -202,7 +202,7 @@ fn map(subject: &str, rows: &[&StabilityRow]) -> String {
     let base = height - 40;
     let legend = SHADES.iter().enumerate().map(|(i, color)| (*color, format!("1e{}", 2 * i as i32 - 16)));
     let legend = legend.chain([(REFUSED, "refused".into()), (TOLD, "told or dependent".into())]);
-    let mut x = BESIDE;
+    let mut x = 12;
     for (color, name) in legend {
         let key = Rectangle::new().set("x", x).set("y", base).set("width", 16).set("height", 16);
         picture = picture.add(key.set("fill", color).set("stroke", "#888"));

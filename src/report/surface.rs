@@ -1,16 +1,21 @@
-//! Moduli of networks as surfaces over the constants that were asked for.
+//! Moduli of networks against the constants that were asked for.
 
+use super::comparison::COLORS;
 use crate::error::{Error, Result};
 use crate::study::Surface;
-use plotters::coord::ranged3d::ProjectionMatrixBuilder;
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// Pixels of one surface, and of the title above them all.
-const PANEL: (u32, u32) = (380, 320);
-const TITLE: u32 = 34;
+/// Pixels of a panel, and of the title above and the names below.
+const PANEL: (u32, u32) = (410, 330);
+const TITLE: u32 = 30;
+const NAMES: u32 = 34;
 
-/// For each fit a row of two surfaces, `E_out` and `ν_out` over `E_in` (decades) and `ν_in`; an SVG file's text. What was asked
-/// for is drawn as a grid of grey lines.
+type Fallible = std::result::Result<(), Box<dyn std::error::Error>>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Two panels over `ν_in`: `E_out/E_in`, and `ν_out`. A network has a line for each `E_in`; they coincide where the moduli of the
+/// network are in proportion. What was asked for is grey. An SVG file's text.
 ///
 /// # Errors
 /// Nothing is known of any fit.
@@ -24,67 +29,88 @@ pub fn surface_figure(title: &str, surfaces: &[Surface]) -> Result<String> {
     Ok(text)
 }
 
-fn draw(text: &mut String, title: &str, surfaces: &[&Surface]) -> std::result::Result<(), Box<dyn std::error::Error>> {
-    let size = (2 * PANEL.0, TITLE + PANEL.1 * surfaces.len() as u32);
+fn draw(text: &mut String, title: &str, surfaces: &[&Surface]) -> Fallible {
+    let size = (2 * PANEL.0, TITLE + PANEL.1 + NAMES);
     let area = SVGBackend::with_string(text, size).into_drawing_area();
     area.fill(&WHITE)?;
-    let axes = "across log10 E_in and nu_in; grey: what was asked for";
-    let area = area.titled(title, ("sans-serif", 18))?.titled(axes, ("sans-serif", 13))?;
-    for (surface, row) in surfaces.iter().zip(area.split_evenly((surfaces.len(), 1))) {
-        let panels = row.split_evenly((1, 2));
-        let young = |e: f64, _: f64| e.log10();
-        panel(&panels[0], surface, "log10 E_out", &young, &|found| found[0].log10())?;
-        panel(&panels[1], surface, "nu_out", &|_, nu| nu, &|found| found[1])?;
+    area.draw(&Text::new(title.to_string(), (12, 8), ("sans-serif", 16)))?;
+    let (_, below) = area.split_vertically(TITLE);
+    let (panels, names) = below.split_vertically(PANEL.1);
+    let (left, right) = panels.split_horizontally(PANEL.0);
+    panel(&left, surfaces, "E_out / E_in", &|_, _| 1.0, &|[young, _], asked| young / asked)?;
+    panel(&right, surfaces, "nu_out", &|_, poisson| poisson, &|[_, poisson], _| poisson)?;
+    let mut x = 20;
+    let asked = std::iter::once(("asked for", GREY)).map(|(name, color)| (name.to_string(), color));
+    for (name, color) in asked.chain(surfaces.iter().enumerate().map(|(i, s)| (s.fit.clone(), hue(i)))) {
+        names.draw(&PathElement::new([(x, 14), (x + 22, 14)], color.stroke_width(3)))?;
+        names.draw(&Text::new(name.clone(), (x + 28, 7), ("sans-serif", 14)))?;
+        x += 44 + 8 * name.chars().count() as i32;
     }
     area.present()?;
     Ok(())
 }
 
+const GREY: RGBColor = RGBColor(165, 165, 165);
+
+fn hue(i: usize) -> RGBColor {
+    COLORS[[5, 1, 0, 3, 6, 2, 7, 4][i % 8]]
+}
+
 fn panel(
-    area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
-    surface: &Surface,
+    area: &Area,
+    surfaces: &[&Surface],
     what: &str,
     asked: &dyn Fn(f64, f64) -> f64,
-    value: &dyn Fn([f64; 2]) -> f64,
-) -> std::result::Result<(), Box<dyn std::error::Error>> {
-    let decades: Vec<f64> = surface.young.iter().map(|e| e.log10()).collect();
-    let ratios = &surface.poisson;
-    let found = |i: usize, j: usize| surface.found[i * ratios.len() + j].map(value);
-    let cells = || (0..decades.len()).flat_map(|i| (0..ratios.len()).map(move |j| (i, j)));
-    let wanted = |i: usize, j: usize| asked(surface.young[i], ratios[j]);
-    let heights = || cells().flat_map(|(i, j)| [Some(wanted(i, j)), found(i, j)]).flatten();
-    let low = heights().fold(f64::INFINITY, f64::min).min(0.0);
-    let high = heights().fold(f64::NEG_INFINITY, f64::max);
-    let range = |v: &[f64]| v[0]..v[v.len() - 1];
+    value: &dyn Fn([f64; 2], f64) -> f64,
+) -> Fallible {
+    let lines = |surface: &Surface| -> Vec<Vec<(f64, f64)>> {
+        let of = |i: usize, young: f64| {
+            let points =
+                surface.poisson.iter().enumerate().filter_map(move |(j, &nu)| {
+                    Some((nu, value(surface.found[i * surface.poisson.len() + j]?, young)))
+                });
+            points.filter(|(_, y)| y.is_finite()).collect()
+        };
+        surface.young.iter().enumerate().map(|(i, &young)| of(i, young)).collect()
+    };
+    let wanted: Vec<(f64, f64)> = surfaces[0].poisson.iter().map(|&nu| (nu, asked(1.0, nu))).collect();
+    let all = || surfaces.iter().flat_map(|s| lines(s)).flatten().chain(wanted.iter().copied());
+    let range = |of: fn((f64, f64)) -> f64| {
+        let (a, b) = all().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let room = 0.05 * (b - a).max(0.02);
+        a - room..b + room
+    };
     let mut chart = ChartBuilder::on(area)
-        .margin(12)
-        .caption(format!("{}: {what}", surface.fit), ("sans-serif", 15))
-        .build_cartesian_3d(range(&decades), low..high, range(ratios))?;
-    chart.with_projection(|mut view: ProjectionMatrixBuilder| {
-        (view.pitch, view.yaw, view.scale) = (0.35, 0.75, 0.8);
-        view.into_matrix()
-    });
-    let short = |v: &f64| format!("{}", (v * 100.0).round() / 100.0);
+        .margin(10)
+        .x_label_area_size(42)
+        .y_label_area_size(60)
+        .build_cartesian_2d(range(|p| p.0), range(|p| p.1))?;
     chart
-        .configure_axes()
-        .light_grid_style(WHITE)
-        .bold_grid_style(BLACK.mix(0.15))
-        .max_light_lines(1)
-        .x_labels(4)
-        .z_labels(5)
-        .x_formatter(&short)
-        .y_formatter(&short)
-        .z_formatter(&short)
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .x_desc("nu_in")
+        .y_desc(what)
+        .x_label_formatter(&short)
+        .y_label_formatter(&short)
+        .label_style(("sans-serif", 13))
         .draw()?;
-    for (asks, style) in [(true, BLACK.mix(0.3).stroke_width(1)), (false, RGBColor(213, 94, 0).stroke_width(1))] {
-        let height = |i: usize, j: usize| if asks { Some(wanted(i, j)) } else { found(i, j) };
-        let at = |(i, j): (usize, usize)| height(i, j).map(|h| (decades[i], h, ratios[j]));
-        let along: Vec<Vec<_>> = (0..ratios.len()).map(|j| (0..decades.len()).map(|i| (i, j)).collect()).collect();
-        let across: Vec<Vec<_>> = (0..decades.len()).map(|i| (0..ratios.len()).map(|j| (i, j)).collect()).collect();
-        for line in along.into_iter().chain(across) {
-            let known: Vec<(f64, f64, f64)> = line.into_iter().filter_map(at).collect();
-            chart.draw_series(LineSeries::new(known, style))?;
+    chart.draw_series(LineSeries::new(wanted.iter().copied(), GREY.stroke_width(5)))?;
+    for (i, surface) in surfaces.iter().enumerate() {
+        for line in lines(surface) {
+            match i % 3 {
+                0 => {
+                    chart.draw_series(LineSeries::new(line, hue(i).stroke_width(2)))?;
+                }
+                k => {
+                    let (on, off) = if k == 1 { (9, 4) } else { (3, 4) };
+                    chart.draw_series(DashedLineSeries::new(line, on, off, hue(i).stroke_width(2)))?;
+                }
+            }
         }
     }
     Ok(())
+}
+
+fn short(v: &f64) -> String {
+    format!("{}", (v * 1000.0).round() / 1000.0)
 }

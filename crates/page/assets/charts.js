@@ -10,7 +10,7 @@ function addHistogram(record) {
     const middles = h.counts.map((_, i) => h.first + (i + 0.5) * h.width);
     const bar = (name, color, keep, pattern) => ({
       type: "bar", name, x: middles.filter(keep), y: h.counts.filter((_, i) => keep(middles[i])), width: h.width,
-      marker: { color, pattern: { shape: pattern, solidity: 0.25, fgcolor: theme.color("paper") }, line: { width: 0 } }, hovertemplate: `k ≈ %{x:.4g} ${h.unit}<br>%{y} springs<extra></extra>`,
+      marker: { color, pattern: { shape: pattern, solidity: 0.25, bgcolor: color, fgcolor: theme.color("paper") }, line: { width: 0 } }, hovertemplate: `k ≈ %{x:.4g} ${h.unit}<br>%{y} springs<extra></extra>`,
     });
     const data = [bar("k ≥ 0", HUES[0], (k) => k >= 0, ""), bar("k < 0", HUES[1], (k) => k < 0, "/")].filter((bar) => bar.x.length);
     const beyond = h.outside[0] + h.outside[1];
@@ -30,7 +30,7 @@ function addHistogram(record) {
   const show = addChart("constants", "Spring constants", draw, [element("div", { class: "tools" }, names.field, kinds.field)]);
 }
 
-/** Errors below this share of the figure's largest are drawn at its lower edge. */
+/** Errors so many decades below the largest, as those of rounding, are drawn under the others. */
 const DECADES = 4;
 
 function addPrecision(record) {
@@ -41,25 +41,27 @@ function addPrecision(record) {
   const draw = () => {
     const points = fits.map((fit) => ({ name: fit.name, time: 1e6 * fit.seconds_per_element, error: fit.loads[chosen]?.e_rms ?? null })).filter((p) => p.error !== null && p.time > 0);
     const largest = Math.max(...points.map((p) => p.error), 1e-9);
-    const floor = Math.min(largest * 10 ** -DECADES, 0.01);
+    const visible = points.map((p) => p.error).filter((error) => error >= largest * 10 ** -DECADES);
+    const floor = Math.min(...visible, largest) / 3;
     const data = points.map((p, i) => {
-      const below = p.error < floor;
+      const below = p.error < largest * 10 ** -DECADES;
       return {
-        type: "scatter", mode: "markers", name: label(cut(p.name)), x: [p.time], y: [Math.max(p.error, floor)], text: [label(p.name)], customdata: [p.error],
+        type: "scatter", mode: below ? "markers+text" : "markers", name: label(cut(p.name)), x: [p.time], y: [Math.max(p.error, floor)], customdata: [[p.error, label(p.name)]],
+        text: [`${short(p.error, 1)} %`], textposition: "middle right",
         marker: { size: 11, color: HUES[i % HUES.length], symbol: below ? "triangle-down-open" : MARKS[i % MARKS.length], line: { width: below ? 2 : 1, color: below ? HUES[i % HUES.length] : theme.color("paper") } },
-        hovertemplate: "%{text}<br>%{customdata:.3g} % e_rms<br>%{x:.3g} µs/element<extra></extra>",
+        hovertemplate: "%{customdata[1]}<br>%{customdata[0]:.3g} % e_rms<br>%{x:.3g} µs/element<extra></extra>",
       };
     });
-    const least = points.some((p) => p.error < floor) ? floor : Math.min(...points.map((p) => p.error));
+    const least = points.some((p) => p.error < largest * 10 ** -DECADES) ? floor : Math.min(...points.map((p) => p.error));
     const span = (values) => { const [a, b] = [Math.log10(Math.min(...values)), Math.log10(Math.max(...values))]; const room = Math.max(0.08 * (b - a), 0.15); return [a - room, b + room]; };
     return { data, layout: layout({
-      xaxis: { type: "log", title: { text: "time to fit, µs per element" }, range: span(points.map((p) => p.time)), dtick: 1 },
-      yaxis: { type: "log", title: { text: `e_rms under ${label(loads[chosen])}, %` }, range: span([least, largest]), dtick: 1 },
+      xaxis: { type: "log", title: { text: "time to fit, µs per element" }, range: span(points.map((p) => p.time)), dtick: "D2" },
+      yaxis: { type: "log", title: { text: `e_rms under ${label(loads[chosen])}, %` }, range: span([least, largest]), dtick: largest / least < 100 ? "D2" : 1 },
       hovermode: "closest",
     }) };
   };
   const load = chooser("precision-load", "Load", loads.map((name, i) => [i, cut(name)]), (value) => { chosen = Number(value); show(); });
-  const note = element("p", { class: "hint" }, "An open triangle at the lower edge: the error is below the axis.");
+  const note = element("p", { class: "hint" }, "An open triangle, with its number: the error is too small for the axis.");
   const show = addChart("precision", "Error against time to fit", draw, [load.field, note]);
 }
 

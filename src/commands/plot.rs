@@ -1,0 +1,80 @@
+//! `springfit plot`.
+
+use crate::terminal::Terminal;
+use clap::Args;
+use springfit::error::{Error, Result};
+use springfit::report::{Columns, Figure, Markup, ResultTable, RunFolder};
+use springfit::{check_apart, check_file, write_whole};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Figures and tables of a run for a paper, from its folder
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Plot {
+    /// The folder of a run, with its report.json
+    run: PathBuf,
+    /// Draw this figure as SVG
+    #[arg(long, value_enum, conflicts_with = "table", required_unless_present = "table")]
+    figure: Option<Figure>,
+    /// Typeset the tables of the run
+    #[arg(long, value_enum)]
+    table: Option<Markup>,
+    /// One load or fit of the figure, or one table: fits, errors, materials, times, whole, frequencies, motion
+    #[arg(long, value_name = "NAME")]
+    of: Option<String>,
+    /// Columns of the page that the figure is as wide as: 85 or 178 mm
+    #[arg(long, value_enum, default_value_t)]
+    columns: Columns,
+    /// Where it goes [default: standard output]
+    #[arg(short, long, help_heading = "Output")]
+    output: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  springfit plot out/cube_tet --figure work-precision -o precision.svg
+  springfit plot out/cube_tet --figure constants --of exact --columns two -o constants.svg
+  springfit plot out/cube_tet --table latex --of errors -o errors.tex   # with \\usepackage{booktabs}
+  springfit plot out/cube_tet --table markdown";
+
+impl Plot {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        let run = RunFolder::at(&self.run);
+        if let Some(path) = &self.output {
+            check_apart(std::slice::from_ref(path), &[self.run.join("report.json")])
+                .map_err(|e| e.at_key("--output"))?;
+            let is_svg = path.extension().is_some_and(|ending| ending == "svg");
+            if self.figure.is_some() && !is_svg {
+                return Err(Error::expected("--output", "a file ending in .svg", path.display()));
+            }
+            if path.symlink_metadata().is_ok() {
+                check_file(path)?;
+            }
+        }
+        let text = match (self.figure, self.table) {
+            (Some(figure), _) => figure.chart(&run, self.of.as_deref())?.svg(self.columns)?,
+            (None, Some(markup)) => self.tables(&run, markup)?,
+            (None, None) => return Err(Error::new("expected --figure or --table")),
+        };
+        match &self.output {
+            None => terminal.print(&text)?,
+            Some(path) => {
+                write_whole(path, text.as_bytes())?;
+                terminal.written(std::slice::from_ref(path))?;
+            }
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn tables(&self, run: &RunFolder, markup: Markup) -> Result<String> {
+        let tables = ResultTable::all(&run.report()?);
+        let chosen: Vec<&ResultTable> =
+            tables.iter().filter(|table| self.of.as_ref().is_none_or(|name| table.name == *name)).collect();
+        if let (Some(name), true) = (&self.of, chosen.is_empty()) {
+            let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
+            return Err(Error::expected("--of", format!("a table of the run: {}", names.join(", ")), name));
+        }
+        Ok(chosen.iter().map(|table| markup.table(table)).collect::<Vec<_>>().join("\n"))
+    }
+}

@@ -1,0 +1,126 @@
+//! Figures of a run for a paper, from the files that the run wrote.
+
+mod chart;
+mod run_folder;
+
+pub use chart::{Axis, Chart, Columns, Series, Shape};
+pub use run_folder::RunFolder;
+
+use crate::error::{Error, Result};
+use crate::report::json::Report;
+use clap::ValueEnum;
+
+/// What a figure shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Figure {
+    /// The error of the displacements against the time to fit.
+    WorkPrecision,
+    /// How the constants of the networks are distributed.
+    Constants,
+    /// The distance from the finite elements over time.
+    Motion,
+}
+
+/// Decades below the largest error within which errors are shown: an exact network has errors of rounding.
+const DECADES: f64 = 4.0;
+/// Smaller errors have a mark that is so many times below the least that is shown.
+const BELOW: f64 = 3.0;
+/// Intervals of a distribution.
+const INTERVALS: usize = 40;
+
+impl Figure {
+    /// The chart of a run, of one load or network if a name is given.
+    ///
+    /// # Errors
+    /// The run does not have it, or a file cannot be read.
+    pub fn chart(self, run: &RunFolder, of: Option<&str>) -> Result<Chart> {
+        match self {
+            Figure::WorkPrecision => precision(&run.report()?, of),
+            Figure::Constants => constants(run, of),
+            Figure::Motion => motion(&run.report()?),
+        }
+    }
+}
+
+fn log(title: &str) -> Axis {
+    Axis { title: title.into(), is_log: true }
+}
+
+fn linear(title: &str) -> Axis {
+    Axis { title: title.into(), is_log: false }
+}
+
+fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
+    let loads = report.fits.first().map_or(&[][..], |fit| &fit.loads);
+    let place = match load {
+        None => 0,
+        Some(name) => loads.iter().position(|load| load.name == name).ok_or_else(|| {
+            let names: Vec<&str> = loads.iter().map(|load| load.name.as_str()).collect();
+            Error::expected("--of", format!("a load of the run: {}", names.join(", ")), name)
+        })?,
+    };
+    let Some(name) = loads.get(place).map(|load| &load.name) else {
+        return Err(Error::new("the run has no loads, so its fits have no errors to draw"));
+    };
+    let error = |fit: &crate::report::FitRecord| fit.loads.get(place)?.e_rms;
+    let largest = report.fits.iter().filter_map(error).fold(0.0, f64::max);
+    let least = largest * 10f64.powf(-DECADES);
+    let shown = report.fits.iter().filter_map(error).filter(|error| *error >= least).fold(largest, f64::min);
+    let floor = shown / BELOW;
+    let series = report.fits.iter().filter_map(|fit| {
+        let found = error(fit)?;
+        let shape = if found < least { Shape::Below } else { Shape::Marks };
+        let name = if found < least { format!("{} ({found:.0e} %)", fit.name) } else { fit.name.clone() };
+        Some(Series { name, points: vec![(1e6 * fit.seconds_per_element, found.max(floor))], shape })
+    });
+    Ok(Chart {
+        title: format!("{}: error under {name} against time to fit", report.scene),
+        x: log("time to fit, µs per element"),
+        y: log(&format!("e_rms under {name}, %")),
+        series: series.collect(),
+    })
+}
+
+fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
+    let network = run.network(fit)?;
+    let name = network.provenance.fit.as_ref().map_or("", |fit| &fit.name);
+    let mut values: Vec<f64> = network.springs.iter().filter(|s| s.kind == "length").map(|s| s.constant).collect();
+    values.sort_by(f64::total_cmp);
+    let (Some(&least), Some(&largest)) = (values.first(), values.last()) else {
+        return Err(Error::new(format!("{name} has no springs between two points")));
+    };
+    let width = ((largest - least) / INTERVALS as f64).max(1e-6 * largest.abs()).max(f64::MIN_POSITIVE);
+    let mut counts = vec![0usize; INTERVALS];
+    values.iter().for_each(|value| counts[(((value - least) / width) as usize).min(INTERVALS - 1)] += 1);
+    let middle = |i: usize| least + (i as f64 + 0.5) * width;
+    let part = |name: &str, keep: fn(f64) -> bool| Series {
+        name: name.into(),
+        points: (0..INTERVALS).filter(|&i| keep(middle(i))).map(|i| (middle(i), counts[i] as f64)).collect(),
+        shape: Shape::Bars(width),
+    };
+    let series = vec![part("k ≥ 0", |k| k >= 0.0), part("k < 0", |k| k < 0.0)];
+    Ok(Chart {
+        title: format!("{name}: constants of {} springs between two points", values.len()),
+        x: linear("constant k, N/m"),
+        y: linear("springs"),
+        series: series.into_iter().filter(|part| !part.points.is_empty()).collect(),
+    })
+}
+
+fn motion(report: &Report) -> Result<Chart> {
+    let curve = |model: &crate::report::MotionRecord| {
+        let points = model.time.iter().zip(&model.e_rms).filter_map(|(time, error)| Some(((*time)?, (*error)?)));
+        Series { name: model.name.clone(), points: points.collect(), shape: Shape::Line }
+    };
+    let has_error = |series: &Series| series.points.iter().any(|(_, error)| *error > 0.0);
+    let series: Vec<Series> = report.motion.iter().map(curve).filter(has_error).collect();
+    if series.is_empty() {
+        return Err(Error::new("the run has no motion whose distance from the finite elements is known"));
+    }
+    Ok(Chart {
+        title: format!("{}: distance from the finite elements over time", report.scene),
+        x: linear("time, s"),
+        y: linear("e_rms, % of the largest displacement"),
+        series,
+    })
+}

@@ -1,0 +1,64 @@
+//! What a run wrote, read again.
+
+use crate::error::{Error, Result};
+use crate::report::json::{Report, VERSION};
+use crate::report::network::{NetworkRecord, read_network};
+use std::path::{Path, PathBuf};
+
+/// The folder of a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// The folder at `path`, or that of the report at `path`.
+    pub fn at(path: &Path) -> RunFolder {
+        let is_report = path.extension().is_some_and(|ending| ending == "json");
+        let folder = if is_report { path.parent().unwrap_or(Path::new("")) } else { path };
+        RunFolder { path: folder.to_path_buf() }
+    }
+
+    /// The report of the run.
+    ///
+    /// # Errors
+    /// There is none, or it is of another version.
+    pub fn report(&self) -> Result<Report> {
+        let path = self.path.join("report.json");
+        let text = std::fs::read_to_string(&path).map_err(|e| {
+            let advice = "the folder of a run has one unless [output] report is false";
+            Error::new(format!("cannot be read: {e}; {advice}")).in_file(&path)
+        })?;
+        let value: serde_json::Value =
+            serde_json::from_str(&text).map_err(|e| Error::new(format!("is not JSON: {e}")).in_file(&path))?;
+        let version = value.get("version").and_then(serde_json::Value::as_u64);
+        if version != Some(u64::from(VERSION)) {
+            let found = version.map_or("none".into(), |version| version.to_string());
+            let error = Error::expected("version", format!("{VERSION}, that of this program"), found);
+            return Err(error.followed_by("; run the scene again").in_file(&path));
+        }
+        serde_path_to_error::deserialize(value)
+            .map_err(|e| Error::at(e.path().to_string(), format!("{}", e.inner())).in_file(&path))
+    }
+
+    /// The network of the fit with this name, or of the first.
+    ///
+    /// # Errors
+    /// The run has no such fit, or its network was not written.
+    pub fn network(&self, fit: Option<&str>) -> Result<NetworkRecord> {
+        let report = self.report()?;
+        let names: Vec<&str> = report.fits.iter().map(|fit| fit.name.as_str()).collect();
+        let place = match fit {
+            None => 0,
+            Some(name) => names
+                .iter()
+                .position(|known| *known == name)
+                .ok_or_else(|| Error::expected("--of", format!("a fit of the run: {}", names.join(", ")), name))?,
+        };
+        let stems = crate::report::outputs::file_stems(names.iter().copied());
+        let Some(stem) = stems.get(place) else {
+            return Err(Error::new("the run has no fit, so there is no network to draw"));
+        };
+        read_network(&self.path.join(format!("{stem}.json")))
+    }
+}
