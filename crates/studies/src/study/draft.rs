@@ -60,7 +60,9 @@ pub fn draft(
     line("[material]");
     let value = |text: &str| if text.parse::<f64>().is_ok() { text.to_string() } else { quoted(text) };
     let young = material.young.as_deref().map_or("\"10 kPa\"".into(), value);
-    line(&format!("young   = {young:<15} # Young's modulus; or \"1e4*(1 + 20*z)\" with z in m, or {{ file = \"map.csv\" }}"));
+    line(&format!(
+        "young   = {young:<15} # Young's modulus; or \"1e4*(1 + 20*z)\" with z in m, or {{ file = \"map.csv\" }}"
+    ));
     line(&format!("poisson = {:<15} # Poisson's ratio, below 0.5", material.poisson.unwrap_or(0.3)));
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
     match mesh.cell_dimension() {
