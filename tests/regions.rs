@@ -357,7 +357,7 @@ fn wrong_materials_are_named() {
             "material",
             "every cell in one region, found 1 in two",
         ),
-        (region("where = \"z < 1.1\"\n", "where = \"z > 2.1\"\n"), "material", "found 2 cells in none"),
+        (region("where = \"z < 1.1\"\n", "where = \"z > 1.9\"\n"), "material", "found 1 cells in none"),
         (region("where = \"z < -1\"\n", ""), "material[0]", "has no cells"),
         (region("", ""), "material[1]", "material[0] has what is left"),
         (region("where = \"z < 1.1\"\ngroup = \"zmin\"\n", ""), "material[0]", "found both"),
