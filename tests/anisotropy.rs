@@ -188,7 +188,7 @@ fn fits_are_least_squares_of_the_whole_matrix() {
         let (d, n) = (element.dimension(), element.nodes());
         let springs = Springs::select(&element, None).unwrap();
         // Those with a rule of their own for changes of volume are compared with the isotropic law below.
-        if springs.len() == 0 || !element.tabulation.volumetric.is_empty() || element.space() != d {
+        if springs.is_empty() || !element.tabulation.volumetric.is_empty() || element.space() != d {
             continue;
         }
         let x = distorted(&element, &mut seed);
@@ -271,7 +271,7 @@ fn an_isotropic_stiffness_is_the_isotropic_law() {
     for element in elements() {
         let d = element.dimension();
         let springs = Springs::select(&element, None).unwrap();
-        if springs.len() == 0 || d < 2 || element.space() != d {
+        if springs.is_empty() || d < 2 || element.space() != d {
             continue;
         }
         let x = distorted(&element, &mut seed);
