@@ -51,9 +51,9 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
         (None, Some(young), None) => format!("the materials there have {young:.4e} Pa"),
         (None, None, _) => "the materials differ from cell to cell".into(),
     };
-    Some(format!(
-        "{name}: the network is not the material: {off} ({of}; {asked}). The objective \"exact\" gives the material"
-    ))
+    // Exact networks are those of isotropic materials.
+    let remedy = if outcome.material.materials().is_ok() { ". The objective \"exact\" gives the material" } else { "" };
+    Some(format!("{name}: the network is not the material: {off} ({of}; {asked}){remedy}"))
 }
 
 /// In percent with a digit behind the point; rounding is zero.
