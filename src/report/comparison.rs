@@ -173,7 +173,11 @@ impl Comparison {
             // Whole decades where the axis had less than two numbers.
             match fitted.end.log10().floor() - fitted.start.log10().ceil() >= 1.0 {
                 true => fitted,
-                false => 10f64.powf(fitted.start.log10().floor())..10f64.powf(fitted.end.log10().ceil()),
+                // A little more, so that rounding does not take the numbers at the ends from the axis.
+                false => {
+                    let [start, end] = [fitted.start.log10().floor(), fitted.end.log10().ceil()];
+                    10f64.powf(start) * 0.999..10f64.powf(end) * 1.001
+                }
             }
         };
         let mut text = String::new();
