@@ -80,7 +80,8 @@ fn results_beyond_the_linear_theory_are_told() {
         let outcome = bent(share / unit.rotation);
         let found = outcome.loads[0].deformation.unwrap();
         assert!((found.rotation - share).abs() < 1e-9, "{found:?}");
-        let told = notes(&outcome).iter().any(|note| note.contains("rotations of up to 0.10 rad under bend"));
+        let told =
+            notes(&outcome).iter().any(|note| note.contains("rotations of up to 0.10 rad (bound 0.1 rad) under bend"));
         let report = Report::of(&outcome);
         let record = &report.deformations[0];
         assert_eq!((told, record.beyond_linear, record.load.as_deref()), (expected, expected, Some("bend")));

@@ -139,7 +139,7 @@ fn published_methods_tell_what_they_take_for_granted() {
     let outcome = run(&Scene::load(&path).unwrap(), &mut quiet).unwrap();
     let notes = report::notes(&outcome);
     let note = "lloyd: lloyd assumes Poisson's ratio 0.3333, and the material has 0.3; 18 of 18 elements do not have the shape that \
-                it assumes (lengths differ by up to 24 %)";
+                lloyd assumes (lengths differ by up to 24 %)";
     assert!(notes.iter().any(|n| n == note), "{notes:?}");
     assert!(report::report(&outcome).contains("\"elements_of_other_shape\": 18"));
     let names = |path: &Path| -> Vec<String> {

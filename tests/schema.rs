@@ -164,7 +164,7 @@ fn a_schema_refuses_what_the_reader_refuses() {
     for (from, to) in [
         ("poisson = 0.3", "posson = 0.3"),
         ("poisson = 0.3", "poisson = true"),
-        ("poisson = 0.3", ""),
+        ("element = \"hex8\", ", ""),
         ("\"frobenius\"", "\"frobenus\""),
         ("\"frobenius\"", "\"exact\"\nhigher = 0.3"),
         ("\"frobenius\"", "\"frobenius\"\nweight = \"moddal\""),

@@ -185,6 +185,11 @@ fn keys(value: &Value, path: &str, found: &mut BTreeMap<String, Names>) {
 const POSITIVE: &str = "[mesh]\nfile = \"scenes/meshes/cube_tet.msh\"\nscale = 0.01\n[material]\nyoung = 1\npoisson = 0.3\n[[fit]]\nobjective = \
                         \"exact\"\nnonnegative = true\n[[fit]]\nobjective = \"frobenius\"\nrest = \"free\"\n[[fix]]\ngroup = \"fixed\"\n";
 
+/// With errors of a whole-object fit under other loads, and moduli.
+const COARSE: &str = "[mesh]\nbox = { element = \"hex8\", size = [2, 1, 1], cells = [2, 1, 1] }\n[material]\nyoung = 1\npoisson = 0.3\n\
+                      [reference]\nrefine = 1\n[[fit]]\nobjective = \"whole\"\nstart = \"exact\"\nunknowns = \"body-moduli\"\n[[fix]]\n\
+                      group = \"xmin\"\n";
+
 #[test]
 fn the_page_of_the_report_has_every_key() {
     let mut found = BTreeMap::new();
@@ -192,6 +197,9 @@ fn the_page_of_the_report_has_every_key() {
         keys(&reports(text).0, "report", &mut found);
     }
     let scene = Scene::parse(POSITIVE, &super::markdown::root().join("scene.toml")).unwrap();
+    let outcome = springfit::study::run(&scene, &mut |_| {}).unwrap();
+    keys(&serde_json::from_str(&springfit::report::report(&outcome)).unwrap(), "report", &mut found);
+    let scene = Scene::parse(COARSE, &super::markdown::root().join("scene.toml")).unwrap();
     let outcome = springfit::study::run(&scene, &mut |_| {}).unwrap();
     keys(&serde_json::from_str(&springfit::report::report(&outcome)).unwrap(), "report", &mut found);
     let tables = columns(&page("docs/src/reference/report.md"));

@@ -34,11 +34,11 @@ force = [0, 0, 1.0]
 [[load]]
 body = [0, 0, 1.0]
 [[load]]
-sum = ["load 1", "load 3"]
-[[load]]
 group = "zmax"
 displacement = ["free", "free", 0.01]
 measured = { file = "measured.csv", scale = 1.0 }
+[[load]]
+sum = ["load 1", "load 3"]
 [solver]
 method = "multigrid"
 tolerance = 1e-9

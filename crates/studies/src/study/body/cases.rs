@@ -64,11 +64,21 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
     for (i, load) in scene.loads().iter().enumerate() {
         if let LoadKind::Sum(parts) = &load.kind {
             let sum = |dof: usize| parts.iter().map(|&part| cases[part].forces[dof]).sum();
-            cases[i].forces = (0..mesh.points.len()).map(sum).collect();
+            let forces: Vec<f64> = (0..mesh.points.len()).map(sum).collect();
+            let largest = |forces: &[f64]| forces.iter().fold(0.0, |a: f64, f| a.max(f.abs()));
+            let parts = parts.iter().map(|&part| largest(&cases[part].forces)).fold(0.0, f64::max);
+            // What is left is a rounding error.
+            if !(largest(&forces) > CANCELLED * parts) {
+                return Err(scene.at(&format!("load[{i}]"), Error::at("sum", "has loads that cancel each other")));
+            }
+            cases[i].forces = forces;
         }
     }
     Ok((fixed, cases))
 }
+
+/// The share of its parts below which a sum of loads is none.
+const CANCELLED: f64 = 1e-12;
 
 /// The nodal forces of an action, and the supports under it.
 fn acting(

@@ -31,20 +31,20 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Kept for the lines of what turns out to be wrong later.
-    source: SceneSource,
-    title: String,
-    mesh: MeshInput,
-    material: MaterialEntries,
-    fits: Vec<NamedFit>,
-    supports: Vec<(Part, Option<Vec<usize>>)>,
-    loads: Vec<LoadCase>,
-    newton: Newton,
-    solver: StaticSolver,
-    reference: Option<ReferenceEntry>,
-    gauge: Option<Gauge>,
-    motion: Option<MotionRecipe>,
-    output: Output,
-    sweep: Option<SweepEntry>,
+    pub(super) source: SceneSource,
+    pub(super) title: String,
+    pub(super) mesh: MeshInput,
+    pub(super) material: MaterialEntries,
+    pub(super) fits: Vec<NamedFit>,
+    pub(super) supports: Vec<(Part, Option<Vec<usize>>)>,
+    pub(super) loads: Vec<LoadCase>,
+    pub(super) newton: Newton,
+    pub(super) solver: StaticSolver,
+    pub(super) reference: Option<ReferenceEntry>,
+    pub(super) gauge: Option<Gauge>,
+    pub(super) motion: Option<MotionRecipe>,
+    pub(super) output: Output,
+    pub(super) sweep: Option<SweepEntry>,
 }
 
 impl Scene {
@@ -222,48 +222,6 @@ impl Scene {
         self.sweep.as_ref()
     }
 
-    /// The same scene with other fits.
-    pub fn with_fits(self, fits: Vec<NamedFit>) -> Scene {
-        Scene { fits, ..self }
-    }
-
-    /// The same scene with other outputs.
-    pub fn with_output(self, output: Output) -> Scene {
-        Scene { output, ..self }
-    }
-
-    /// The same scene with other settings of Newton's method.
-    pub fn with_newton(self, newton: Newton) -> Scene {
-        Scene { newton, ..self }
-    }
-
-    /// The same scene without loads, and without the gauge that measures under them.
-    pub fn without_loads(self) -> Scene {
-        Scene { loads: Vec::new(), gauge: None, ..self }
-    }
-
-    /// The same scene without its gauge.
-    pub fn without_gauge(self) -> Scene {
-        Scene { gauge: None, ..self }
-    }
-
-    /// The same scene without its motion.
-    pub fn without_motion(self) -> Scene {
-        Scene { motion: None, ..self }
-    }
-
-    /// The same scene with the edges of all cells halved this many more times.
-    pub fn halved(mut self, times: u32) -> Scene {
-        self.mesh.halvings += times;
-        self
-    }
-
-    /// The same scene with all lengths of the mesh multiplied by `factor`.
-    pub fn with_lengths_times(mut self, factor: f64) -> Scene {
-        self.mesh.scale *= factor;
-        self
-    }
-
     /// Reads or generates the mesh.
     ///
     /// # Errors
@@ -289,20 +247,6 @@ impl Scene {
             || conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
             || actions().any(|(_, action)| varies(action))
             || self.loads.iter().any(|load| load.measured.is_some())
-    }
-
-    /// The same scene with Young's modulus multiplied by `factor`, and with another Poisson's ratio if one is given.
-    pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
-        let mut scene = self.clone();
-        for material in &mut scene.material.all {
-            if let Some(young) = &mut material.young {
-                young.factor *= factor;
-            }
-            if let (Some(poisson), Some(own)) = (poisson, &mut material.poisson) {
-                *own = Distribution::of_number(poisson);
-            }
-        }
-        scene
     }
 
     /// The materials of the meshed body, with their density if the scene gives one.

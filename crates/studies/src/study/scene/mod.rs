@@ -19,6 +19,7 @@ mod regions;
 mod setting;
 mod source;
 mod value;
+mod variants;
 
 pub use document::Scene;
 pub(in crate::study) use elements::load_element;

@@ -11,7 +11,6 @@ use crate::model::{Entries, Network, Support, check_body, finite_elements, unhel
 use crate::solve::{Factor, Newton, System, lowest_modes};
 use crate::study::body::{Case, FineBody};
 use crate::study::checkpoint::{Controls, Fingerprint, Saved};
-use crate::study::fits::kind::Task;
 use crate::study::progress::{Event, Progress};
 use crate::whole::{Frequencies, Snapshot, fit_whole};
 use std::sync::OnceLock;
@@ -103,18 +102,17 @@ impl<'a> WholeBody<'a> {
     /// is none.
     pub(in crate::study) fn fit(
         &self,
-        task: &Task,
+        (name, springs, held): (&str, Option<&[String]>, &[bool]),
         recipe: &WholeRecipe,
         start: Option<(&[CellFits], &Network)>,
         progress: &mut Progress,
     ) -> Result<(Network, WholeOutcome)> {
-        let name = task.name;
         let wanted = self.wanted(recipe, progress)?;
         let mut object = match start {
             Some((fits, network)) => self.springs(recipe, fits, network)?,
-            None => self.moduli(recipe, task.reference.held, &wanted)?,
+            None => self.moduli(recipe, held, &wanted)?,
         };
-        let settings = format!("{recipe:?} {:?} {:?}", task.springs, self.newton);
+        let settings = format!("{recipe:?} {:?} {:?}", springs, self.newton);
         let none = vec![0.0; object.unknowns().count()];
         let fingerprint = Fingerprint::of(&settings, &self.mesh.points, &object.network(&none), &wanted);
         let (mut saved, snapshot) = Saved::open(self.controls, name, fingerprint)?;

@@ -55,7 +55,7 @@ impl FitKind for WholeRecipe {
         let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
         let body = task.reference.whole.ok_or_else(missing)?;
         let own = (!matches!(self.start, Start::Exact(_))).then_some((&cells[..], &network));
-        let (network, outcome) = body.fit(task, self, own, progress)?;
+        let (network, outcome) = body.fit((task.name, task.springs, task.reference.held), self, own, progress)?;
         let seconds = seconds + start.elapsed().as_secs_f64();
         let (cells, kind) = (Vec::new(), FittedKind::Whole(outcome));
         Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind })
