@@ -103,7 +103,9 @@ fn without_word_at(line: &str, end: usize) -> String {
     let Some(head) = characters.get(..end) else { return line.into() };
     let start = head.iter().rposition(|c| c.is_whitespace()).map_or(0, |at| at + 1);
     let word: String = head[start..].iter().collect();
+    // A mark says that some elements have the constants of others.
     let ends_there = characters.get(end).is_none_or(|c| c.is_whitespace());
+    let word = word.trim_end_matches('*');
     if ends_there && word.parse::<f64>().is_ok() {
         let text = |part: &[char]| part.iter().collect::<String>();
         return format!("{}T{}", text(&head[..start]), text(&characters[end..]));

@@ -2,7 +2,7 @@
 
 use super::body::{Case, FineBody, Gauged, LargeBody, LinearBody, load_cases};
 use super::checkpoint::Controls;
-use super::fits::{Reference, WholeBody};
+use super::fits::{Finer, Reference, WholeBody};
 use super::fitting::fit_mesh;
 use super::forecast::Forecast;
 use super::masses::point_masses;
@@ -71,7 +71,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         (None, None) => Vec::new(),
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
-    whole.fine = fine.as_ref();
+    whole.fine = fine.as_ref().map(|fine| fine as &dyn Finer);
     whole.masses = masses.as_deref();
     whole.solved = body.as_ref().and_then(|body| body.held_by(&support, &cases));
     let held = held_points(&mesh, &support, &cases);

@@ -8,6 +8,7 @@ use crate::material::MaterialMap;
 use crate::mesh::{Embedding, Field, Mesh};
 use crate::model::Support;
 use crate::solve::StaticSolver;
+use crate::study::fits::{Answers, Finer};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 use crate::whole::NodalLoad;
@@ -17,21 +18,18 @@ use std::sync::{Arc, Mutex};
 /// A finer mesh of the same body.
 pub struct FineBody {
     /// The finer mesh.
-    pub mesh: Mesh,
+    mesh: Mesh,
     /// Its points in the cells of the mesh of the scene, for forces.
     embedding: Embedding,
     /// The points of the mesh of the scene in its cells, for displacements.
     sampling: Embedding,
     /// The support of the `[[fix]]` entries.
-    pub support: Support,
+    support: Support,
     material: MaterialMap,
     solver: StaticSolver,
     /// The answers so far, by what was asked.
     known: Mutex<HashMap<String, Answers>>,
 }
-
-/// Loads on the points of the mesh of the scene, and the displacements there.
-pub type Answers = Arc<Vec<(NodalLoad, Vec<f64>)>>;
 
 impl FineBody {
     /// The finer body of the scene, if it has one.
@@ -85,17 +83,27 @@ impl FineBody {
         Ok(())
     }
 
-    /// The loads on the points of the mesh of the scene that do the same work as these forces on the finer mesh, which holds
-    /// `support`; and the displacements of the finer body at those points. `name` says which loads and which support they are, so that
-    /// no load is solved twice.
-    ///
-    /// # Errors
-    /// The finer body has no solution.
-    pub fn answers(
+    fn displacements(&self, cases: &[Case], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
+        progress(Event::stage("finer body", 0, cases.len()));
+        let body = LinearBody::solve(&self.mesh, &self.material.moduli(), cases, self.solver, progress)?;
+        Ok(body.into_displacements())
+    }
+}
+
+impl Finer for FineBody {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn support(&self) -> &Support {
+        &self.support
+    }
+
+    fn answers(
         &self,
         name: String,
         support: &Support,
-        loads: impl FnOnce() -> Vec<NodalLoad>,
+        loads: &dyn Fn() -> Vec<NodalLoad>,
         progress: &mut Progress,
     ) -> Result<Answers> {
         let known = || self.known.lock().expect("nothing panics while it holds the answers");
@@ -120,11 +128,5 @@ impl FineBody {
         let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
         known().insert(name, answers.clone());
         Ok(answers)
-    }
-
-    fn displacements(&self, cases: &[Case], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
-        progress(Event::stage("finer body", 0, cases.len()));
-        let body = LinearBody::solve(&self.mesh, &self.material.moduli(), cases, self.solver, progress)?;
-        Ok(body.into_displacements())
     }
 }

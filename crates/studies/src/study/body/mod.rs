@@ -12,7 +12,7 @@ mod linear;
 
 pub use case::Case;
 pub use cases::load_cases;
-pub use fine::{Answers, FineBody};
+pub use fine::FineBody;
 pub use gauge::Gauged;
 pub use large::LargeBody;
 pub use linear::LinearBody;

@@ -29,6 +29,6 @@ pub use sampled::{ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledReci
 pub use spread::SpreadRecord;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
 pub use whole::{
-    FittedLoad, FoundModulus, HeldOut, LoadSelection, ModelError, RESERVED, Sharing, Start, ValidationRecipe,
-    WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    Answers, Finer, FittedLoad, FoundModulus, HeldOut, LoadSelection, ModelError, RESERVED, Sharing, Start,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };

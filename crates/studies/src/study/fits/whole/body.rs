@@ -1,6 +1,7 @@
 //! The body to which the whole-object fits of a scene are fitted.
 
-use super::objects::found_moduli;
+use super::finer::Finer;
+use super::found_moduli::found_moduli;
 use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
@@ -9,7 +10,7 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Entries, Network, Support, check_body, finite_elements, unheld_bodies};
 use crate::solve::{Factor, Newton, System, lowest_modes};
-use crate::study::body::{Case, FineBody};
+use crate::study::body::Case;
 use crate::study::checkpoint::{Controls, Fingerprint, Saved};
 use crate::study::progress::{Event, Progress};
 use crate::whole::{Frequencies, Snapshot, fit_whole};
@@ -31,7 +32,7 @@ pub struct WholeBody<'a> {
     /// The equations of the finite elements with the `[[fix]]` support, if loads were solved with it.
     pub(in crate::study) solved: Option<&'a (System, Factor)>,
     /// The finer mesh of the body that gives the displacements, if there is one.
-    pub(in crate::study) fine: Option<&'a FineBody>,
+    pub(in crate::study) fine: Option<&'a dyn Finer>,
     controls: &'a Controls,
     entries: OnceLock<Entries>,
     held: OnceLock<(System, Factor)>,

@@ -1,6 +1,7 @@
 //! The errors of a whole-object fit under loads that it has not seen, beside those of finite elements with the same mesh.
 
 use super::body::WholeBody;
+use super::outcome::{HeldOut, ModelError};
 use super::recipe::WholeRecipe;
 use crate::error::Result;
 use crate::mesh::Mesh;
@@ -13,34 +14,6 @@ use crate::whole::{Target, varied_loads};
 const LOADS: usize = 30;
 /// Added to the seed of the recipe, so that the loads are others than those of the fit and of its validation.
 const SEED: u64 = 1000;
-
-/// The errors of several models under loads made from the mesh that were neither fitted nor chose ρ.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct HeldOut {
-    /// The groups that are held, in words.
-    pub support: String,
-    /// Whether loads with this support were fitted.
-    pub is_trained: bool,
-    /// The number of loads.
-    pub loads: usize,
-    /// The models.
-    pub models: Vec<ModelError>,
-}
-
-/// The relative errors `‖u − ū‖/‖ū‖` of a model over some loads.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct ModelError {
-    /// The model.
-    pub model: &'static str,
-    /// The median; `None` if the model is not stable.
-    pub median: Option<f64>,
-    /// The largest.
-    pub worst: Option<f64>,
-    /// The load that has it.
-    pub worst_load: Option<String>,
-}
 
 impl WholeBody<'_> {
     /// The errors of the network at the start and after the fit, for each support of the fit and of its validation.

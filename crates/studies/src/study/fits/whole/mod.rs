@@ -4,7 +4,9 @@
 
 mod body;
 mod entry;
+mod finer;
 mod fitting;
+mod found_moduli;
 mod held_out;
 mod objects;
 mod outcome;
@@ -14,7 +16,7 @@ mod targets;
 
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
-pub use held_out::{HeldOut, ModelError};
-pub use outcome::{FittedLoad, FoundModulus, WholeOutcome};
+pub use finer::{Answers, Finer};
+pub use outcome::{FittedLoad, FoundModulus, HeldOut, ModelError, WholeOutcome};
 pub use recipe::{LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeRecipe};
 pub use record::{WholeOutcomeRecord, WholeRecord};

@@ -1,6 +1,5 @@
 //! The loads of a whole-object fit, and its result.
 
-use super::held_out::{HeldOut, ModelError};
 use super::recipe::{Start, WholeRecipe};
 use crate::whole::{Errors, Stage, Target, Wanted, WholeFit};
 
@@ -42,6 +41,34 @@ pub struct WholeOutcome {
     pub moduli: Vec<FoundModulus>,
     /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
     pub held_out: Vec<HeldOut>,
+}
+
+/// The errors of several models under loads made from the mesh that were neither fitted nor chose ρ.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct HeldOut {
+    /// The groups that are held, in words.
+    pub support: String,
+    /// Whether loads with this support were fitted.
+    pub is_trained: bool,
+    /// The number of loads.
+    pub loads: usize,
+    /// The models.
+    pub models: Vec<ModelError>,
+}
+
+/// The relative errors `‖u − ū‖/‖ū‖` of a model over some loads.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ModelError {
+    /// The model.
+    pub model: &'static str,
+    /// The median; `None` if the model is not stable.
+    pub median: Option<f64>,
+    /// The largest.
+    pub worst: Option<f64>,
+    /// The load that has it.
+    pub worst_load: Option<String>,
 }
 
 /// The factor on a modulus.

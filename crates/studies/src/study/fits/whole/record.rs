@@ -1,7 +1,6 @@
 //! The settings and errors of a whole-object fit in a report.
 
-use super::held_out::{HeldOut, ModelError};
-use super::outcome::{FittedLoad, FoundModulus, WholeOutcome};
+use super::outcome::{FittedLoad, FoundModulus, HeldOut, ModelError, WholeOutcome};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
 use crate::whole::Stage;

@@ -1,13 +1,13 @@
 //! The loads of a whole-object fit, and the displacements of the body under them.
 
 use super::body::WholeBody;
+use super::finer::Answers;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Support, check_body, unheld_bodies};
 use crate::named::unknown;
 use crate::solve::{Factor, System};
-use crate::study::body::Answers;
 use crate::study::progress::Progress;
 use crate::whole::{NodalLoad, Residual, Target, Validation, Wanted, made_loads, random_loads, varied_loads};
 use std::sync::Arc;
@@ -86,12 +86,12 @@ impl WholeBody<'_> {
     /// A mesh has no such group, or a body is not held; the error has the key `key`.
     pub(super) fn supports(&self, key: &str, groups: &[Vec<String>]) -> Result<Vec<Held>> {
         if groups.is_empty() {
-            let fine = self.fine.map(|fine| fine.support.clone());
+            let fine = self.fine.map(|fine| fine.support().clone());
             return Ok(vec![Held { groups: Vec::new(), support: self.support.clone(), fine }]);
         }
         let held = |(i, names): (usize, &Vec<String>)| {
             let at = |mesh| held_by(mesh, names).map_err(|e| e.under(format!("{key}[{i}]")));
-            let fine = self.fine.map(|fine| at(&fine.mesh)).transpose()?;
+            let fine = self.fine.map(|fine| at(fine.mesh())).transpose()?;
             Ok(Held { groups: names.clone(), support: at(self.mesh)?, fine })
         };
         groups.iter().enumerate().map(held).collect()
@@ -142,7 +142,7 @@ impl WholeBody<'_> {
         let answers: Answers = match (self.fine, &held.fine) {
             (Some(fine), Some(support)) => {
                 let name = format!("{key} {seed} {:?}", held.groups);
-                fine.answers(name, support, || make(&fine.mesh, support), progress)?
+                fine.answers(name, support, &|| make(fine.mesh(), support), progress)?
             }
             _ if held.groups.is_empty() => Arc::new(solved(self.held(key)?, make(self.mesh, &held.support))),
             _ => {
