@@ -125,7 +125,8 @@ class Prover:
 
 def prove(browser, path, arguments):
     faults = []
-    for size, scheme in [((1280, 900), "light"), ((390, 844), "dark")]:
+    desktop, phone = ((1280, 900), "light"), ((390, 844), "dark")
+    for size, scheme in [desktop] if arguments.desktop else [desktop, phone]:
         prover = Prover(browser, path, {"width": size[0], "height": size[1]}, scheme)
         page = prover.page
         if page.locator("#view canvas").count():
@@ -163,6 +164,7 @@ def main():
     parser.add_argument("pages", nargs="+", type=pathlib.Path)
     parser.add_argument("--pictures")
     parser.add_argument("--frame", type=float)
+    parser.add_argument("--desktop", action="store_true", help="at the size of a desktop alone")
     arguments = parser.parse_args()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS)
