@@ -145,6 +145,8 @@ def prove(browser, path, arguments):
         box = page.locator("#view").bounding_box()
         page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
         page.mouse.down()
+        for step in range(1, 4):
+            page.mouse.move(box["x"] + box["width"] / 2 + 10 * step, box["y"] + box["height"] / 2 + 5 * step)
         page.wait_for_timeout(500)
         turned = page.evaluate(FRAMES)
         page.mouse.up()

@@ -20,7 +20,12 @@ class View {
   async start() {
     await Plotly.newPlot(this.plot, this.traces(), this.layout(), { displaylogo: false, responsive: true, scrollZoom: true, modeBarButtonsToRemove: ["hoverClosest3d", "resetCameraLastSave3d"], toImageButtonOptions: { filename: "springfit", scale: 2 } });
     this.isSlow = this.frameTime() > SLOW;
+    // The library reports a click with every picture that it draws while the button is held on a spring: one for each press counts, or
+    // drawing would never end.
+    this.plot.addEventListener("pointerdown", () => { this.isPressed = true; }, true);
     this.plot.on("plotly_click", ({ points: [point] }) => {
+      if (!this.isPressed) return;
+      this.isPressed = false;
       const name = point.data.meta;
       if (name === "network") this.pick({ spring: this.drawn[Math.floor(point.pointNumber / 3)] });
       else if (name === "points") this.pick({ point: point.pointNumber });
@@ -137,12 +142,13 @@ class View {
   async draw() {
     this.wanted = true;
     if (this.isDrawing) return this.isDrawing;
-    this.isDrawing = (async () => {
+    // What drawing itself causes comes when isDrawing is set.
+    this.isDrawing = Promise.resolve().then(async () => {
       while (this.wanted) {
         this.wanted = false;
         await Plotly.react(this.plot, this.traces(), this.layout(), this.plot._context);
       }
-    })();
+    });
     await this.isDrawing;
     this.isDrawing = null;
   }

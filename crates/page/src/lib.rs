@@ -1,6 +1,6 @@
 //! The report of a run as one HTML file that needs no network.
 //!
-//! [`write`] puts a record into the template of `assets/`. The page reads the record, and shows every text of it as text: nothing in it
+//! [`write()`] puts a record into the template of `assets/`. The page reads the record, and shows every text of it as text: nothing in it
 //! is read as HTML. The page's policy forbids requests to anywhere.
 
 #![forbid(unsafe_code)]
