@@ -141,13 +141,13 @@ fn derivatives_in_moduli_are_those_of_differences() {
         let frequencies = body.frequencies(2);
         let parts = ModuliParts::new(&body.mesh, body.material, volume, &[]).unwrap();
         for sharing in [ModuliSharing::Body, ModuliSharing::Region, ModuliSharing::Element] {
-            let object = Object::of_moduli(parts.clone(), &body.mesh.points, parts.unknowns(sharing)).unwrap();
+            let object = Object::of_moduli(parts.clone(), parts.unknowns(sharing)).unwrap();
             let problem = Displacements::new(&object, targets.iter().collect(), Some(&frequencies)).unwrap();
             compare_with_differences(&problem);
         }
         // With all factors at one the parts are the finite elements, unless patches or cells carry lambda.
         let unknowns = parts.unknowns(ModuliSharing::Element);
-        let object = Object::of_moduli(parts.clone(), &body.mesh.points, unknowns.clone()).unwrap();
+        let object = Object::of_moduli(parts.clone(), unknowns.clone()).unwrap();
         if volume == VolumeSprings::Points {
             let network = object.network(&vec![0.0; unknowns.count()]);
             let problem = Displacements::new(&object, targets.iter().collect(), None).unwrap();
@@ -186,7 +186,7 @@ fn moduli_of_two_halves_come_back() {
     let body = Body::new(&load("cube_tet"), "fixed");
     let parts = ModuliParts::new(&body.mesh, body.material, VolumeSprings::Points, &[]).unwrap();
     let unknowns = parts.unknowns(ModuliSharing::Element);
-    let object = Object::of_moduli(parts.clone(), &body.mesh.points, unknowns.clone()).unwrap();
+    let object = Object::of_moduli(parts.clone(), unknowns.clone()).unwrap();
     let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
     // The parts of a cell are its shear and its volume, in this order.
     let truth: Vec<f64> = body.mesh.blocks[0]
@@ -236,7 +236,7 @@ fn intervals_of_moduli_hold_the_truth() {
     let unknowns = parts.unknowns(ModuliSharing::Region);
     let names = parts.names(ModuliSharing::Region);
     assert_eq!((unknowns.count(), names.len()), (4, 4), "{names:?}");
-    let object = Object::of_moduli(parts, &body.mesh.points, unknowns.clone()).unwrap();
+    let object = Object::of_moduli(parts, unknowns.clone()).unwrap();
     let truth: Vec<f64> = names.iter().map(|name| if name.contains("upper") { 4.0f64.ln() } else { 0.0 }).collect();
     let network = object.network(&truth);
     let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();

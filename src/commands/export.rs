@@ -49,7 +49,7 @@ impl Export {
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{}", target.name)));
         let gravity = self.gravity.as_deref().map(numbers).transpose()?;
         let is_network = self.network.extension().is_some_and(|ending| ending == "json");
-        let network = if is_network { self.read()? } else { self.fitted(terminal)? };
+        let (network, has_loads) = if is_network { (self.read()?, false) } else { self.fitted(terminal)? };
         let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
@@ -65,7 +65,7 @@ impl Export {
         if network.held.is_empty() {
             terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");
         }
-        if !is_network && self.settings.scene(&self.network).is_ok_and(|scene| !scene.loads().is_empty()) {
+        if has_loads {
             terminal.note("the loads of the scene are not exported: supports and gravity are");
         }
         (target.leaves_out)(&network).iter().for_each(|words| terminal.note(words));
@@ -84,8 +84,8 @@ impl Export {
         read_network(&self.network)
     }
 
-    /// The network of one fit of a scene.
-    fn fitted(&self, terminal: &mut Terminal) -> Result<NetworkRecord> {
+    /// The network of one fit of a scene, and whether the scene has loads.
+    fn fitted(&self, terminal: &mut Terminal) -> Result<(NetworkRecord, bool)> {
         let scene = self.settings.scene(&self.network)?;
         let names = || scene.fits().iter().map(|fit| fit.name.as_str());
         let chosen = match &self.fit {
@@ -99,7 +99,7 @@ impl Export {
         let scene = scene.with_fits(fits);
         let mut outcome = run_with(&scene, &Controls::default(), &mut |event| terminal.show(event))?;
         outcome.command = Some(command());
-        Ok(NetworkFile::of(&outcome, &outcome.fits[0]).record())
+        Ok((NetworkFile::of(&outcome, &outcome.fits[0]).record(), !scene.loads().is_empty()))
     }
 }
 

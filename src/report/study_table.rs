@@ -3,7 +3,8 @@
 use super::columns::{Heading, aligned};
 use super::rows::csv;
 use super::study_record::StudyRecord;
-use crate::study::Study;
+use crate::solve::Standing;
+use crate::study::{Study, standing_word};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,8 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const PRINTED: usize = 40;
 /// Studies whose errors are printed at most.
 const FAULTS: usize = 10;
-/// Verdicts on networks whose errors mean little.
-const UNSTABLE: [&str; 3] = ["near-mechanism", "indefinite", "mechanism"];
+/// How networks stand whose errors mean little.
+const UNSTABLE: [Standing; 3] = [Standing::Soft, Standing::Indefinite, Standing::Singular];
 /// The columns after the values that are set, in this order where there are any; the others follow by name.
 const LEADING: [&str; 9] = ["error", "fit", "load", "e_rms", "e_max", "e_tip", "e_energy", "springs", "status"];
 /// What the report says of the whole body that a row has as well.
@@ -165,7 +166,7 @@ pub fn studies_text<'a>(
             let fit = fits(record).iter().find(|fit| fit["name"] == **name);
             let error = fit.and_then(rms).map_or("-".into(), |error| format!("{error:.2}"));
             let status = fit.and_then(|fit| fit["status"].as_str()).unwrap_or_default();
-            if UNSTABLE.contains(&status) { format!("{error} !") } else { error }
+            if UNSTABLE.map(standing_word).contains(&status) { format!("{error} !") } else { error }
         }));
         row
     };

@@ -22,7 +22,7 @@ impl RunFolder {
     /// The report of the run.
     ///
     /// # Errors
-    /// There is none, or it is of another version.
+    /// The folder has no report, or the report has another version.
     pub fn report(&self) -> Result<Report> {
         let path = self.path.join("report.json");
         let text = std::fs::read_to_string(&path).map_err(|e| {

@@ -80,9 +80,8 @@ impl<'a> ModuliParts<'a> {
         let share = if patched { HALF } else { 1.0 };
         // λ vanishes where ν does, so that what remains is μ.
         let materials = material.materials()?;
-        let shear = materials.try_map(|material| {
-            Material::new(2.0 * material.young() / (2.0 * (1.0 + material.poisson())), 0.0, material.state())
-        })?;
+        let shear = materials
+            .try_map(|material| Material::new(material.young() / (1.0 + material.poisson()), 0.0, material.state()))?;
         let mut fits = Vec::new();
         for (index, block) in mesh.blocks.iter().enumerate() {
             let of = |materials: &CellMap<Material>| {
@@ -183,21 +182,7 @@ impl<'a> ModuliParts<'a> {
     #[must_use]
     pub fn scaled(&self, factors: &[f64]) -> ModuliParts<'a> {
         let mut scaled = self.clone();
-        for (part, factor) in self.parts.iter().zip(factors) {
-            let (modulus, block, cell) = match *part {
-                Part::Shear(block, cell) => (0, block, cell),
-                Part::Volume(block, cell) => (1, block, cell),
-                Part::Patch(index) => {
-                    scaled.patches[index].constant *= factor;
-                    continue;
-                }
-            };
-            let fit = &mut scaled.fits[block][modulus];
-            let (m, cells) = (fit.springs.len(), self.mesh.blocks[block].cells().len());
-            let p = fit.parameters.len() / cells.max(1);
-            fit.constants[cell * m..(cell + 1) * m].iter_mut().for_each(|k| *k *= factor);
-            fit.parameters[cell * p..(cell + 1) * p].iter_mut().for_each(|k| *k *= factor);
-        }
+        (scaled.fits, scaled.patches) = self.scaled_springs(factors);
         scaled.factors.iter_mut().zip(factors).for_each(|(own, factor)| *own *= factor);
         let mut tangents = self.tangents.to_vec();
         let mut rest = &mut tangents[..];
@@ -210,8 +195,30 @@ impl<'a> ModuliParts<'a> {
         scaled
     }
 
-    /// The network of the parts as they are.
-    pub fn network(&self) -> Network {
+    /// The springs of the parts, multiplied by factors, `[parts]`.
+    fn scaled_springs(&self, factors: &[f64]) -> (Vec<[CellFits; 2]>, Vec<MeasureSpring>) {
+        let (mut fits, mut patches) = (self.fits.clone(), self.patches.clone());
+        for (part, factor) in self.parts.iter().zip(factors) {
+            let (modulus, block, cell) = match *part {
+                Part::Shear(block, cell) => (0, block, cell),
+                Part::Volume(block, cell) => (1, block, cell),
+                Part::Patch(index) => {
+                    patches[index].constant *= factor;
+                    continue;
+                }
+            };
+            let fit = &mut fits[block][modulus];
+            let (m, cells) = (fit.springs.len(), self.mesh.blocks[block].cells().len());
+            let p = fit.parameters.len() / cells.max(1);
+            fit.constants[cell * m..(cell + 1) * m].iter_mut().for_each(|k| *k *= factor);
+            fit.parameters[cell * p..(cell + 1) * p].iter_mut().for_each(|k| *k *= factor);
+        }
+        (fits, patches)
+    }
+
+    /// The network of the parts, multiplied by factors, `[parts]`.
+    pub fn network(&self, factors: &[f64]) -> Network {
+        let (fits, patches) = self.scaled_springs(factors);
         let sum = |[shear, volume]: &[CellFits; 2]| {
             let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
             CellFits {
@@ -220,9 +227,9 @@ impl<'a> ModuliParts<'a> {
                 ..shear.clone()
             }
         };
-        let fits: Vec<CellFits> = self.fits.iter().map(sum).collect();
+        let fits: Vec<CellFits> = fits.iter().map(sum).collect();
         let mut network = Network::assemble(self.mesh, &fits);
-        network.others.extend(self.patches.iter().cloned());
+        network.others.extend(patches);
         network
     }
 
@@ -249,9 +256,9 @@ impl<'a> ModuliParts<'a> {
         PartVectors { places: self.places.clone(), values }
     }
 
-    /// The number of coordinates of a point.
-    pub(super) fn dimension(&self) -> usize {
-        self.mesh.dimension
+    /// The mesh of the body.
+    pub(super) fn mesh(&self) -> &'a Mesh {
+        self.mesh
     }
 
     /// The factors by which the parts differ from those of the material.

@@ -79,14 +79,15 @@ impl<'a> Object<'a> {
         Ok(Object { model, points, unknowns, newton })
     }
 
-    /// An exact network at small displacements whose unknowns are moduli; `points` are those of its mesh.
+    /// An exact network at small displacements whose unknowns are moduli.
     ///
     /// # Errors
     /// The unknowns are not those of these parts.
-    pub fn of_moduli(parts: ModuliParts<'a>, points: &'a [f64], unknowns: Unknowns) -> Result<Object<'a>> {
+    pub fn of_moduli(parts: ModuliParts<'a>, unknowns: Unknowns) -> Result<Object<'a>> {
         if parts.len() != unknowns.springs() {
             return Err(Error::expected("unknowns", format!("those of {} parts", parts.len()), unknowns.springs()));
         }
+        let points = &parts.mesh().points;
         Ok(Object { model: Model::Moduli(parts), points, unknowns, newton: None })
     }
 
@@ -150,7 +151,7 @@ impl<'a> Object<'a> {
     pub(super) fn dimension(&self) -> usize {
         match &self.model {
             Model::Springs(parts) => parts.network.dimension,
-            Model::Moduli(parts) => parts.dimension(),
+            Model::Moduli(parts) => parts.mesh().dimension,
         }
     }
 
@@ -179,7 +180,7 @@ impl<'a> Object<'a> {
         let factors = self.unknowns.factors(theta);
         match &self.model {
             Model::Springs(parts) => parts.network.scaled(&factors),
-            Model::Moduli(parts) => parts.scaled(&factors).network(),
+            Model::Moduli(parts) => parts.network(&factors),
         }
     }
 

@@ -15,7 +15,7 @@ const MOST_HELD: f64 = 0.4;
 const STRAIN: f64 = 0.01;
 const YOUNG: f64 = 10e3;
 
-/// The material of a first scene, as texts of TOML; the usual one where there is none.
+/// The material of a first scene, as values of TOML. A value that is `None` is replaced by a default.
 #[derive(Debug, Clone, Default)]
 pub struct DraftMaterial {
     /// Young's modulus, with or without a unit.

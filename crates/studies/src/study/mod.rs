@@ -63,7 +63,7 @@ pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, Measured, ModelMotion, MotionEnding,
-    MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull,
+    MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
 };
 pub use paper::{
     Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,

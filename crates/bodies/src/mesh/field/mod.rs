@@ -8,6 +8,7 @@ mod neighbours;
 mod pieces;
 mod raw;
 mod reading;
+mod rows;
 mod samples;
 mod table;
 

@@ -6,6 +6,7 @@ use super::{columns, pieces};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{ending, read, read_text};
 use crate::mesh::mesh::Mesh;
+use crate::mesh::places::spatial;
 use crate::mesh::vtk;
 use crate::range;
 use nalgebra::{DMatrix, DVector};
@@ -142,8 +143,4 @@ impl Samples {
         let found = a.svd(true, true).solve(&b, 1e-9);
         found.map_or(value(first), |plane| plane[0]).clamp(low, high)
     }
-}
-
-fn spatial(x: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
 }

@@ -1,14 +1,12 @@
 //! Tables of displacements: a header with the names of the columns, then one row per point.
 
 use super::reading::{AXES, Reading, listed};
-use crate::error::{Error, ErrorKind, Result};
-use crate::mesh::reader::quoted;
-use csv::{ReaderBuilder, StringRecord};
+use super::rows::{Header, cell, each_row};
+use crate::error::{Error, Result};
+use csv::StringRecord;
 
 /// The columns that are used.
 struct Columns {
-    /// The names in lower case.
-    names: Vec<String>,
     point: Option<usize>,
     /// The column of each direction, or none.
     position: Vec<usize>,
@@ -29,80 +27,31 @@ struct Moved {
 /// Columns are missing or repeated; or a row has too few or too many cells, a value that is not a finite number, or a
 /// point that is not in the mesh or that had a row before.
 pub(super) fn read(text: &str, array: Option<&str>, reading: &mut Reading) -> Result<()> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rows = ReaderBuilder::new()
-        .delimiter(separator(text))
-        .comment(Some(b'#'))
-        .has_headers(false)
-        .flexible(true)
-        .from_reader(text.as_bytes());
-    let mut columns = None;
-    let mut row = StringRecord::new();
-    loop {
-        let start = rows.position().byte() as usize;
-        let not_table = |e: csv::Error| Error::new(format!("expected a table: {e}")).of_kind(ErrorKind::Syntax);
-        if !rows.read_record(&mut row).map_err(not_table)? {
-            break;
-        }
-        if row.iter().all(|cell| cell.trim().is_empty()) {
-            continue;
-        }
-        let placed = |error: Error| error.on_line(line_from(text, start));
-        match &columns {
-            None => columns = Some(Columns::new(&row, reading.mesh.dimension, array).map_err(placed)?),
-            Some(columns) => {
-                let point = columns.point(&row, reading).map_err(placed)?;
-                if let Some(before) = reading.claim(point, start) {
-                    let found = format!("a second one, after line {}", line_from(text, before));
-                    return Err(placed(Error::expected(format!("point {}", point), "one row", found)));
-                }
-                columns.displace(point, &row, reading).map_err(placed)?;
+    let dimension = reading.mesh.dimension;
+    each_row(
+        text,
+        |header| Columns::new(header, dimension, array),
+        |header, columns, row, place| {
+            let point = columns.point(header, row, reading)?;
+            if let Some(before) = reading.claim(point, place.start) {
+                let found = format!("a second one, after line {}", place.line_of(before));
+                return Err(Error::expected(format!("point {}", point), "one row", found));
             }
-        }
-    }
-    if columns.is_none() {
-        Err(Error::new("expected a header with the names of the columns, found none").of_kind(ErrorKind::Syntax))
-    } else {
-        Ok(())
-    }
-}
-
-/// The separator between the names of the header.
-pub(super) fn separator(text: &str) -> u8 {
-    let header = text.lines().find(|line| !is_passed_over(line)).unwrap_or_default();
-    [b';', b'\t'].into_iter().find(|&mark| header.as_bytes().contains(&mark)).unwrap_or(b',')
-}
-
-fn is_passed_over(line: &str) -> bool {
-    line.trim().is_empty() || line.starts_with('#')
-}
-
-/// The line, from 1, of the first row at or after this byte.
-pub(super) fn line_from(text: &str, byte: usize) -> usize {
-    let (before, rest) = text.split_at_checked(byte).unwrap_or((text, ""));
-    // The end of the previous row may still follow.
-    let passed = rest.split_inclusive('\n').take_while(|line| is_passed_over(line)).count();
-    1 + before.matches('\n').count() + passed
+            columns.displace(header, point, row, reading)
+        },
+    )
 }
 
 impl Columns {
-    fn new(header: &StringRecord, dimension: usize, array: Option<&str>) -> Result<Columns> {
-        let names: Vec<String> = header.iter().map(|name| name.trim().to_lowercase()).collect();
-        let all = || names.iter().map(|name| quoted(name.as_bytes())).collect::<Vec<_>>().join(", ");
+    fn new(header: &Header, dimension: usize, array: Option<&str>) -> Result<Columns> {
         let axes = &AXES[..dimension];
-        let column = |name: &str| {
-            let mut found = (0..names.len()).filter(|&i| names[i] == name);
-            match (found.next(), found.next()) {
-                (Some(_), Some(_)) => Err(Error::expected(name, "one column of this name, in capitals or not", "two")),
-                (first, _) => Ok(first),
-            }
-        };
+        let column = |name: &str| header.column(name);
         let point = column("point")?;
         let position: Vec<Option<usize>> = axes.iter().map(|axis| column(axis)).collect::<Result<_>>()?;
         let position: Vec<usize> = position.into_iter().collect::<Option<_>>().unwrap_or_default();
         if point.is_none() && position.is_empty() {
             let expected = format!("the columns {}, or point", axes.join(", "));
-            return Err(Error::expected("header", expected, all()));
+            return Err(Error::expected("header", expected, header.all()));
         }
         let named = |axis: &str| match array {
             None => (format!("u{axis}"), Some(format!("{axis}_deformed"))),
@@ -126,17 +75,13 @@ impl Columns {
             let by = by.join(", ");
             let to: Option<Vec<String>> = to.into_iter().collect();
             let expected = to.map_or(by.clone(), |to| format!("{by} or {}", to.join(", ")));
-            return Err(Error::expected("header", format!("some of the columns {expected}"), all()));
+            return Err(Error::expected("header", format!("some of the columns {expected}"), header.all()));
         }
-        Ok(Columns { names, point, position, moved })
+        Ok(Columns { point, position, moved })
     }
 
     /// The point of the mesh to which a row belongs.
-    fn point(&self, row: &StringRecord, reading: &Reading) -> Result<usize> {
-        if row.len() != self.names.len() {
-            let expected = format!("{} cells as in the header", self.names.len());
-            return Err(Error::new(format!("expected {expected}, found {}", row.len())).of_kind(ErrorKind::Syntax));
-        }
+    fn point(&self, header: &Header, row: &StringRecord, reading: &Reading) -> Result<usize> {
         let count = reading.mesh.point_count();
         let numbered = |&column: &usize| {
             let number = row[column].trim().parse().ok().filter(|number| (0..count).contains(number));
@@ -145,8 +90,8 @@ impl Columns {
         };
         let number = self.point.as_ref().map(numbered).transpose()?;
         let coordinate = |&column: &usize| {
-            let length = self.length(row, column, reading)?;
-            length.ok_or_else(|| Error::expected(&self.names[column], "a number", cell(row, column)))
+            let length = self.length(header, row, column, reading)?;
+            length.ok_or_else(|| Error::expected(header.name(column), "a number", cell(row, column)))
         };
         let position: Vec<f64> = self.position.iter().map(coordinate).collect::<Result<_>>()?;
         let Some(point) = number else { return reading.point_at(&position, None) };
@@ -160,27 +105,23 @@ impl Columns {
         Ok(point)
     }
 
-    fn displace(&self, point: usize, row: &StringRecord, reading: &mut Reading) -> Result<()> {
+    fn displace(&self, header: &Header, point: usize, row: &StringRecord, reading: &mut Reading) -> Result<()> {
         for &Moved { axis, column, deformed } in &self.moved {
             let place = point * reading.mesh.dimension + axis;
             let rest = if deformed { reading.mesh.points[place] } else { 0.0 };
-            reading.displacements[place] = self.length(row, column, reading)?.map(|length| length - rest);
+            reading.displacements[place] = self.length(header, row, column, reading)?.map(|length| length - rest);
         }
         Ok(())
     }
 
     /// The length in a cell, m; `None` if it is not measured.
-    fn length(&self, row: &StringRecord, column: usize, reading: &Reading) -> Result<Option<f64>> {
+    fn length(&self, header: &Header, row: &StringRecord, column: usize, reading: &Reading) -> Result<Option<f64>> {
         let text = row[column].trim();
         if text.is_empty() {
             return Ok(None);
         }
         let number: f64 =
-            text.parse().map_err(|_| Error::expected(&self.names[column], "a number", cell(row, column)))?;
-        reading.length(number).map_err(|e| e.under(&self.names[column]))
+            text.parse().map_err(|_| Error::expected(header.name(column), "a number", cell(row, column)))?;
+        reading.length(number).map_err(|e| e.under(header.name(column)))
     }
-}
-
-pub(super) fn cell(row: &StringRecord, column: usize) -> String {
-    quoted(row[column].trim().as_bytes())
 }

@@ -77,7 +77,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
     Ok((fixed, cases))
 }
 
-/// The share of its parts below which a sum of loads is none.
+/// Loads cancel each other if their sum is smaller than this share of the largest of them.
 const CANCELLED: f64 = 1e-12;
 
 /// The nodal forces of an action, and the supports under it.

@@ -55,12 +55,16 @@ impl FitOutcome {
         if followed.peek().is_some() {
             return if followed.all(|f| f.ending == Ending::Converged) { "converged" } else { "stalled" };
         }
-        match self.stability.as_ref().map(|s| s.standing) {
-            None => "fitted",
-            Some(Standing::Stable) => "stable",
-            Some(Standing::Soft) => "near-mechanism",
-            Some(Standing::Indefinite) => "indefinite",
-            Some(Standing::Singular) => "mechanism",
-        }
+        self.stability.as_ref().map_or("fitted", |stability| standing_word(stability.standing))
+    }
+}
+
+/// The word for how a network stands in [`FitOutcome::status`].
+pub fn standing_word(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Stable => "stable",
+        Standing::Soft => "near-mechanism",
+        Standing::Indefinite => "indefinite",
+        Standing::Singular => "mechanism",
     }
 }

@@ -10,6 +10,7 @@ use crate::mesh::{CellIndex, Holder, Interpolation, Mesh, Samples};
 use crate::model::cell_means;
 use crate::range;
 use crate::study::body_material::BodyConstants;
+use crate::study::extent::extent;
 use crate::symbolic::{Program, Scope};
 use std::path::Path;
 use std::sync::Arc;
@@ -166,10 +167,7 @@ struct Places<'a> {
 
 impl Places<'_> {
     fn new<'a>(mesh: &'a Mesh, folder: &'a Path) -> Places<'a> {
-        let along = |k: usize| mesh.points.iter().skip(k).step_by(mesh.dimension);
-        let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| along(k).copied().fold(start, pick);
-        let extent = |k: usize| end(k, f64::max, f64::NEG_INFINITY) - end(k, f64::min, f64::INFINITY);
-        let extent = (0..mesh.dimension).map(extent).fold(0.0, f64::max);
+        let extent = extent(mesh).into_iter().fold(0.0, f64::max);
         Places { mesh, folder, centroids: cell_means(mesh, &mesh.points), extent }
     }
 

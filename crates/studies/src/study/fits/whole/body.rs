@@ -99,8 +99,8 @@ impl<'a> WholeBody<'a> {
         Ok(Some(Frequencies { support, masses, squares: modes.squares, weight }))
     }
 
-    /// Fits the constants of `network`, which was assembled from `fits`; or the moduli of the exact network of the body, if there
-    /// is none.
+    /// Fits the constants of the network of `start`, which was assembled from its fits of the cells. Without `start`, fits the moduli
+    /// of the exact network of the body.
     pub(in crate::study) fn fit(
         &self,
         (name, springs, held): (&str, Option<&[String]>, &[bool]),

@@ -190,7 +190,10 @@ impl WholeEntry {
     }
 }
 
-/// Lists of groups; none is empty.
+/// The given lists of groups.
+///
+/// # Errors
+/// There is no list, or a list has no group.
 fn checked_supports(key: &str, supports: Option<&[Vec<String>]>) -> Result<Vec<Vec<String>>> {
     match supports {
         Some([]) => Err(Error::expected(key, "lists of groups that are held", "none")),

@@ -29,11 +29,10 @@ impl WholeBody<'_> {
         let parts = ModuliParts::new(self.mesh, self.material.clone(), volume, held).map_err(|e| e.at_key("start"))?;
         let of_body = parts.unknowns(ModuliSharing::Body);
         let sharing = recipe.unknowns.moduli().unwrap_or(ModuliSharing::Element);
-        let points = &self.mesh.points;
         if sharing == ModuliSharing::Body {
-            return Object::of_moduli(parts, points, of_body);
+            return Object::of_moduli(parts, of_body);
         }
-        let body = Object::of_moduli(parts.clone(), points, of_body.clone())?;
+        let body = Object::of_moduli(parts.clone(), of_body.clone())?;
         let wanted = Wanted { validation: Validation::None, ..wanted.clone() };
         let settings = WholeSettings { regularizations: vec![0.0], ..recipe.settings.clone() };
         let mut last = vec![0.0; of_body.count()];
@@ -43,7 +42,7 @@ impl WholeBody<'_> {
         })?;
         let parts = if found.stands { parts.scaled(&of_body.factors(&last)) } else { parts };
         let unknowns = parts.unknowns(sharing);
-        Object::of_moduli(parts, points, unknowns)
+        Object::of_moduli(parts, unknowns)
     }
 
     /// The same springs with equal constants, as stiff as the body is.
