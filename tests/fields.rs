@@ -252,7 +252,10 @@ fn table_errors_say_what_was_expected_and_found() {
     .unwrap();
     let near = "u.csv:2: position: … found (0.0, 2e-6, 0.0) m, 2e-6 m …";
     reads(&fault("x,y,z,ux\n0,2e-6,0,1\n"), near).unwrap();
-    reads(&fault("x,y,z,ux\n1,0,0,1\n0,0,0,1\n\n1,0,0,2\n"), "u.csv:5: point 1: … line 2").unwrap();
+    for mark in ["", "\u{feff}"] {
+        let repeated = format!("{mark}x,y,z,ux\n1,0,0,1\n0,0,0,1\n\n1,0,0,2\n");
+        reads(&fault(&repeated), "u.csv:5: point 1: … line 2").unwrap();
+    }
     for (header, cells, message) in [
         ("point,ux", "1,inf", "ux: … found inf …"),
         ("point,ux", "1,-1e999", "ux: … found -inf …"),

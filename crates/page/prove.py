@@ -50,6 +50,24 @@ FRAMES = """async () => {
   return (performance.now() - start) / count / 1000;
 }"""
 
+# Points at the last end of each line, and draws; the error if it fails.
+LAST_ENDS = """() => {
+  const drawing = document.getElementById('view')._fullLayout.scene._scene.glplot;
+  const lines = drawing.objects.filter((drawn) => drawn.arcLength);
+  for (const line of lines) {
+    const data = line.pick({ id: line.pickId, value: [127, 127, 127] });
+    Object.assign(drawing.selection, { object: data && line, data, dataPosition: data?.position, dataCoordinate: data?.dataCoordinate });
+    try {
+      drawing.redraw();
+    } catch (error) {
+      drawing.selection.object = null;
+      return error.message;
+    }
+  }
+  drawing.selection.object = null;
+  return lines.length ? "" : "no line is drawn";
+}"""
+
 # Controls without a name for readers of screens, and pictures without words.
 UNNAMED = """() => [...document.querySelectorAll('button, select, input, [role], img, nav')].filter((e) => !e.closest('.plot, #view > *')).filter((e) =>
   !(e.labels?.length || e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() || e.getAttribute('role') === 'status')).map((e) => e.outerHTML.slice(0, 80))"""
@@ -141,6 +159,8 @@ def prove(browser, path, arguments):
             folder = pathlib.Path(arguments.pictures)
             folder.mkdir(parents=True, exist_ok=True)
             page.screenshot(path=folder / f"{prover.name}-{scheme}.png", full_page=True)
+        fault = page.evaluate(LAST_ENDS)
+        prover.check(not fault, f"pointing at the end of a line: {fault}")
         frame = page.evaluate(FRAMES)
         box = page.locator("#view").bounding_box()
         page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)

@@ -19,6 +19,7 @@ class View {
 
   async start() {
     await Plotly.newPlot(this.plot, this.traces(), this.layout(), { displaylogo: false, responsive: true, scrollZoom: true, modeBarButtonsToRemove: ["hoverClosest3d", "resetCameraLastSave3d"], toImageButtonOptions: { filename: "springfit", scale: 2 } });
+    this.mendPick();
     this.isSlow = this.frameTime() > SLOW;
     // The library reports a click with every picture that it draws while the button is held on a spring: one for each press counts, or
     // drawing would never end.
@@ -32,9 +33,27 @@ class View {
     });
   }
 
+  /** What draws in space; none where the browser cannot. */
+  get drawing() {
+    return this.plot._fullLayout.scene?._scene?.glplot;
+  }
+
+  /** The library gives the last end of a line no place, and fails to draw when the pointer is there: nothing is found there instead. */
+  mendPick() {
+    const line = this.isMended ? null : this.drawing?.objects.find((drawn) => drawn.arcLength);
+    if (!line) return;
+    const type = Object.getPrototypeOf(line);
+    const { pick } = type;
+    type.pick = function (pixel) {
+      const hit = pick.call(this, pixel);
+      return hit?.dataCoordinate ? hit : null;
+    };
+    this.isMended = true;
+  }
+
   /** The time to draw once more, s; a card that draws lines without delay needs a few milliseconds. */
   frameTime() {
-    const drawing = this.plot._fullLayout.scene?._scene?.glplot;
+    const { drawing } = this;
     if (!drawing) return 0;
     const start = performance.now();
     drawing.redraw();
@@ -147,6 +166,7 @@ class View {
       while (this.wanted) {
         this.wanted = false;
         await Plotly.react(this.plot, this.traces(), this.layout(), this.plot._context);
+        this.mendPick();
       }
     });
     await this.isDrawing;
