@@ -1,6 +1,7 @@
 //! Anisotropic linear materials: blocks against their compliance in turned axes, fits against least squares on whole matrices, and the
 //! isotropic law as one of them.
 
+use crate::messages::reads;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
 use springfit::element::{Element, SHIPPED};
 use springfit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells, fit_element};
@@ -381,6 +382,79 @@ fn networks_are_compared_with_the_anisotropic_material() {
     let turned = outcome(&scene(&format!("{ORTHOTROPIC}axes = [[1, 1, 0], [0, 1, 1]]\n")));
     for fit in &turned.fits {
         assert!(fit.as_material.distance.is_finite() && fit.as_material.distance > 0.01, "{}", fit.fit.name);
+    }
+}
+
+/// Constants as expressions and from a file: a material whose constants are those of an isotropic one in every cell answers like it, and a
+/// constant that varies has its value at the centroid of each cell.
+#[test]
+fn constants_vary_from_place_to_place() {
+    let folder = TempDir::new().unwrap();
+    let middles = (0..6).map(|i| (0.25 + 0.5 * f64::from(i % 2), (f64::from(i / 2) + 0.5) / 3.0));
+    let table = middles.fold("x,y,z,shear\n".to_string(), |table, (y, z)| {
+        table + &format!("0.5,{y:?},{z:?},{:?}\n", 1e3 * (1.0 + z) / 2.5)
+    });
+    std::fs::write(folder.path().join("g.csv"), table).unwrap();
+    let of = |material: &str| {
+        let text = block("hex8", material).replace("cells = [2, 2, 2]", "cells = [1, 2, 3]");
+        let scene = Scene::parse(&text, &folder.path().join("scene.toml")).unwrap();
+        (scene.inputs(), run(&scene, &mut |_| ()).unwrap())
+    };
+    let e = "\"1e3*(1 + z)\"";
+    let g = "{ file = \"g.csv\", unit = \"Pa\", interpolation = \"nearest\" }";
+    let axes = "axes = [[0.6, 0.8, 0], [-0.8, 0.6, 0]]\n";
+    let (_, isotropic) = of(&format!("young = {e}\npoisson = 0.25\n"));
+    let (c11, c12) = ("\"1.2e3*(1 + z)\"", "\"0.4e3*(1 + z)\"");
+    let row = |i: usize| -> String {
+        let entry = |j: usize| match (i < 3, j < 3, i == j) {
+            (true, true, true) => c11,
+            (true, true, false) => c12,
+            (false, false, true) => g,
+            _ => "0",
+        };
+        format!("[{}]", (0..6).map(entry).collect::<Vec<_>>().join(", "))
+    };
+    let rows: Vec<String> = (0..6).map(row).collect();
+    for (law, files) in [
+        (
+            format!(
+                "orthotropic = {{ young = [{e}, {e}, {e}], poisson = [0.25, \"0.25 + 0*x\", 0.25], shear = [{g}, {g}, {g}] }}\n{axes}"
+            ),
+            3,
+        ),
+        (format!("transversely-isotropic = {{ young = [{e}, {e}], poisson = [0.25, 0.25], shear = {g} }}\n"), 1),
+        (format!("cubic = {{ c11 = {c11}, c12 = {c12}, c44 = {g} }}\n"), 1),
+        (format!("stiffness = [{}]\n{axes}", rows.join(", ")), 3),
+    ] {
+        let (inputs, found) = of(&law);
+        let size = isotropic.loads[0].fem.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
+        for (a, b) in found.loads.iter().zip(&isotropic.loads) {
+            assert!(a.fem.iter().zip(&b.fem).all(|(a, b)| (a - b).abs() < 1e-10 * size), "{law}");
+        }
+        assert_eq!(inputs.iter().filter(|path| path.ends_with("g.csv")).count(), files, "{law}");
+    }
+    for (law, expected) in [
+        (
+            "cubic = { c11 = \"1e3*(z - 0.5)\", c12 = 0, c44 = 1e3 }\n",
+            "material.cubic: … eigenvalue … in hex8 cell 1 at … m",
+        ),
+        (
+            "cubic = { c11 = \"1/(x - x)\", c12 = 0, c44 = 1e3 }\n",
+            "material.cubic.c11: expected a finite number, found … in hex8 cell 1",
+        ),
+        (
+            "cubic = { c11 = 2e3, c12 = 0, c44 = { file = \"g.csv\", array = \"other\" } }\n",
+            "g.csv:1: header: … \"other\" …",
+        ),
+        (
+            "cubic = { c11 = 2e3, c12 = 0, c44 = { file = \"g.csv\", interpolation = \"cubic\" } }\n",
+            "material.cubic.c44.interpolation: … \"cubic\"",
+        ),
+    ] {
+        let text = block("hex8", law);
+        let scene = Scene::parse(&text, &folder.path().join("scene.toml"));
+        let found = scene.and_then(|scene| run(&scene, &mut |_| ())).unwrap_err().to_string();
+        reads(&found, &format!("…{expected}…")).unwrap();
     }
 }
 

@@ -5,7 +5,7 @@ use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use springfit::element::Element;
 use springfit::fit::{ClosedForm, ExactFit, Fit, Higher, Objective, Weight, fit_element, fit_exact};
-use springfit::material::{Material, Moduli};
+use springfit::material::{Hooke, Material, Moduli, Stiffness};
 use springfit::springs::Springs;
 use std::process::Command;
 
@@ -44,8 +44,8 @@ fn formulas_agree_with_the_numerical_fits() {
                 let expected =
                     fit_element(&element, &springs, &x, moduli, &Fit::new(Objective::Frobenius(weight))).unwrap();
                 let fit = form.fit(weight).unwrap();
-                for (class, [l, m]) in form.classes.iter().zip(&fit.constants) {
-                    let k = 0.7 * number(l) + 1.3 * number(m);
+                for (class, constants) in form.classes.iter().zip(&fit.constants) {
+                    let k = 0.7 * number(&constants[0]) + 1.3 * number(&constants[1]);
                     for nodes in &class.springs {
                         let s = springs.pairs().iter().position(|p| p[..] == nodes[..]).unwrap_or(springs.len() - 1);
                         let error = (k - expected[s]).abs();
@@ -62,6 +62,92 @@ fn formulas_agree_with_the_numerical_fits() {
         }
     }
     assert!(seen > 25, "{seen}");
+}
+
+/// With numbers of any orthotropic material they are its numerical fits, and with those of an isotropic one the isotropic formulas.
+#[test]
+fn orthotropic_formulas_agree_with_numerical_fits_and_isotropic_formulas() {
+    let lengths = [ratio(7, 5), ratio(9, 4), ratio(4, 7), ratio(1, 3)];
+    for (name, with_bulk) in [
+        ("bar2", false),
+        ("tri3", true),
+        ("quad4", false),
+        ("quad4", true),
+        ("tet4", true),
+        ("wedge6", false),
+        ("hex8", false),
+    ] {
+        let element = Element::load(name).unwrap();
+        let d = element.dimension();
+        let every: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
+        let springs = Springs::select(&element, with_bulk.then_some(&every[..])).unwrap();
+        let form = ClosedForm::orthotropic(&element, &springs, true).unwrap();
+        let isotropic = ClosedForm::new(&element, &springs, true).unwrap();
+        let names: Vec<&str> = form.moduli.iter().map(|modulus| &modulus.name[..]).collect();
+        // With λ = 1, with μ = 1, and of an orthotropic material.
+        let (expected, values): (&[&str], [&[i64]; 3]) = match d {
+            1 => (&["C11"], [&[1], &[2], &[5]]),
+            2 => (&["C11", "C12", "C22", "C66"], [&[1, 1, 1, 0], &[2, 0, 2, 1], &[7, 2, 3, 4]]),
+            _ => (
+                &["C11", "C12", "C13", "C22", "C23", "C33", "C44", "C55", "C66"],
+                [&[1, 1, 1, 1, 1, 1, 0, 0, 0], &[2, 0, 0, 2, 0, 2, 1, 1, 1], &[9, 2, 1, 6, 3, 8, 2, 5, 4]],
+            ),
+        };
+        assert_eq!(names, expected);
+        let strains = d * (d + 1) / 2;
+        let mut entries = vec![0.0; strains * strains];
+        for (modulus, value) in form.moduli.iter().zip(values[2]) {
+            let digit = |i: usize| modulus.name.as_bytes()[i] as usize - b'1' as usize;
+            let [i, j] = [digit(1), digit(2)].map(|i| if d == 2 && i == 5 { 2 } else { i });
+            (entries[i * strains + j], entries[j * strains + i]) = (*value as f64, *value as f64);
+        }
+        let hooke = Hooke::Anisotropic(Stiffness::new(d, &entries).unwrap());
+        let at = [&lengths[..d], &lengths[3..]].concat();
+        let exact = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap();
+        let x: Vec<f64> = form.positions.iter().map(|f| exact(f).to_f64().unwrap()).collect();
+        for weight in [Weight::None, Weight::OffDiagonal] {
+            let numbers =
+                fit_element(&element, &springs, &x, hooke.clone(), &Fit::new(Objective::Frobenius(weight))).unwrap();
+            let (fit, plain) = (form.fit(weight).unwrap(), isotropic.fit(weight).unwrap());
+            let combined = |coefficients: &[springfit::symbolic::Fraction], values: &[i64]| -> BigRational {
+                coefficients.iter().zip(values).map(|(f, value)| exact(f) * ratio(*value, 1)).sum()
+            };
+            for (class, constants) in form.classes.iter().zip(&fit.constants) {
+                let k = combined(constants, values[2]).to_f64().unwrap();
+                for nodes in &class.springs {
+                    let s = springs.pairs().iter().position(|p| p[..] == nodes[..]).unwrap_or(springs.len() - 1);
+                    assert!(
+                        (k - numbers[s]).abs() < 1e-12 * (1.0 + k.abs()),
+                        "{name} {weight:?} {nodes:?}: {k} {}",
+                        numbers[s]
+                    );
+                    let same = isotropic.classes.iter().position(|class| class.springs.contains(nodes)).unwrap();
+                    for (part, values) in plain.constants[same].iter().zip(values) {
+                        assert_eq!(combined(constants, values), exact(part), "{name} {weight:?} {nodes:?}");
+                    }
+                }
+            }
+            // ‖R − K‖² as a quadratic form, against that of the isotropic formulas at λ = μ = 1.
+            let both: Vec<i64> = values[0].iter().zip(values[1]).map(|(a, b)| a + b).collect();
+            let products = |values: &[i64]| -> Vec<i64> {
+                let of = |i: usize| values[i..].iter().map(move |b| values[i] * b);
+                (0..values.len()).flat_map(of).collect()
+            };
+            assert_eq!(
+                combined(&fit.residual, &products(&both)),
+                combined(&plain.residual, &[1, 1, 1]),
+                "{name} {weight:?}"
+            );
+        }
+        let modal = form.fit(Weight::Modal(Higher::new(0.5).unwrap())).unwrap_err();
+        assert!(modal.to_string().contains("isotropic materials only"), "{modal}");
+    }
+    let (code, text, _) = derive(&["quad4", "--orthotropic", "--objective", "offdiag"]);
+    assert_eq!(code, Some(0));
+    assert!(!text.contains("nu = 0.3") && text.contains("    k = 1/3*C11 - 1/6*C66\n"), "{text}");
+    let (code, _, error) = derive(&["tet4", "--orthotropic", "--objective", "exact"]);
+    let expected = "error: --objective: expected frobenius or offdiag: exact networks are those of isotropic materials, found exact\n";
+    assert_eq!((code, error.as_str()), (Some(2), expected));
 }
 
 /// Natsupakpong and Çavuşoğlu (2010), (19), in twelfths of λ and μ, and (27); their nodes run from the upper left clockwise.
@@ -88,9 +174,9 @@ fn the_square_is_that_of_the_paper() {
             }
         }
     }
-    let constants = |weight| -> Vec<[BigRational; 2]> {
+    let constants = |weight| -> Vec<Vec<BigRational>> {
         let fit = form.fit(weight).unwrap();
-        fit.constants.iter().map(|pair| pair.each_ref().map(|f| f.evaluate(&at).unwrap())).collect()
+        fit.constants.iter().map(|pair| pair.iter().map(|f| f.evaluate(&at).unwrap()).collect()).collect()
     };
     assert_eq!(constants(Weight::OffDiagonal), [[ratio(1, 3), ratio(1, 2)], [ratio(5, 12), ratio(3, 4)]]);
     // The optimum over all entries is another.
@@ -98,7 +184,7 @@ fn the_square_is_that_of_the_paper() {
 }
 
 /// `λ = Eν/(1 − ν²)`, `μ = E/(2(1 + ν))` at ν = 1/3 and E = 1.
-fn at_one_third(pair: &[springfit::symbolic::Fraction; 2], lengths: &[BigRational]) -> BigRational {
+fn at_one_third(pair: &[springfit::symbolic::Fraction], lengths: &[BigRational]) -> BigRational {
     let at = [lengths, &[ratio(1, 3)]].concat();
     pair[0].evaluate(&at).unwrap() * ratio(3, 8) + pair[1].evaluate(&at).unwrap() * ratio(3, 8)
 }

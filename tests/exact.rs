@@ -535,7 +535,7 @@ fn fibres_are_springs() {
             let rest = Elastic::energy(&network, &mesh.points).unwrap();
             let x: Vec<f64> = mesh.points.iter().map(|x| 1.1 * x + 0.05 * random.next()).collect();
             let (found, expected) = (network.respond(&x).unwrap(), body.respond(&x).unwrap());
-            let name = format!("{} {}", law.name, element.name);
+            let name = format!("{} {}", law.name(), element.name);
             assert!((found.energy - rest - expected.energy).abs() < 1e-12 * (rest + expected.energy), "{name}");
             let norm = expected.force.iter().map(|f| f * f).sum::<f64>().sqrt();
             assert!(found.force.iter().zip(&expected.force).all(|(a, b)| (a - b).abs() < 1e-11 * norm), "{name}");

@@ -30,6 +30,7 @@ mod generate;
 mod golden;
 mod integrals;
 mod large;
+mod law_fields;
 mod laws;
 mod layering;
 mod limits;

@@ -25,10 +25,13 @@ pub struct Derive {
     /// Plane element: stress or strain, for the constants in terms of E and nu [default: stress]
     #[arg(long)]
     plane: Option<State>,
+    /// An orthotropic material whose axes are those of the coordinates: constants in terms of the entries C11, C12, ... of its stiffness
+    #[arg(long)]
+    orthotropic: bool,
     /// Spring groups to use, separated by commas [default: all that are not optional]
     #[arg(long, value_delimiter = ',')]
     springs: Option<Vec<String>>,
-    /// exact, frobenius or offdiag [default: all three]
+    /// exact, frobenius or offdiag [default: all three; with --orthotropic, which has no exact network, the last two]
     #[arg(long)]
     objective: Option<String>,
     /// Print the stiffness matrix as well
@@ -43,7 +46,8 @@ const EXAMPLES: &str = "\
 Examples:
   springfit derive quad4
   springfit derive quad4 --plane strain --sides          # a rectangle with sides a and b
-  springfit derive tri3 --objective frobenius --latex";
+  springfit derive tri3 --objective frobenius --latex
+  springfit derive quad4 --orthotropic --sides           # an orthotropic rectangle";
 
 impl Derive {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
@@ -58,7 +62,8 @@ impl Derive {
         };
         let springs = Springs::select(&element, self.springs.as_deref()).map_err(Error::of_option)?;
         terminal.show(Event::stage("closed form", 0, 1));
-        let form = ClosedForm::new(&element, &springs, self.sides)?;
+        let form = if self.orthotropic { ClosedForm::orthotropic } else { ClosedForm::new };
+        let form = form(&element, &springs, self.sides)?;
         let fits: Vec<_> = weights.iter().map(|weight| form.fit(*weight)).collect();
         let exact = exact.then(|| form.exact());
         let (exact, matrix) = (exact.as_ref(), self.matrix);
@@ -70,7 +75,12 @@ impl Derive {
     /// Whether the exact network is derived, and the weights of the fits that are.
     fn forms(&self) -> Result<(bool, Vec<Weight>)> {
         match self.objective.as_deref() {
-            None => Ok((true, vec![Weight::None, Weight::OffDiagonal])),
+            None => Ok((!self.orthotropic, vec![Weight::None, Weight::OffDiagonal])),
+            Some("exact") if self.orthotropic => Err(Error::expected(
+                "--objective",
+                "frobenius or offdiag: exact networks are those of isotropic materials",
+                "exact",
+            )),
             Some("exact") => Ok((true, Vec::new())),
             Some("frobenius") => Ok((false, vec![Weight::None])),
             Some("offdiag") => Ok((false, vec![Weight::OffDiagonal])),

@@ -80,11 +80,11 @@ impl ElementRecord {
 impl From<&Energy> for MaterialRecord {
     fn from(energy: &Energy) -> MaterialRecord {
         MaterialRecord {
-            name: energy.name.clone(),
-            title: energy.title.clone(),
-            parameters: energy.parameters.clone(),
+            name: energy.name().into(),
+            title: energy.title().into(),
+            parameters: energy.parameters().map(|(name, value)| (name.into(), value)).collect(),
             fibres: energy.has_fibres(),
-            source: energy.source.clone(),
+            source: energy.source().map(String::from),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{ClosedFit, ClosedForm, ExactForm};
+use crate::fit::{ClosedFit, ClosedForm, ExactForm, Modulus};
 use crate::material::Plane;
 use crate::symbolic::{Fraction, Polynomial};
 use num_rational::BigRational;
@@ -44,7 +44,7 @@ impl Derivation<'_> {
         if self.matrix {
             text += "R, the stiffness, by rows up to the diagonal:\n";
             self.each_entry(|i, j, entry| {
-                writeln!(text, "  R[{i}][{j}] = {}", self.pair(entry, Notation::Text)).expect("a String grows");
+                writeln!(text, "  R[{i}][{j}] = {}", self.linear(entry, Notation::Text)).expect("a String grows");
             });
             text.push('\n');
         }
@@ -67,7 +67,7 @@ impl Derivation<'_> {
         if self.matrix {
             text += "\\begin{align*}\n";
             self.each_entry(|i, j, entry| {
-                let value = self.pair(entry, Notation::Latex);
+                let value = self.linear(entry, Notation::Latex);
                 writeln!(text, "  R_{{{},{}}} &= {value} \\\\", i + 1, j + 1).expect("a String grows");
             });
             text += "\\end{align*}\n";
@@ -79,9 +79,7 @@ impl Derivation<'_> {
             writeln!(text, "% {}\n\\begin{{align*}}", objective(fit)).expect("a String grows");
             for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
                 let name = format!("k_{{\\text{{{} {}}}}}", class.group, nodes(&class.springs[0]));
-                let (plain, engineering) =
-                    (self.pair(constants, Notation::Latex), self.engineering(constants, Notation::Latex));
-                writeln!(text, "  {name} &= {plain} = {engineering} \\\\").expect("a String grows");
+                writeln!(text, "  {name} &= {} \\\\", self.constant_latex(constants)).expect("a String grows");
             }
             text += "\\end{align*}\n";
         }
@@ -97,10 +95,7 @@ impl Derivation<'_> {
             let like = if count > 1 { format!(" and {} more like it", count - 1) } else { String::new() };
             writeln!(text, "  {} {}{like}", class.group, nodes(&class.springs[0])).expect("a String grows");
             let constants = [zero.clone(), constant.clone()];
-            writeln!(text, "    k = {}", self.pair(&constants, Notation::Text)).expect("a String grows");
-            if !constant.is_zero() {
-                writeln!(text, "      = {}", self.engineering(&constants, Notation::Text)).expect("a String grows");
-            }
+            self.constant_text(&constants, text);
         }
         let names = self.names(Notation::Text);
         let (what, size) = (self.content_name(), exact.content.text(&names));
@@ -121,13 +116,7 @@ impl Derivation<'_> {
         for (class, constant) in &exact.pairs {
             let constants = [zero.clone(), constant.clone()];
             let name = format!("k_{{\\text{{{} {}}}}}", class.group, nodes(&class.springs[0]));
-            let plain = self.pair(&constants, Notation::Latex);
-            let value = if constant.is_zero() {
-                plain
-            } else {
-                format!("{plain} = {}", self.engineering(&constants, Notation::Latex))
-            };
-            writeln!(text, "  {name} &= {value} \\\\").expect("a String grows");
+            writeln!(text, "  {name} &= {} \\\\", self.constant_latex(&constants)).expect("a String grows");
         }
         let content = exact.content.latex(&self.names(Notation::Latex));
         let (volume, sum) = match self.element.tabulation.points() {
@@ -144,6 +133,18 @@ impl Derivation<'_> {
         *text += "\\end{align*}\n";
     }
 
+    fn constant_text(&self, constants: &[Fraction], text: &mut String) {
+        writeln!(text, "    k = {}", self.linear(constants, Notation::Text)).expect("a String grows");
+        if let Some(engineering) = self.engineering(constants, Notation::Text) {
+            writeln!(text, "      = {engineering}").expect("a String grows");
+        }
+    }
+
+    fn constant_latex(&self, constants: &[Fraction]) -> String {
+        let linear = self.linear(constants, Notation::Latex);
+        self.engineering(constants, Notation::Latex).map_or(linear.clone(), |other| format!("{linear} = {other}"))
+    }
+
     fn content_name(&self) -> &'static str {
         ["length", "area", "volume"][self.element.dimension() - 1]
     }
@@ -154,8 +155,7 @@ impl Derivation<'_> {
             let count = class.springs.len();
             let like = if count > 1 { format!(" and {} more like it", count - 1) } else { String::new() };
             writeln!(text, "  {} {}{like}", class.group, nodes(&class.springs[0])).expect("a String grows");
-            writeln!(text, "    k = {}", self.pair(constants, Notation::Text)).expect("a String grows");
-            writeln!(text, "      = {}", self.engineering(constants, Notation::Text)).expect("a String grows");
+            self.constant_text(constants, text);
         }
         writeln!(text, "  |R-K|^2 = {}", self.square(&fit.residual, Notation::Text)).expect("a String grows");
         if let Some(error) = self.relative_error(fit) {
@@ -164,8 +164,22 @@ impl Derivation<'_> {
         text.push('\n');
     }
 
+    fn is_isotropic(&self) -> bool {
+        self.form.moduli.len() == 2
+    }
+
     fn meaning(&self) -> &'static str {
         match self.plane {
+            _ if !self.is_isotropic() && self.element.dimension() == 1 => "C11 = E, cross-section 1",
+            Some(Plane::Stress) if !self.is_isotropic() => {
+                "orthotropic, plane stress, C11 = E1/d, C22 = E2/d, C12 = nu12*E2/d, C66 = G12, d = 1 - nu12^2*E2/E1, thickness 1"
+            }
+            Some(Plane::Strain) if !self.is_isotropic() => {
+                "orthotropic, plane strain, C11, C22, C12 and C66 of the solid, thickness 1"
+            }
+            None if !self.is_isotropic() => {
+                "orthotropic, C in the order xx, yy, zz, yz, xz, xy: the inverse of the compliance in E, nu and G"
+            }
             None if self.element.dimension() == 1 => "lambda + 2*mu = E, cross-section 1",
             Some(Plane::Stress) => "plane stress, lambda = E*nu/(1 - nu^2), mu = E/(2*(1 + nu)), thickness 1",
             Some(Plane::Strain) => {
@@ -194,24 +208,24 @@ impl Derivation<'_> {
     /// `|R − K|/|R|` at ν = 0.3, where the sides are numbers.
     fn relative_error(&self, fit: &ClosedFit) -> Option<f64> {
         let at = [BigRational::new(3.into(), 10.into())];
-        if self.form.variables.len() > 1 {
+        if self.form.variables.len() > 1 || !self.is_isotropic() {
             return None;
         }
         let [lambda, mu] = self.moduli().map(|m| m.evaluate(&at));
         let (lambda, mu) = (lambda?, mu?);
-        let value = |form: &[Fraction; 3]| -> Option<f64> {
+        let value = |form: &[Fraction]| -> Option<f64> {
             let [ll, lm, mm] = [form[0].evaluate(&at)?, form[1].evaluate(&at)?, form[2].evaluate(&at)?];
             num_traits::ToPrimitive::to_f64(&(ll * &lambda * &lambda + lm * &lambda * &mu + mm * &mu * &mu))
         };
         Some((value(&fit.residual)?.max(0.0) / value(&self.form.norm)?).sqrt())
     }
 
-    fn each_entry(&self, mut visit: impl FnMut(usize, usize, &[Fraction; 2])) {
+    fn each_entry(&self, mut visit: impl FnMut(usize, usize, &[Fraction])) {
         let size = self.form.positions.len();
-        let [lambda, mu] = &self.form.stiffness;
         for i in 0..size {
             for j in 0..=i {
-                visit(i, j, &[lambda[i * size + j].clone(), mu[i * size + j].clone()]);
+                let entry: Vec<Fraction> = self.form.stiffness.iter().map(|r| r[i * size + j].clone()).collect();
+                visit(i, j, &entry);
             }
         }
     }
@@ -221,18 +235,28 @@ impl Derivation<'_> {
         names.map(|v| if v == "nu" && notation == Notation::Latex { "\\nu" } else { v }).collect()
     }
 
-    /// `α λ + β μ`.
-    fn pair(&self, [lambda, mu]: &[Fraction; 2], notation: Notation) -> String {
-        let symbols = if notation == Notation::Text { ["lambda", "mu"] } else { ["\\lambda", "\\mu"] };
-        self.combination(&[(lambda, symbols[0]), (mu, symbols[1])], notation)
+    /// Such as `α λ + β μ`.
+    fn linear(&self, coefficients: &[Fraction], notation: Notation) -> String {
+        let name = |modulus: &Modulus| if notation == Notation::Text { &modulus.name } else { &modulus.latex }.clone();
+        let names: Vec<String> = self.form.moduli.iter().map(name).collect();
+        self.combination(coefficients.iter().zip(&names), notation)
     }
 
-    fn square(&self, [ll, lm, mm]: &[Fraction; 3], notation: Notation) -> String {
-        self.combination(&[(ll, "lambda^2"), (lm, "lambda*mu"), (mm, "mu^2")], notation)
+    fn square(&self, coefficients: &[Fraction], notation: Notation) -> String {
+        let moduli = &self.form.moduli;
+        let product = |(i, a): (usize, &Modulus)| {
+            let times = |b: &Modulus| if *b == *a { format!("{}^2", a.name) } else { format!("{}*{}", a.name, b.name) };
+            moduli[i..].iter().map(times).collect::<Vec<_>>()
+        };
+        let products: Vec<String> = moduli.iter().enumerate().flat_map(product).collect();
+        self.combination(coefficients.iter().zip(&products), notation)
     }
 
-    /// `E f(ν)`, with the factors of the moduli told apart in the denominator.
-    fn engineering(&self, constants: &[Fraction; 2], notation: Notation) -> String {
+    /// `E f(ν)`, with the factors of the moduli told apart in the denominator; none of zero and of orthotropic materials.
+    fn engineering(&self, constants: &[Fraction], notation: Notation) -> Option<String> {
+        if !self.is_isotropic() || constants.iter().all(Fraction::is_zero) {
+            return None;
+        }
         let [lambda, mu] = self.moduli();
         let mut value = constants[0].clone() * &lambda + &(constants[1].clone() * &mu);
         let count = self.form.variables.len();
@@ -263,11 +287,11 @@ impl Derivation<'_> {
         let sign = if negative { "-" } else { "" };
         if notation == Notation::Latex {
             let under = if under == one { String::new() } else { under.latex(&names) + " " };
-            return format!(
+            return Some(format!(
                 "{sign}\\frac{{{} E}}{{{under}{}}}",
                 bracketed(&above, above.latex(&names)),
                 below.join(" ")
-            );
+            ));
         }
         let under = bracketed(&under, under.text(&names));
         let factors: Vec<&str> = [under.as_str()].into_iter().chain(below).filter(|f| *f != "1").collect();
@@ -276,19 +300,19 @@ impl Derivation<'_> {
             None => (sign, bracketed(&above, above.text(&names))),
         };
         let above = if above == "1" { "E".to_string() } else { format!("E*{above}") };
-        match factors.len() {
+        Some(match factors.len() {
             0 => format!("{sign}{above}"),
             1 => format!("{sign}{above}/{}", factors[0]),
             _ => format!("{sign}{above}/({})", factors.join("*")),
-        }
+        })
     }
 
-    fn combination(&self, terms: &[(&Fraction, &str)], notation: Notation) -> String {
+    fn combination<'b>(&self, terms: impl Iterator<Item = (&'b Fraction, &'b String)>, notation: Notation) -> String {
         let names = self.names(notation);
         let mut text = String::new();
-        for (fraction, symbol) in terms.iter().filter(|(fraction, _)| !fraction.is_zero()) {
+        for (fraction, symbol) in terms.filter(|(fraction, _)| !fraction.is_zero()) {
             let negative = num_traits::Signed::is_negative(fraction.content());
-            let size = if negative { -(*fraction).clone() } else { (*fraction).clone() };
+            let size = if negative { -fraction.clone() } else { fraction.clone() };
             let factor = if notation == Notation::Text { size.text(&names) } else { size.latex(&names) };
             let sign = match (text.is_empty(), negative) {
                 (true, false) => "",
@@ -299,7 +323,7 @@ impl Derivation<'_> {
             let factor = if size.denominator().is_one() { bracketed(&size, factor) } else { factor };
             let dot = if notation == Notation::Text { "*" } else { " " };
             text += sign;
-            text += &if factor == "1" { symbol.to_string() } else { format!("{factor}{dot}{symbol}") };
+            text += &if factor == "1" { symbol.clone() } else { format!("{factor}{dot}{symbol}") };
         }
         if text.is_empty() { "0".into() } else { text }
     }

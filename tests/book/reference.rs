@@ -4,7 +4,7 @@ use super::markdown::{Page, page};
 use crate::report::{LARGE, LINEAR, reports};
 use serde_json::Value;
 use springfit::element::{Element, SHIPPED, SpringKind};
-use springfit::study::Scene;
+use springfit::study::{Scene, run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
@@ -153,8 +153,7 @@ fn the_pages_of_objectives_and_materials_have_every_name() {
             "[mesh]\nbox = {{ element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1] }}\n[material]\nyoung = 1\npoisson = 0.3\n{material}[[fit]]\nobjective = \"{objective}\"\n"
         );
         let scene = Scene::parse(&text, Path::new("scene.toml"));
-        let run = |scene: Scene| scene.energy(scene.material(3).unwrap()).map(|_| ());
-        scene.and_then(run).unwrap_err().to_string()
+        scene.and_then(|scene| run(&scene, &mut |_| ())).unwrap_err().to_string()
     };
     let objectives = columns(&page("docs/src/reference/objectives.md"));
     let known = listed(&refusal("", "zzz"));

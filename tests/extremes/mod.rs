@@ -98,11 +98,13 @@ fn every_number_of_a_scene_may_be_extreme() {
                         Ok(Verdict::Right(found)) => {
                             verdicts[2] += 1;
                             let scales = HOMOGENEOUS.contains(&key(&place).as_str()) && extreme != 0.0;
+                            // A load that is less than the rounding of the stresses is lost at large deformation.
+                            let is_law = ["large", "fibres"].contains(&name);
                             // Not beside other components, nor where the load varies.
                             let value = at(&document, &place);
                             let alone =
                                 value.as_integer() != Some(0) && (!value.is_str() || key(&place) == "material.young");
-                            if let (Verdict::Right(expected), true) = (&sane, scales && alone && name != "large")
+                            if let (Verdict::Right(expected), true) = (&sane, scales && alone && !is_law)
                                 && !agree(expected, &found)
                             {
                                 wrong.push(format!("{case}: errors {found:?}, expected {expected:?}"));

@@ -103,6 +103,9 @@ group = "xmin"
 [[load]]
 group = "xmax"
 traction = [1.0, 0]
+[[load]]
+name = "weight"
+gravity = [0, -9.81]
 "#;
 
 /// Anisotropic materials of every kind, with axes.
@@ -182,6 +185,25 @@ group = "ymin"
 [[load]]
 group = "ymax"
 traction = [0, 100.0]
+"#;
+
+/// A law with fibres and parameters of its own.
+pub const FIBRES: &str = r#"
+[mesh]
+box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+law = "fibre"
+fibre = [1.0, 0.5, 0]
+parameters = { stiffness = 0.8, growth = 1.0 }
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[[load]]
+group = "zmax"
+traction = [0, 0, 100.0]
 "#;
 
 /// Fits to the whole object.
@@ -341,13 +363,14 @@ group = "zmax"
 displacement = ["free", 0, "0.01*t"]
 "#;
 
-pub const ALL: [(&str, &str); 11] = [
+pub const ALL: [(&str, &str); 12] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
     ("regions", REGIONS),
     ("rods", RODS),
     ("large", LARGE),
+    ("fibres", FIBRES),
     ("whole", WHOLE),
     ("coarse", COARSE),
     ("motion", MOTION),

@@ -10,18 +10,16 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Energy, EnergyMap, MaterialMap, State};
 use crate::mesh::{CellIndex, Mesh};
 use crate::springs::{Law, Measure};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The springs of the fibres of every region, each with its law; see [`fibre_springs`].
+/// The springs of the fibres of all cells, each with its law; see [`fibre_springs`].
 ///
 /// # Errors
 /// Those of [`fibre_springs`].
 pub fn fibre_springs_of_regions(mesh: &Mesh, material: &MaterialMap, laws: &EnergyMap) -> Result<Vec<MeasureSpring>> {
-    let mut springs = Vec::new();
-    for (i, law) in laws.laws().enumerate() {
-        springs.extend(of_cells(mesh, material, law, |cell| *laws.index().at(cell.block, cell.cell) == i)?);
-    }
-    Ok(springs)
+    of_cells(mesh, material, |cell| laws.at(cell.block, cell.cell).0)
 }
 
 /// A spring at each quadrature point that measures `c = |Σ_a x_a (∇N_a·a)|`, with a the direction of the fibres, and
@@ -30,32 +28,32 @@ pub fn fibre_springs_of_regions(mesh: &Mesh, material: &MaterialMap, laws: &Ener
 /// # Errors
 /// The stress of the fibres depends on more than their stretch, or they point out of a plane (kind `Unsupported`).
 pub fn fibre_springs(mesh: &Mesh, material: impl Into<MaterialMap>, law: &Energy) -> Result<Vec<MeasureSpring>> {
-    of_cells(mesh, &material.into(), law, |_| true)
+    of_cells(mesh, &material.into(), |_| law)
 }
 
-/// The springs of the fibres in the chosen cells.
-fn of_cells(
+/// The springs of the fibres with the law of each cell.
+fn of_cells<'l>(
     mesh: &Mesh,
     material: &MaterialMap,
-    law: &Energy,
-    chosen: impl Fn(CellIndex) -> bool,
+    law: impl Fn(CellIndex) -> &'l Energy,
 ) -> Result<Vec<MeasureSpring>> {
-    let Some((direction, text)) = law.fibre_law()? else { return Ok(Vec::new()) };
-    let d = mesh.dimension;
-    let is_in_space = matches!(material.state(), State::Solid | State::PlaneStrain { .. });
-    if !is_in_space || mesh.cell_dimension() != d || direction.iter().skip(d).any(|a| *a != 0.0) {
-        let expected = "fibres in a solid, or in the plane of one without strain across it";
-        return Err(Error::expected("objective", expected, format!("those of the law \"{}\"", law.name))
-            .of_kind(ErrorKind::Unsupported));
-    }
-    let law = Arc::new(Law::parse(&text)?);
     let (thicknesses, mut springs) = (material.thicknesses(), Vec::new());
+    let (mut known, mut all) = (BTreeMap::new(), Ok(()));
     each_cell(mesh, |cell, nodes, geometry| {
-        if !chosen(cell) {
+        if all.is_err() {
             return;
         }
+        let energy = law(cell);
+        let (direction, law) = match own_law(mesh, material, energy, &mut known) {
+            Ok(Some(found)) => found,
+            Ok(None) => return,
+            Err(error) => {
+                all = Err(error);
+                return;
+            }
+        };
         let thickness = thicknesses.at(cell.block, cell.cell);
-        let size = nodes.len() * d;
+        let (d, size) = (mesh.dimension, nodes.len() * mesh.dimension);
         for (gradients, volume) in geometry.gradients.chunks_exact(size).zip(&geometry.volumes) {
             let along = gradients.chunks_exact(d).map(|g| g.iter().zip(&direction).map(|(g, a)| g * a).sum());
             let table = Tabulation {
@@ -79,5 +77,27 @@ fn of_cells(
             });
         }
     });
-    Ok(springs)
+    all.map(|()| springs)
+}
+
+/// The direction of the fibres of an energy and the law of their springs, which those of the same numbers share in `known`.
+fn own_law(
+    mesh: &Mesh,
+    material: &MaterialMap,
+    energy: &Energy,
+    known: &mut BTreeMap<String, Arc<Law>>,
+) -> Result<Option<(Vector3<f64>, Arc<Law>)>> {
+    let Some((direction, text)) = energy.fibre_law()? else { return Ok(None) };
+    let d = mesh.dimension;
+    let is_in_space = matches!(material.state(), State::Solid | State::PlaneStrain { .. });
+    if !is_in_space || mesh.cell_dimension() != d || direction.iter().skip(d).any(|a| *a != 0.0) {
+        let expected = "fibres in a solid, or in the plane of one without strain across it";
+        return Err(Error::expected("objective", expected, format!("those of the law \"{}\"", energy.name()))
+            .of_kind(ErrorKind::Unsupported));
+    }
+    let law = match known.get(&text) {
+        Some(law) => law.clone(),
+        None => known.entry(text.clone()).or_insert(Arc::new(Law::parse(&text)?)).clone(),
+    };
+    Ok(Some((direction, law)))
 }

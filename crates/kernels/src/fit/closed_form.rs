@@ -3,6 +3,7 @@
 //! Theory: page *Least squares* of the book.
 
 use super::least_squares::normal_equations;
+use super::modulus::{Modulus, sum};
 use super::normal::Normal;
 use super::weight::{ClosedWeight, Weight};
 use crate::element::{Element, permutations};
@@ -19,27 +20,31 @@ pub const RATIO: &str = "nu";
 /// The names of the side lengths.
 const SIDES: [&str; 3] = ["a", "b", "c"];
 
-/// An element whose matrices are formulas. Quantities that are linear in the moduli λ and μ are pairs of coefficients.
+/// An element whose matrices are formulas. A quantity that is linear in the moduli has a coefficient for each of them, one that is
+/// quadratic has a coefficient for each product, in the order `c₁c₁, c₁c₂, …, c₂c₂, …`.
 #[derive(Debug)]
 pub struct ClosedForm {
+    /// The moduli of the material: λ and μ, or those of an orthotropic one.
+    pub moduli: Vec<Modulus>,
     /// The names of the variables: of the sides, if they are variable, and of ν.
     pub variables: Vec<String>,
     /// The positions of the nodes, `[nodes × dimension]`, m.
     pub positions: Vec<Fraction>,
-    /// The stiffness `R = λ R_λ + μ R_μ`, `[size × size]` each, size = nodes·dimension.
-    pub stiffness: [Vec<Fraction>; 2],
-    /// The classes of springs that a symmetry of the shape maps onto each other.
+    /// The stiffness for each modulus of one and the others zero, `[size × size]`, size = nodes·dimension.
+    pub stiffness: Vec<Vec<Fraction>>,
+    /// The classes of springs that a symmetry of the shape and of the material maps onto each other.
     pub classes: Vec<SymmetryClass>,
-    /// `‖R‖²` as the coefficients of λ², λμ and μ².
-    pub norm: [Fraction; 3],
+    /// `‖R‖²`, quadratic in the moduli.
+    pub norm: Vec<Fraction>,
     /// The springs between all pairs of nodes of the exact network, for [`ClosedForm::exact`].
     exact: Vec<SymmetryClass>,
     springs: Springs,
-    plain: [Normal<Fraction>; 2],
+    /// The equations of all entries; their right-hand side is unused.
+    plain: Normal<Fraction>,
     geometry: Geometry<Fraction>,
 }
 
-/// Springs that have the same constant because the shape is symmetric.
+/// Springs that have the same constant because shape and material are symmetric.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SymmetryClass {
@@ -66,19 +71,31 @@ pub struct ExactForm {
 pub struct ClosedFit {
     /// The weight.
     pub weight: Weight,
-    /// One pair per class, in N/m: the constants for λ = 1 and for μ = 1.
-    pub constants: Vec<[Fraction; 2]>,
-    /// `‖R − K‖²` with all entries, as the coefficients of λ², λμ and μ².
-    pub residual: [Fraction; 3],
+    /// For each class the constants, in N/m, linear in the moduli.
+    pub constants: Vec<Vec<Fraction>>,
+    /// `‖R − K‖²` with all entries, quadratic in the moduli.
+    pub residual: Vec<Fraction>,
 }
 
 impl ClosedForm {
-    /// The element at its reference positions or, with `sides`, stretched along its axes to the lengths a, b, c.
+    /// The element of an isotropic material at its reference positions or, with `sides`, stretched along its axes to the lengths a, b, c.
     ///
     /// # Errors
     /// The springs belong to another element; a node or shape function is not rational; the element's own quadrature is
     /// not exact on such a shape; or the measure of a spring requires roots.
     pub fn new(element: &Element, springs: &Springs, sides: bool) -> Result<ClosedForm> {
+        Self::of(element, springs, sides, Modulus::isotropic(element.dimension()))
+    }
+
+    /// The element of an orthotropic material whose axes are those of the coordinates, as [`ClosedForm::new`].
+    ///
+    /// # Errors
+    /// Those of [`ClosedForm::new`].
+    pub fn orthotropic(element: &Element, springs: &Springs, sides: bool) -> Result<ClosedForm> {
+        Self::of(element, springs, sides, Modulus::orthotropic(element.dimension()))
+    }
+
+    fn of(element: &Element, springs: &Springs, sides: bool, moduli: Vec<Modulus>) -> Result<ClosedForm> {
         springs.check(element)?;
         let refuse = |why: &str| {
             Error::new(format!("{} has no closed form: {why}", element.name)).of_kind(ErrorKind::Unsupported)
@@ -118,19 +135,16 @@ impl ClosedForm {
         if !geometry.update(&table, &x) {
             return Err(refuse("its reference cell is turned inside out"));
         }
-        let classes = classes(element, springs, &x);
-        let equations = |moduli: Moduli<BigRational>| {
-            let mut normal = Normal::default();
-            normal_equations(ClosedWeight::None, springs, &x, &geometry, &moduli.of_kind(&x[0]), &mut normal);
-            normal
-        };
-        let plain = units().map(equations);
-        let stiffness = units().map(|moduli| stiffness(&geometry, &moduli));
-        let norm = quadratic(&stiffness, |a, b| sum(a.iter().zip(b).map(|(a, b)| a.clone() * b), &x[0]));
-        let mut exact = self::classes(element, &Springs::exact(element, false, false), &x);
+        let by_axis = !is_isotropic(&moduli);
+        let classes = classes(element, springs, &x, by_axis);
+        let mut plain = Normal::default();
+        normal_equations(ClosedWeight::None, springs, &x, &geometry, &any_moduli().of_kind(&x[0]), &mut plain);
+        let stiffness: Vec<_> = moduli.iter().map(|modulus| modulus.stiffness(&geometry)).collect();
+        let norm = quadratic(moduli.len(), |i, j| inner(&stiffness[i], &stiffness[j]));
+        let mut exact = self::classes(element, &Springs::exact(element, false, false), &x, by_axis);
         exact.retain(|class| class.springs[0].len() == 2);
         let springs = springs.clone();
-        Ok(ClosedForm { variables, positions: x, stiffness, classes, norm, exact, springs, plain, geometry })
+        Ok(ClosedForm { moduli, variables, positions: x, stiffness, classes, norm, exact, springs, plain, geometry })
     }
 
     /// The exact network: `k_ab = −μ ∫ ∇N_a·∇N_b dV` of every pair of nodes, and the content.
@@ -153,7 +167,8 @@ impl ClosedForm {
     /// The constants under this weight.
     ///
     /// # Errors
-    /// The weight has no closed form, such as `relative`, or it does not determine the springs.
+    /// The weight has no closed form, such as `relative`, or is modal and the material is orthotropic; or the weight does not determine
+    /// the springs.
     pub fn fit(&self, weight: Weight) -> Result<ClosedFit> {
         let closed = weight.closed(false)?;
         let zero = self.positions[0].zero();
@@ -167,42 +182,90 @@ impl ClosedForm {
         let solve = |normal: &Normal<Fraction>| {
             let mut tied = Normal::default();
             normal.tied(&group, self.classes.len(), &mut tied);
-            tied.solve_regular().then_some(tied.rhs)
+            let none = || Error::new("this weight does not determine the springs").of_kind(ErrorKind::Infeasible);
+            tied.solve_regular().then_some(tied.rhs).ok_or_else(none)
         };
-        let weighted = |moduli: Moduli<BigRational>| {
-            let mut normal = Normal::default();
-            let moduli = moduli.of_kind(&self.positions[0]);
-            normal_equations(closed, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
-            solve(&normal)
-        };
-        let solved =
-            if closed == ClosedWeight::None { self.plain.each_ref().map(solve) } else { units().map(weighted) };
-        let [Some(lambda), Some(mu)] = solved else {
-            return Err(Error::new("this weight does not determine the springs").of_kind(ErrorKind::Infeasible));
+        let solved = match closed {
+            ClosedWeight::Modal(_) if !is_isotropic(&self.moduli) => {
+                let why = "modal weights have closed forms of isotropic materials only";
+                return Err(Error::new(why).of_kind(ErrorKind::Unsupported));
+            }
+            ClosedWeight::Modal(_) => {
+                let of_moduli = |moduli: Moduli<BigRational>| {
+                    let moduli = moduli.of_kind(&self.positions[0]);
+                    let mut normal = Normal::default();
+                    normal_equations(closed, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
+                    solve(&normal)
+                };
+                units().into_iter().map(of_moduli).collect::<Result<Vec<_>>>()?
+            }
+            ClosedWeight::None | ClosedWeight::OffDiagonal => {
+                let mut normal = Normal::default();
+                let any = any_moduli().of_kind(&self.positions[0]);
+                normal_equations(closed, &self.springs, &self.positions, &self.geometry, &any, &mut normal);
+                let of_stiffness = |r: &Vec<Fraction>| {
+                    let mut normal = normal.clone();
+                    normal.rhs = self.works(r, closed == ClosedWeight::OffDiagonal);
+                    solve(&normal)
+                };
+                self.stiffness.iter().map(of_stiffness).collect::<Result<Vec<_>>>()?
+            }
         };
         // ‖R − K‖² = ‖R‖² − 2 bᵀk + kᵀ M k
-        let k = [&lambda, &mu].map(|k| group.iter().map(|i| k[*i].clone()).collect::<Vec<_>>());
+        let spread = |k: &Vec<Fraction>| group.iter().map(|i| k[*i].clone()).collect::<Vec<_>>();
+        let k: Vec<Vec<Fraction>> = solved.iter().map(spread).collect();
         let m = self.springs.len();
-        let image = |k: &[Fraction]| -> Vec<Fraction> {
-            let entry = |s: usize, t: usize| &self.plain[0].gram[s.max(t) * m + s.min(t)];
+        let image = |k: &Vec<Fraction>| -> Vec<Fraction> {
+            let entry = |s: usize, t: usize| &self.plain.gram[s.max(t) * m + s.min(t)];
             let row = |s: usize| sum((0..m).map(|t| entry(s, t).clone() * &k[t]), &zero);
             (0..m).map(row).collect()
         };
-        let images = [image(&k[0]), image(&k[1])];
-        let dot = |a: &[Fraction], b: &[Fraction]| sum(a.iter().zip(b).map(|(a, b)| a.clone() * b), &zero);
-        let (b, two) = ([&self.plain[0].rhs, &self.plain[1].rhs], BigRational::from_integer(2.into()));
-        let work = |i: usize, j: usize| dot(b[i], &k[j]);
-        let bent = |i: usize, j: usize| dot(&k[i], &images[j]);
-        let less = [work(0, 0).scaled(&two), (work(0, 1) + &work(1, 0)).scaled(&two), work(1, 1).scaled(&two)];
-        let more = [bent(0, 0), bent(0, 1).scaled(&two), bent(1, 1)];
-        let residual = std::array::from_fn(|i| self.norm[i].clone() - &less[i] + &more[i]);
-        let constants = lambda.into_iter().zip(mu).map(|(l, m)| [l, m]).collect();
-        Ok(ClosedFit { weight, constants, residual })
+        let images: Vec<_> = k.iter().map(image).collect();
+        let works: Vec<_> = self.stiffness.iter().map(|r| self.works(r, false)).collect();
+        let less = |i: usize, j: usize| inner(&works[i], &k[j]) + &inner(&works[j], &k[i]);
+        let more = |i: usize, j: usize| inner(&k[i], &images[j]);
+        let change = quadratic(self.moduli.len(), |i, j| more(i, j) - &less(i, j));
+        let residual = self.norm.iter().zip(&change).map(|(norm, change)| norm.clone() + change).collect();
+        let class = |i: usize| solved.iter().map(|k| k[i].clone()).collect();
+        Ok(ClosedFit { weight, constants: (0..self.classes.len()).map(class).collect(), residual })
+    }
+
+    /// `⟨R, g_s g_sᵀ⟩` of every spring, over all blocks or over those of different nodes.
+    fn works(&self, r: &[Fraction], off_diagonal: bool) -> Vec<Fraction> {
+        let (n, d) = (self.geometry.nodes, self.geometry.dimension);
+        // xᵀ R_ab y
+        let block = |a: usize, b: usize, x: &[Fraction], y: &[Fraction]| {
+            let entry = |e: usize| r[(a * d + e / d) * n * d + b * d + e % d].clone() * &x[e / d] * &y[e % d];
+            sum((0..d * d).map(entry), &r[0])
+        };
+        let of_pair = |&[a, b]: &[usize; 2]| {
+            let x = &self.positions;
+            let along: Vec<Fraction> = (0..d).map(|k| x[b * d + k].clone() - &x[a * d + k]).collect();
+            let across = block(a, b, &along, &along) + &block(b, a, &along, &along);
+            let own = match off_diagonal {
+                true => r[0].zero(),
+                false => block(a, a, &along, &along) + &block(b, b, &along, &along),
+            };
+            (own - &across) / &inner(&along, &along)
+        };
+        let mut works: Vec<Fraction> = self.springs.pairs.iter().map(of_pair).collect();
+        if self.springs.content.is_some() {
+            let gradient = self.geometry.content_gradient();
+            let of = |a: usize| &gradient[a * d..(a + 1) * d];
+            let blocks = (0..n * n).filter(|e| !(off_diagonal && e / n == e % n));
+            works.push(sum(blocks.map(|e| block(e / n, e % n, of(e / n), of(e % n))), &r[0]));
+        }
+        works
     }
 }
 
 fn to_f64(value: &BigRational) -> f64 {
     num_traits::ToPrimitive::to_f64(value).unwrap_or(f64::NAN)
+}
+
+/// Orthotropic materials have one, four or nine moduli.
+fn is_isotropic(moduli: &[Modulus]) -> bool {
+    moduli.len() == 2
 }
 
 /// The moduli λ = 1 and μ = 1.
@@ -211,14 +274,21 @@ fn units() -> [Moduli<BigRational>; 2] {
     [Moduli { lambda: one.clone(), mu: zero.clone() }, Moduli { lambda: zero, mu: one }]
 }
 
-fn sum(terms: impl Iterator<Item = Fraction>, any: &Fraction) -> Fraction {
-    terms.fold(any.zero(), |sum, term| sum + &term)
+/// The matrix of the normal equations does not depend on the moduli.
+fn any_moduli() -> Moduli<BigRational> {
+    let [lambda, _] = units();
+    lambda
 }
 
-/// The coefficients of λ², λμ and μ² in a product of two quantities that are linear in both.
-fn quadratic(parts: &[Vec<Fraction>; 2], product: impl Fn(&[Fraction], &[Fraction]) -> Fraction) -> [Fraction; 3] {
+fn inner(a: &[Fraction], b: &[Fraction]) -> Fraction {
+    sum(a.iter().zip(b).map(|(a, b)| a.clone() * b), &a[0])
+}
+
+/// The coefficients of a symmetric quadratic form with these entries.
+fn quadratic(count: usize, entry: impl Fn(usize, usize) -> Fraction) -> Vec<Fraction> {
     let two = BigRational::from_integer(2.into());
-    [product(&parts[0], &parts[0]), product(&parts[0], &parts[1]).scaled(&two), product(&parts[1], &parts[1])]
+    let pairs = (0..count).flat_map(|i| (i..count).map(move |j| (i, j)));
+    pairs.map(|(i, j)| if i == j { entry(i, i) } else { entry(i, j).scaled(&two) }).collect()
 }
 
 /// Whether the rule of the file and the exact rule give the same stiffness of the reference cell.
@@ -234,47 +304,15 @@ fn is_exact(element: &Element, exact: &crate::element::Tabulation) -> bool {
     }
 }
 
-/// `Σ_q v (λ ∇_a ∇_bᵀ + μ (∇_b ∇_aᵀ + ∇_a·∇_b I))`, `[size × size]`.
-fn stiffness(geometry: &Geometry<Fraction>, moduli: &Moduli<BigRational>) -> Vec<Fraction> {
-    let (n, d) = (geometry.nodes, geometry.dimension);
-    let size = n * d;
-    let mut r = vec![geometry.volumes[0].zero(); size * size];
-    for (grad, v, w) in geometry.each_point() {
-        let (lambda, mu) = (w.clone().scaled(&moduli.lambda), v.clone().scaled(&moduli.mu));
-        for a in 0..n {
-            for b in 0..=a {
-                let (ga, gb) = (&grad[a * d..(a + 1) * d], &grad[b * d..(b + 1) * d]);
-                let dot = sum(ga.iter().zip(gb).map(|(x, y)| x.clone() * y), v);
-                for k in 0..d {
-                    for l in 0..d {
-                        let mut entry = (ga[k].clone() * &gb[l]) * &lambda + &((gb[k].clone() * &ga[l]) * &mu);
-                        if k == l {
-                            entry = entry.plus_product(&mu, &dot);
-                        }
-                        let place = (a * d + k) * size + b * d + l;
-                        r[place] = r[place].clone() + &entry;
-                    }
-                }
-            }
-        }
-    }
-    for i in 0..size {
-        for j in i + 1..size {
-            r[i * size + j] = r[j * size + i].clone();
-        }
-    }
-    r
-}
-
-/// The orbits of the springs under the permutations of nodes that keep every distance, in the order of their first
-/// springs.
-fn classes(element: &Element, springs: &Springs, x: &[Fraction]) -> Vec<SymmetryClass> {
+/// The orbits of the springs under the permutations of nodes that keep every distance or, `by_axis`, every distance along an axis, in
+/// the order of their first springs.
+fn classes(element: &Element, springs: &Springs, x: &[Fraction], by_axis: bool) -> Vec<SymmetryClass> {
     let (d, n) = (element.dimension(), element.nodes());
     let square = |a: usize, b: usize| {
-        let difference = |k: usize| x[b * d + k].clone() - &x[a * d + k];
-        sum((0..d).map(|k| difference(k).squared()), &x[0])
+        let along = (0..d).map(|k| (x[b * d + k].clone() - &x[a * d + k]).squared());
+        if by_axis { along.collect() } else { vec![sum(along, &x[0])] }
     };
-    let squares: Vec<Fraction> = (0..n * n).map(|i| square(i / n, i % n)).collect();
+    let squares: Vec<Vec<Fraction>> = (0..n * n).map(|i| square(i / n, i % n)).collect();
     let keeps = |p: &Vec<usize>| (0..n * n).all(|i| squares[i] == squares[p[i / n] * n + p[i % n]]);
     let symmetries: Vec<Vec<usize>> =
         permutations(element.cell, &element.positions).into_iter().filter(keeps).collect();

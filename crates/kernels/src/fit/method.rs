@@ -31,7 +31,10 @@ const LEAST_MEASURED_PIVOT: f64 = 1e-4;
 /// The softest motion is known to nine digits if its stiffness is this many rounding errors.
 const KNOWN: f64 = 1e9;
 
-/// The largest number of doublings of the excess of a value that is spoilt by rounding of the constants.
+/// The largest part of a gap that may be rounding of the constants: of an optimum of zero, 1e-12 of ‖R‖.
+const ROUNDED: f64 = 1e-6;
+
+/// The largest number of doublings of the part of a value that is the rounding of the constants.
 const TRIALS: usize = 100;
 
 /// The value and the bound of a spectral fit, in N/m (of the weighted matrix). Together they prove how close it is to
@@ -47,18 +50,29 @@ pub struct Certificate {
     pub ambiguous: bool,
     /// `‖R‖`, to which the gap of a nearly vanishing value is relative.
     size: f64,
+    /// How much of the value the rounding of the constants to `f64` can be, N/m, where that was determined.
+    rounding: f64,
 }
 
 impl Certificate {
     /// `(value − bound)/value`; relative to a millionth of ‖R‖ if the value is smaller than that.
     pub fn gap(&self) -> f64 {
-        (self.value - self.bound) / self.value.max(EXACT * self.size)
+        (self.value - self.bound) / self.scale()
+    }
+
+    /// The part of the gap that may be rounding of the constants, at most 1e-6.
+    pub fn rounding(&self) -> f64 {
+        (self.rounding / self.scale()).min(ROUNDED)
+    }
+
+    fn scale(&self) -> f64 {
+        self.value.max(EXACT * self.size)
     }
 
     /// Whether the gap is as small as it is asked to be. A bound that is above the value by more than that proves nothing: rounding
     /// has spoilt one of the two.
     fn is_closed(&self) -> bool {
-        self.gap().abs() <= GAP
+        self.gap().abs() <= GAP + self.rounding()
     }
 }
 
@@ -213,21 +227,30 @@ impl<T: Real> Method<T> {
         }
         let found = self.finish(Real::rounded, || 1.0, constants);
         verdict = Verdict { reached: found.reached && is_known, ..found };
-        if let Some(certificate) = &mut verdict.certificate {
-            // The constants are rounded to the numbers that are stored.
-            certificate.value += 4.0 * self.reduced.order as f64 * f64::EPSILON * certificate.size;
-        }
         let Some(mut certificate) = verdict.certificate else { return verdict };
-        // If this loses more than the gap allows, the value that they reach is found by trial.
+        // The constants are rounded to the numbers that are stored; what value these reach is found by trial.
+        certificate.rounding = certificate.size * self.rounding(constants);
+        let (reached, mut excess) = (certificate.value, certificate.rounding);
         for _ in 0..TRIALS {
+            certificate.value = reached + excess;
             if self.distance_from_optimum(constants, certificate.value).is_some() {
                 break;
             }
-            certificate.value *= 2.0;
+            excess *= 2.0;
         }
         verdict.reached &= certificate.is_closed();
         verdict.certificate = Some(certificate);
         verdict
+    }
+
+    /// An upper bound of `‖Σ δ_s h_s h_sᵀ‖₂/‖R‖` if each constant is off by δ_s, half a unit in its last place.
+    fn rounding(&self, constants: &[f64]) -> f64 {
+        let (p, h) = (self.reduced.order, self.reduced.rows());
+        let parts = self.reduced.unknowns.iter().zip(constants).enumerate().map(|(s, (&unknown, k))| {
+            let row = &h[s * p..(s + 1) * p];
+            (k / self.reduced.scales[unknown].rounded()).abs() * inner(row, row).rounded()
+        });
+        parts.sum::<f64>() * f64::EPSILON / 2.0
     }
 
     /// After a spectral solution: an upper bound of the distance of the constants from the optimum, relative to the
@@ -292,7 +315,8 @@ impl<T: Real> Method<T> {
                 // For an optimum of zero the gap is only rounding.
                 verdict.delicate |= optimum.value <= EXACT;
                 let Optimum { kappa, value, bound } = optimum;
-                let certificate = Certificate { value: size * value, bound: size * bound, ambiguous, size };
+                let certificate =
+                    Certificate { value: size * value, bound: size * bound, ambiguous, size, rounding: 0.0 };
                 verdict.reached = certificate.is_closed();
                 verdict.certificate = Some(certificate);
                 kappa

@@ -79,6 +79,20 @@ impl<T: Clone> CellMap<T> {
     }
 }
 
+impl CellMap<f64> {
+    /// The product of both values of each cell.
+    pub fn product(&self, other: &CellMap<f64>) -> CellMap<f64> {
+        match (self, other) {
+            (CellMap::Uniform(a), other) => other.map(|b| a * b),
+            (own, CellMap::Uniform(b)) => own.map(|a| a * b),
+            (CellMap::Each(own), CellMap::Each(other)) => {
+                let block = |(own, other): (&Vec<f64>, &Vec<f64>)| own.iter().zip(other).map(|(a, b)| a * b).collect();
+                CellMap::of_blocks(own.iter().zip(&**other).map(block).collect())
+            }
+        }
+    }
+}
+
 impl<T> CellMap<T> {
     /// The value of a cell, by its block and its index there.
     pub fn at(&self, block: usize, cell: usize) -> &T {

@@ -3,7 +3,7 @@
 use super::{CellMap, Energy, State};
 use std::sync::Arc;
 
-/// The energy and the state of each cell of a body: one for each region. Copies share the values.
+/// The energy and the state of each cell of a body: one for each region, or for each set of numbers in it. Copies share the values.
 #[derive(Debug, Clone)]
 pub struct EnergyMap {
     laws: Arc<[(Energy, State)]>,
@@ -12,7 +12,7 @@ pub struct EnergyMap {
 }
 
 impl EnergyMap {
-    /// The laws of the regions of a body, and the region of each cell. A region without a law has that of the first.
+    /// The laws of a body, and the law of each cell. A cell without a law has the first.
     ///
     /// `None` if there is no law.
     pub fn new(laws: Vec<(Energy, State)>, of: CellMap<usize>) -> Option<EnergyMap> {
@@ -51,8 +51,8 @@ impl EnergyMap {
     pub fn title(&self) -> String {
         let mut titles: Vec<&str> = Vec::new();
         for energy in self.laws() {
-            if !titles.contains(&energy.title.as_str()) {
-                titles.push(&energy.title);
+            if !titles.contains(&energy.title()) {
+                titles.push(energy.title());
             }
         }
         titles.join(", ")

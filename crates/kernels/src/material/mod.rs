@@ -11,13 +11,15 @@ mod energy;
 mod energy_map;
 mod hooke;
 mod map;
+mod response;
 
 pub use anisotropy::Anisotropy;
 pub use cell_map::{BlockValues, CellMap};
-pub use energy::{Energy, Tangent, schema};
+pub use energy::{Energy, schema};
 pub use energy_map::EnergyMap;
 pub use hooke::{Hooke, Stiffness, strains, voigt};
 pub use map::{LinearMaterial, MaterialMap};
+pub use response::Tangent;
 pub use springfit_shipped::MATERIALS as SHIPPED;
 
 use crate::error::{Error, Result};

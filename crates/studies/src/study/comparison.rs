@@ -182,7 +182,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
         held => held.is_ok(),
     };
     let whole = scene.law().is_none() && held;
-    let law = scene.laws(material)?;
+    let law = scene.laws(&mesh, material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
     let serves_all = |method: &Method| {

@@ -79,7 +79,7 @@ impl Forecast {
             let mesh = scene.build_mesh()?;
             let material = &scene.material_of(&mesh)?;
             let (_, cases) = load_cases(scene, &mesh, material)?;
-            Forecast::of_body(scene, &mesh, material, &cases, scene.laws(material)?.as_ref())
+            Forecast::of_body(scene, &mesh, material, &cases, scene.laws(&mesh, material)?.as_ref())
         };
         worked_out().map_err(|e| scene.with_line(e))
     }

@@ -38,7 +38,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let material = &scene.material_of(&mesh)?;
     drawable(scene, &mesh)?;
     let (support, mut cases) = load_cases(scene, &mesh, material)?;
-    let energy = scene.laws(material)?;
+    let energy = scene.laws(&mesh, material)?;
     if controls.announce
         && let Some(words) = Forecast::of_body(scene, &mesh, material, &cases, energy.as_ref())?.announcement()
     {

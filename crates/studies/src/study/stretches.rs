@@ -125,7 +125,7 @@ pub fn compare_stretches(
             runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), shapes)?);
         }
     }
-    Ok(Stretches { element: element.name.clone(), law: pulled.large.laws.first().title.clone(), fits, runs })
+    Ok(Stretches { element: element.name.clone(), law: pulled.large.laws.first().title().to_string(), fits, runs })
 }
 
 /// An equilibrium of the box.

@@ -40,10 +40,15 @@ pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
 pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<(Support, Vec<Case>)> {
     let fixed = held(scene, mesh)?;
     let (mut cases, thicknesses) = (Vec::new(), material.thicknesses());
+    // The mass per content of each cell.
+    let masses = material.density().map_or(thicknesses.clone(), |density| density.product(&thicknesses));
     for (i, load) in scene.loads().iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);
         let (forces, support) = match load.single() {
-            Some((part, action)) => acting(mesh, &thicknesses, &fixed, (part, action)).map_err(at)?,
+            Some((part, action)) => {
+                let weights = if load.is_acceleration() { &masses } else { &thicknesses };
+                acting(mesh, weights, &fixed, (load.key(), part, action)).map_err(at)?
+            }
             None => (Vec::new(), fixed.clone()),
         };
         if let Some(body) = unheld_bodies(mesh, &support).first() {
@@ -80,19 +85,19 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
 /// Loads cancel each other if their sum is smaller than this share of the largest of them.
 const CANCELLED: f64 = 1e-12;
 
-/// The nodal forces of an action, and the supports under it.
+/// The nodal forces of an action, which has this key, and the supports under it. `weights` is what makes a content of a cell a volume or,
+/// for accelerations, a mass.
 fn acting(
     mesh: &Mesh,
-    thicknesses: &CellMap<f64>,
+    weights: &CellMap<f64>,
     fixed: &Support,
-    (part, action): (&Part, &Action),
+    (key, part, action): (&str, &Part, &Action),
 ) -> Result<(Vec<f64>, Support)> {
     let d = mesh.dimension;
-    let (key, entries) = match action {
-        Action::Traction(v) => ("traction", v.len()),
-        Action::Force(v) => ("force", v.len()),
-        Action::Body(v) => ("body", v.len()),
-        Action::Displacement(v) => ("displacement", v.len()),
+    let entries = match action {
+        Action::Traction(v) | Action::Body(v) => v.len(),
+        Action::Force(v) => v.len(),
+        Action::Displacement(v) => v.len(),
     };
     if entries != d {
         return Err(Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), entries));
@@ -105,7 +110,7 @@ fn acting(
     let selection: Selection = part.selection(d)?;
     let points = selection.points(mesh)?;
     // The part has been checked: any other error is about the load.
-    let forces = nodal_forces(mesh, &selection, action, thicknesses).map_err(|e| Error::new(e.problem()))?;
+    let forces = nodal_forces(mesh, &selection, action, weights).map_err(|e| Error::new(e.problem()))?;
     let mut support = fixed.clone();
     if let Action::Displacement(given) = action {
         for p in points {

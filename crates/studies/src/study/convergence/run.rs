@@ -140,7 +140,7 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
     let quantities = Quantities::of(scene, mesh, material)?;
     let prescribed = quantities.iter().any(Quantities::is_prescribed);
     // Forces at points with prescribed displacements do work only there.
-    let energy = scene.laws(material)?;
+    let energy = scene.laws(mesh, material)?;
     let stiffness =
         |linear: &dyn Fn() -> Entries| if prescribed && energy.is_none() { linear() } else { Entries::new() };
     let body = energy.as_ref().map(|laws| RegionsBody { mesh, laws });

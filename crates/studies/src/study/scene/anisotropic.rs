@@ -1,7 +1,7 @@
 //! The anisotropic materials of a scene, and the axes of the material in each cell.
 
-use super::distribution::DataEntry;
-use super::value::{Pressure, Varying};
+use super::distribution::{self, DataEntry, Distribution};
+use super::value::Varying;
 use crate::error::{Error, Result};
 use crate::material::Anisotropy;
 use crate::symbolic::{Expr, Scope};
@@ -12,17 +12,36 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use std::borrow::Cow;
 use std::fmt;
+use std::path::PathBuf;
+
+/// A pressure that may differ from place to place, Pa.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct PressureField(
+    #[serde(deserialize_with = "distribution::pressure")]
+    #[schemars(schema_with = "distribution::schema")]
+    Distribution,
+);
+
+/// A number that may differ from place to place.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct NumberField(
+    #[serde(deserialize_with = "distribution::ratio")]
+    #[schemars(schema_with = "distribution::schema")]
+    pub Distribution,
+);
 
 /// Three planes of symmetry.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrthotropicEntry {
     /// E1, E2, E3, Pa.
-    pub young: Vec<Pressure>,
+    young: Vec<PressureField>,
     /// ν12, ν23, ν13.
-    pub poisson: Vec<f64>,
+    poisson: Vec<NumberField>,
     /// G12, G23, G13, Pa.
-    pub shear: Vec<Pressure>,
+    shear: Vec<PressureField>,
 }
 
 /// One axis of symmetry, the first.
@@ -30,20 +49,57 @@ pub struct OrthotropicEntry {
 #[serde(deny_unknown_fields)]
 pub struct TransverseEntry {
     /// Along the axis and across it, Pa.
-    pub young: Vec<Pressure>,
+    young: Vec<PressureField>,
     /// Across under tension along, and in the plane across.
-    pub poisson: Vec<f64>,
+    poisson: Vec<NumberField>,
     /// Of planes along the axis, Pa.
-    pub shear: Pressure,
+    shear: PressureField,
 }
 
 /// A crystal of cubic symmetry.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CubicEntry {
-    pub c11: Pressure,
-    pub c12: Pressure,
-    pub c44: Pressure,
+    c11: PressureField,
+    c12: PressureField,
+    c44: PressureField,
+}
+
+/// Six rows of six numbers, Pa.
+pub type StiffnessEntry = Vec<Vec<PressureField>>;
+
+/// An anisotropic law whose constants may differ from place to place.
+#[derive(Debug)]
+pub struct AnisotropicLaw<'a> {
+    /// The key of the law in a material.
+    pub key: &'static str,
+    /// The constants, each with its key under that of the law.
+    pub constants: Vec<(String, &'a Distribution)>,
+    of: fn(&[f64]) -> Result<Anisotropy>,
+}
+
+impl<'a> AnisotropicLaw<'a> {
+    /// The law with these values of the constants.
+    ///
+    /// # Errors
+    /// A constant is out of its range, or the stiffness is not positive definite.
+    pub fn at(&self, values: &[f64]) -> Result<Anisotropy> {
+        // A stiffness that is wrong has its own name as its key.
+        let keyed = |e: Error| if e.key() == Some("stiffness") { e.at_key(self.key) } else { e.under(self.key) };
+        (self.of)(values).map_err(keyed)
+    }
+
+    /// The constants with their keys in a material.
+    pub fn keyed(&self) -> Vec<(String, &'a Distribution)> {
+        let key =
+            |own: &str| if own.starts_with('[') { format!("{}{own}", self.key) } else { format!("{}.{own}", self.key) };
+        self.constants.iter().map(|(own, constant)| (key(own), *constant)).collect()
+    }
+
+    /// The values of the constants, if they are the same everywhere.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        self.constants.iter().map(|(_, constant)| constant.number()).collect()
+    }
 }
 
 /// An axis of the material: a vector of numbers or expressions, or data of a file.
@@ -98,6 +154,14 @@ pub enum Axis {
 }
 
 impl AxisEntry {
+    /// The file of the values, if there is one.
+    pub fn file(&self) -> Option<&PathBuf> {
+        match self {
+            AxisEntry::Vector(_) => None,
+            AxisEntry::Data(data) => Some(&data.file),
+        }
+    }
+
     /// # Errors
     /// A vector has another number of components than two or three, or an expression is wrong.
     pub fn check(&self) -> Result<Axis> {
@@ -128,50 +192,72 @@ impl AxisEntry {
     }
 }
 
-/// Three numbers of a key.
-fn three<T: Copy>(key: &str, list: &[T]) -> Result<[T; 3]> {
-    list.try_into().map_err(|_| Error::expected(key, "three numbers", list.len()))
+/// The constants of a list, which must have this length.
+fn constants<'a, T>(
+    key: &str,
+    list: &'a [T],
+    length: usize,
+    of: impl Fn(&'a T) -> &'a Distribution,
+) -> Result<Vec<(String, &'a Distribution)>> {
+    if list.len() != length {
+        let expected = if length == 2 { "two numbers" } else { "three numbers" };
+        return Err(Error::expected(key, expected, list.len()));
+    }
+    Ok(list.iter().enumerate().map(|(i, field)| (format!("{key}[{i}]"), of(field))).collect())
 }
 
-fn two<T: Copy>(key: &str, list: &[T]) -> Result<[T; 2]> {
-    list.try_into().map_err(|_| Error::expected(key, "two numbers", list.len()))
+fn pressure(field: &PressureField) -> &Distribution {
+    &field.0
+}
+
+fn ratio(field: &NumberField) -> &Distribution {
+    &field.0
 }
 
 impl OrthotropicEntry {
     /// # Errors
-    /// A list has another length, or the stiffness is not positive definite.
-    pub fn anisotropy(&self) -> Result<Anisotropy> {
-        let young = three("young", &self.young)?.map(|e| e.0);
-        let shear = three("shear", &self.shear)?.map(|g| g.0);
-        Anisotropy::orthotropic(young, three("poisson", &self.poisson)?, shear)
+    /// A list has another length.
+    pub fn law(&self) -> Result<AnisotropicLaw<'_>> {
+        let young = constants("young", &self.young, 3, pressure)?;
+        let poisson = constants("poisson", &self.poisson, 3, ratio)?;
+        let shear = constants("shear", &self.shear, 3, pressure)?;
+        let of = |v: &[f64]| Anisotropy::orthotropic([v[0], v[1], v[2]], [v[3], v[4], v[5]], [v[6], v[7], v[8]]);
+        Ok(AnisotropicLaw { key: "orthotropic", constants: [young, poisson, shear].concat(), of })
     }
 }
 
 impl TransverseEntry {
     /// # Errors
-    /// A list has another length, or the stiffness is not positive definite.
-    pub fn anisotropy(&self) -> Result<Anisotropy> {
-        let young = two("young", &self.young)?.map(|e| e.0);
-        Anisotropy::transversely_isotropic(young, two("poisson", &self.poisson)?, self.shear.0)
+    /// A list has another length.
+    pub fn law(&self) -> Result<AnisotropicLaw<'_>> {
+        let young = constants("young", &self.young, 2, pressure)?;
+        let poisson = constants("poisson", &self.poisson, 2, ratio)?;
+        let shear = vec![("shear".into(), &self.shear.0)];
+        let of = |v: &[f64]| Anisotropy::transversely_isotropic([v[0], v[1]], [v[2], v[3]], v[4]);
+        Ok(AnisotropicLaw { key: "transversely-isotropic", constants: [young, poisson, shear].concat(), of })
     }
 }
 
 impl CubicEntry {
-    /// # Errors
-    /// The stiffness is not positive definite.
-    pub fn anisotropy(&self) -> Result<Anisotropy> {
-        Anisotropy::cubic(self.c11.0, self.c12.0, self.c44.0)
+    pub fn law(&self) -> AnisotropicLaw<'_> {
+        let all = [("c11", &self.c11), ("c12", &self.c12), ("c44", &self.c44)];
+        let constants = all.map(|(key, field)| (key.into(), &field.0)).into();
+        AnisotropicLaw { key: "cubic", constants, of: |v| Anisotropy::cubic(v[0], v[1], v[2]) }
     }
 }
 
-/// A stiffness of six rows of six numbers, Pa.
-///
 /// # Errors
-/// A length is wrong, or the stiffness is not symmetric and positive definite.
-pub fn of_rows(rows: &[Vec<Pressure>]) -> Result<Anisotropy> {
+/// A length is wrong.
+pub fn of_rows(rows: &StiffnessEntry) -> Result<AnisotropicLaw<'_>> {
     if rows.len() != 6 || rows.iter().any(|row| row.len() != 6) {
         let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
-        return Err(Error::new(format!("expected six rows of six numbers, found rows of {lengths:?}")));
+        let problem = format!("expected six rows of six numbers, found rows of {lengths:?}");
+        return Err(Error::new(problem));
     }
-    Anisotropy::of_stiffness(Matrix6::from_fn(|i, j| rows[i][j].0))
+    let constants = rows
+        .iter()
+        .enumerate()
+        .flat_map(|(i, row)| row.iter().enumerate().map(move |(j, field)| (format!("[{i}][{j}]"), &field.0)));
+    let of = |v: &[f64]| Anisotropy::of_stiffness(Matrix6::from_row_slice(v));
+    Ok(AnisotropicLaw { key: "stiffness", constants: constants.collect(), of })
 }

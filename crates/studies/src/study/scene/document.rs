@@ -4,7 +4,7 @@ use super::distribution::Distribution;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
 use super::input::MeshInput;
-use super::laws::laws_of_regions;
+use super::laws::laws_of_cells;
 use super::lists::{check_fits, read_fits};
 use super::load::{LoadCase, read_loads};
 use super::material::{MaterialEntries, MaterialEntry};
@@ -18,7 +18,7 @@ use super::source::SceneSource;
 use crate::bound::{self, check_count};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
-use crate::material::{CellMap, Energy, EnergyMap, Material, MaterialMap};
+use crate::material::{CellMap, EnergyMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
@@ -97,6 +97,14 @@ impl Scene {
         let fix = |(i, fix): (usize, FixEntry)| fix.check().map_err(|e| e.under(format!("fix[{i}]")));
         let supports = entry.fix.into_iter().enumerate().map(fix).collect::<Result<_>>()?;
         let loads = read_loads(entry.load)?;
+        if let (Some(i), false) = (loads.iter().position(LoadCase::is_acceleration), entry.material.has_density()) {
+            let found = format!("none, beside load[{i}].gravity");
+            return Err(Error::expected(
+                "material.density",
+                "a number of kg/m³, by which gravity is multiplied",
+                found,
+            ));
+        }
         if entry.newton.is_some() && entry.material.first().law.is_none() {
             return Err(Error::at("newton", "belongs to a material with a \"law\", found one without"));
         }
@@ -239,9 +247,7 @@ impl Scene {
             Action::Force(_) | Action::Displacement(_) => false,
         };
         let of_place = |entry: &MaterialEntry| {
-            entry.condition.is_some()
-                || entry.axes.is_some()
-                || entry.distributions().any(|(_, values)| values.number().is_none())
+            entry.condition.is_some() || entry.axes.is_some() || entry.fibre.is_some() || entry.varies()
         };
         self.material.all.iter().any(of_place)
             || conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
@@ -294,28 +300,13 @@ impl Scene {
         self.material.first().law.as_deref()
     }
 
-    /// The energy of the law for a body of this material, if there is a law.
+    /// The energies of the laws of all cells, if there are laws.
     ///
     /// # Errors
-    /// There is no such law, or its file is wrong.
-    pub fn energy(&self, material: impl Into<MaterialMap>) -> Result<Option<Energy>> {
-        let material = material.into();
+    /// There is no such law, its file is wrong, or a parameter or a direction of fibres is.
+    pub fn laws(&self, mesh: &Mesh, material: &MaterialMap) -> Result<Option<EnergyMap>> {
         let folder = self.path().parent().unwrap_or(Path::new(""));
-        let load = |law: &str| {
-            let one = material.uniform().ok_or_else(|| Error::new("belongs to one material in all cells"))?;
-            let key = format!("{}.law", self.material.key(0));
-            Energy::load(&law_at(law, folder), one).map_err(|e| e.placed(|e| self.placed(e.at_key(key))))
-        };
-        self.law().map(load).transpose()
-    }
-
-    /// The energies of the laws of all regions, if there are laws.
-    ///
-    /// # Errors
-    /// There is no such law, or its file is wrong.
-    pub fn laws(&self, material: &MaterialMap) -> Result<Option<EnergyMap>> {
-        let folder = self.path().parent().unwrap_or(Path::new(""));
-        laws_of_regions(&self.material, material, folder).map_err(|e| self.placed(e))
+        laws_of_cells(&self.material, mesh, material, folder).map_err(|e| self.placed(e))
     }
 
     /// The scene file, and the files that it names: of the mesh, of elements, laws and data.
@@ -330,8 +321,7 @@ impl Scene {
         files.extend(measured.map(|entry| folder.join(&entry.file)));
         let sampled = self.fits.iter().filter_map(|fit| fit.recipe.sampled());
         files.extend(sampled.flat_map(|recipe| recipe.files()));
-        let distributions = self.material.all.iter().flat_map(|entry| entry.distributions());
-        files.extend(distributions.filter_map(|(_, values)| values.file()).map(|file| folder.join(file)));
+        files.extend(self.material.all.iter().flat_map(MaterialEntry::files).map(|file| folder.join(file)));
         files
     }
 

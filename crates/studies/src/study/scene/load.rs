@@ -32,16 +32,37 @@ pub enum LoadKind {
         part: Part,
         /// What acts on that part.
         action: Action,
+        /// Whether the body force is an acceleration, by which the density is multiplied.
+        is_acceleration: bool,
     },
     /// Other loads of the scene at the same time, by their indices.
     Sum(Vec<usize>),
 }
 
 impl LoadCase {
+    /// The key of what acts.
+    pub fn key(&self) -> &'static str {
+        match &self.kind {
+            LoadKind::Sum(_) => "sum",
+            LoadKind::Single { is_acceleration: true, .. } => "gravity",
+            LoadKind::Single { action, .. } => match action {
+                Action::Traction(_) => "traction",
+                Action::Force(_) => "force",
+                Action::Body(_) => "body",
+                Action::Displacement(_) => "displacement",
+            },
+        }
+    }
+
+    /// Whether the body force is an acceleration, by which the density is multiplied.
+    pub fn is_acceleration(&self) -> bool {
+        matches!(self.kind, LoadKind::Single { is_acceleration: true, .. })
+    }
+
     /// The part and what acts on it, unless the load is a sum of others.
     pub fn single(&self) -> Option<(&Part, &Action)> {
         match &self.kind {
-            LoadKind::Single { part, action } => Some((part, action)),
+            LoadKind::Single { part, action, .. } => Some((part, action)),
             LoadKind::Sum(_) => None,
         }
     }
@@ -57,6 +78,8 @@ pub struct LoadEntry {
     pub traction: Option<Vec<Varying>>,
     pub force: Option<Vec<f64>>,
     pub body: Option<Vec<Varying>>,
+    /// The acceleration of gravity, m/s².
+    pub gravity: Option<Vec<f64>>,
     pub displacement: Option<Vec<PrescribedComponent>>,
     /// The names of other loads that act at the same time.
     pub sum: Option<Vec<String>>,
@@ -151,6 +174,11 @@ impl LoadEntry {
         if let Some(v) = self.body {
             actions.push(Action::Body(varying("body", v, "N/m³")?));
         }
+        let is_acceleration = self.gravity.is_some();
+        if let Some(v) = self.gravity {
+            range::largest("gravity", v.iter().copied(), "m/s²")?;
+            actions.push(Action::body(&v));
+        }
         if let Some(v) = self.displacement {
             range::largest("displacement", v.iter().filter_map(|g| g.0), "m")?;
             actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
@@ -162,7 +190,7 @@ impl LoadEntry {
             return Ok(LoadCase { name, kind: LoadKind::Sum(Vec::new()), measured: self.measured });
         }
         if actions.len() != 1 {
-            let expected = "one of \"traction\", \"force\", \"body\", \"displacement\", or \"sum\"";
+            let expected = "one of \"traction\", \"force\", \"body\", \"gravity\", \"displacement\", or \"sum\"";
             let hint = if actions.len() > 1 {
                 "; loads that act together are a load with sum = [\"…\", \"…\"]"
             } else {
@@ -175,6 +203,6 @@ impl LoadEntry {
             Action::Body(_) => Part::optional(self.group, self.condition)?,
             _ => Part::required(self.group, self.condition)?,
         };
-        Ok(LoadCase { name, kind: LoadKind::Single { part, action }, measured: self.measured })
+        Ok(LoadCase { name, kind: LoadKind::Single { part, action, is_acceleration }, measured: self.measured })
     }
 }

@@ -1,18 +1,23 @@
 //! The `[material]` or the `[[material]]` of a scene.
 
-use super::anisotropic::{Axis, AxisEntry, CubicEntry, OrthotropicEntry, TransverseEntry, of_rows};
+use super::anisotropic::{
+    AnisotropicLaw, Axis, AxisEntry, CubicEntry, NumberField, OrthotropicEntry, StiffnessEntry, TransverseEntry,
+    of_rows,
+};
 use super::distribution::{self, Distribution};
 use super::part::Part;
-use super::value::{self, Pressure};
+use super::value;
 use crate::error::{Error, Result};
-use crate::material::{Anisotropy, Material, Plane};
+use crate::material::{Material, Plane};
 use crate::range;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 /// The material of a body, or of one of its regions.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -46,7 +51,7 @@ pub struct MaterialEntry {
     /// In place of Young's modulus and Poisson's ratio.
     pub cubic: Option<CubicEntry>,
     /// In place of Young's modulus and Poisson's ratio: rows in the order xx, yy, zz, yz, xz, xy, Pa.
-    pub stiffness: Option<Vec<Vec<Pressure>>>,
+    pub stiffness: Option<StiffnessEntry>,
     /// The first two axes of the material; x and y if absent.
     pub axes: Option<Vec<AxisEntry>>,
     pub plane: Option<Plane>,
@@ -64,6 +69,10 @@ pub struct MaterialEntry {
     pub density: Option<Distribution>,
     /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
     pub law: Option<String>,
+    /// Values of parameters of the law, in place of those of its file.
+    pub parameters: Option<BTreeMap<String, NumberField>>,
+    /// The direction of the fibres of the law, in place of that of its file.
+    pub fibre: Option<AxisEntry>,
 }
 
 /// One material for the whole body, or one for each region.
@@ -127,38 +136,60 @@ impl MaterialEntry {
     }
 
     /// The quantities that may differ from place to place, with their keys.
-    pub fn distributions(&self) -> impl Iterator<Item = (&'static str, &Distribution)> {
-        let all = [
+    pub fn distributions(&self) -> Vec<(String, &Distribution)> {
+        let own = [
             ("young", &self.young),
             ("poisson", &self.poisson),
             ("thickness", &self.thickness),
             ("density", &self.density),
         ];
-        all.into_iter().filter_map(|(key, values)| Some((key, values.as_ref()?)))
+        let mut all: Vec<_> =
+            own.into_iter().filter_map(|(key, values)| Some((key.to_string(), values.as_ref()?))).collect();
+        all.extend(self.laws().into_iter().flatten().flat_map(|law| law.keyed()));
+        all.extend(self.parameters().map(|(name, values)| (format!("parameters.{name}"), values)));
+        all
+    }
+
+    /// The parameters of the law that have values here.
+    pub fn parameters(&self) -> impl Iterator<Item = (&String, &Distribution)> {
+        self.parameters.iter().flatten().map(|(name, field)| (name, &field.0))
+    }
+
+    /// The files of data that the entry names.
+    pub fn files(&self) -> Vec<&PathBuf> {
+        let axes = self.axes.iter().flatten().chain(&self.fibre).filter_map(AxisEntry::file);
+        self.distributions().into_iter().filter_map(|(_, values)| values.file()).chain(axes).collect()
+    }
+
+    /// The anisotropic laws that are given; a list of constants may have a wrong length.
+    fn laws(&self) -> Vec<Result<AnisotropicLaw<'_>>> {
+        let all = [
+            ("orthotropic", self.orthotropic.as_ref().map(OrthotropicEntry::law)),
+            ("transversely-isotropic", self.transverse.as_ref().map(TransverseEntry::law)),
+            ("cubic", self.cubic.as_ref().map(|entry| Ok(entry.law()))),
+            ("stiffness", self.stiffness.as_ref().map(of_rows)),
+        ];
+        all.into_iter().filter_map(|(key, law)| Some(law?.map_err(|e| e.under(key)))).collect()
     }
 
     /// The anisotropic law in the axes of the material; `None` if the material is isotropic.
     ///
     /// # Errors
-    /// Constants are missing, those of two laws are given, or the stiffness is not positive definite.
-    pub fn anisotropy(&self) -> Result<Option<Anisotropy>> {
-        let given = [
-            ("orthotropic", self.orthotropic.as_ref().map(OrthotropicEntry::anisotropy)),
-            ("transversely-isotropic", self.transverse.as_ref().map(TransverseEntry::anisotropy)),
-            ("cubic", self.cubic.as_ref().map(CubicEntry::anisotropy)),
-            ("stiffness", self.stiffness.as_deref().map(of_rows)),
-        ];
-        let mut found: Option<(&str, Anisotropy)> = None;
-        for (key, law) in given {
-            let Some(law) = law else { continue };
-            // A stiffness that is wrong has its own name as its key.
-            let law = law.map_err(|e| if e.key() == Some("stiffness") { e.at_key(key) } else { e.under(key) })?;
-            if let Some((other, _)) = found.replace((key, law)) {
-                return Err(Error::expected(key, "one law", format!("\"{other}\" as well")));
+    /// Constants are missing, those of two laws are given, or the stiffness is not positive definite if it is the same everywhere.
+    pub fn anisotropy(&self) -> Result<Option<AnisotropicLaw<'_>>> {
+        let mut found: Option<AnisotropicLaw> = None;
+        for law in self.laws() {
+            let law = law?;
+            if let Some(numbers) = law.numbers() {
+                law.at(&numbers)?;
+            }
+            let key = law.key;
+            if let Some(other) = found.replace(law) {
+                return Err(Error::expected(key, "one law", format!("\"{}\" as well", other.key)));
             }
         }
         let isotropic = [("young", self.young.is_some()), ("poisson", self.poisson.is_some())];
-        if let Some((law, _)) = &found {
+        if let Some(AnisotropicLaw { key: law, .. }) = &found {
             if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| *given) {
                 return Err(Error::at(key, format!("belongs to isotropic materials, found with \"{law}\"")));
             }
@@ -173,7 +204,7 @@ impl MaterialEntry {
                 return Err(Error::at("axes", "belongs to anisotropic materials, found an isotropic one"));
             }
         }
-        Ok(found.map(|(_, law)| law))
+        Ok(found)
     }
 
     /// The axes of the material; x and y if the entry names none.
@@ -191,19 +222,24 @@ impl MaterialEntry {
     }
 
     /// Whether a number differs from cell to cell. Masses may.
-    fn varies(&self) -> bool {
-        self.distributions().any(|(_, values)| values.number().is_none())
+    pub fn varies(&self) -> bool {
+        self.distributions().iter().any(|(_, values)| values.number().is_none())
     }
 
     /// The checks that do not depend on the mesh.
     fn check(&self) -> Result<()> {
         self.part()?;
-        let is_anisotropic = self.anisotropy()?.is_some();
+        let law = self.anisotropy()?;
         self.axes()?;
+        let of_law = [("parameters", self.parameters.is_some()), ("fibre", self.fibre.is_some())];
+        if let (None, Some((key, _))) = (&self.law, of_law.into_iter().find(|(_, given)| *given)) {
+            return Err(Error::at(key, "belongs to a law, found no \"law\""));
+        }
+        self.fibre.as_ref().map_or(Ok(()), |fibre| fibre.check().map(|_| ()).map_err(|e| e.under("fibre")))?;
         for (key, distribution) in self.distributions() {
             if let distribution::Source::Data(data) = &distribution.source {
-                data.interpolation().map_err(|e| e.under(key))?;
-                range::positive("scale", data.scale, "metres per unit of the file").map_err(|e| e.under(key))?;
+                data.interpolation().map_err(|e| e.under(&key))?;
+                range::positive("scale", data.scale, "metres per unit of the file").map_err(|e| e.under(&key))?;
             }
         }
         let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
@@ -213,7 +249,7 @@ impl MaterialEntry {
         let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
         let young = number(&self.young).unwrap_or(1.0);
         let poisson = number(&self.poisson).unwrap_or(0.0);
-        if is_anisotropic && self.area.is_some() {
+        if law.is_some() && self.area.is_some() {
             return Err(Error::at("area", "belongs to rods, which are isotropic"));
         }
         let thickness = self.thickness.as_ref().and_then(Distribution::number);
@@ -274,10 +310,6 @@ impl MaterialEntries {
             if entry.law.is_some() != first.law.is_some() {
                 let expected = "a law in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));
-            }
-            if entry.law.is_some() && entry.varies() {
-                let expected = "a law with numbers that are the same in all cells of its region";
-                return Err(Error::expected(format!("{}.law", self.key(i)), expected, "some that vary"));
             }
             if entry.density.is_some() != first.density.is_some() {
                 let expected = "a density in every [[material]] or in none";

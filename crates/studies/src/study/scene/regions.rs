@@ -1,6 +1,6 @@
 //! The materials of a scene on its mesh: the region of each cell, and the material there.
 
-use super::anisotropic::Axis;
+use super::anisotropic::{AnisotropicLaw, Axis};
 use super::distribution::{DataEntry, Distribution, Source};
 use super::material::{MaterialEntries, MaterialEntry};
 use super::part::Part;
@@ -90,13 +90,14 @@ fn region_of_cells(entries: &MaterialEntries, mesh: &Mesh) -> Result<Vec<Vec<usi
 }
 
 /// The values of a quantity in the cells of a region.
-enum Values {
+pub(super) enum Values {
     Uniform(f64),
     Each(Vec<f64>),
 }
 
 impl Values {
-    fn at(&self, cell: usize) -> f64 {
+    /// The value of a cell, by its index in the region.
+    pub(super) fn at(&self, cell: usize) -> f64 {
         match self {
             Values::Uniform(value) => *value,
             Values::Each(values) => values[cell],
@@ -108,7 +109,7 @@ impl Values {
 struct RegionValues {
     /// Young's modulus and Poisson's ratio of isotropic materials.
     isotropic: Option<[Values; 2]>,
-    /// The law in the axes of the material, and the axes of each cell; one if all have the same.
+    /// The law of each cell in its axes; one if all have the same.
     anisotropic: Option<Vec<Arc<Anisotropy>>>,
     thickness: Option<Values>,
     density: Option<Values>,
@@ -119,7 +120,7 @@ impl RegionValues {
         let of =
             |key: &str, values: &Distribution| places.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
         let optional = |key: &str, values: &Option<Distribution>| values.as_ref().map(|v| of(key, v)).transpose();
-        let anisotropic = entry.anisotropy()?.map(|law| places.turned(&law, &entry.axes()?, cells)).transpose()?;
+        let anisotropic = entry.anisotropy()?.map(|law| places.laws(&law, &entry.axes()?, cells)).transpose()?;
         let isotropic = match (&entry.young, &entry.poisson) {
             (Some(young), Some(poisson)) => Some([of("young", young)?, of("poisson", poisson)?]),
             _ => None,
@@ -156,7 +157,7 @@ impl RegionValues {
 }
 
 /// The middles of the cells of a mesh.
-struct Places<'a> {
+pub(super) struct Places<'a> {
     mesh: &'a Mesh,
     folder: &'a Path,
     /// The centroids, by block, `[cells × dimension]`.
@@ -166,7 +167,7 @@ struct Places<'a> {
 }
 
 impl Places<'_> {
-    fn new<'a>(mesh: &'a Mesh, folder: &'a Path) -> Places<'a> {
+    pub(super) fn new<'a>(mesh: &'a Mesh, folder: &'a Path) -> Places<'a> {
         let extent = extent(mesh).into_iter().fold(0.0, f64::max);
         Places { mesh, folder, centroids: cell_means(mesh, &mesh.points), extent }
     }
@@ -177,7 +178,7 @@ impl Places<'_> {
     }
 
     /// The error with the cell in which a value is wrong, if the values differ from cell to cell.
-    fn named(&self, error: Error, cell: CellIndex) -> Error {
+    pub(super) fn named(&self, error: Error, cell: CellIndex) -> Error {
         error.followed_by(format!(" in {}", self.name(cell)))
     }
 
@@ -185,7 +186,8 @@ impl Places<'_> {
         format!("{} cell {} at {:?} m", self.mesh.blocks[cell.block].element.name, cell.cell + 1, self.at(cell))
     }
 
-    fn values(&self, distribution: &Distribution, cells: &[CellIndex]) -> Result<Values> {
+    /// The values of a quantity in these cells.
+    pub(super) fn values(&self, distribution: &Distribution, cells: &[CellIndex]) -> Result<Values> {
         let values = match &distribution.source {
             Source::Number(value) => return Ok(Values::Uniform(value * distribution.factor)),
             Source::Expression(text) => self.of_expression(text, cells)?,
@@ -194,25 +196,29 @@ impl Places<'_> {
         Ok(Values::Each(values.into_iter().map(|value| value * distribution.factor).collect()))
     }
 
-    /// The law turned into the axes of each cell; one if all have the same.
-    fn turned(&self, law: &Anisotropy, axes: &[Axis], cells: &[CellIndex]) -> Result<Vec<Arc<Anisotropy>>> {
-        let [Some(first), second] = [axes.first(), axes.get(1)] else { return Ok(vec![Arc::new(*law)]) };
-        let (first, second) =
-            (self.vectors(0, first, cells)?, second.map(|axis| self.vectors(1, axis, cells)).transpose()?);
-        let count = first.len().max(second.as_ref().map_or(1, Vec::len));
-        let turn = |i: usize| {
-            let a = *first.get(i).unwrap_or(&first[0]);
-            let b = second.as_ref().map_or_else(|| across(a), |all| *all.get(i).unwrap_or(&all[0]));
-            law.turned([a, b]).map(Arc::new).map_err(|e| match count {
-                1 => e,
-                _ => self.named(e, cells[i]),
-            })
+    /// The law of each cell in its axes; one if all have the same.
+    fn laws(&self, law: &AnisotropicLaw, axes: &[Axis], cells: &[CellIndex]) -> Result<Vec<Arc<Anisotropy>>> {
+        let of =
+            |(key, values): (String, &Distribution)| self.values(values, cells).map_err(|e| e.placed(|e| e.under(key)));
+        let constants = law.keyed().into_iter().map(of).collect::<Result<Vec<Values>>>()?;
+        let axis = |i: usize| axes.get(i).map(|axis| self.vectors(&format!("axes[{i}]"), axis, cells)).transpose();
+        let (first, second) = (axis(0)?, axis(1)?);
+        let is_same = law.numbers().is_some() && [&first, &second].into_iter().flatten().all(|axis| axis.len() == 1);
+        let vector = |axis: &[[f64; 3]], i: usize| *axis.get(i).unwrap_or(&axis[0]);
+        let of_cell = |i: usize| {
+            let values: Vec<f64> = constants.iter().map(|constant| constant.at(i)).collect();
+            let own = law.at(&values)?;
+            let Some(first) = &first else { return Ok(own) };
+            let a = vector(first, i);
+            own.turned([a, second.as_ref().map_or_else(|| across(a), |second| vector(second, i))])
         };
-        (0..count).map(turn).collect()
+        let named = |e: Error, i: usize| if is_same { e } else { self.named(e, cells[i]) };
+        let count = if is_same { 1 } else { cells.len() };
+        (0..count).map(|i| of_cell(i).map(Arc::new).map_err(|e| named(e, i))).collect()
     }
 
-    /// The vectors of an axis in each cell; one if all have the same.
-    fn vectors(&self, index: usize, axis: &Axis, cells: &[CellIndex]) -> Result<Vec<[f64; 3]>> {
+    /// The vectors of an axis with this key in each cell; one if all have the same.
+    pub(super) fn vectors(&self, key: &str, axis: &Axis, cells: &[CellIndex]) -> Result<Vec<[f64; 3]>> {
         let d = self.mesh.dimension;
         match axis {
             Axis::Vector(components) if (0..3).all(|k| components.iter().all(|component| !component.uses(k))) => {
@@ -221,7 +227,7 @@ impl Places<'_> {
             Axis::Vector(components) => {
                 if d == 2 && components.iter().any(|component| component.uses(2)) {
                     let expected = "expressions of x and y in a plane mesh";
-                    return Err(Error::expected(format!("axes[{index}]"), expected, "z"));
+                    return Err(Error::expected(key, expected, "z"));
                 }
                 let programs = components.each_ref().map(Program::of);
                 let vector = |cell: &CellIndex| {
@@ -235,7 +241,7 @@ impl Places<'_> {
                 let values = self
                     .samples(data, 3)
                     .and_then(|samples| self.sampled(data, &samples, Interpolation::Nearest, cells));
-                let values = values.map_err(|e| e.placed(|e| e.under(format!("axes[{index}]"))))?;
+                let values = values.map_err(|e| e.placed(|e| e.under(key)))?;
                 Ok(values.iter().map(|v| [v[0], v[1], v[2]]).collect())
             }
         }

@@ -18,10 +18,6 @@ pub enum Varying {
 #[derive(Debug, Clone, Copy)]
 pub struct PrescribedComponent(pub Option<f64>);
 
-/// A number in Pa, or a text with a unit.
-#[derive(Debug, Clone, Copy)]
-pub struct Pressure(pub f64);
-
 /// A visitor of values that are numbers or texts.
 struct NumberOrText<T> {
     expected: &'static str,
@@ -71,12 +67,6 @@ impl<'de> Deserialize<'de> for Varying {
     }
 }
 
-impl<'de> Deserialize<'de> for Pressure {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Pressure, D::Error> {
-        read(Quantity::Pressure, deserializer).map(Pressure)
-    }
-}
-
 /// The schema of a quantity.
 pub fn quantity(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": ["number", "string"] })
@@ -100,7 +90,6 @@ macro_rules! schemas {
 schemas! {
     Varying: "A number, or an expression of x, y, z (m) such as \"1e5*x\".",
     PrescribedComponent: "A number of metres, or \"free\".",
-    Pressure: "A pressure in Pa, or a text with a unit such as \"10 kPa\".",
 }
 
 /// A number in the SI unit, or a text with a unit.

@@ -109,10 +109,11 @@ impl Subject<'_> {
                 of(Verdict::Refused("no end is reached: a motion is too soft beside the stiffest".into()))
             }
             (Objective::Spectral(_), _) => {
-                let said = (&k[..], fits.certificates[0].value);
+                let certificate = fits.certificates[0];
+                let (said, promised) = ((&k[..], certificate.value), GAP + 1.1 * certificate.rounding());
                 match distance_from_optimum(element, springs, &case.x, &moduli, &fit, said) {
-                    Ok(distance) => self.judged(of, distance, GAP, constants),
-                    Err(_) => of(Verdict::Lost).with_error(f64::INFINITY, GAP),
+                    Ok(distance) => self.judged(of, distance, promised, constants),
+                    Err(_) => of(Verdict::Lost).with_error(f64::INFINITY, promised),
                 }
             }
             (_, Some(Some(reference))) => self.judged(of, distance(k, reference), PROMISED, constants),

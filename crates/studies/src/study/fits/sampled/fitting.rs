@@ -12,6 +12,7 @@ use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::fits::kind::{FitKind, Task};
 use crate::study::fits::record::KindRecord;
 use crate::study::progress::Progress;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -71,14 +72,18 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
         let fit = recipe.resolve(&block.element, springs, &states)?;
         let n = block.element.nodes();
         let mut regions = Vec::new();
-        for law in 0..large.laws.laws().count() {
-            let is_own = |cell: &usize| *large.laws.index().at(index, *cell) == law;
-            let cells: Vec<usize> = (0..block.cells().len()).filter(is_own).collect();
+        let mut by_law: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for cell in 0..block.cells().len() {
+            by_law.entry(*large.laws.index().at(index, cell)).or_default().push(cell);
+        }
+        if by_law.is_empty() {
+            by_law.insert(0, Vec::new());
+        }
+        for cells in by_law.into_values() {
             let (energy, state) = match cells.first() {
                 Some(&first) => large.laws.at(index, first),
                 // A block without cells has an empty fit.
-                None if law == 0 && block.connectivity.is_empty() => (large.laws.first(), material.state()),
-                None => continue,
+                None => (large.laws.first(), material.state()),
             };
             let nodes = |&cell: &usize| &block.connectivity[cell * n..(cell + 1) * n];
             let connectivity: Vec<usize> = cells.iter().flat_map(nodes).copied().collect();

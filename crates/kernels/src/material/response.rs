@@ -1,0 +1,201 @@
+//! The stress and the tangent of an energy at a deformation gradient.
+//!
+//! Theory: page *Stiffness and the reduced space* of the book.
+
+use super::energy::Energy;
+use crate::symbolic::Jet;
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// The second derivative of the energy, `∂P_ij/∂F_kl` at `[3i + j][3k + l]`, in Pa.
+pub type Tangent = SMatrix<f64, 9, 9>;
+
+/// Principal stretches that differ by less than this share count as equal: the divided difference has a rounding error
+/// of 1e-10 there, and the limit has an error of the square of this share.
+const SAME: f64 = 1e-6;
+
+/// The invariants of one deformation gradient.
+struct Invariants {
+    /// The right Cauchy–Green tensor `C = FᵀF`.
+    c: Matrix3<f64>,
+    /// The deformed fibre direction `F a`.
+    fibre: Option<Vector3<f64>>,
+    /// I1, I2, J, I4.
+    values: [f64; 4],
+}
+
+impl Energy {
+    /// The energy `W`, the first Piola–Kirchhoff stress `P = ∂W/∂F` in Pa, and `∂P/∂F`, at the deformation gradient F.
+    /// They are not finite where the energy is not: at `J ≤ 0` for energies with `ln(J)`.
+    pub fn respond(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
+        if self.formula.by_stretches { self.by_stretches(f) } else { self.by_invariants(f) }
+    }
+
+    /// The stress `P = ∂W/∂F` alone, at a tenth of the cost.
+    pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
+        let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
+        let mut at = vec![i1, i2, j, i4, 1.0, 1.0, 1.0];
+        at.extend(&self.constants);
+        if self.formula.by_stretches {
+            let Some((n, stretch, big_n)) = principal(f) else { return Matrix3::repeat(f64::NAN) };
+            at[4..7].copy_from_slice(stretch.as_slice());
+            let [g1, g2, g3] = [0, 1, 2].map(|v| self.formula.slopes[v].evaluate(&at));
+            let pull = |i: usize| {
+                let l = stretch[i];
+                let direct = self.formula.slopes[4 + i].evaluate(&at);
+                let others = stretch[(i + 1) % 3] * stretch[(i + 2) % 3];
+                direct + 2.0 * l * g1 + 2.0 * l * (i1 - l * l) * g2 + others * g3
+            };
+            return (0..3).map(|i| pull(i) * n.column(i) * big_n.column(i).transpose()).sum();
+        }
+        let mut stress = Matrix3::zeros();
+        let mut add = |v: usize, direction: &dyn Fn() -> Matrix3<f64>| {
+            if !self.formula.slopes[v].is_zero() {
+                stress += self.formula.slopes[v].evaluate(&at) * direction();
+            }
+        };
+        add(0, &|| 2.0 * f);
+        add(1, &|| 2.0 * (i1 * f - f * c));
+        add(2, &|| cofactor(f));
+        if let (Some(b), Some(a)) = (fibre, self.fibre) {
+            add(3, &|| 2.0 * b * a.transpose());
+        }
+        stress
+    }
+
+    /// `I1 = tr C`, `I2 = (I1² − tr C²)/2`, `J = det F`, `I4 = |F a|²`; the last is one without fibres.
+    fn invariants(&self, f: &Matrix3<f64>) -> Invariants {
+        let c = f.transpose() * f;
+        let i1 = c.trace();
+        let fibre = self.fibre.map(|a| f * a);
+        let i4 = fibre.map_or(1.0, |a| a.norm_squared());
+        Invariants { c, fibre, values: [i1, (i1 * i1 - (c * c).trace()) / 2.0, f.determinant(), i4] }
+    }
+
+    /// The energy with its derivatives in the first invariants, or in the stretches.
+    fn jet(&self, variables: Vec<Jet>) -> Jet {
+        let n = variables[0].gradient.len();
+        let mut at = variables;
+        at.extend(self.constants.iter().map(|c| Jet::number(*c)));
+        self.formula.expression.jet(&at, n)
+    }
+
+    /// The chain rule on the invariants.
+    fn by_invariants(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
+        let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
+        let mut variables = Jet::variables(&[i1, i2, j, i4]);
+        // The stretches are not needed here.
+        variables.extend([1.0; 3].map(Jet::number));
+        let w = self.jet(variables);
+        // cof F = J F^(−T), also at J = 0.
+        let cofactor = cofactor(f);
+        let firsts = [
+            2.0 * f,
+            2.0 * (i1 * f - f * c),
+            cofactor,
+            fibre.zip(self.fibre).map_or(Matrix3::zeros(), |(b, a)| 2.0 * b * a.transpose()),
+        ];
+        let mut stress = Matrix3::zeros();
+        firsts.iter().zip(&w.gradient).for_each(|(d, g)| stress += *g * d);
+        let b = f * f.transpose();
+        let mut tangent = Tangent::zeros();
+        for (row, i, k) in (0..9).map(|r| (r, r / 3, r % 3)) {
+            for (column, l, m) in (0..9).map(|s| (s, s / 3, s % 3)) {
+                let same = |a: usize, b: usize| f64::from(u8::from(a == b));
+                // ∂²I1 = 2 δ δ; ∂²I2 = 2(2 F F + I1 δ δ − F_il... ); ∂²J from the permutation symbols; ∂²I4 = 2 δ a a
+                let second1 = 2.0 * same(i, l) * same(k, m);
+                let second2 = 2.0
+                    * (2.0 * f[(i, k)] * f[(l, m)] + i1 * same(i, l) * same(k, m)
+                        - same(i, l) * c[(m, k)]
+                        - f[(i, m)] * f[(l, k)]
+                        - b[(i, l)] * same(k, m));
+                let second3 = second_of_determinant(f, (i, k), (l, m));
+                let second4 = self.fibre.map_or(0.0, |a| 2.0 * same(i, l) * a[k] * a[m]);
+                let mut entry = w.gradient[0] * second1
+                    + w.gradient[1] * second2
+                    + w.gradient[2] * second3
+                    + w.gradient[3] * second4;
+                for (p, dp) in firsts.iter().enumerate() {
+                    for (q, dq) in firsts.iter().enumerate() {
+                        entry += w.hessian[4 * p + q] * dp[(i, k)] * dq[(l, m)];
+                    }
+                }
+                tangent[(row, column)] = entry;
+            }
+        }
+        (w.value, stress, tangent)
+    }
+
+    /// In the frame of the singular vectors, `F = Σ λ_i n_i N_iᵀ`; Ogden (1984), 6.1.4.
+    fn by_stretches(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
+        let Some((n, stretch, big_n)) = principal(f) else {
+            return (f64::NAN, Matrix3::repeat(f64::NAN), Tangent::repeat(f64::NAN));
+        };
+        let l = Jet::variables(stretch.as_slice());
+        let square = |i: usize| l[i].clone().product(&l[i]);
+        let i1 = square(0).sum(&square(1)).sum(&square(2));
+        let pair = |i: usize, j: usize| square(i).product(&square(j));
+        let i2 = pair(0, 1).sum(&pair(1, 2)).sum(&pair(2, 0));
+        let j = l[0].clone().product(&l[1]).product(&l[2]);
+        let [l1, l2, l3] = [0, 1, 2].map(|i| l[i].clone());
+        let w = self.jet(vec![i1, i2, j, Jet::number(1.0), l1, l2, l3]);
+        let (g, h) = (&w.gradient, &w.hessian);
+        let direction = |i: usize, j: usize| n.column(i) * big_n.column(j).transpose();
+        let mut stress = Matrix3::zeros();
+        (0..3).for_each(|i| stress += g[i] * direction(i, i));
+        let mut tangent = Tangent::zeros();
+        let flat = |a: Matrix3<f64>| SMatrix::<f64, 9, 1>::from_row_slice(a.transpose().as_slice());
+        for i in 0..3 {
+            for j in 0..3 {
+                tangent += h[3 * i + j] * flat(direction(i, i)) * flat(direction(j, j)).transpose();
+                if i == j {
+                    continue;
+                }
+                let (a, b) = (stretch[i], stretch[j]);
+                let (direct, crossed) = if (a - b).abs() > SAME * (a.abs() + b.abs()) {
+                    let below = a * a - b * b;
+                    ((a * g[i] - b * g[j]) / below, (b * g[i] - a * g[j]) / below)
+                } else {
+                    // Means of the values at both stretches: the error is the square of their difference.
+                    let bend = ((h[4 * i] + h[4 * j]) / 2.0 - h[3 * i + j]) / 2.0;
+                    let pull = (g[i] + g[j]) / (2.0 * (a + b));
+                    (bend + pull, bend - pull)
+                };
+                tangent += direct * flat(direction(i, j)) * flat(direction(i, j)).transpose();
+                tangent += crossed * flat(direction(i, j)) * flat(direction(j, i)).transpose();
+            }
+        }
+        (w.value, stress, tangent)
+    }
+}
+
+/// The decomposition `F = Σ λ_i n_i N_iᵀ`: the n as columns, the λ, and the N as columns. A reflection appears as the
+/// sign of the least stretch.
+fn principal(f: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>, Matrix3<f64>)> {
+    if !f.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let svd = f.svd(true, true);
+    let (mut n, big_n, mut stretch) = (svd.u?, svd.v_t?.transpose(), svd.singular_values);
+    if f.determinant() < 0.0 {
+        stretch[2] = -stretch[2];
+        n.column_mut(2).neg_mut();
+    }
+    Some((n, stretch, big_n))
+}
+
+/// `∂det F/∂F`.
+fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, k| {
+        let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (k + 1) % 3, (k + 2) % 3);
+        f[(a, c)] * f[(b, d)] - f[(a, d)] * f[(b, c)]
+    })
+}
+
+/// `∂² det F/∂F_ik ∂F_lm = ε_ilp ε_kmq F_pq`.
+fn second_of_determinant(f: &Matrix3<f64>, (i, k): (usize, usize), (l, m): (usize, usize)) -> f64 {
+    if i == l || k == m {
+        return 0.0;
+    }
+    let sign = |a: usize, b: usize| if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
+    sign(i, l) * sign(k, m) * f[(3 - i - l, 3 - k - m)]
+}
