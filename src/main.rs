@@ -51,7 +51,7 @@ NO_COLOR=1 or CLICOLOR=0 turns colours off.
 
 Exit codes:
   0    done
-  1    done, and a check failed: of an element (check), of an accuracy (stability)
+  1    done, but a check failed: an element has a fault (check), or an error is too large (stability)
   2    an input is wrong, or something cannot be read, written or solved; a line says what
   130  interrupted";
 

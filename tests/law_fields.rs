@@ -47,7 +47,7 @@ fn exact_networks_follow_the_fields() {
 #[test]
 fn fields_are_regions_of_cells() {
     let folder = TempDir::new().unwrap();
-    let of = |material: &str| outcome(&scene(material, ""), folder.path());
+    let of = |material: &str| outcome(&scene(material, EXACT), folder.path());
     let field = of("[material]\nyoung = \"if_(z)\"\npoisson = 0.3\nlaw = \"neo-hookean\"\n"
         .replace("if_(z)", "1e3 + 1e3*step(z - 1)")
         .as_str());
@@ -82,8 +82,8 @@ fn wrong_numbers_of_laws_are_named() {
             "law = \"neo-hookean\"\nparameters = { a = 1 }\n",
             "scene.toml:7: material.parameters: … has no parameters, found \"a\"",
         ),
-        ("law = \"neo-hookean\"\nfibre = [1, 0, 0]\n", "scene.toml:… material.fibre: … \"neo-hookean\" has none …"),
-        ("law = \"fibre\"\nfibre = [1]\n", "scene.toml:… material.fibre: … two or three components …"),
+        ("law = \"neo-hookean\"\nfibre = [1, 0, 0]\n", "scene.toml:… material.fibre: … \"neo-hookean\" has none…"),
+        ("law = \"fibre\"\nfibre = [1]\n", "scene.toml:… material.fibre: … two or three components…"),
         ("law = \"fibre\"\nfibre = [\"x - x\", 0, 0]\n", "scene.toml:… material.fibre: … in tet4 cell 1 at …"),
         (
             "law = \"fibre\"\nparameters = { stiffness = \"1/(x - x)\" }\n",

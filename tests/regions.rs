@@ -341,7 +341,7 @@ fn one_material_is_that_of_all_cells() {
 #[test]
 fn gravity_is_a_body_force_of_the_density() {
     let of = |materials: &str, load: &str| {
-        let text = bar("hex8", [1, 1, 4], materials, "");
+        let text = bar("hex8", [1, 1, 4], materials, EXACT);
         outcome(&(text[..text.find("[[load]]").unwrap()].to_string() + "[[load]]\nname = \"weight\"\n" + load))
     };
     let base = "young = 1e5\npoisson = 0.3\n";
@@ -361,7 +361,7 @@ fn gravity_is_a_body_force_of_the_density() {
         let most = pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         assert!(size > 0.0 && most < 1e-10 * size, "{materials}: {most:e} of {size:e}");
     }
-    let without = bar("hex8", [1, 1, 1], &format!("[material]\n{base}"), "")
+    let without = bar("hex8", [1, 1, 1], &format!("[material]\n{base}"), EXACT)
         .replace("group = \"zmax\"\ntraction = [0, 0, 10.0]", gravity);
     let found = refusal(&without, Path::new(""));
     assert!(found.contains("material.density") && found.contains("load[0].gravity"), "{found}");

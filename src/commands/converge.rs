@@ -21,7 +21,7 @@ pub struct Converge {
     /// Meshes, from 2 to 8: that of the scene, and others with cells of half the size each [default: 4, or fewer if they would take long]
     #[arg(long, allow_hyphen_values = true)]
     levels: Option<usize>,
-    /// A scene of the same body and loads whose finite elements give the truth, such as one of quadratic cells; its fits are not made [default: the scene itself]
+    /// A scene of the same body and loads whose finite elements are the reference solution, such as one of quadratic cells; its fits are ignored [default: the scene itself]
     #[arg(long)]
     truth: Option<PathBuf>,
     /// Print what would be done on each level, with estimates of time and memory, and stop

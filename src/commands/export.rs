@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 /// Write a network as the files and scripts of another program
 #[derive(Args)]
-#[command(after_help = format!("{EXAMPLES}\n{}What a program does not hold is refused, with a fit that it holds", target_list()))]
+#[command(after_help = format!("{EXAMPLES}\n{}If a program cannot represent a network, export stops with an error that names a fit which it can represent", target_list()))]
 pub struct Export {
     /// A network in JSON, as run and fit write it; or a scene, which is run first
     network: PathBuf,

@@ -37,14 +37,15 @@ pub struct Fit {
     #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
     poisson: f64,
     /// exact, frobenius, offdiag, modal, spectral, divergence, sampled, whole, or a published method, which are listed below
-    /// [default: exact]. For programs with springs and volume constraints: exact. For those with classical springs alone, which rest
-    /// at the lengths of the mesh: divergence, or offdiag with --nonnegative
+    /// [default: exact]. If your program has volume constraints, use exact. If it has only springs whose rest lengths are those of the
+    /// mesh, use divergence, or offdiag with --nonnegative
     #[arg(long, help_heading = "Fit")]
     objective: Option<String>,
     /// The body's energy: stable-neo-hookean or neo-hookean [default: stable-neo-hookean] (exact only)
     #[arg(long, help_heading = "Exact networks")]
     energy: Option<String>,
-    /// Where volumes are measured: points, cells or patches [default: points] (exact only)
+    /// One volume spring for each quadrature point, cell, or patch of cells around a node: points, cells or patches [default: points].
+    /// cells and patches avoid locking near nu = 0.5 (exact only)
     #[arg(long, help_heading = "Exact networks")]
     volume: Option<String>,
     /// A group of the mesh that is held; may be repeated (whole only)
@@ -62,13 +63,14 @@ pub struct Fit {
     /// How many shapes to fit to [default: 300] (sampled only)
     #[arg(long, help_heading = "Sampled fits")]
     shapes: Option<usize>,
-    /// What counts: none, offdiag, modal or relative (with frobenius and spectral), none or relative (with sampled)
+    /// Weight of the error of the stiffness: none, offdiag, modal or relative with frobenius; none, modal or relative with spectral; none
+    /// or relative with sampled
     #[arg(long, help_heading = "Fits to the stiffness")]
     weight: Option<String>,
-    /// Scale of what is beyond constant strain (modal and sampled only)
+    /// Weight of deformations beyond constant strain, up to 1 [default: 0.316 of modal, 1 of sampled] (modal and sampled only)
     #[arg(long, help_heading = "Fits to the stiffness")]
     higher: Option<f64>,
-    /// From 0, which errs to the soft side, to 1 (divergence only)
+    /// Balance between too soft, 0, and too stiff, 1 [default: 0.25] (divergence only)
     #[arg(long, help_heading = "Fits to the stiffness")]
     balance: Option<f64>,
     /// Spring groups to use, separated by commas [default: all that are not optional]
@@ -83,7 +85,7 @@ pub struct Fit {
     /// Springs across the sides of cells where no others suffice (exact with --nonnegative only)
     #[arg(long, help_heading = "Exact networks")]
     across: bool,
-    /// Rest measures: mesh, free or zero (frobenius, offdiag and modal only) [default: mesh]
+    /// Rest lengths of the springs: mesh (as in the mesh), free (fitted) or zero [default: mesh] (frobenius, offdiag and modal only)
     #[arg(long, help_heading = "Fits to the stiffness")]
     rest: Option<String>,
     /// Plane mesh or surface: stress or strain [default: stress]

@@ -15,8 +15,8 @@ pub struct MeshOptions {
     /// Length of one mesh unit, such as mm or 0.001
     #[arg(long, default_value = "1", allow_hyphen_values = true)]
     scale: String,
-    /// What becomes of cells whose quality is below the least: warn, refuse or skip [default: warn]. Cells that are flat or tangled,
-    /// that have the nodes of another or are folded over their neighbours are left out with skip and refused otherwise
+    /// What to do with cells whose quality is below --least: warn, refuse or skip [default: warn]. Flat, tangled, duplicate and
+    /// overlapping cells are left out with skip, and an error otherwise
     #[arg(long)]
     below: Option<String>,
     /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]

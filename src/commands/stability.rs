@@ -11,7 +11,7 @@ use springfit::study::{self, Event};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Run the sweep of ill-conditioned cases; exit code 1 if an error is too large
+/// Test the numerical accuracy in ill-conditioned cases; exit code 1 if an error is too large
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Stability {

@@ -63,7 +63,7 @@ pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
             .map(|(_, words)| words)
             .collect();
         format!(
-            "finite elements: {} under {name} are beyond the linear theory; law = \"stable-neo-hookean\" in [material] asks for large \
+            "finite elements: {} under {name} are beyond the linear theory. law = \"stable-neo-hookean\" in [material] solves at large \
              deformation",
             large.join(" and ")
         )
@@ -76,9 +76,9 @@ pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>) -> Op
     let ([mean, max], [own_mean, own_max]) = (model.error()?, model.linear_error?);
     let rotation = body?.rotation;
     Some(format!(
-        "{}: its springs turn and the finite elements, which rotate by up to {rotation:.2} rad, are linear: of the %e_rms \
-         {mean:.2} / {max:.2} the fit's is {own_mean:.2} / {own_max:.2}, found with both linear; \"linear = true\" in [motion] \
-         compares so, a \"law\" in [material] compares both at large deformation",
+        "{}: the springs turn, and the finite elements, which rotate by up to {rotation:.2} rad, are linear. Of the %e_rms \
+         {mean:.2} / {max:.2} the fit's is {own_mean:.2} / {own_max:.2}: that of two linear models. linear = true in [motion] \
+         compares linear models, a law in [material] compares both at large deformation",
         model.name
     ))
 }

@@ -9,10 +9,10 @@ const FAR: f64 = 0.1;
 /// One row per fit.
 pub(super) fn material_table(outcome: &Outcome) -> String {
     let header = [
-        Heading::words("as a material"),
+        Heading::words("network as a material"),
         Heading::numbers("E Pa"),
         Heading::numbers("nu"),
-        Heading::numbers("tensor\n% off"),
+        Heading::numbers("error of C\n%"),
     ];
     let row = |fit: &FitOutcome| {
         let m = &fit.as_material;
@@ -37,8 +37,8 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
         return None;
     }
     let off = match percent(m.distance) {
-        Some(percent) => format!("its elasticity tensor is {percent} % off"),
-        None => "its elasticity tensor is not finite".into(),
+        Some(percent) => format!("its elasticity tensor C differs by {percent} %"),
+        None => "its elasticity tensor C is not finite".into(),
     };
     let of = match (m.young, m.poisson) {
         (Some(young), Some(poisson)) => format!("E = {young:.4e} Pa, nu = {poisson:.3}"),
@@ -52,7 +52,7 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
         (None, None, _) => "the materials differ from cell to cell".into(),
     };
     // Exact networks are those of isotropic materials.
-    let remedy = if outcome.material.materials().is_ok() { ". The objective \"exact\" gives the material" } else { "" };
+    let remedy = if outcome.material.materials().is_ok() { ". The objective \"exact\" has no such error" } else { "" };
     Some(format!("{name}: the network is not the material: {off} ({of}; {asked}){remedy}"))
 }
 

@@ -59,7 +59,7 @@ pub fn summary(outcome: &Outcome) -> String {
         let title = numbering.title();
         writeln!(
             text,
-            "springs name their points from 0 as \"points\" and by the numbers of the file as \"nodes\": {title}"
+            "in the output, \"points\" are indices from 0 and \"nodes\" are the numbers of the mesh file: {title}"
         )
         .expect("a String grows");
     }
@@ -263,9 +263,10 @@ fn trouble(load: &str, followed: &Followed) -> Option<String> {
             "no equilibrium was found beyond {:.3} of the load {load} (residual {:.1e} there)",
             followed.load, followed.residual
         )),
-        (Ending::Converged, 0) if followed.is_rounded => {
-            Some(format!("under {load} the forces balance to their rounding only, {:.1e} of them", followed.residual))
-        }
+        (Ending::Converged, 0) if followed.is_rounded => Some(format!(
+            "under {load} rounding limits the equilibrium: the residual is {:.1e} of the forces",
+            followed.residual
+        )),
         (_, 0) => None,
         (_, count) => Some(format!("{count} elements are inverted under {load}")),
     }
@@ -284,7 +285,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         let cells = outcome.mesh.cell_count();
         let fitted = cells.saturating_sub(fit.reused).max(1);
         notes.push(format!(
-            "{name}: {fitted} of {cells} elements {} fitted, in {:.3} us each; the others have the shape of one of them and got its \
+            "{name}: {fitted} of {cells} elements {} fitted, in {:.3} us each. Each of the others has the shape of one of them and takes its \
              constants (* in the table)",
             if fitted == 1 { "was" } else { "were" },
             1e6 * fit.seconds / fitted as f64

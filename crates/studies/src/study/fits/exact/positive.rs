@@ -70,5 +70,7 @@ pub(super) fn positive_note(outcome: &PositiveOutcome) -> String {
         0 => String::new(),
         modes => format!("; energies of the {modes} lowest free modes {:+.2} to {:+.2} %", 100.0 * low, 100.0 * high),
     };
-    format!("without the {negative} negative springs of the exact network it is the nearest one: {homogeneous}{modes}")
+    format!(
+        "this is the network without negative springs that is nearest to the exact network, which has {negative} of them: {homogeneous}{modes}"
+    )
 }

@@ -137,7 +137,7 @@ impl WholeOutcome {
     pub fn notes(&self) -> Vec<String> {
         let validated = match &self.validated[..] {
             [] => String::new(),
-            loads => format!(", rho chosen by {}", loads.join(", ")),
+            loads => format!(", regularization rho chosen by {}", loads.join(", ")),
         };
         let done = match self.regularization {
             Some(rho) => {
