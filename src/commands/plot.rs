@@ -23,6 +23,9 @@ pub struct Plot {
     /// One load or fit of the figure, or one table: fits, errors, materials, times, whole, frequencies, motion
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
+    /// The load of the figure deformation, whose fit is --of [default: the first]
+    #[arg(long, value_name = "NAME", conflicts_with = "table")]
+    load: Option<String>,
     /// Columns of the page that the figure is as wide as: 85 or 178 mm
     #[arg(long, value_enum, default_value_t)]
     columns: Columns,
@@ -53,7 +56,9 @@ impl Plot {
             }
         }
         let text = match (self.figure, self.table) {
-            (Some(figure), _) => figure.chart(&run, self.of.as_deref())?.svg(self.columns)?,
+            (Some(figure), _) => {
+                figure.picture(&run, self.of.as_deref(), self.load.as_deref())?.svg(self.columns)?
+            }
             (None, Some(markup)) => self.tables(&run, markup)?,
             (None, None) => return Err(Error::new("expected --figure or --table")),
         };

@@ -1,7 +1,7 @@
 //! A convergence study as tables, as CSV and as a plot of errors against cell size.
 
 use super::columns::{Heading, aligned};
-use super::convergence_plot::plot;
+use super::figure::{Columns, convergence_charts, stacked};
 use super::rows::csv;
 use super::table::size;
 use super::write_files;
@@ -185,7 +185,12 @@ pub const CONVERGENCE_FILES: [&str; 2] = ["converge.csv", "converge.svg"];
 /// The plot cannot be drawn; the folder or a file cannot be written.
 pub fn write_convergence(convergence: &Convergence, folder: &Path) -> Result<Vec<PathBuf>> {
     let [table, figure] = CONVERGENCE_FILES;
-    let mut files = vec![(table, convergence_csv(convergence))];
-    files.extend(plot(convergence)?.map(|text| (figure, text)));
+    let text = convergence_csv(convergence);
+    let charts = convergence_charts(&text)?;
+    let title = format!("{}: errors against cell size", convergence.scene);
+    let mut files = vec![(table, text)];
+    if !charts.is_empty() {
+        files.push((figure, stacked(&title, &charts, Columns::Two)?));
+    }
     write_files(folder, &files)
 }

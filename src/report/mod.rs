@@ -6,7 +6,6 @@ mod check;
 mod columns;
 mod comparison;
 mod convergence;
-mod convergence_plot;
 mod deformed;
 mod derivation;
 mod figure;
@@ -49,7 +48,9 @@ pub use comparison::{COMPARISON_FILES, Comparison};
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
-pub use figure::{Axis, Chart, Columns, Figure, RunFolder, Series, Shape};
+pub use figure::{
+    Axis, Chart, Columns, Deformation, Figure, Moduli, ModulusCurve, Picture, RunFolder, Series, Shape,
+};
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
 pub use frequencies::FrequencyRecord;
