@@ -56,9 +56,7 @@ impl Plot {
             }
         }
         let text = match (self.figure, self.table) {
-            (Some(figure), _) => {
-                figure.picture(&run, self.of.as_deref(), self.load.as_deref())?.svg(self.columns)?
-            }
+            (Some(figure), _) => figure.picture(&run, self.of.as_deref(), self.load.as_deref())?.svg(self.columns)?,
             (None, Some(markup)) => self.tables(&run, markup)?,
             (None, None) => return Err(Error::new("expected --figure or --table")),
         };

@@ -39,7 +39,8 @@ impl Axis {
 pub(super) fn log_marks(range: &Range<f64>) -> Vec<f64> {
     let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
     let steps: &[f64] = match (range.end / range.start).log10() {
-        span if span < 0.4 => &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+        span if span < 0.35 => &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+        span if span < 0.9 => &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
         span if span < 2.0 => &[1.0, 2.0, 5.0],
         _ => &[1.0],
     };

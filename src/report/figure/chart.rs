@@ -51,8 +51,17 @@ pub struct Chart {
     pub series: Vec<Series>,
 }
 
-/// Pixels of a line of the legend.
-const LINE: i32 = 15;
+/// Units of the drawing in a pixel: the drawing library places all at whole units.
+const FINE: i32 = 8;
+/// Units of a line of the legend.
+const LINE: i32 = 15 * FINE;
+/// Units of lines.
+const THICK: u32 = 2 * FINE as u32 - FINE as u32 / 4;
+const THIN: u32 = FINE as u32;
+/// Units from the middle of a mark to its edge.
+const MARK: i32 = 7 * FINE / 2;
+/// Units of letters, as the drawing library counts them.
+const FONT: i32 = FINE * LETTERS as i32 * 5 / 4;
 
 type Fallible = std::result::Result<(), Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -77,9 +86,9 @@ impl Chart {
         if bars {
             y.start = 0.0;
         }
-        let width = columns.pixels();
+        let width = columns.pixels() * FINE as u32;
         let rows = self.legend(width as i32).last().map_or(0, |(row, ..)| row + 1);
-        let height = (0.72 * f64::from(width.min(440))) as u32 + (LINE * rows) as u32;
+        let height = (0.72 * f64::from(width.min(440 * FINE as u32))) as u32 + (LINE * rows) as u32;
         let mut text = String::new();
         self.draw(&mut text, (width, height), x, y)
             .map_err(|e| Error::new(format!("the figure cannot be drawn: {e}")))?;
@@ -91,7 +100,7 @@ impl Chart {
         area.fill(&WHITE)?;
         let legend = self.legend(size.0 as i32);
         let rows = legend.last().map_or(0, |(row, ..)| row + 1);
-        let (plot, names) = area.split_vertically(size.1 as i32 - LINE * rows - 4);
+        let (plot, names) = area.split_vertically(size.1 as i32 - LINE * rows - 4 * FINE);
         let marked = |range: Range<f64>| {
             let marks = log_marks(&range);
             range.log_scale().with_key_points(marks)
@@ -117,25 +126,26 @@ impl Chart {
         Y::CoordDescType: ValueFormatter<f64>,
     {
         let mut chart = ChartBuilder::on(area)
-            .margin(6)
-            .margin_right(14)
-            .x_label_area_size(36)
-            .y_label_area_size(52)
+            .margin(6 * FINE)
+            .margin_right(14 * FINE)
+            .x_label_area_size(36 * FINE)
+            .y_label_area_size(52 * FINE)
             .build_cartesian_2d(x, y)?;
         let grey = BLACK.mix(0.12);
         chart
             .configure_mesh()
             .light_line_style(WHITE.mix(0.0))
-            .bold_line_style(grey)
-            .axis_style(BLACK.mix(0.6))
+            .bold_line_style(grey.stroke_width(FINE as u32 * 3 / 4))
+            .axis_style(BLACK.mix(0.6).stroke_width(FINE as u32))
+            .set_all_tick_mark_size(4 * FINE)
             .x_labels(6)
             .y_labels(6)
             .x_desc(printable(&self.x.title))
             .y_desc(printable(&self.y.title))
             .x_label_formatter(&number)
             .y_label_formatter(&number)
-            .label_style(("sans-serif", LETTERS))
-            .axis_desc_style(("sans-serif", 12))
+            .label_style(("sans-serif", FONT))
+            .axis_desc_style(("sans-serif", FONT))
             .draw()?;
         for (i, series) in self.series.iter().enumerate() {
             let color = COLORS[i % COLORS.len()];
@@ -149,17 +159,28 @@ impl Chart {
                 Shape::Line | Shape::Curve => match DASHES[i % DASHES.len()] {
                     [on, off, ..] => {
                         let points = series.points.iter().copied();
-                        chart.draw_series(DashedLineSeries::new(points, *on as u32, *off as u32, color.stroke_width(2)))?;
+                        chart.draw_series(DashedLineSeries::new(
+                            points,
+                            *on * FINE,
+                            *off * FINE,
+                            color.stroke_width(THICK),
+                        ))?;
                     }
                     _ => {
-                        chart.draw_series(LineSeries::new(series.points.iter().copied(), color.stroke_width(2)))?;
+                        chart.draw_series(LineSeries::new(series.points.iter().copied(), color.stroke_width(THICK)))?;
                     }
                 },
                 Shape::Guide => {
                     let points = series.points.iter().copied();
-                    chart.draw_series(DashedLineSeries::new(points, 4, 4, REFERENCE.stroke_width(1)))?;
+                    chart.draw_series(DashedLineSeries::new(
+                        points,
+                        4 * FINE,
+                        4 * FINE,
+                        REFERENCE.stroke_width(THIN),
+                    ))?;
                     let at = series.points.last().copied().into_iter();
-                    let name = |at| Text::new(series.name.clone(), at, ("sans-serif", LETTERS - 1).into_font().color(&GUIDE));
+                    let name =
+                        |at| Text::new(series.name.clone(), at, ("sans-serif", FONT - FINE).into_font().color(&GUIDE));
                     chart.draw_series(at.map(name))?;
                 }
                 Shape::Marks | Shape::Below => {}
@@ -167,11 +188,15 @@ impl Chart {
             if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
                 for point in &series.points {
                     match mark(i, series.shape) {
-                        Mark::Disc => chart.draw_series([Circle::new(*point, 4, color.filled())])?,
-                        Mark::Ring => chart.draw_series([Circle::new(*point, 4, color.stroke_width(2))])?,
-                        Mark::Triangle => chart.draw_series([TriangleMarker::new(*point, 5, color.filled())])?,
-                        Mark::Cross => chart.draw_series([Cross::new(*point, 4, color.stroke_width(2))])?,
-                        Mark::Open => chart.draw_series([TriangleMarker::new(*point, -5, color.stroke_width(1))])?,
+                        Mark::Disc => chart.draw_series([Circle::new(*point, MARK, color.filled())])?,
+                        Mark::Ring => chart.draw_series([Circle::new(*point, MARK, color.stroke_width(THICK))])?,
+                        Mark::Triangle => {
+                            chart.draw_series([TriangleMarker::new(*point, MARK + FINE, color.filled())])?
+                        }
+                        Mark::Cross => chart.draw_series([Cross::new(*point, MARK, color.stroke_width(THICK))])?,
+                        Mark::Open => {
+                            chart.draw_series([TriangleMarker::new(*point, -MARK - FINE, color.stroke_width(THIN))])?
+                        }
                     };
                 }
             }
@@ -185,11 +210,11 @@ impl Chart {
         if named().count() < 2 {
             return Vec::new();
         }
-        let (mut row, mut left) = (0, 8);
+        let (mut row, mut left) = (0, 8 * FINE);
         let place = |(i, series): (usize, &Series)| {
-            let own = 24 + self::width(&series.name) as i32 + 14;
-            if left > 8 && left + own > width {
-                (row, left) = (row + 1, 8);
+            let own = (24 + self::width(&series.name) as i32 + 14) * FINE;
+            if left > 8 * FINE && left + own > width {
+                (row, left) = (row + 1, 8 * FINE);
             }
             let found = (row, left, i);
             left += own;
@@ -199,16 +224,22 @@ impl Chart {
     }
 
     fn name(&self, area: &Area, i: usize, (left, top): (i32, i32)) -> Fallible {
-        let (series, color, at) = (&self.series[i], COLORS[i % COLORS.len()], (left + 9, top + 6));
+        let (series, color, at) = (&self.series[i], COLORS[i % COLORS.len()], (left + 9 * FINE, top + 6 * FINE));
         match series.shape {
-            Shape::Bars(_) => {
-                area.draw(&Rectangle::new([(left + 3, top + 1), (left + 15, top + 11)], color.filled()))?
-            }
+            Shape::Bars(_) => area.draw(&Rectangle::new(
+                [(left + 3 * FINE, top + FINE), (left + 15 * FINE, top + 11 * FINE)],
+                color.filled(),
+            ))?,
             Shape::Line | Shape::Curve | Shape::Guide => match DASHES[i % DASHES.len()] {
-                [] => area.draw(&PathElement::new([(left, at.1), (left + 18, at.1)], color.stroke_width(2)))?,
+                [] => {
+                    area.draw(&PathElement::new([(left, at.1), (left + 18 * FINE, at.1)], color.stroke_width(THICK)))?
+                }
                 _ => {
-                    for from in [left, left + 7, left + 14] {
-                        area.draw(&PathElement::new([(from, at.1), (from + 4, at.1)], color.stroke_width(2)))?;
+                    for from in [left, left + 7 * FINE, left + 14 * FINE] {
+                        area.draw(&PathElement::new(
+                            [(from, at.1), (from + 4 * FINE, at.1)],
+                            color.stroke_width(THICK),
+                        ))?;
                     }
                 }
             },
@@ -216,14 +247,14 @@ impl Chart {
         }
         if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
             match mark(i, series.shape) {
-                Mark::Disc => area.draw(&Circle::new(at, 4, color.filled()))?,
-                Mark::Ring => area.draw(&Circle::new(at, 4, color.stroke_width(2)))?,
-                Mark::Triangle => area.draw(&TriangleMarker::new(at, 5, color.filled()))?,
-                Mark::Cross => area.draw(&Cross::new(at, 4, color.stroke_width(2)))?,
-                Mark::Open => area.draw(&TriangleMarker::new(at, -5, color.stroke_width(1)))?,
+                Mark::Disc => area.draw(&Circle::new(at, MARK, color.filled()))?,
+                Mark::Ring => area.draw(&Circle::new(at, MARK, color.stroke_width(THICK)))?,
+                Mark::Triangle => area.draw(&TriangleMarker::new(at, MARK + FINE, color.filled()))?,
+                Mark::Cross => area.draw(&Cross::new(at, MARK, color.stroke_width(THICK)))?,
+                Mark::Open => area.draw(&TriangleMarker::new(at, -MARK - FINE, color.stroke_width(THIN)))?,
             }
         }
-        area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24, top), ("sans-serif", LETTERS)))?;
+        area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24 * FINE, top), ("sans-serif", FONT)))?;
         Ok(())
     }
 }
@@ -260,16 +291,15 @@ pub fn stacked(title: &str, charts: &[Chart], columns: Columns) -> Result<String
         let size = svg.split_once("viewBox=\"0 0 ").and_then(|(_, rest)| rest.split_once('"')?.0.split_once(' '));
         size.and_then(|(_, height)| height.parse().ok()).unwrap_or(0.0)
     };
-    let all: f64 = drawn.iter().map(|svg| height(svg)).sum();
+    let width = columns.pixels() * FINE as u32;
     let (mut text, mut top) = (String::new(), 0.0);
     for svg in &drawn {
         let own = height(svg);
-        let place = format!("<svg y=\"{top}\" width=\"{}\" height=\"{own}\" viewBox", columns.pixels());
+        let place = format!("<svg y=\"{top}\" width=\"{width}\" height=\"{own}\" viewBox");
         text += &svg.split_once("viewBox").map_or(String::new(), |(_, rest)| format!("{place}{rest}"));
         top += own;
     }
-    let frame = format!("<svg>{text}</svg>\n");
-    Ok(titled(&frame, title, columns.millimetres(), (columns.pixels(), all as u32)))
+    Ok(titled(&format!("<svg>{text}</svg>\n"), title, columns.millimetres(), (width, top as u32)))
 }
 
 /// The width in millimetres, and a title, in place of the library's first tag.

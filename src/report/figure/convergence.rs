@@ -61,7 +61,9 @@ pub fn convergence_chart(path: &Path, load: Option<&str>) -> Result<Chart> {
     let is_asked = |chart: &Chart| load.is_none_or(|load| chart.title == title(load));
     match charts.iter().position(is_asked) {
         Some(place) => Ok(charts.swap_remove(place)),
-        None if charts.is_empty() => Err(Error::new("no error is above zero, so there is nothing to draw").in_file(path)),
+        None if charts.is_empty() => {
+            Err(Error::new("no error is above zero, so there is nothing to draw").in_file(path))
+        }
         None => {
             let loads: Vec<&str> = charts.iter().filter_map(|chart| chart.title.strip_prefix(TITLE)).collect();
             let expected = format!("a load of the study with an error above zero: {}", loads.join(", "));
@@ -79,7 +81,8 @@ fn title(load: &str) -> String {
 fn chart<'a>(load: &str, curves: impl Iterator<Item = &'a Curve>) -> Option<Chart> {
     let drawn: Vec<&Curve> = curves.filter(|curve| !curve.points.is_empty()).collect();
     let name = |curve: &Curve| match curve.rate {
-        Some(rate) => format!("{} (rate {rate:.1})", curve.model),
+        // Without the sign of a zero.
+        Some(rate) => format!("{} (rate {:.1})", curve.model, if rate.abs() < 0.05 { 0.0 } else { rate }),
         None => curve.model.clone(),
     };
     let series = |curve: &&Curve| Series { name: name(curve), points: curve.points.clone(), shape: Shape::Curve };
@@ -91,12 +94,12 @@ fn chart<'a>(load: &str, curves: impl Iterator<Item = &'a Curve>) -> Option<Char
     for order in [1, 2] {
         let end = least.0.max(h * (least.1 / e).powf(1.0 / f64::from(order)));
         let points = vec![(h, e), (end, e * (end / h).powi(order))];
-        series.push(Series { name: format!("{order}"), points, shape: Shape::Guide });
+        series.push(Series { name: format!("order {order}"), points, shape: Shape::Guide });
     }
     Some(Chart {
         title: title(load),
         x: Axis::log("cell size h, mm"),
-        y: Axis::log(format!("|error of the compliance| under {load}, %")),
+        y: Axis::log(format!("compliance error, {load}, %")),
         series,
     })
 }

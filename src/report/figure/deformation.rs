@@ -51,12 +51,13 @@ impl Deformation {
         let place = RunFolder::place(&report, fit)?;
         let fit = &report.fits[place];
         let names: Vec<&str> = fit.loads.iter().map(|load| load.name.as_str()).collect();
-        let found = match load {
-            None => fit.loads.first(),
-            Some(name) => Some(fit.loads.iter().find(|load| load.name == name).ok_or_else(|| {
-                Error::expected("--load", format!("a load of the run: {}", names.join(", ")), name)
-            })?),
-        };
+        let found =
+            match load {
+                None => fit.loads.first(),
+                Some(name) => Some(fit.loads.iter().find(|load| load.name == name).ok_or_else(|| {
+                    Error::expected("--load", format!("a load of the run: {}", names.join(", ")), name)
+                })?),
+            };
         let load = found.ok_or_else(|| Error::new("the run has no loads, so there are no displacements to draw"))?;
         if load.e_rms.is_none() {
             let why = format!("{} has no displacements under {}: it is {}", fit.name, load.name, fit.status);
@@ -109,7 +110,8 @@ fn displacement(path: &Path, mesh: &Mesh, array: &str) -> Result<Vec<f64>> {
 fn check_same(mesh: &Mesh, network: &NetworkRecord) -> Result<()> {
     let flat: Vec<f64> = network.points.iter().flatten().copied().collect();
     let size = flat.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-    let is_same = flat.len() == mesh.points.len() && flat.iter().zip(&mesh.points).all(|(a, b)| (a - b).abs() <= 1e-6 * size);
+    let is_same =
+        flat.len() == mesh.points.len() && flat.iter().zip(&mesh.points).all(|(a, b)| (a - b).abs() <= 1e-6 * size);
     match is_same {
         true => Ok(()),
         false => Err(Error::new("has other points than the network of the run; run the scene again")),

@@ -76,9 +76,7 @@ impl Figure {
             Figure::Motion => Picture::Chart(motion(&run.report()?)?),
             Figure::Deformation => Picture::Deformation(Box::new(Deformation::of(run, of, load)?)),
             Figure::Moduli => Picture::Moduli(Moduli::of(run, of)?),
-            Figure::Convergence => {
-                Picture::Chart(convergence::convergence_chart(&run.file(CONVERGENCE_FILES[0]), of)?)
-            }
+            Figure::Convergence => Picture::Chart(convergence::convergence_chart(&run.file(CONVERGENCE_FILES[0]), of)?),
         })
     }
 }

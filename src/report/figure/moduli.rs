@@ -1,9 +1,9 @@
 //! Young's modulus of networks by direction, from their elasticity tensors.
 
 use super::axis::{prefix, rings};
-use super::palette::{COLORS, DASHES, REFERENCE};
+use super::palette::{COLORS, DASHES, REFERENCE, faded};
 use super::run_folder::RunFolder;
-use super::sheet::{Columns, line, sheet, width, words};
+use super::sheet::{Columns, cut, line, sheet, width, words};
 use crate::error::{Error, Result};
 use crate::report::fit_record::FitRecord;
 use crate::report::json::Report;
@@ -16,6 +16,7 @@ const DIRECTIONS: usize = 180;
 /// Pixels around a panel and of a line of the legend.
 const MARGIN: f64 = 16.0;
 const LINE: f64 = 15.0;
+const GRID: RGBColor = RGBColor(205, 205, 205);
 
 /// Young's moduli by direction: a curve for each network in each of the coordinate planes.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +38,14 @@ pub struct ModulusCurve {
     pub name: String,
     /// `[planes][directions]`, Pa, in even steps from the first axis of the plane.
     pub moduli: Vec<Vec<f64>>,
+}
+
+/// A line of the legend.
+struct Entry {
+    name: String,
+    color: RGBColor,
+    thick: f64,
+    dashes: &'static [i32],
 }
 
 impl Moduli {
@@ -76,39 +85,58 @@ impl Moduli {
         let (across, beside) = match (self.planes.len(), columns) {
             (3, Columns::One) => (2, true),
             (3, Columns::Two) => (3, false),
-            _ => (2, true),
+            (_, Columns::One) => (2, true),
+            (_, Columns::Two) => (4, true),
         };
         let side = width / f64::from(across);
-        let names = (LINE * (self.curves.len() + 2) as f64).max(0.0);
         let rows = if self.planes.len() == 3 && across == 2 { 2.0 } else { 1.0 };
-        let height = if beside { rows * side } else { side + names };
-        let height = if beside && rows == 1.0 { height.max(names + MARGIN) } else { height };
+        let (corner, right) = match (beside, rows == 1.0) {
+            (true, true) => ([side + 8.0, MARGIN], width),
+            (true, false) => ([side + 8.0, side + MARGIN], width),
+            (false, _) => ([MARGIN, side + 2.0], width - MARGIN),
+        };
+        let names = self.names(largest, corner, right, beside);
+        let bottom = names.last().map_or(0.0, |(at, _)| at[1] + LINE + 4.0);
+        let height = if beside { bottom.max(rows * side) } else { bottom };
         let mut document = sheet(columns, height, &self.title);
         for (i, plane) in self.planes.iter().enumerate() {
             let at = [(i % across as usize) as f64 * side, (i / across as usize) as f64 * side];
             document = self.panel(document, i, *plane, at, side, largest);
         }
-        let (mut left, mut top) = match (beside, rows == 1.0) {
-            (true, true) => (side + 8.0, MARGIN),
-            (true, false) => (side + 8.0, side + MARGIN),
-            (false, _) => (MARGIN, side + 2.0),
-        };
-        let (first, right) = (left, if beside { width } else { width - MARGIN });
-        let reference = self.reference.map(|_| ("material".to_string(), REFERENCE, 4.0, &[][..]));
-        let curves = self.curves.iter().enumerate().map(|(i, curve)| {
-            (curve.name.clone(), COLORS[i % COLORS.len()], 1.8, DASHES[i % DASHES.len()])
-        });
-        for (name, color, thick, dashes) in reference.into_iter().chain(curves) {
-            let own = 26.0 + self::width(&name) + 14.0;
-            if left > first && (beside || left + own > right) {
-                (left, top) = (first, top + LINE);
-            }
+        for ([left, top], Entry { name, color, thick, dashes }) in names {
             document = document
                 .add(line(&[[left, top + 6.0], [left + 20.0, top + 6.0]], color, thick, dashes))
                 .add(words(&name, [left + 26.0, top + 10.0], "start"));
-            left += own;
         }
         document.to_string()
+    }
+
+    /// The names of all lines with their places: one below the other beside the panels, otherwise in rows.
+    fn names(&self, largest: f64, corner: [f64; 2], right: f64, beside: bool) -> Vec<([f64; 2], Entry)> {
+        let reference =
+            self.reference.map(|_| Entry { name: "material".into(), color: REFERENCE, thick: 4.0, dashes: &[] });
+        let curve = |(i, curve): (usize, &ModulusCurve)| Entry {
+            name: cut(&curve.name, right - corner[0] - 30.0),
+            color: COLORS[i % COLORS.len()],
+            thick: 1.8,
+            dashes: DASHES[i % DASHES.len()],
+        };
+        let ring = rings(largest).first().map(|ring| {
+            let (factor, unit) = prefix(*ring);
+            Entry { name: format!("every {} {unit}Pa", ring / factor), color: GRID, thick: 0.8, dashes: &[] }
+        });
+        let entries = reference.into_iter().chain(self.curves.iter().enumerate().map(curve)).chain(ring);
+        let mut at = corner;
+        let place = |entry: Entry| {
+            let own = 26.0 + width(&entry.name) + 14.0;
+            if at[0] > corner[0] && (beside || at[0] + own > right) {
+                at = [corner[0], at[1] + LINE];
+            }
+            let found = at;
+            at[0] += own;
+            (found, entry)
+        };
+        entries.map(place).collect()
     }
 
     /// A plane with its rings, the curves in it and the names of its axes.
@@ -123,18 +151,17 @@ impl Moduli {
     ) -> svg::Document {
         let (centre, radius) = ([left + side / 2.0, top + side / 2.0], side / 2.0 - MARGIN);
         let scale = radius / largest;
-        let (factor, unit) = prefix(largest);
         let at = |angle: f64, modulus: f64| {
             [centre[0] + scale * modulus * angle.cos(), centre[1] - scale * modulus * angle.sin()]
         };
-        let grid = RGBColor(215, 215, 215);
         let mut document = document;
         for ring in rings(largest) {
             let circle = Circle::new().set("cx", centre[0]).set("cy", centre[1]).set("r", scale * ring);
-            document = document.add(circle.set("fill", "none").set("stroke", "#d7d7d7").set("stroke-width", 0.7));
+            document =
+                document.add(circle.set("fill", "none").set("stroke", faded(GRID, 0.0)).set("stroke-width", 0.8));
         }
         for angle in [0.0, std::f64::consts::FRAC_PI_2] {
-            document = document.add(line(&[at(angle, -largest), at(angle, largest)], grid, 0.7, &[]));
+            document = document.add(line(&[at(angle, -largest), at(angle, largest)], GRID, 0.8, &[]));
         }
         if let Some(young) = self.reference {
             document = document.add(line(&around(&vec![young; DIRECTIONS], at), REFERENCE, 4.0, &[]));
@@ -143,16 +170,12 @@ impl Moduli {
             let points = around(&curve.moduli[place], at);
             document = document.add(line(&points, COLORS[i % COLORS.len()], 1.8, DASHES[i % DASHES.len()]));
         }
-        // Numbers last, with a white edge, so that they are read on lines.
-        if let Some(ring) = rings(largest).last() {
-            let text = format!("{} {unit}Pa", ring / factor);
-            let number = words(&text, at(-std::f64::consts::FRAC_PI_4, *ring), "middle");
-            document = document.add(number.set("paint-order", "stroke").set("stroke", "white").set("stroke-width", 3));
-        }
         let names = ["x", "y", "z"];
-        document
-            .add(words(names[plane[0]], [centre[0] + radius + 7.0, centre[1] + 4.0], "middle"))
-            .add(words(names[plane[1]], [centre[0], centre[1] - radius - 5.0], "middle"))
+        document.add(words(names[plane[0]], [centre[0] + radius + 7.0, centre[1] + 4.0], "middle")).add(words(
+            names[plane[1]],
+            [centre[0], centre[1] - radius - 5.0],
+            "middle",
+        ))
     }
 }
 
@@ -166,7 +189,8 @@ fn around(moduli: &[f64], at: impl Fn(f64, f64) -> [f64; 2]) -> Vec<[f64; 2]> {
 fn curve(fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<ModulusCurve> {
     let rows: Option<Vec<f64>> = fit.as_material.stiffness.iter().flatten().copied().collect();
     let size = fit.as_material.stiffness.len();
-    let compliance = DMatrix::from_row_slice(size, size, &rows.filter(|c| c.len() == size * size)?).cholesky()?.inverse();
+    let compliance =
+        DMatrix::from_row_slice(size, size, &rows.filter(|c| c.len() == size * size)?).cholesky()?.inverse();
     let moduli = |plane: &[usize; 2]| -> Vec<f64> {
         let direction = |i: usize| {
             let angle = std::f64::consts::TAU * i as f64 / DIRECTIONS as f64;

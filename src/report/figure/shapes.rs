@@ -4,16 +4,19 @@ use super::axis::prefix;
 use super::camera::{Camera, Seen, nearness, silhouette, turning};
 use super::deformation::Deformation;
 use super::palette::{COLORS, faded, ramp};
-use super::sheet::{Columns, line, outline, sheet, tenth, words};
+use super::sheet::{Columns, cut, line, outline, sheet, tenth, words};
+use crate::report::result_table::significant;
 use crate::springs::norm;
 use plotters::style::RGBColor;
 use svg::Document;
-use svg::node::element::{Circle, Path, Rectangle};
+use svg::node::element::{Circle, Definitions, LinearGradient, Path, Rectangle, Stop};
 
 /// Pixels: around a panel, of its caption, and of the key below all panels.
 const MARGIN: f64 = 10.0;
 const CAPTION: f64 = 20.0;
 const KEY: f64 = 50.0;
+/// Of a line of the key.
+const LINE: f64 = 15.0;
 /// The longest arrow as a part of the larger side of the picture of the body.
 const ARROW: f64 = 0.14;
 const BLACK: RGBColor = RGBColor(0, 0, 0);
@@ -44,15 +47,23 @@ impl Deformation {
         let ends = arrows.iter().flatten().copied();
         let all: Vec<[f64; 2]> = rest.iter().chain(shapes.iter().flatten()).map(|p| p.at).chain(ends).collect();
         let bound = |k: usize, pick: fn(f64, f64) -> f64, from: f64| all.iter().map(|p| p[k]).fold(from, pick);
-        let (low, high) = ([0, 1].map(|k| bound(k, f64::min, f64::INFINITY)), [0, 1].map(|k| bound(k, f64::max, f64::NEG_INFINITY)));
+        let (low, high) =
+            ([0, 1].map(|k| bound(k, f64::min, f64::INFINITY)), [0, 1].map(|k| bound(k, f64::max, f64::NEG_INFINITY)));
         let [wide, tall] = [(high[0] - low[0]).max(1e-300), high[1] - low[1]];
         let width = f64::from(columns.pixels());
-        // Beside each other, or above each other where a flat body would be too small.
-        let across = if columns == Columns::One && wide > 1.6 * tall { 1 } else { 3 };
+        // In one column the key has the place of a fourth panel, unless the body is flat.
+        let across = match columns {
+            Columns::One if wide > 1.6 * tall => 1,
+            Columns::One => 2,
+            Columns::Two => 3,
+        };
         let panel = width / f64::from(across);
         let size = ((panel - 2.0 * MARGIN) / wide).min(1.3 * (panel - 2.0 * MARGIN) / tall.max(1e-300));
         let own = CAPTION + 2.0 * MARGIN + size * tall;
-        let mut document = sheet(columns, own * f64::from(3 / across) + KEY, &self.title);
+        let (rows, beside) = (f64::from((3 + across - 1) / across), across == 2);
+        let own = if beside { own.max(KEY + 6.0 * LINE) } else { own };
+        let key = if beside { [panel + MARGIN, own + CAPTION] } else { [MARGIN, own * rows] };
+        let mut document = sheet(columns, own * rows + if beside { 0.0 } else { KEY }, &self.title);
         let largest = self.displacements[0].chunks_exact(d).map(norm).fold(0.0, f64::max);
         for (i, caption) in self.captions().iter().enumerate() {
             let (column, row) = (i as i32 % across, i as i32 / across);
@@ -60,19 +71,18 @@ impl Deformation {
             let top = own * f64::from(row);
             let scale = Scale { corner: [low[0] - left / size, high[1] + (top + CAPTION + MARGIN) / size], size };
             let centre = panel * (f64::from(column) + 0.5);
-            document = document.add(words(caption, [centre, top + 14.0], "middle"));
+            document = document.add(words(&cut(caption, panel), [centre, top + 14.0], "middle"));
             document = match i {
                 0 => self.at_rest(document, &scale, &rest, &arrows),
                 1 => self.filled(document, &scale, &rest, &shapes[0], largest),
                 _ => self.network(document, &scale, &rest, &shapes),
             };
         }
-        self.key(document, width, own * f64::from(3 / across), largest).to_string()
+        self.key(document, key, width, largest).to_string()
     }
 
     fn captions(&self) -> [String; 3] {
-        let error = self.error.map_or(String::new(), |error| format!(", e_rms {error:.2} %"));
-        ["(a) at rest".into(), "(b) finite elements".into(), format!("(c) {}{error}", self.fit)]
+        ["(a) at rest".into(), "(b) finite elements".into(), format!("(c) {}", self.fit)]
     }
 
     fn is_solid(&self) -> bool {
@@ -85,7 +95,10 @@ impl Deformation {
         let part = |face: &Vec<usize>| {
             let at: Vec<[f64; 2]> = face.iter().map(|&p| scale.place(points[p].at)).collect();
             let path = Path::new().set("d", outline(&at) + "z").set("fill", color(face));
-            (nearness(face, points), path.set("stroke", "#333").set("stroke-width", 0.35).set("stroke-linejoin", "round"))
+            (
+                nearness(face, points),
+                path.set("stroke", "#333").set("stroke-width", 0.35).set("stroke-linejoin", "round"),
+            )
         };
         let edge = |ends: &[usize; 2]| {
             let at = ends.map(|p| scale.place(points[p].at));
@@ -148,7 +161,8 @@ impl Deformation {
 
     /// The edges around a shape.
     fn outline(&self, document: Document, scale: &Scale, points: &[Seen], color: RGBColor, dashes: &[i32]) -> Document {
-        let edges = if self.faces.is_empty() { self.edges.clone() } else { silhouette(&self.faces, points, self.is_solid()) };
+        let edges =
+            if self.faces.is_empty() { self.edges.clone() } else { silhouette(&self.faces, points, self.is_solid()) };
         let data: String = edges.iter().map(|ends| outline(&ends.map(|p| scale.place(points[p].at)))).collect();
         document.add(line(&[], color, 0.8, dashes).set("d", data))
     }
@@ -193,40 +207,45 @@ impl Deformation {
         self.forces.iter().filter(|(point, _)| largest > 0.0 && front[*point]).map(arrow).collect()
     }
 
-    /// What colours and lines are.
-    fn key(&self, document: Document, width: f64, top: f64, largest: f64) -> Document {
+    /// What colours and lines are, from a corner to the right end of the sheet.
+    fn key(&self, document: Document, [left, top]: [f64; 2], width: f64, largest: f64) -> Document {
         let (factor, unit) = prefix(largest);
-        let (left, long, steps) = (MARGIN, 0.26 * width, 40);
-        let mut document = document;
-        for i in 0..steps {
-            let step = long / f64::from(steps);
-            let part = Rectangle::new().set("x", tenth(left + step * f64::from(i))).set("y", top + 6.0);
-            let color = ramp((f64::from(i) + 0.5) / f64::from(steps));
-            document = document.add(part.set("width", tenth(step + 0.3)).set("height", 7).set("fill", color));
-        }
-        let number = |share: f64| format!("{}", (share * largest / factor * 100.0).round() / 100.0);
-        document = document
-            .add(words("0", [left, top + 24.0], "start"))
-            .add(words(&format!("{} {unit}m", number(1.0)), [left + long, top + 24.0], "end"))
-            .add(words("|u|", [left + long / 2.0, top + 24.0], "middle"));
+        let long = (0.26 * width).max(110.0).min(width - left - MARGIN);
+        let steps = (0..=4).map(|i| f64::from(i) / 4.0);
+        let stop = |share: f64| Stop::new().set("offset", share).set("stop-color", ramp(share));
+        let gradient = steps.fold(LinearGradient::new().set("id", "size"), |gradient, share| gradient.add(stop(share)));
+        let bar = Rectangle::new().set("x", left).set("y", tenth(top + 6.0)).set("width", tenth(long)).set("height", 7);
+        let number = format!("{}", (largest / factor * 100.0).round() / 100.0);
         let times = if self.factor == 1.0 { "drawn to scale".into() } else { format!("drawn × {}", self.factor) };
-        document = document.add(words(&times, [left, top + 41.0], "start"));
+        let error = self.error.map_or(String::new(), |error| format!("(c) e_rms {} %", significant(error, 3)));
+        // Beside the bar, or below it.
+        let is_wide = width - left - long > 2.0 * long;
+        let below = if is_wide { [left + 90.0, top + 41.0] } else { [left, top + 56.0] };
+        let mut document = document
+            .add(Definitions::new().add(gradient))
+            .add(bar.set("fill", "url(#size)"))
+            .add(words("0", [left, top + 24.0], "start"))
+            .add(words(&number, [left + long, top + 24.0], "end"))
+            .add(words(&format!("|u|, {unit}m"), [left + long / 2.0, top + 24.0], "middle"))
+            .add(words(&times, [left, top + 41.0], "start"))
+            .add(words(&error, below, "start"));
         let surface = if self.is_surface_only { "springs of the surface" } else { "springs" };
         let negative = self.springs.iter().any(|(_, is_negative)| *is_negative);
-        let mut entries: Vec<(String, RGBColor, f64, &[i32])> =
-            vec![(surface.into(), COLORS[0], 1.2, &[]), ("k < 0".into(), COLORS[4], 1.2, &[2, 2])];
+        let mut entries: Vec<(&str, RGBColor, f64, &[i32])> =
+            vec![(surface, COLORS[0], 1.2, &[]), ("k < 0", COLORS[4], 1.2, &[2, 2])];
         entries.truncate(if negative { 2 } else { 1 });
-        entries.push(("finite elements".into(), BLACK, 0.8, &[]));
-        entries.push(("at rest".into(), SOFT, 0.8, &[3, 2]));
-        let first = left + long + 22.0;
-        let (mut x, mut y) = (first, top + 10.0);
+        entries.push(("finite elements", BLACK, 0.8, &[]));
+        entries.push(("at rest", SOFT, 0.8, &[3, 2]));
+        let first = if is_wide { left + long.max(190.0) + 22.0 } else { left };
+        let begin = if is_wide { top + 10.0 } else { top + 70.0 };
+        let (mut x, mut y) = (first, begin);
         for (name, color, thick, dashes) in entries {
-            let own = 24.0 + super::sheet::width(&name) + 8.0;
+            let own = 24.0 + super::sheet::width(name) + 8.0;
             if x > first && x + own > width {
-                (x, y) = (first, y + 15.0);
+                (x, y) = (first, y + LINE);
             }
             document = document.add(line(&[[x, y], [x + 18.0, y]], color, thick, dashes));
-            document = document.add(words(&name, [x + 23.0, y + 4.0], "start"));
+            document = document.add(words(name, [x + 23.0, y + 4.0], "start"));
             x += own;
         }
         document

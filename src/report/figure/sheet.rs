@@ -32,7 +32,7 @@ impl Columns {
 }
 
 /// Pixels of letters of names and numbers.
-pub(super) const LETTERS: u32 = 11;
+pub(super) const LETTERS: u32 = 10;
 
 /// A white sheet of this height in pixels.
 pub(super) fn sheet(columns: Columns, height: f64, title: &str) -> Document {
@@ -59,7 +59,16 @@ pub(super) fn words(text: &str, [x, y]: [f64; 2], anchor: &str) -> Text {
 
 /// Pixels that words are about as wide as.
 pub(super) fn width(text: &str) -> f64 {
-    6.2 * text.chars().count() as f64
+    5.8 * text.chars().count() as f64
+}
+
+/// A name that fits into so many pixels.
+pub(super) fn cut(name: &str, room: f64) -> String {
+    let most = (room / width("n")) as usize;
+    match name.chars().count() > most {
+        true => name.chars().take(most.saturating_sub(1)).chain(['…']).collect(),
+        false => name.into(),
+    }
 }
 
 /// A line through points on the sheet.
