@@ -1,7 +1,7 @@
 //! A convergence study as tables, as CSV and as a plot of errors against cell size.
 
 use super::columns::{Heading, aligned};
-use super::figure::{Columns, convergence_charts, stacked};
+use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
 use super::rows::csv;
 use super::table::size;
 use super::write_files;
@@ -177,7 +177,7 @@ pub fn convergence_csv(convergence: &Convergence) -> String {
 }
 
 /// What [`write_convergence`] writes.
-pub const CONVERGENCE_FILES: [&str; 2] = ["converge.csv", "converge.svg"];
+pub const CONVERGENCE_FILES: [&str; 2] = [CONVERGENCE_TABLE, "converge.svg"];
 
 /// Writes `converge.csv` and, where any error is above zero, `converge.svg` into `folder`, and returns the paths.
 ///

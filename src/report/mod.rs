@@ -48,7 +48,9 @@ pub use comparison::{COMPARISON_FILES, Comparison};
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
-pub use figure::{Axis, Chart, Columns, Deformation, Figure, Moduli, ModulusCurve, Picture, RunFolder, Series, Shape};
+pub use figure::{
+    Axis, Chart, Columns, Deformation, Figure, Moduli, ModulusCurve, Picture, PictureFormat, RunFolder, Series, Shape,
+};
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
 pub use frequencies::FrequencyRecord;

@@ -79,6 +79,34 @@ function addWhole(record) {
   });
 }
 
+/** The paths of regularizations of whole-object fits: errors against ρ, and the errors of the fitted loads against the change (L-curve). */
+function addPaths(record) {
+  const fits = record.report.fits.filter((fit) => fit.whole?.curve.filter((stage) => stage.validated !== null && stage.regularization > 0).length > 1);
+  if (!fits.length) return;
+  const path = (fit) => fit.whole.curve.filter((stage) => stage.validated !== null && stage.regularization > 0);
+  const percent = (share) => share === null ? null : 100 * share;
+  const lines = (x, y, hover, more = {}) => fits.map((fit, i) => {
+    const stages = path(fit);
+    const isChosen = (stage) => stage.regularization === fit.whole.regularization;
+    const hue = HUES[i % HUES.length];
+    return {
+      type: "scatter", mode: "lines+markers", name: label(cut(fit.name)), x: stages.map(x), y: stages.map(y), customdata: stages.map((stage) => stage.regularization), line: { color: hue, dash: DASHES[i % DASHES.length], width: 2 },
+      marker: { color: hue, symbol: stages.map((stage) => stage.rejected ? "x" : isChosen(stage) ? "star" : "circle"), size: stages.map((stage) => isChosen(stage) ? 14 : 6) },
+      hovertemplate: hover, ...more,
+    };
+  });
+  const axis = (text, more = {}) => ({ type: "log", title: { text }, ...more });
+  const hint = () => element("p", { class: "hint" }, "Star: the ρ that was chosen, with the least error of validation. Cross: rejected, because the constants differ too much.");
+  addChart("rho", "Whole-object fits: error of validation against the regularization ρ", () => ({
+    data: lines((stage) => stage.regularization, (stage) => percent(stage.validated), "ρ = %{x:.1e}<br>%{y:.3g} %<extra></extra>"),
+    layout: layout({ xaxis: axis("regularization ρ", { autorange: "reversed" }), yaxis: axis("error of validation, %"), hovermode: "closest" }),
+  }), [hint()]);
+  addChart("l-curve", "Whole-object fits: error of the fitted loads against the change of the constants", () => ({
+    data: lines((stage) => stage.change, (stage) => percent(stage.trained), "ρ = %{customdata:.1e}<br>change %{x:.3g}<br>%{y:.3g} %<extra></extra>"),
+    layout: layout({ xaxis: axis("change of the constants from the start"), yaxis: axis("error of the fitted loads, %"), hovermode: "closest" }),
+  }), [hint()]);
+}
+
 function addMotion(record) {
   const models = record.report.motion.filter((model) => model.time.length > 1);
   if (!models.length) return;
@@ -108,6 +136,7 @@ function showCharts(record) {
   addHistogram(record);
   addModuli(record);
   addWhole(record);
+  addPaths(record);
   addMotion(record);
   if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has neither loads nor fits, so there is nothing to draw."));
 }

@@ -5,6 +5,9 @@ use super::chart::{Chart, Series, Shape};
 use crate::error::{Error, Result};
 use std::path::Path;
 
+/// The file of a convergence study.
+pub const CONVERGENCE_TABLE: &str = "converge.csv";
+
 /// A line of `converge.csv`, as far as it is drawn.
 #[derive(serde::Deserialize)]
 struct Row {

@@ -5,6 +5,7 @@ mod camera;
 mod chart;
 mod convergence;
 mod deformation;
+mod format;
 mod moduli;
 mod palette;
 mod run_folder;
@@ -14,15 +15,15 @@ mod sheet;
 pub use axis::Axis;
 pub use chart::{Chart, Series, Shape};
 pub use deformation::Deformation;
+pub use format::PictureFormat;
 pub use moduli::{Moduli, ModulusCurve};
 pub use run_folder::RunFolder;
 pub use sheet::Columns;
 
 pub(super) use chart::stacked;
-pub(super) use convergence::convergence_charts;
+pub(super) use convergence::{CONVERGENCE_TABLE, convergence_charts};
 
 use crate::error::{Error, Result};
-use crate::report::convergence::CONVERGENCE_FILES;
 use crate::report::json::Report;
 use clap::ValueEnum;
 
@@ -76,7 +77,7 @@ impl Figure {
             Figure::Motion => Picture::Chart(motion(&run.report()?)?),
             Figure::Deformation => Picture::Deformation(Box::new(Deformation::of(run, of, load)?)),
             Figure::Moduli => Picture::Moduli(Moduli::of(run, of)?),
-            Figure::Convergence => Picture::Chart(convergence::convergence_chart(&run.file(CONVERGENCE_FILES[0]), of)?),
+            Figure::Convergence => Picture::Chart(convergence::convergence_chart(&run.file(CONVERGENCE_TABLE), of)?),
         })
     }
 }
@@ -165,7 +166,7 @@ fn motion(report: &Report) -> Result<Chart> {
     Ok(Chart {
         title: format!("{}: distance from the finite elements over time", report.scene),
         x: Axis::linear("time, s"),
-        y: Axis::linear("e_rms, % of the largest displacement"),
+        y: Axis::linear("e_rms, % of the largest |u|"),
         series,
     })
 }

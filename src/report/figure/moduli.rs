@@ -86,7 +86,7 @@ impl Moduli {
             (3, Columns::One) => (2, true),
             (3, Columns::Two) => (3, false),
             (_, Columns::One) => (2, true),
-            (_, Columns::Two) => (4, true),
+            (_, Columns::Two) => (3, true),
         };
         let side = width / f64::from(across);
         let rows = if self.planes.len() == 3 && across == 2 { 2.0 } else { 1.0 };

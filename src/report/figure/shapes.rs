@@ -9,12 +9,15 @@ use crate::report::result_table::significant;
 use crate::springs::norm;
 use plotters::style::RGBColor;
 use svg::Document;
-use svg::node::element::{Circle, Definitions, LinearGradient, Path, Rectangle, Stop};
+use svg::node::element::{Circle, Path, Rectangle};
 
 /// Pixels: around a panel, of its caption, and of the key below all panels.
 const MARGIN: f64 = 10.0;
 const CAPTION: f64 = 20.0;
 const KEY: f64 = 50.0;
+/// Pixels across the bar of colours, and its steps.
+const BAR: f64 = 7.0;
+const STEPS: i32 = 40;
 /// Of a line of the key.
 const LINE: f64 = 15.0;
 /// The longest arrow as a part of the larger side of the picture of the body.
@@ -211,10 +214,6 @@ impl Deformation {
     fn key(&self, document: Document, [left, top]: [f64; 2], width: f64, largest: f64) -> Document {
         let (factor, unit) = prefix(largest);
         let long = (0.26 * width).max(110.0).min(width - left - MARGIN);
-        let steps = (0..=4).map(|i| f64::from(i) / 4.0);
-        let stop = |share: f64| Stop::new().set("offset", share).set("stop-color", ramp(share));
-        let gradient = steps.fold(LinearGradient::new().set("id", "size"), |gradient, share| gradient.add(stop(share)));
-        let bar = Rectangle::new().set("x", left).set("y", tenth(top + 6.0)).set("width", tenth(long)).set("height", 7);
         let number = format!("{}", (largest / factor * 100.0).round() / 100.0);
         let times = if self.factor == 1.0 { "drawn to scale".into() } else { format!("drawn × {}", self.factor) };
         let error = self.error.map_or(String::new(), |error| format!("(c) e_rms {} %", significant(error, 3)));
@@ -222,13 +221,18 @@ impl Deformation {
         let is_wide = width - left - long > 2.0 * long;
         let below = if is_wide { [left + 90.0, top + 41.0] } else { [left, top + 56.0] };
         let mut document = document
-            .add(Definitions::new().add(gradient))
-            .add(bar.set("fill", "url(#size)"))
             .add(words("0", [left, top + 24.0], "start"))
             .add(words(&number, [left + long, top + 24.0], "end"))
             .add(words(&format!("|u|, {unit}m"), [left + long / 2.0, top + 24.0], "middle"))
             .add(words(&times, [left, top + 41.0], "start"))
             .add(words(&error, below, "start"));
+        // Each step goes on to the end below the next one, so that no gap is seen between them.
+        for i in 0..STEPS {
+            let share = f64::from(i) / f64::from(STEPS);
+            let step = Rectangle::new().set("x", tenth(left + share * long)).set("y", tenth(top + 6.0));
+            let step = step.set("width", tenth((1.0 - share) * long)).set("height", BAR);
+            document = document.add(step.set("fill", ramp(share)));
+        }
         let surface = if self.is_surface_only { "springs of the surface" } else { "springs" };
         let negative = self.springs.iter().any(|(_, is_negative)| *is_negative);
         let mut entries: Vec<(&str, RGBColor, f64, &[i32])> =
