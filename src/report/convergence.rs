@@ -2,6 +2,7 @@
 
 use super::columns::{Heading, aligned};
 use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::table::size;
 use super::write_files;
@@ -11,9 +12,8 @@ use crate::text::printable;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// One table for each load, with what its errors refer to.
-pub fn convergence_text(convergence: &Convergence) -> String {
-    let columns = [
+fn headings() -> [Heading; 11] {
+    [
         Heading::words("model"),
         Heading::numbers("level"),
         Heading::numbers("h\nmm"),
@@ -25,15 +25,34 @@ pub fn convergence_text(convergence: &Convergence) -> String {
         Heading::numbers("rate"),
         Heading::numbers("displacements\n%e_rms"),
         Heading::words("network"),
-    ];
+    ]
+}
+
+/// One table for each load, with what its errors refer to.
+pub fn convergence_text(convergence: &Convergence) -> String {
     let mut text = format!("{}\n{} on every level\n", printable(&convergence.scene), size(&convergence.extent));
     for load in &convergence.loads {
-        let rows: Vec<Vec<String>> =
-            load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect();
-        let truth = truth_text(load.truth.as_ref(), convergence.reference.as_deref());
-        write!(text, "\n{}: {truth}\n\n{}", load.name, aligned(&columns, &rows)).expect("a String grows");
+        let table = aligned(&headings(), &load_rows(convergence, load));
+        write!(text, "\n{}\n\n{table}", load_title(convergence, load)).expect("a String grows");
     }
     text
+}
+
+/// The same tables, to be typeset.
+pub fn convergence_tables(convergence: &Convergence) -> Vec<ResultTable> {
+    let table = |load: &LoadConvergence| {
+        let name = format!("convergence {}", load.name);
+        ResultTable::printed(&name, &load_title(convergence, load), &headings(), &load_rows(convergence, load))
+    };
+    convergence.loads.iter().map(table).collect()
+}
+
+fn load_title(convergence: &Convergence, load: &LoadConvergence) -> String {
+    format!("{}: {}", load.name, truth_text(load.truth.as_ref(), convergence.reference.as_deref()))
+}
+
+fn load_rows(convergence: &Convergence, load: &LoadConvergence) -> Vec<Vec<String>> {
+    load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect()
 }
 
 /// One row per level, and one for the limit where it is extrapolated.

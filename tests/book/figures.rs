@@ -31,7 +31,7 @@ fn the_picture_shows_the_errors_of_a_fresh_run() {
 #[ignore = "takes minutes; .ci/run has it"]
 fn the_pictures_of_the_paper_are_those_of_a_fresh_run() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["paper", "--table", "1", "--table", "3", "--table", "figure 9", "--out", "paper"];
+    let arguments = ["paper", "--only", "1", "--only", "3", "--only", "figure 9", "--out", "paper"];
     let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
     assert!(command.args(arguments).current_dir(folder.path()).output().unwrap().status.success());
     for name in ["cube_tet-tension", "cube_hex_large-tension", "figure-9"] {

@@ -67,15 +67,17 @@ function addPrecision(record) {
 
 function addWhole(record) {
   const rows = record.report.fits.filter((fit) => fit.whole).flatMap((fit) => [
-    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: `${fit.name}, ${load.load}` })),
-    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${fit.name}, ${load.load} (validation)` })),
+    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: `${cut(fit.name, 20)}, ${cut(load.load, 16)}` })),
+    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${cut(fit.name, 20)}, ${cut(load.load, 16)} (v.)` })),
   ]);
   if (!rows.length) return;
-  addChart("whole", "Whole-object fits: relative error before and after", () => {
-    const names = rows.map((row) => label(cut(row.name)));
-    const dots = (name, key, color, symbol) => ({ type: "scatter", mode: "markers", name, y: names, x: rows.map((row) => row[key] === null ? null : 100 * row[key]), marker: { size: 10, color, symbol }, hovertemplate: "%{y}<br>%{x:.3g} %<extra></extra>" });
-    const line = { type: "scatter", mode: "lines", y: names.flatMap((name) => [name, name, null]), x: rows.flatMap((row) => [100 * row.before, 100 * row.after, null]), line: { color: theme.color("soft") }, showlegend: false, hoverinfo: "skip" };
-    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed" }, height: 180 + 26 * rows.length }) };
+  addChart("whole", "Whole-object fits: relative error before and after; v.: validation", () => {
+    // Rows have numbers: names that are cut may be alike.
+    const places = rows.map((_, i) => i);
+    const names = rows.map((row) => label(row.name));
+    const dots = (name, key, color, symbol) => ({ type: "scatter", mode: "markers", name, y: places, text: names, x: rows.map((row) => row[key] === null ? null : 100 * row[key]), marker: { size: 10, color, symbol }, hovertemplate: "%{text}<br>%{x:.3g} %<extra></extra>" });
+    const line = { type: "scatter", mode: "lines", y: places.flatMap((place) => [place, place, null]), x: rows.flatMap((row) => [100 * row.before, 100 * row.after, null]), line: { color: theme.color("soft") }, showlegend: false, hoverinfo: "skip" };
+    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed", tickvals: places, ticktext: names }, height: 180 + 26 * rows.length }) };
   });
 }
 
@@ -103,7 +105,7 @@ function addPaths(record) {
   }), [hint()]);
   addChart("l-curve", "Whole-object fits: error of the fitted loads against the change of the constants", () => ({
     data: lines((stage) => stage.change, (stage) => percent(stage.trained), "ρ = %{customdata:.1e}<br>change %{x:.3g}<br>%{y:.3g} %<extra></extra>"),
-    layout: layout({ xaxis: axis("change of the constants from the start"), yaxis: axis("error of the fitted loads, %"), hovermode: "closest" }),
+    layout: layout({ xaxis: axis("change: rms of ln(factor) on the constants"), yaxis: axis("error of the fitted loads, %"), hovermode: "closest" }),
   }), [hint()]);
 }
 
