@@ -39,7 +39,7 @@ impl PictureFormat {
             return Err(Error::at(
                 "--output",
                 format!(
-                    "{path}: this program was built without PDF and PNG; build it with `cargo install springfit --features pictures`, \
+                    "{path}: this program was built without PDF and PNG; build it with `cargo install --path . --features pictures`, \
                      or write {svg} and run `{tool} {svg} -o {path}` or `inkscape {svg} -o {path}`"
                 ),
             ));
