@@ -74,4 +74,5 @@ mod stability;
 mod sums;
 mod sweeps;
 mod symmetry;
+mod typeset;
 mod whole;
