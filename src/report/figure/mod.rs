@@ -122,7 +122,7 @@ fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
     Ok(Chart {
         title: format!("{}: error under {name} against time to fit", report.scene),
         x: Axis::log("time to fit, µs per element"),
-        y: Axis::log(&format!("e_rms under {name}, %")),
+        y: Axis::log(format!("e_rms under {name}, %")),
         series: series.collect(),
     })
 }

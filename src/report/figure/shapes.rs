@@ -15,6 +15,8 @@ use svg::node::element::{Circle, Path, Rectangle};
 const MARGIN: f64 = 10.0;
 const CAPTION: f64 = 20.0;
 const KEY: f64 = 50.0;
+/// Of a key below the bar of colours.
+const TALL_KEY: f64 = 95.0;
 /// Pixels across the bar of colours, and its steps.
 const BAR: f64 = 7.0;
 const STEPS: i32 = 40;
@@ -64,9 +66,20 @@ impl Deformation {
         let size = ((panel - 2.0 * MARGIN) / wide).min(1.3 * (panel - 2.0 * MARGIN) / tall.max(1e-300));
         let own = CAPTION + 2.0 * MARGIN + size * tall;
         let (rows, beside) = (f64::from((3 + across - 1) / across), across == 2);
-        let own = if beside { own.max(KEY + 6.0 * LINE) } else { own };
+        let own = if beside { own.max(TALL_KEY + CAPTION + 3.0 * LINE) } else { own };
         let key = if beside { [panel + MARGIN, own + CAPTION] } else { [MARGIN, own * rows] };
-        let mut document = sheet(columns, own * rows + if beside { 0.0 } else { KEY }, &self.title);
+        let mut document = sheet(
+            columns,
+            own * rows
+                + if beside {
+                    0.0
+                } else if across == 1 {
+                    TALL_KEY
+                } else {
+                    KEY
+                },
+            &self.title,
+        );
         let largest = self.displacements[0].chunks_exact(d).map(norm).fold(0.0, f64::max);
         for (i, caption) in self.captions().iter().enumerate() {
             let (column, row) = (i as i32 % across, i as i32 / across);
