@@ -5,7 +5,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use springfit::error::{Error, Result};
 use springfit::report;
-use springfit::study::{Event, Outcome};
+use springfit::study::Event;
 use springfit::text::{printable, printable_lines, time_in_words};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -33,8 +33,8 @@ pub struct Terminal {
     stage: Stage,
     /// When the last line was printed.
     last: Instant,
-    /// Whether standard output is a JSON document.
-    is_json: bool,
+    /// Whether standard output is a document that other programs read.
+    is_document: bool,
 }
 
 /// The running stage, and how much of it was done when it began.
@@ -75,7 +75,7 @@ impl Terminal {
     pub fn new(grammar: fn() -> clap::Command, level: Level) -> Terminal {
         let now = Instant::now();
         report::set_page_width(page_width());
-        Terminal { grammar, level, start: now, bar: None, stage: Stage::new("", 0), last: now, is_json: false }
+        Terminal { grammar, level, start: now, bar: None, stage: Stage::new("", 0), last: now, is_document: false }
     }
 
     /// Shows a stage in the bar, and a note above it.
@@ -172,29 +172,24 @@ impl Terminal {
         }
     }
 
+    /// Prints all that standard output is to have: names of files go to standard error.
+    ///
+    /// # Errors
+    /// As [`Terminal::print`].
+    pub fn print_document(&mut self, text: &str) -> Result<()> {
+        self.is_document = true;
+        self.print(text)
+    }
+
     /// Prints a record as the one JSON document of standard output.
     ///
     /// # Errors
     /// As [`Terminal::print`].
     pub fn print_json(&mut self, record: &impl Serialize) -> Result<()> {
-        self.is_json = true;
-        self.print(&(serde_json::to_string_pretty(record).expect("keys are text") + "\n"))
+        self.print_document(&(serde_json::to_string_pretty(record).expect("keys are text") + "\n"))
     }
 
-    /// Prints the tables of an outcome or its report, and its notes, which a report has as well.
-    ///
-    /// # Errors
-    /// Standard output cannot be written.
-    pub fn print_outcome(&mut self, outcome: &Outcome, json: bool) -> Result<()> {
-        if json {
-            return self.print_json(&report::Report::of(outcome));
-        }
-        self.print(&format!("{}\n{}", report::summary(outcome), report::table(outcome)))?;
-        report::notes(outcome).iter().for_each(|note| self.note(note));
-        Ok(())
-    }
-
-    /// Names the files that were written; beside a JSON document on standard error.
+    /// Names the files that were written; beside a document on standard error.
     ///
     /// # Errors
     /// Standard output cannot be written.
@@ -207,7 +202,7 @@ impl Terminal {
     /// # Errors
     /// As there.
     pub fn say(&mut self, line: &str) -> Result<()> {
-        match (self.level, self.is_json) {
+        match (self.level, self.is_document) {
             (Level::Quiet, _) => Ok(()),
             (_, true) => {
                 tell(line);

@@ -75,4 +75,5 @@ mod stability;
 mod sums;
 mod sweeps;
 mod symmetry;
+mod typeset;
 mod whole;

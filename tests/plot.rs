@@ -1,17 +1,39 @@
 //! Figures and tables for a paper, from the folder of a run.
 
-use springfit::report::{Columns, Figure, Markup, ResultTable, RunFolder, write_outputs};
-use springfit::study::{Scene, run};
+use springfit::report::{
+    Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, ResultTable, RunFolder, Shape,
+    write_convergence, write_outputs,
+};
+use springfit::study::{Scene, converge, run};
 use std::path::Path;
 use tempfile::TempDir;
 
+fn scene(name: &str, settings: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    Scene::parse(&(std::fs::read_to_string(&path).unwrap() + settings), &path).unwrap()
+}
+
 /// The folder of a run.
-fn folder(scene: &str) -> TempDir {
-    let scene = Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene)).unwrap();
-    let outcome = run(&scene, &mut |_| {}).unwrap();
+fn folder_of(scene: &Scene) -> TempDir {
+    let outcome = run(scene, &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
     write_outputs(&outcome, scene.output(), folder.path()).unwrap();
     folder
+}
+
+fn folder(name: &str) -> TempDir {
+    folder_of(&scene(name, ""))
+}
+
+fn chart_of(figure: Figure, run: &RunFolder, of: Option<&str>) -> Chart {
+    match figure.picture(run, of, None).unwrap() {
+        Picture::Chart(chart) => chart,
+        Picture::Moduli(_) | Picture::Deformation(_) => panic!("{figure:?} is no chart"),
+    }
+}
+
+fn fault(figure: Figure, run: &RunFolder, of: Option<&str>, load: Option<&str>) -> String {
+    figure.picture(run, of, load).unwrap_err().to_string()
 }
 
 /// The numbers of an attribute of all elements of a kind.
@@ -29,13 +51,13 @@ fn figures_have_their_size_titles_and_fill_their_axes() {
     let cube = folder("cube_tet.toml");
     let run = RunFolder::at(cube.path());
     for (columns, width) in [(Columns::One, "width=\"85mm\""), (Columns::Two, "width=\"178mm\"")] {
-        for figure in [Figure::WorkPrecision, Figure::Constants] {
-            let svg = figure.chart(&run, None).unwrap().svg(columns).unwrap();
+        for figure in [Figure::WorkPrecision, Figure::Constants, Figure::Moduli] {
+            let svg = figure.picture(&run, None, None).unwrap().svg(columns).unwrap();
             assert!(svg.starts_with("<svg ") && svg.contains(width), "{figure:?}");
             assert!(svg.contains("<title>"), "{figure:?}");
         }
     }
-    let chart = Figure::WorkPrecision.chart(&run, Some("shear")).unwrap();
+    let chart = chart_of(Figure::WorkPrecision, &run, Some("shear"));
     assert_eq!(chart.series.len(), 5);
     let svg = chart.svg(Columns::Two).unwrap();
     assert!(svg.contains("time to fit") && svg.contains("e_rms under shear"));
@@ -44,7 +66,7 @@ fn figures_have_their_size_titles_and_fill_their_axes() {
     let heights = numbers(&svg, "circle", "cy");
     assert!(heights.iter().any(|y| *y < 0.3 * tall), "{heights:?} of {tall}");
     let motion = folder("membrane.toml");
-    let chart = Figure::Motion.chart(&RunFolder::at(motion.path()), None).unwrap();
+    let chart = chart_of(Figure::Motion, &RunFolder::at(motion.path()), None);
     assert!(chart.series[0].points.len() > 10);
     assert!(chart.svg(Columns::One).unwrap().contains("time, s"));
 }
@@ -52,7 +74,7 @@ fn figures_have_their_size_titles_and_fill_their_axes() {
 #[test]
 fn the_constants_of_a_network_are_all_counted() {
     let cube = folder("cube_tet.toml");
-    let chart = Figure::Constants.chart(&RunFolder::at(cube.path()), Some("offdiag")).unwrap();
+    let chart = chart_of(Figure::Constants, &RunFolder::at(cube.path()), Some("offdiag"));
     let counted: f64 = chart.series.iter().flat_map(|series| &series.points).map(|(_, count)| count).sum();
     assert_eq!(counted, 690.0);
 }
@@ -100,11 +122,169 @@ fn what_a_run_lacks_is_named() {
     );
     let cube = folder("cube_tet.toml");
     let run = RunFolder::at(cube.path());
-    let error = Figure::Motion.chart(&run, None).unwrap_err().to_string();
+    let error = fault(Figure::Motion, &run, None, None);
     assert!(error.contains("no motion"), "{error}");
-    let error = Figure::WorkPrecision.chart(&run, Some("zzz")).unwrap_err().to_string();
+    let error = fault(Figure::WorkPrecision, &run, Some("zzz"), None);
     assert!(error.contains("tension, shear"), "{error}");
     std::fs::remove_file(cube.path().join("offdiag.json")).unwrap();
-    let error = Figure::Constants.chart(&run, Some("offdiag")).unwrap_err().to_string();
-    assert!(error.contains("offdiag.json"), "{error}");
+    let error = fault(Figure::Constants, &run, Some("offdiag"), None);
+    assert!(error.contains("offdiag.json") && error.contains("[output] json"), "{error}");
+    let error = fault(Figure::Deformation, &run, Some("exact"), None);
+    assert!(error.contains("mesh.vtu") && error.contains("[output] vtu = true"), "{error}");
+    let error = fault(Figure::Deformation, &run, Some("exact"), Some("zzz"));
+    assert!(error.contains("--load") && error.contains("tension, shear"), "{error}");
+    let error = fault(Figure::Moduli, &run, Some("zzz"), None);
+    assert!(error.contains("--of") && error.contains("exact"), "{error}");
+    let error = fault(Figure::Moduli, &run, None, Some("shear"));
+    assert!(error.contains("--load") && error.contains("deformation"), "{error}");
+    let error = fault(Figure::Convergence, &run, None, None);
+    assert!(error.contains("converge.csv") && error.contains("springfit converge"), "{error}");
+    std::fs::write(cube.path().join("converge.csv"), "load,model\ntension,fem\n").unwrap();
+    let error = fault(Figure::Convergence, &run, None, None);
+    assert!(error.contains("converge.csv:2") && error.contains("h_m"), "{error}");
+}
+
+/// 1/E in a direction of a cube: that of the first axis is the first entry of the inverse.
+#[test]
+fn an_exact_network_has_the_modulus_of_the_material_in_all_directions() {
+    let cube = folder("cube_tet.toml");
+    let run = RunFolder::at(cube.path());
+    let young = run.report().unwrap().young.unwrap();
+    let moduli = |of: Option<&str>| -> Moduli {
+        match Figure::Moduli.picture(&run, of, None).unwrap() {
+            Picture::Moduli(moduli) => moduli,
+            Picture::Chart(_) | Picture::Deformation(_) => panic!("no moduli"),
+        }
+    };
+    let exact = moduli(Some("exact"));
+    assert_eq!((exact.planes.len(), exact.reference), (3, Some(young)));
+    for modulus in exact.curves[0].moduli.iter().flatten() {
+        assert!((modulus / young - 1.0).abs() < 1e-6, "{modulus}");
+    }
+    // Planes agree where they meet: x is the first direction of the planes xy and xz.
+    for curve in &moduli(None).curves {
+        let [xy, xz, yz] = &curve.moduli[..] else { panic!("three planes") };
+        let quarter = xy.len() / 4;
+        for (a, b) in [(xy[0], xz[0]), (xy[quarter], yz[0]), (xz[quarter], yz[quarter])] {
+            assert!((a / b - 1.0).abs() < 1e-9, "{}: {a}, {b}", curve.name);
+        }
+    }
+    assert!(moduli(None).curves.iter().any(|curve| curve.moduli[0].iter().any(|m| (m / young - 1.0).abs() > 0.1)));
+    let square = folder("square_quad.toml");
+    let Picture::Moduli(plane) = Figure::Moduli.picture(&RunFolder::at(square.path()), None, None).unwrap() else {
+        panic!("no moduli")
+    };
+    assert_eq!(plane.planes.len(), 1);
+}
+
+fn deformation(run: &RunFolder, of: &str, load: &str) -> Deformation {
+    match Figure::Deformation.picture(run, Some(of), Some(load)).unwrap() {
+        Picture::Deformation(deformation) => *deformation,
+        Picture::Chart(_) | Picture::Moduli(_) => panic!("no deformation"),
+    }
+}
+
+#[test]
+fn a_deformation_shows_the_run_and_covers_what_is_behind() {
+    for (name, load, solid) in [("cube_tet.toml", "shear", true), ("square_quad.toml", "tension", false)] {
+        let scene = scene(name, "\n[output]\nvtu = true\n");
+        let outcome = run(&scene, &mut |_| {}).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        write_outputs(&outcome, scene.output(), folder.path()).unwrap();
+        let run = RunFolder::at(folder.path());
+        let fit = &outcome.fits[1];
+        let place = outcome.loads.iter().position(|known| known.name == load).unwrap();
+        let shown = deformation(&run, &fit.fit.name, load);
+        let springs = fit.loads[place].displacement.as_ref().unwrap();
+        for (found, expected) in shown.displacements.iter().zip([&outcome.loads[place].fem, springs]) {
+            let largest = expected.iter().fold(0.0, |largest: f64, u| largest.max(u.abs()));
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= 1e-9 * largest), "{name}");
+        }
+        assert_eq!(shown.springs.len(), fit.network.lengths.len());
+        assert!(!shown.held.is_empty() && !shown.forces.is_empty());
+        for (columns, width) in [(Columns::One, "85mm"), (Columns::Two, "178mm")] {
+            let svg = shown.svg(columns);
+            assert!(svg.contains(&format!("width=\"{width}\"")) && svg.contains("<title>"), "{name}");
+            for words in ["(a) at rest", "(b) finite elements", "e_rms", "|u|", "k &lt; 0"] {
+                let expected = words != "k &lt; 0" || shown.springs.iter().any(|(_, is_negative)| *is_negative);
+                assert_eq!(svg.contains(words), expected, "{name}: {words}");
+            }
+            // Faces are closed and filled; those that look away are left out: of a convex body about half.
+            let filled = svg.split("<path ").filter(|path| path.contains("stroke-linejoin")).count();
+            let share = filled as f64 / (2 * shown.faces.len()) as f64;
+            assert!(if solid { (0.3..0.7).contains(&share) } else { share == 1.0 }, "{name}: {share}");
+        }
+    }
+}
+
+#[test]
+fn charts_of_convergence_are_those_of_the_study() {
+    let scene = scene("square_quad.toml", "");
+    let study = converge(&scene, Some(3), &mut |_| {}).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    write_convergence(&study, folder.path()).unwrap();
+    let chart = chart_of(Figure::Convergence, &RunFolder::at(folder.path()), None);
+    let load = &study.loads[0];
+    let guides = chart.series.iter().filter(|series| series.shape == Shape::Guide).count();
+    assert_eq!((chart.series.len() - guides, guides), (load.models.len(), 2));
+    for (series, model) in chart.series.iter().zip(&load.models) {
+        assert!(series.name.starts_with(&model.name), "{}", series.name);
+        let errors: Vec<f64> = load.of_truth(model).into_iter().flatten().map(f64::abs).collect();
+        assert_eq!(series.points.iter().map(|(_, error)| *error).collect::<Vec<_>>(), errors);
+        let sizes: Vec<f64> = study.levels.iter().map(|level| 1e3 * level.size).collect();
+        assert_eq!(series.points.iter().map(|(h, _)| *h).collect::<Vec<_>>(), sizes);
+    }
+    // Slopes 1 and 2 through the coarsest error.
+    for (order, guide) in [1, 2].into_iter().zip(&chart.series[load.models.len()..]) {
+        let [(h, e), (h_end, e_end)] = guide.points[..] else { panic!("a line") };
+        assert!(((e_end / e).ln() / (h_end / h).ln() - f64::from(order)).abs() < 1e-9);
+    }
+    assert!(chart.svg(Columns::One).unwrap().contains("cell size h, mm"));
+    let whole = std::fs::read_to_string(folder.path().join("converge.svg")).unwrap();
+    assert_eq!(whole.matches("cell size h, mm").count(), study.loads.len());
+}
+
+/// Luminance of colours as grey, Rec. 601: neighbours of the list and of the ramp differ.
+#[test]
+fn greys_are_distinct() {
+    let cube = folder("cube_tet.toml");
+    let svg = Figure::Moduli.picture(&RunFolder::at(cube.path()), None, None).unwrap().svg(Columns::One).unwrap();
+    let line = |tag: &str| -> Option<(f64, String)> {
+        let value = |key: &str| Some(tag.split_once(&format!("{key}=\""))?.1.split_once('"')?.0.to_string());
+        let color = value("stroke")?;
+        let channel = |i: usize| f64::from(u8::from_str_radix(&color[2 * i + 1..2 * i + 3], 16).unwrap());
+        let grey = 0.299 * channel(0) + 0.587 * channel(1) + 0.114 * channel(2);
+        (value("stroke-width")? == "1.8").then(|| (grey, value("stroke-dasharray").unwrap_or_default()))
+    };
+    let mut lines: Vec<(f64, String)> = svg.split("<path ").filter_map(line).collect();
+    lines.dedup();
+    assert!(lines.len() >= 5);
+    for (i, (grey, dashes)) in lines.iter().enumerate() {
+        for (other, dashes_of_other) in &lines[..i] {
+            let is_told_apart = (grey - other).abs() > 20.0 || dashes != dashes_of_other || grey == other;
+            assert!(is_told_apart, "{grey} {dashes}, {other} {dashes_of_other}");
+        }
+    }
+}
+
+#[test]
+fn formats_are_those_of_the_ending() {
+    assert_eq!(PictureFormat::of(Path::new("a.svg")).unwrap(), PictureFormat::Svg);
+    let error = PictureFormat::of(Path::new("a.jpg")).unwrap_err().to_string();
+    assert!(error.contains(".svg, .pdf or .png"), "{error}");
+    for (file, format, start) in
+        [("a.pdf", PictureFormat::Pdf, &b"%PDF-"[..]), ("a.PNG", PictureFormat::Png, &b"\x89PNG"[..])]
+    {
+        if cfg!(feature = "pictures") {
+            let cube = folder("cube_tet.toml");
+            let picture = Figure::Moduli.picture(&RunFolder::at(cube.path()), None, None).unwrap();
+            let bytes = PictureFormat::of(Path::new(file)).unwrap().bytes(picture.svg(Columns::One).unwrap()).unwrap();
+            assert!(bytes.starts_with(start), "{file}");
+            // Letters come from the font of the program: without one the file of lines alone is smaller.
+            assert!(bytes.len() > 10_000, "{file}: {} bytes", bytes.len());
+        } else {
+            let error = PictureFormat::of(Path::new(file)).unwrap_err().to_string();
+            assert!(error.contains("--features pictures") && error.contains("rsvg-convert"), "{format:?}: {error}");
+        }
+    }
 }

@@ -73,6 +73,16 @@ UNNAMED = """() => [...document.querySelectorAll('button, select, input, [role],
   !(e.labels?.length || e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() || e.getAttribute('role') === 'status')).map((e) => e.outerHTML.slice(0, 80))"""
 
 
+RECORD = "JSON.parse(document.getElementById('record').textContent)"
+# Charts and what a record has where they are drawn.
+CHARTS = {
+    "whole": f"{RECORD}.report.fits.some((fit) => fit.whole)",
+    "rho": f"{RECORD}.report.fits.some((fit) => fit.whole?.curve.length > 1)",
+    "l-curve": f"{RECORD}.report.fits.some((fit) => fit.whole?.curve.length > 1)",
+    "constants": f"{RECORD}.view.networks.some((network) => network.histograms.length > 0)",
+}
+
+
 class Prover:
     def __init__(self, browser, page, size, scheme):
         self.faults = []
@@ -159,6 +169,8 @@ def prove(browser, path, arguments):
             folder = pathlib.Path(arguments.pictures)
             folder.mkdir(parents=True, exist_ok=True)
             page.screenshot(path=folder / f"{prover.name}-{scheme}.png", full_page=True)
+        for name, wanted in CHARTS.items():
+            prover.check(page.locator(f"#chart-{name} .main-svg").count() > 0 or not page.evaluate(wanted), f"no chart {name}")
         fault = page.evaluate(LAST_ENDS)
         prover.check(not fault, f"pointing at the end of a line: {fault}")
         frame = page.evaluate(FRAMES)

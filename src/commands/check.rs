@@ -5,6 +5,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
 use springfit::error::{Error, Result};
+use springfit::report::InspectionRecord;
 use springfit::study::{self, Event};
 use springfit::{files_in, report};
 use std::path::Path;
@@ -51,17 +52,18 @@ impl Check {
                 return Err(error.clone());
             }
             let inspection = study::inspect(file, loaded);
-            if !self.output.json {
+            if self.output.is_text() {
                 terminal.print(&(report::check_text(&inspection) + "\n"))?;
             }
             inspections.push(inspection);
         }
-        if self.output.json {
-            terminal.print(&report::check_json(&inspections))?;
-        } else {
-            let failed = inspections.iter().filter(|i| !i.passes()).count();
-            terminal.print(&format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()))?;
-        }
+        let failed = inspections.iter().filter(|i| !i.passes()).count();
+        self.output.print(
+            terminal,
+            || inspections.iter().map(InspectionRecord::from).collect::<Vec<_>>(),
+            || vec![report::check_table(&inspections)],
+            || format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()),
+        )?;
         Ok(if inspections.iter().all(|i| i.passes()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 }

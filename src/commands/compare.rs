@@ -5,6 +5,7 @@ use super::scene_file::{Settings, is_scene};
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
+use serde::Serialize;
 use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::Solver;
@@ -72,27 +73,19 @@ impl Compare {
         if self.law.is_some() && is_scene(path) {
             return Err(Error::at("--law", "belongs to an element; a scene names its law in [material]"));
         }
-        let comparison = if is_scene(path) {
+        if is_scene(path) {
             let scene = self.settings.scene(path)?;
             if self.explain {
                 let scene = study::compared(&scene)?;
                 let forecast = Forecast::of(&scene)?;
-                match self.output.json {
-                    true => terminal.print_json(&forecast)?,
-                    false => terminal.print(&report::forecast_text(scene.title(), &forecast, &stages(&scene)))?,
-                }
+                let text = || report::forecast_text(scene.title(), &forecast, &stages(&scene));
+                self.output.print_plan(terminal, &forecast, text)?;
                 return Ok(ExitCode::SUCCESS);
             }
             report::check_outputs(&folder, names, &scene.inputs())?;
             let outcome = study::compare_scene(&scene, &mut progress)?;
             outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
-            if self.output.json {
-                let paths = Comparison::of_scene(&outcome).write(&folder);
-                terminal.print_json(&report::Report::of(&outcome))?;
-                terminal.written(&paths?)?;
-                return Ok(ExitCode::SUCCESS);
-            }
-            Comparison::of_scene(&outcome)
+            self.print(terminal, &Comparison::of_scene(&outcome), || report::Report::of(&outcome), &folder)
         } else {
             self.settings.expect_none()?;
             if self.explain {
@@ -108,10 +101,8 @@ impl Compare {
                 let law = |e: Error| if e.key() == Some("energy") { e.at_key("--law") } else { e.of_option() };
                 let study = study.map_err(|e| e.placed(law))?;
                 let paths = report::write_stretches(&study, &folder);
-                match self.output.json {
-                    true => terminal.print_json(&study)?,
-                    false => terminal.print(&report::stretches_text(&study))?,
-                }
+                let tables = || report::stretches_tables(&study);
+                self.output.print(terminal, || &study, tables, || report::stretches_text(&study))?;
                 terminal.written(&paths?)?;
                 return Ok(ExitCode::SUCCESS);
             }
@@ -123,16 +114,20 @@ impl Compare {
                 .map_err(|e| e.placed(Error::of_option))?;
             let title = format!("{}: {shapes} random shapes, nu = {}, one thread", element.name, self.poisson);
             let comparison = Comparison::of_element(title, &outcomes, material.young());
-            if self.output.json {
-                let paths = comparison.write(&folder);
-                terminal.print_json(&outcomes)?;
-                terminal.written(&paths?)?;
-                return Ok(ExitCode::SUCCESS);
-            }
-            comparison
-        };
-        let paths = comparison.write(&folder);
-        terminal.print(&comparison.table())?;
+            self.print(terminal, &comparison, || &outcomes, &folder)
+        }
+    }
+
+    /// Writes the files of a comparison, and prints it.
+    fn print<R: Serialize>(
+        &self,
+        terminal: &mut Terminal,
+        comparison: &Comparison,
+        record: impl FnOnce() -> R,
+        folder: &Path,
+    ) -> Result<ExitCode> {
+        let paths = comparison.write(folder);
+        self.output.print(terminal, record, || vec![comparison.result_table()], || comparison.table())?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

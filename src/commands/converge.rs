@@ -46,16 +46,12 @@ impl Converge {
         if self.explain {
             let levels = study::refinements(&scene, self.levels).map_err(|e| e.placed(Error::of_option))?;
             let forecasts = levels.iter().map(Forecast::of).collect::<Result<Vec<_>>>()?;
-            if self.output.json {
-                terminal.print_json(&forecasts)?;
-            } else {
-                let title = |level: usize| format!("{}, level {} of {}", scene.title(), level + 1, levels.len());
-                let text = forecasts.iter().enumerate().map(|(level, forecast)| {
-                    let stages = if level == 0 { stages(&levels[0]) } else { Vec::new() };
-                    report::forecast_text(&title(level), forecast, &stages)
-                });
-                terminal.print(&text.collect::<Vec<_>>().join("\n"))?;
-            }
+            let title = |level: usize| format!("{}, level {} of {}", scene.title(), level + 1, levels.len());
+            let text = forecasts.iter().enumerate().map(|(level, forecast)| {
+                let stages = if level == 0 { stages(&levels[0]) } else { Vec::new() };
+                report::forecast_text(&title(level), forecast, &stages)
+            });
+            self.output.print_plan(terminal, &forecasts, || text.collect::<Vec<_>>().join("\n"))?;
             return Ok(ExitCode::SUCCESS);
         }
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
@@ -71,10 +67,8 @@ impl Converge {
         };
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         let paths = report::write_convergence(&convergence, &folder);
-        match self.output.json {
-            true => terminal.print_json(&convergence)?,
-            false => terminal.print(&report::convergence_text(&convergence))?,
-        }
+        let tables = || report::convergence_tables(&convergence);
+        self.output.print(terminal, || &convergence, tables, || report::convergence_text(&convergence))?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

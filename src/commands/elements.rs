@@ -14,7 +14,7 @@ use std::process::ExitCode;
 #[command(after_help = EXAMPLES)]
 pub struct Elements {
     /// The element whose file is printed, as a start for one of your own
-    #[arg(conflicts_with = "json")]
+    #[arg(conflicts_with_all = ["json", "table"])]
     name: Option<String>,
     #[command(flatten)]
     output: OutputOptions,
@@ -42,10 +42,8 @@ impl Elements {
         }
         let record = |file| Ok(ElementRecord::of(&Element::shipped(file)?, file));
         let elements = SHIPPED.iter().map(record).collect::<Result<Vec<_>>>()?;
-        match self.output.json {
-            true => terminal.print_json(&elements)?,
-            false => terminal.print(&report::elements_text(&elements))?,
-        }
+        let tables = || vec![report::elements_table(&elements)];
+        self.output.print(terminal, || &elements, tables, || report::elements_text(&elements))?;
         Ok(ExitCode::SUCCESS)
     }
 }

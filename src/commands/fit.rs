@@ -166,10 +166,7 @@ impl Fit {
         let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
         if self.explain {
             let title = self.mesh.display().to_string();
-            match self.format.json {
-                true => terminal.print_json(&forecast)?,
-                false => terminal.print(&report::forecast_text(&title, &forecast, &[]))?,
-            }
+            self.format.print_plan(terminal, &forecast, || report::forecast_text(&title, &forecast, &[]))?;
             return Ok(ExitCode::SUCCESS);
         }
         forecast.announcement().iter().for_each(|words| terminal.note(words));
@@ -187,7 +184,7 @@ impl Fit {
         let outcome = Outcome { assumed, command: Some(command()), ..outcome };
         // The file first: who reads the table may have gone away.
         format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
-        terminal.print_outcome(&outcome, self.format.json)?;
+        self.format.print_outcome(terminal, &outcome)?;
         if outcome.masses.is_some() && format.ending == "csv" {
             terminal.note("a CSV file has no masses and no places of points; .json and .npz have both");
         }

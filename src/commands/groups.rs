@@ -43,10 +43,7 @@ impl Groups {
             (self.mesh.display().to_string(), self.options.mesh(&self.mesh)?)
         };
         let record = MeshRecord::of(name, &mesh);
-        match self.output.json {
-            true => terminal.print_json(&record)?,
-            false => terminal.print(&record.text())?,
-        }
+        self.output.print(terminal, || &record, || vec![record.result_table()], || record.text())?;
         Ok(ExitCode::SUCCESS)
     }
 }

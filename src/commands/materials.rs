@@ -27,10 +27,8 @@ With --json: a list of materials with the keys name, title, parameters, fibres, 
 impl Materials {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let materials: Vec<MaterialRecord> = Energy::shipped()?.iter().map(MaterialRecord::from).collect();
-        match self.output.json {
-            true => terminal.print_json(&materials)?,
-            false => terminal.print(&report::materials_text(&materials))?,
-        }
+        let tables = || vec![report::materials_table(&materials)];
+        self.output.print(terminal, || &materials, tables, || report::materials_text(&materials))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -1,14 +1,78 @@
 //! How results are printed.
 
+use crate::terminal::Terminal;
 use clap::Args;
+use serde::Serialize;
+use springfit::error::{Error, Result};
+use springfit::report::{self, Markup, Report, ResultTable};
+use springfit::study::Outcome;
 
-/// The option `--json` of a command that prints tables.
+/// The options of a command that prints tables.
 #[derive(Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputOptions {
     /// Print one JSON document to standard output in place of tables; names of files go to standard error
     #[arg(long)]
     pub json: bool,
+    /// Typeset the tables; LaTeX has the rules of booktabs. Names of files go to standard error
+    #[arg(long, value_enum, conflicts_with = "json")]
+    table: Option<Markup>,
+}
+
+impl OutputOptions {
+    /// Whether results are printed as text, which may come in parts.
+    pub fn is_text(&self) -> bool {
+        !self.json && self.table.is_none()
+    }
+
+    /// Prints a result as it is asked for: its record as JSON, its tables typeset, or its text.
+    ///
+    /// # Errors
+    /// Standard output cannot be written.
+    pub fn print<R: Serialize>(
+        &self,
+        terminal: &mut Terminal,
+        record: impl FnOnce() -> R,
+        tables: impl FnOnce() -> Vec<ResultTable>,
+        text: impl FnOnce() -> String,
+    ) -> Result<()> {
+        match (self.json, self.table) {
+            (true, _) => terminal.print_json(&record()),
+            (false, Some(markup)) => terminal.print_document(&markup.tables(&tables())),
+            (false, None) => terminal.print(&text()),
+        }
+    }
+
+    /// The same of an outcome, with its notes, which a report has as well.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn print_outcome(&self, terminal: &mut Terminal, outcome: &Outcome) -> Result<()> {
+        let record = || Report::of(outcome);
+        let text = || format!("{}\n{}", report::summary(outcome), report::table(outcome));
+        self.print(terminal, record, || ResultTable::all(&record()), text)?;
+        if !self.json {
+            report::notes(outcome).iter().for_each(|note| terminal.note(note));
+        }
+        Ok(())
+    }
+
+    /// Prints what would be done, as JSON or as text.
+    ///
+    /// # Errors
+    /// As there, or the tables are to be typeset: there are none yet.
+    pub fn print_plan<R: Serialize>(
+        &self,
+        terminal: &mut Terminal,
+        record: &R,
+        text: impl FnOnce() -> String,
+    ) -> Result<()> {
+        match (self.json, self.table) {
+            (_, Some(_)) => Err(Error::at("--table", "belongs to results, found with --explain")),
+            (true, None) => terminal.print_json(record),
+            (false, None) => terminal.print(&text()),
+        }
+    }
 }
 
 /// The command as it was typed, for files that say where they come from.

@@ -13,9 +13,9 @@ use std::process::ExitCode;
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Paper {
-    /// Only this table, such as 1 or "figure 9"; may be repeated
-    #[arg(long)]
-    table: Vec<String>,
+    /// Only this table or figure, such as 1 or "figure 9"; may be repeated
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
     /// An index of experiments of your own, such as scenes/paper/index.toml
     #[arg(long)]
     index: Option<PathBuf>,
@@ -29,7 +29,8 @@ pub struct Paper {
 const EXAMPLES: &str = "\
 Examples:
   springfit paper
-  springfit paper --table 1 --table 'figure 9'
+  springfit paper --only 1 --only 'figure 9'
+  springfit paper --only 1 --table latex
   springfit paper --index my-experiments/index.toml";
 
 impl Paper {
@@ -37,21 +38,20 @@ impl Paper {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
         check_outputs(&folder, &report::PAPER_FILES, self.index.as_slice())?;
         let index = self.index.as_ref().map_or_else(Index::shipped, |path| Index::load(path))?;
-        index.expect(&self.table).map_err(Error::of_option)?;
+        index.expect(&self.only).map_err(|e| e.at_key("--only"))?;
         let path = match &self.index {
             Some(path) => path.clone(),
             None => study::write_experiments(&folder.join("scenes"))?,
         };
-        let paper = study::run_paper(&index, &self.table, &path, &mut |event| terminal.show(event));
+        let paper = study::run_paper(&index, &self.only, &path, &mut |event| terminal.show(event));
         let paper = paper.map_err(|e| e.placed(Error::of_option))?;
         let written = report::write_paper(&paper, &folder);
-        if self.output.json {
-            terminal.print_json(&paper.tables)?;
-        } else {
-            for table in &paper.tables {
-                terminal.print(&(report::paper_text(table) + "\n"))?;
-            }
-        }
+        self.output.print(
+            terminal,
+            || &paper.tables,
+            || paper.tables.iter().map(report::paper_result_table).collect(),
+            || paper.tables.iter().map(|table| report::paper_text(table) + "\n").collect(),
+        )?;
         let written = written?;
         terminal.say(&format!("written: {} files in {}", written.len(), folder.display()))?;
         Ok(ExitCode::SUCCESS)

@@ -3,7 +3,7 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::report::{Columns, Figure, Markup, ResultTable, RunFolder};
+use springfit::report::{Columns, Figure, Markup, PictureFormat, ResultTable, RunFolder};
 use springfit::{check_apart, check_file, write_whole};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,7 +14,7 @@ use std::process::ExitCode;
 pub struct Plot {
     /// The folder of a run, with its report.json
     run: PathBuf,
-    /// Draw this figure as SVG
+    /// Draw this figure
     #[arg(long, value_enum, conflicts_with = "table", required_unless_present = "table")]
     figure: Option<Figure>,
     /// Typeset the tables of the run
@@ -23,10 +23,13 @@ pub struct Plot {
     /// One load or fit of the figure, or one table: fits, errors, materials, times, whole, frequencies, motion
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
+    /// The load of the figure deformation, whose fit is --of [default: the first]
+    #[arg(long, value_name = "NAME", conflicts_with = "table")]
+    load: Option<String>,
     /// Columns of the page that the figure is as wide as: 85 or 178 mm
     #[arg(long, value_enum, default_value_t)]
     columns: Columns,
-    /// Where it goes [default: standard output]
+    /// Where it goes: of a figure .svg, or .pdf or .png in a program with the feature "pictures" [default: standard output, as SVG]
     #[arg(short, long, help_heading = "Output")]
     output: Option<PathBuf>,
 }
@@ -35,32 +38,35 @@ const EXAMPLES: &str = "\
 Examples:
   springfit plot out/cube_tet --figure work-precision -o precision.svg
   springfit plot out/cube_tet --figure constants --of exact --columns two -o constants.svg
+  springfit plot out/cube_tet --figure deformation --of exact --load shear -o shear.svg   # of a run with [output] vtu = true
+  springfit plot out/cube_tet --figure moduli -o moduli.svg
+  springfit plot out/converge-cube_tet --figure convergence -o convergence.svg
   springfit plot out/cube_tet --table latex --of errors -o errors.tex   # with \\usepackage{booktabs}
   springfit plot out/cube_tet --table markdown";
 
 impl Plot {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let run = RunFolder::at(&self.run);
+        let format = match (&self.output, self.figure) {
+            (Some(path), Some(_)) => PictureFormat::of(path)?,
+            _ => PictureFormat::Svg,
+        };
         if let Some(path) = &self.output {
             check_apart(std::slice::from_ref(path), &[self.run.join("report.json")])
                 .map_err(|e| e.at_key("--output"))?;
-            let is_svg = path.extension().is_some_and(|ending| ending == "svg");
-            if self.figure.is_some() && !is_svg {
-                return Err(Error::expected("--output", "a file ending in .svg", path.display()));
-            }
             if path.symlink_metadata().is_ok() {
                 check_file(path)?;
             }
         }
         let text = match (self.figure, self.table) {
-            (Some(figure), _) => figure.chart(&run, self.of.as_deref())?.svg(self.columns)?,
+            (Some(figure), _) => figure.picture(&run, self.of.as_deref(), self.load.as_deref())?.svg(self.columns)?,
             (None, Some(markup)) => self.tables(&run, markup)?,
             (None, None) => return Err(Error::new("expected --figure or --table")),
         };
         match &self.output {
             None => terminal.print(&text)?,
             Some(path) => {
-                write_whole(path, text.as_bytes())?;
+                write_whole(path, &format.bytes(text)?)?;
                 terminal.written(std::slice::from_ref(path))?;
             }
         }

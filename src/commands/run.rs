@@ -52,10 +52,8 @@ impl Run {
         }
         if self.explain {
             let forecast = Forecast::of(&scene)?;
-            match self.output.json {
-                true => terminal.print_json(&forecast)?,
-                false => terminal.print(&report::forecast_text(scene.title(), &forecast, &stages(&scene)))?,
-            }
+            let text = || report::forecast_text(scene.title(), &forecast, &stages(&scene));
+            self.output.print_plan(terminal, &forecast, text)?;
             return Ok(ExitCode::SUCCESS);
         }
         let stem = self.scene.file_stem().unwrap_or_default();
@@ -76,7 +74,7 @@ impl Run {
         outcome.command = Some(command());
         // Files first: who reads the table may have gone away.
         let paths = report::write_outputs(&outcome, scene.output(), &folder);
-        terminal.print_outcome(&outcome, self.output.json)?;
+        self.output.print_outcome(terminal, &outcome)?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

@@ -56,10 +56,8 @@ impl Stability {
             }
         };
         let paths = report::write_stability(&outcome, &folder);
-        match self.output.json {
-            true => terminal.print_json(&outcome)?,
-            false => terminal.print(&report::stability_text(&outcome))?,
-        }
+        let tables = || vec![report::stability_table(&outcome)];
+        self.output.print(terminal, || &outcome, tables, || report::stability_text(&outcome))?;
         terminal.written(&paths?)?;
         Ok(if outcome.lost().count() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }

@@ -101,18 +101,14 @@ impl Sweep {
         write_whole(&path, table.csv().as_bytes())?;
         let records: Vec<&StudyRecord> = marks.iter().filter_map(|mark| lines.record(mark)).collect();
         let failed = records.iter().filter(|record| record.error.is_some()).count();
-        match self.output.json {
-            true => terminal.print_json(&table.json())?,
-            false => {
-                let text = report::studies_text(sweep.keys(), sweep.studies(), |mark| lines.record(mark));
-                terminal.print(&format!(
-                    "{}: {} of {} studies\n\n{text}",
-                    sweep.title(),
-                    records.len(),
-                    marks.len()
-                ))?;
-            }
-        }
+        let title = format!("{}: {} of {} studies", sweep.title(), records.len(), marks.len());
+        let (keys, studies) = (sweep.keys(), sweep.studies());
+        self.output.print(
+            terminal,
+            || table.json(),
+            || vec![report::studies_table(&title, keys, studies, |mark| lines.record(mark))],
+            || format!("{title}\n\n{}", report::studies_text(keys, studies, |mark| lines.record(mark))),
+        )?;
         if failed > 0 {
             terminal.note(&format!(
                 "{failed} of {} studies failed; the column \"error\" of the table says why",
@@ -124,13 +120,14 @@ impl Sweep {
     }
 
     fn explain(&self, terminal: &mut Terminal, sweep: &Studies) -> Result<ExitCode> {
-        if self.output.json {
-            let studies: Vec<_> = sweep.studies().iter().map(|study| study.values()).collect();
-            terminal.print_json(&studies)?;
-            return Ok(ExitCode::SUCCESS);
-        }
-        let text = report::planned_text(sweep.keys(), sweep.studies());
-        terminal.print(&format!("{}: {} studies\n\n{text}", sweep.title(), sweep.studies().len()))?;
+        let (keys, studies) = (sweep.keys(), sweep.studies());
+        let title = format!("{}: {} studies", sweep.title(), studies.len());
+        self.output.print(
+            terminal,
+            || studies.iter().map(|study| study.values()).collect::<Vec<_>>(),
+            || vec![report::planned_table(&title, keys, studies)],
+            || format!("{title}\n\n{}", report::planned_text(keys, studies)),
+        )?;
         Ok(ExitCode::SUCCESS)
     }
 }

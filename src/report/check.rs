@@ -1,6 +1,8 @@
 //! What `check` found, as text and as JSON.
 
+use super::columns::Heading;
 use super::number::finite;
+use super::result_table::ResultTable;
 use crate::study::{Inspection, Mark, Property};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,6 +17,20 @@ pub fn check_text(inspection: &Inspection) -> String {
             .expect("a String grows");
     }
     text
+}
+
+/// All properties of all files, to be typeset.
+pub fn check_table(inspections: &[Inspection]) -> ResultTable {
+    let header = ["file", "property", "mark", "finding"].map(Heading::words);
+    let row = |inspection: &Inspection, property: &Property| {
+        let mark = word(property.mark).trim().to_string();
+        vec![inspection.file.clone(), property.name.into(), mark, property.finding.clone()]
+    };
+    let of_file = |inspection: &Inspection| -> Vec<Vec<String>> {
+        inspection.properties.iter().map(|property| row(inspection, property)).collect()
+    };
+    let rows: Vec<Vec<String>> = inspections.iter().flat_map(of_file).collect();
+    ResultTable::printed("check", "Properties of elements", &header, &rows)
 }
 
 /// A file in the JSON of `check`.
@@ -63,12 +79,6 @@ impl From<&Property> for PropertyRecord {
             value: property.value.and_then(finite),
         }
     }
-}
-
-/// All files as one list.
-pub fn check_json(inspections: &[Inspection]) -> String {
-    let all: Vec<InspectionRecord> = inspections.iter().map(InspectionRecord::from).collect();
-    serde_json::to_string_pretty(&all).expect("keys are text") + "\n"
 }
 
 fn word(mark: Mark) -> &'static str {

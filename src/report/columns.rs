@@ -36,6 +36,11 @@ impl Heading {
     pub fn numbers(text: impl Into<String>) -> Heading {
         Heading { text: text.into(), alignment: Alignment::Right }
     }
+
+    /// Whether the column has numbers.
+    pub(super) fn is_of_numbers(&self) -> bool {
+        self.alignment == Alignment::Right
+    }
 }
 
 /// Columns of the page that tables are fitted to; no table is broken unless a program sets it.

@@ -1,6 +1,7 @@
 //! Tables, CSV and a work-precision plot of a comparison.
 
 use super::columns::{Heading, aligned, texts};
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::table::summary_line;
 use super::write_files;
@@ -131,6 +132,11 @@ impl Comparison {
     pub fn table(&self) -> String {
         let about = self.about.as_ref().map_or(String::new(), |about| format!("{about}\n"));
         format!("{}\n{about}\n{}", self.title, aligned(&self.columns, &self.rows))
+    }
+
+    /// The table, to be typeset.
+    pub fn result_table(&self) -> ResultTable {
+        ResultTable::printed("comparison", &self.title, &self.columns, &self.rows)
     }
 
     /// The table as CSV.

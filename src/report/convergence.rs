@@ -1,7 +1,8 @@
 //! A convergence study as tables, as CSV and as a plot of errors against cell size.
 
 use super::columns::{Heading, aligned};
-use super::convergence_plot::plot;
+use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::table::size;
 use super::write_files;
@@ -11,9 +12,8 @@ use crate::text::printable;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// One table for each load, with what its errors refer to.
-pub fn convergence_text(convergence: &Convergence) -> String {
-    let columns = [
+fn headings() -> [Heading; 11] {
+    [
         Heading::words("model"),
         Heading::numbers("level"),
         Heading::numbers("h\nmm"),
@@ -25,15 +25,34 @@ pub fn convergence_text(convergence: &Convergence) -> String {
         Heading::numbers("rate"),
         Heading::numbers("displacements\n%e_rms"),
         Heading::words("network"),
-    ];
+    ]
+}
+
+/// One table for each load, with what its errors refer to.
+pub fn convergence_text(convergence: &Convergence) -> String {
     let mut text = format!("{}\n{} on every level\n", printable(&convergence.scene), size(&convergence.extent));
     for load in &convergence.loads {
-        let rows: Vec<Vec<String>> =
-            load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect();
-        let truth = truth_text(load.truth.as_ref(), convergence.reference.as_deref());
-        write!(text, "\n{}: {truth}\n\n{}", load.name, aligned(&columns, &rows)).expect("a String grows");
+        let table = aligned(&headings(), &load_rows(convergence, load));
+        write!(text, "\n{}\n\n{table}", load_title(convergence, load)).expect("a String grows");
     }
     text
+}
+
+/// The same tables, to be typeset.
+pub fn convergence_tables(convergence: &Convergence) -> Vec<ResultTable> {
+    let table = |load: &LoadConvergence| {
+        let name = format!("convergence {}", load.name);
+        ResultTable::printed(&name, &load_title(convergence, load), &headings(), &load_rows(convergence, load))
+    };
+    convergence.loads.iter().map(table).collect()
+}
+
+fn load_title(convergence: &Convergence, load: &LoadConvergence) -> String {
+    format!("{}: {}", load.name, truth_text(load.truth.as_ref(), convergence.reference.as_deref()))
+}
+
+fn load_rows(convergence: &Convergence, load: &LoadConvergence) -> Vec<Vec<String>> {
+    load.models.iter().enumerate().flat_map(|(i, model)| rows(convergence, load, model, i == 0)).collect()
 }
 
 /// One row per level, and one for the limit where it is extrapolated.
@@ -177,7 +196,7 @@ pub fn convergence_csv(convergence: &Convergence) -> String {
 }
 
 /// What [`write_convergence`] writes.
-pub const CONVERGENCE_FILES: [&str; 2] = ["converge.csv", "converge.svg"];
+pub const CONVERGENCE_FILES: [&str; 2] = [CONVERGENCE_TABLE, "converge.svg"];
 
 /// Writes `converge.csv` and, where any error is above zero, `converge.svg` into `folder`, and returns the paths.
 ///
@@ -185,7 +204,12 @@ pub const CONVERGENCE_FILES: [&str; 2] = ["converge.csv", "converge.svg"];
 /// The plot cannot be drawn; the folder or a file cannot be written.
 pub fn write_convergence(convergence: &Convergence, folder: &Path) -> Result<Vec<PathBuf>> {
     let [table, figure] = CONVERGENCE_FILES;
-    let mut files = vec![(table, convergence_csv(convergence))];
-    files.extend(plot(convergence)?.map(|text| (figure, text)));
+    let text = convergence_csv(convergence);
+    let charts = convergence_charts(&text)?;
+    let title = format!("{}: errors against cell size", convergence.scene);
+    let mut files = vec![(table, text)];
+    if !charts.is_empty() {
+        files.push((figure, stacked(&title, &charts, Columns::Two)?));
+    }
     write_files(folder, &files)
 }

@@ -1,6 +1,7 @@
 //! The named parts of a mesh.
 
 use super::columns::{Heading, aligned};
+use super::result_table::ResultTable;
 use super::table::size;
 use crate::mesh::Mesh;
 use crate::study::extent;
@@ -87,6 +88,17 @@ impl MeshRecord {
         if self.groups.is_empty() {
             return head + "\nThe mesh has no groups; a condition such as where = \"z < 0.01\" selects a part of it.\n";
         }
+        let (header, rows) = self.rows();
+        format!("{head}\n{}", aligned(&header, &rows))
+    }
+
+    /// The same table, to be typeset.
+    pub fn result_table(&self) -> ResultTable {
+        let (header, rows) = self.rows();
+        ResultTable::printed("groups", &format!("Groups of {}", self.mesh), &header, &rows)
+    }
+
+    fn rows(&self) -> (Vec<Heading>, Vec<Vec<String>>) {
         let mut header = vec![Heading::words("group")];
         header.extend(["cells", "sides", "edges", "points", "from m", "to m"].map(Heading::numbers));
         let corner = |x: &[f64]| x.iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(", ");
@@ -96,7 +108,6 @@ impl MeshRecord {
             row.extend(counts.into_iter().chain([corner(&group.from), corner(&group.to)]));
             row
         };
-        let rows: Vec<_> = self.groups.iter().map(row).collect();
-        format!("{head}\n{}", aligned(&header, &rows))
+        (header, self.groups.iter().map(row).collect())
     }
 }

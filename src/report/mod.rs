@@ -6,7 +6,6 @@ mod check;
 mod columns;
 mod comparison;
 mod convergence;
-mod convergence_plot;
 mod deformed;
 mod derivation;
 mod figure;
@@ -42,14 +41,18 @@ mod surface;
 mod table;
 mod typeset;
 
-pub use catalogue::{ElementRecord, MaterialRecord, SpringGroupRecord, elements_text, materials_text};
-pub use check::{InspectionRecord, PropertyRecord, check_json, check_text};
+pub use catalogue::{
+    ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, elements_text, materials_table, materials_text,
+};
+pub use check::{InspectionRecord, PropertyRecord, check_table, check_text};
 pub use columns::{Heading, set_page_width};
 pub use comparison::{COMPARISON_FILES, Comparison};
-pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_text, write_convergence};
+pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_tables, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
-pub use figure::{Axis, Chart, Columns, Figure, RunFolder, Series, Shape};
+pub use figure::{
+    Axis, Chart, Columns, Deformation, Figure, Moduli, ModulusCurve, Picture, PictureFormat, RunFolder, Series, Shape,
+};
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
 pub use frequencies::FrequencyRecord;
@@ -63,16 +66,16 @@ pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::*;
 pub use outputs::{check_outputs, check_scene_outputs};
 pub use page::page_html;
-pub use paper::{PAPER_FILES, paper_text, write_paper};
+pub use paper::{PAPER_FILES, paper_result_table, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use region_record::RegionRecord;
 pub use result_table::{CellRecord, ColumnRecord, ResultTable};
 pub use series::write_series;
-pub use stability::{STABILITY_FILES, stability_text, write_stability};
-pub use stretches::{STRETCHES_FILES, stretches_text, write_stretches};
+pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};
+pub use stretches::{STRETCHES_FILES, stretches_tables, stretches_text, write_stretches};
 pub use study_lines::{Shard, StudyLines};
 pub use study_record::StudyRecord;
-pub use study_table::{StudyTable, planned_text, studies_text};
+pub use study_table::{StudyTable, planned_table, planned_text, studies_table, studies_text};
 pub use table::{notes, summary, table};
 pub use typeset::Markup;
 

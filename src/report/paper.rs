@@ -3,6 +3,7 @@
 use super::columns::{Heading, aligned, texts};
 use super::comparison::Comparison;
 use super::deformed::deformed;
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::surface::surface_figure;
 use super::write_files;
@@ -22,6 +23,12 @@ pub fn paper_text(table: &PaperTable) -> String {
         writeln!(text, "{line}").expect("a String grows");
     }
     text
+}
+
+/// A table of a paper, to be typeset.
+pub fn paper_result_table(table: &PaperTable) -> ResultTable {
+    let (header, rows) = cells(table);
+    ResultTable::printed(&table.name, &format!("{}: {}", heading(&table.name), table.title), &header, &rows)
 }
 
 /// All tables as Markdown, with their figures; `figures` are the names of files beside it.

@@ -1,5 +1,6 @@
 //! The tables of a report: one home for those of the page, of LaTeX and of Markdown.
 
+use super::columns::Heading;
 use super::fit_record::FitRecord;
 use super::frequencies::FrequencyRecord;
 use super::json::Report;
@@ -64,6 +65,21 @@ impl ResultTable {
             motions(report),
         ];
         all.into_iter().filter(|table| !table.rows.is_empty()).collect()
+    }
+
+    /// A table that is printed as well: rows of texts under their headings.
+    pub(super) fn printed(name: &str, title: &str, columns: &[Heading], rows: &[Vec<String>]) -> ResultTable {
+        let column = |heading: &Heading| ColumnRecord {
+            title: heading.text.split_whitespace().collect::<Vec<_>>().join(" ").replace("- ", "-"),
+            unit: String::new(),
+            numbers: heading.is_of_numbers(),
+        };
+        let cell = |(text, column): (&String, &Heading)| CellRecord {
+            text: text.clone(),
+            value: text.parse().ok().filter(|_| column.is_of_numbers()),
+        };
+        let row = |row: &Vec<String>| row.iter().zip(columns).map(cell).collect();
+        ResultTable::new(name, title, columns.iter().map(column).collect(), rows.iter().map(row).collect())
     }
 
     fn new(name: &str, title: &str, columns: Vec<ColumnRecord>, rows: Vec<Vec<CellRecord>>) -> ResultTable {

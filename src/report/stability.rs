@@ -1,6 +1,7 @@
 //! A sweep as a table, as CSV, and as maps of its errors.
 
 use super::columns::{Heading, aligned};
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::write_files;
 use crate::error::Result;
@@ -19,14 +20,23 @@ const SHADES: [&str; 8] = ["#fbf1c2", "#f8dc8c", "#f2c25c", "#e99f51", "#dd7350"
 const REFUSED: &str = "#c8ccd4";
 const TOLD: &str = "#9db8d9";
 
-/// What came of each family and method, worst first to see, then what is lost and why cases were refused.
-pub fn stability_text(outcome: &StabilityOutcome) -> String {
+/// What came of each family and method, to be typeset.
+pub fn stability_table(outcome: &StabilityOutcome) -> ResultTable {
+    ResultTable::printed("stability", &outcome.title, &headings(), &families(outcome))
+}
+
+fn headings() -> Vec<Heading> {
     let mut header = ["family", "of"].map(Heading::words).to_vec();
     header.push(Heading::numbers("cases"));
     header.extend(Verdict::NAMES.map(|name| Heading::numbers(name.replace('-', "-\n"))));
     let figures = ["worst\nerror", "worst error\nin f32", "largest\ncondition", "k < 0"];
     header.extend(figures.map(Heading::numbers));
-    let mut text = format!("{}\n\n{}", outcome.title, aligned(&header, &families(outcome)));
+    header
+}
+
+/// What came of each family and method, worst first to see, then what is lost and why cases were refused.
+pub fn stability_text(outcome: &StabilityOutcome) -> String {
+    let mut text = format!("{}\n\n{}", outcome.title, aligned(&headings(), &families(outcome)));
     let reasons = reasons(outcome);
     if !reasons.is_empty() {
         text += "\nCases without an answer, and cases with a remark\n";

@@ -2,6 +2,7 @@
 
 use super::columns::{Heading, aligned, texts};
 use super::comparison::COLORS;
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::write_files;
 use crate::error::{Error, Result};
@@ -25,6 +26,19 @@ pub fn stretches_text(study: &Stretches) -> String {
         study.element,
         aligned(&sampled_header, &sampled_rows)
     )
+}
+
+/// The same tables, to be typeset.
+pub fn stretches_tables(study: &Stretches) -> Vec<ResultTable> {
+    let (header, rows) = of_fits(study, |fit| &fit.errors);
+    let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
+    let (sampled_header, sampled_rows) = runs(study);
+    let sampled = format!("{}, one element on one thread", study.element);
+    vec![
+        ResultTable::printed("stretch", &format!("{}; %e_rms", title(study)), &header, &rows),
+        ResultTable::printed("force", "Force at the pulled end, % above the body's", &forces_header, &forces),
+        ResultTable::printed("samples", &sampled, &sampled_header, &sampled_rows),
+    ]
 }
 
 /// What [`write_stretches`] writes.

@@ -1,6 +1,7 @@
 //! The table of a sweep: a row for each study, fit and load.
 
 use super::columns::{Heading, aligned};
+use super::result_table::ResultTable;
 use super::rows::csv;
 use super::study_record::StudyRecord;
 use crate::solve::Standing;
@@ -120,6 +121,17 @@ fn cell(value: &Value) -> String {
 
 /// What each study sets.
 pub fn planned_text(keys: &[String], studies: &[Study]) -> String {
+    let (header, rows) = planned(keys, studies);
+    aligned(&header, &rows[..rows.len().min(PRINTED)]) + &rest(studies.len())
+}
+
+/// The same of all studies, to be typeset.
+pub fn planned_table(title: &str, keys: &[String], studies: &[Study]) -> ResultTable {
+    let (header, rows) = planned(keys, studies);
+    ResultTable::printed("studies", title, &header, &rows)
+}
+
+fn planned(keys: &[String], studies: &[Study]) -> (Vec<Heading>, Vec<Vec<String>>) {
     let mut header = vec![Heading::words("study")];
     header.extend(keys.iter().map(Heading::numbers));
     let row = |(place, study): (usize, &Study)| {
@@ -127,8 +139,7 @@ pub fn planned_text(keys: &[String], studies: &[Study]) -> String {
         let set = keys.iter().map(|key| values.get(key).map_or_else(String::new, shown));
         std::iter::once((place + 1).to_string()).chain(set).collect()
     };
-    let rows: Vec<Vec<String>> = studies.iter().enumerate().take(PRINTED).map(row).collect();
-    aligned(&header, &rows) + &rest(studies.len())
+    (header, studies.iter().enumerate().map(row).collect())
 }
 
 /// How many rows are not printed.
@@ -143,6 +154,46 @@ pub fn studies_text<'a>(
     studies: &[Study],
     record: impl Fn(&str) -> Option<&'a StudyRecord>,
 ) -> String {
+    let (header, rows) = studied(keys, studies, &record);
+    let shown = &rows[..rows.len().min(PRINTED)];
+    let mut text = aligned(&header, shown) + &rest(rows.len());
+    let is_marked = |row: &Vec<String>| row.iter().any(|cell| cell.ends_with(" !"));
+    if shown.iter().any(is_marked) {
+        text += "! the network is not stable, so that its errors mean little; the column status of table.csv has the verdict\n";
+    }
+    let failed = studies
+        .iter()
+        .enumerate()
+        .filter_map(|(place, study)| Some((place + 1, record(&StudyRecord::mark(&study.values()))?.error.as_ref()?)));
+    let failed: Vec<_> = failed.collect();
+    for (number, error) in failed.iter().take(FAULTS) {
+        text += &format!("\nstudy {number} failed: {error}");
+    }
+    if failed.len() > FAULTS {
+        text += &format!("\nand {} more failed", failed.len() - FAULTS);
+    }
+    if !failed.is_empty() {
+        text += "\n";
+    }
+    text
+}
+
+/// The same of all studies that are done, to be typeset.
+pub fn studies_table<'a>(
+    title: &str,
+    keys: &[String],
+    studies: &[Study],
+    record: impl Fn(&str) -> Option<&'a StudyRecord>,
+) -> ResultTable {
+    let (header, rows) = studied(keys, studies, &record);
+    ResultTable::printed("sweep", &format!("{title}: largest %e_rms under any load"), &header, &rows)
+}
+
+fn studied<'a>(
+    keys: &[String],
+    studies: &[Study],
+    record: &impl Fn(&str) -> Option<&'a StudyRecord>,
+) -> (Vec<Heading>, Vec<Vec<String>>) {
     let found = |study: &Study| record(&StudyRecord::mark(&study.values()));
     let rms = |fit: &Value| fit["loads"].as_array()?.iter().filter_map(|load| load["e_rms"].as_f64()).reduce(f64::max);
     let fits = |record: &'a StudyRecord| -> &'a [Value] {
@@ -170,24 +221,7 @@ pub fn studies_text<'a>(
         }));
         row
     };
-    let rows: Vec<Vec<String>> = done.iter().take(PRINTED).map(row).collect();
-    let mut text = aligned(&header, &rows) + &rest(done.len());
-    let is_marked = |row: &Vec<String>| row.iter().any(|cell| cell.ends_with(" !"));
-    if rows.iter().any(is_marked) {
-        text += "! the network is not stable, so that its errors mean little; the column status of table.csv has the verdict\n";
-    }
-    let failed: Vec<_> =
-        done.iter().filter_map(|(place, _, record)| Some((place + 1, record.error.as_ref()?))).collect();
-    for (number, error) in failed.iter().take(FAULTS) {
-        text += &format!("\nstudy {number} failed: {error}");
-    }
-    if failed.len() > FAULTS {
-        text += &format!("\nand {} more failed", failed.len() - FAULTS);
-    }
-    if !failed.is_empty() {
-        text += "\n";
-    }
-    text
+    (header, done.iter().map(row).collect())
 }
 
 /// A value in a printed table: numbers with at most six digits.

@@ -15,6 +15,11 @@ pub enum Markup {
 }
 
 impl Markup {
+    /// Tables in this language, one below the other.
+    pub fn tables(self, tables: &[ResultTable]) -> String {
+        tables.iter().map(|table| self.table(table)).collect::<Vec<_>>().join("\n")
+    }
+
     /// The table in this language.
     pub fn table(self, table: &ResultTable) -> String {
         match self {
@@ -43,7 +48,8 @@ fn latex(table: &ResultTable) -> String {
     let columns: String = table.columns.iter().map(|c| if c.numbers { 'r' } else { 'l' }).collect();
     let mut text = String::from("\\begin{table}\n  \\centering\n");
     writeln!(text, "  \\caption{{{}}}", escaped(&table.title)).expect("a String grows");
-    writeln!(text, "  \\label{{tab:{}}}", table.name).expect("a String grows");
+    let plain: String = table.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+    writeln!(text, "  \\label{{tab:{plain}}}").expect("a String grows");
     writeln!(text, "  \\begin{{tabular}}{{{columns}}}\n    \\toprule").expect("a String grows");
     text += &line(table.columns.iter().map(|c| escaped(&heading(&c.title, &c.unit))).collect());
     text += "    \\midrule\n";
@@ -56,13 +62,15 @@ fn latex(table: &ResultTable) -> String {
     text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n"
 }
 
-/// A number with its sign and its power of ten.
+/// Numbers with their signs and their powers of ten; `-` where nothing is known.
 fn number(text: &str) -> String {
-    match text.split_once('e') {
-        Some((digits, power)) => format!("${digits}\\cdot 10^{{{power}}}$"),
-        None if text.starts_with('-') => format!("${text}$"),
-        None => escaped(text),
-    }
+    let one = |word: &str| match (word.parse::<f64>().is_ok_and(f64::is_finite), word.split_once('e')) {
+        (true, Some((digits, power))) => format!("${digits}\\cdot 10^{{{power}}}$"),
+        (true, None) if word.starts_with('-') => format!("${word}$"),
+        (false, _) if word == "-" => "--".into(),
+        _ => escaped(word),
+    };
+    text.split_whitespace().map(one).collect::<Vec<_>>().join(" ")
 }
 
 /// Words without the characters that LaTeX reads as commands, and with those beyond ASCII that it may not know as commands.
@@ -78,6 +86,12 @@ fn escaped(text: &str) -> String {
             '−' => safe.push_str("$-$"),
             '–' => safe.push_str("--"),
             'ν' => safe.push_str("$\\nu$"),
+            'ρ' => safe.push_str("$\\rho$"),
+            '×' => safe.push_str("$\\times$"),
+            '†' => safe.push_str("$\\dagger$"),
+            '²' => safe.push_str("$^2$"),
+            '³' => safe.push_str("$^3$"),
+            '…' => safe.push_str("\\dots{}"),
             'µ' => safe.push_str("\\textmu{}"),
             '≥' => safe.push_str("$\\ge$"),
             _ => safe.push(c),

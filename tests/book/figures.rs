@@ -26,12 +26,39 @@ fn the_picture_shows_the_errors_of_a_fresh_run() {
     compare(&known, &words(&picture), 0.0).unwrap();
 }
 
+#[test]
+fn the_figures_for_a_paper_are_those_of_a_fresh_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |name: &str| root().join("scenes").join(name).display().to_string();
+    let springfit = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
+        let output = command.args(arguments).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    springfit(&["run", &scene("cube_tet.toml"), "--set", "output.vtu=true", "--out", "run"]);
+    springfit(&["converge", &scene("square_quad.toml"), "--out", "converge"]);
+    let figure = |name: &str, run: &str, more: &[&str]| {
+        let file = format!("plot-{name}.svg");
+        springfit(&[&["plot", run, "--figure", name, "-o", &file][..], more].concat());
+        let (known, made) = (root().join("docs/src/figures").join(&file), folder.path().join(&file));
+        if std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some() {
+            std::fs::copy(made, known).unwrap();
+            return;
+        }
+        let text = |path| words(&std::fs::read_to_string(path).unwrap());
+        compare(&text(known), &text(made), 0.01).unwrap();
+    };
+    figure("deformation", "run", &["--of", "offdiag k>=0", "--load", "shear", "--columns", "two"]);
+    figure("moduli", "run", &["--columns", "two"]);
+    figure("convergence", "converge", &[]);
+}
+
 /// Of the study of the paper, whose command draws them.
 #[test]
 #[ignore = "takes minutes; .ci/run has it"]
 fn the_pictures_of_the_paper_are_those_of_a_fresh_run() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["paper", "--table", "1", "--table", "3", "--table", "figure 9", "--out", "paper"];
+    let arguments = ["paper", "--only", "1", "--only", "3", "--only", "figure 9", "--out", "paper"];
     let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
     assert!(command.args(arguments).current_dir(folder.path()).output().unwrap().status.success());
     for name in ["cube_tet-tension", "cube_hex_large-tension", "figure-9"] {

@@ -67,16 +67,46 @@ function addPrecision(record) {
 
 function addWhole(record) {
   const rows = record.report.fits.filter((fit) => fit.whole).flatMap((fit) => [
-    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: `${fit.name}, ${load.load}` })),
-    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${fit.name}, ${load.load} (validation)` })),
+    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: `${cut(fit.name, 20)}, ${cut(load.load, 16)}` })),
+    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${cut(fit.name, 20)}, ${cut(load.load, 16)} (v.)` })),
   ]);
   if (!rows.length) return;
-  addChart("whole", "Whole-object fits: relative error before and after", () => {
-    const names = rows.map((row) => label(cut(row.name)));
-    const dots = (name, key, color, symbol) => ({ type: "scatter", mode: "markers", name, y: names, x: rows.map((row) => row[key] === null ? null : 100 * row[key]), marker: { size: 10, color, symbol }, hovertemplate: "%{y}<br>%{x:.3g} %<extra></extra>" });
-    const line = { type: "scatter", mode: "lines", y: names.flatMap((name) => [name, name, null]), x: rows.flatMap((row) => [100 * row.before, 100 * row.after, null]), line: { color: theme.color("soft") }, showlegend: false, hoverinfo: "skip" };
-    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed" }, height: 180 + 26 * rows.length }) };
+  addChart("whole", "Whole-object fits: relative error before and after; v.: validation", () => {
+    // Rows have numbers: names that are cut may be alike.
+    const places = rows.map((_, i) => i);
+    const names = rows.map((row) => label(row.name));
+    const dots = (name, key, color, symbol) => ({ type: "scatter", mode: "markers", name, y: places, text: names, x: rows.map((row) => row[key] === null ? null : 100 * row[key]), marker: { size: 10, color, symbol }, hovertemplate: "%{text}<br>%{x:.3g} %<extra></extra>" });
+    const line = { type: "scatter", mode: "lines", y: places.flatMap((place) => [place, place, null]), x: rows.flatMap((row) => [100 * row.before, 100 * row.after, null]), line: { color: theme.color("soft") }, showlegend: false, hoverinfo: "skip" };
+    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed", tickvals: places, ticktext: names }, height: 180 + 26 * rows.length }) };
   });
+}
+
+/** The paths of regularizations of whole-object fits: errors against ρ, and the errors of the fitted loads against the change (L-curve). */
+function addPaths(record) {
+  const fits = record.report.fits.filter((fit) => fit.whole?.curve.filter((stage) => stage.validated !== null && stage.regularization > 0).length > 1);
+  if (!fits.length) return;
+  const path = (fit) => fit.whole.curve.filter((stage) => stage.validated !== null && stage.regularization > 0);
+  const percent = (share) => share === null ? null : 100 * share;
+  const lines = (x, y, hover, more = {}) => fits.map((fit, i) => {
+    const stages = path(fit);
+    const isChosen = (stage) => stage.regularization === fit.whole.regularization;
+    const hue = HUES[i % HUES.length];
+    return {
+      type: "scatter", mode: "lines+markers", name: label(cut(fit.name)), x: stages.map(x), y: stages.map(y), customdata: stages.map((stage) => stage.regularization), line: { color: hue, dash: DASHES[i % DASHES.length], width: 2 },
+      marker: { color: hue, symbol: stages.map((stage) => stage.rejected ? "x" : isChosen(stage) ? "star" : "circle"), size: stages.map((stage) => isChosen(stage) ? 14 : 6) },
+      hovertemplate: hover, ...more,
+    };
+  });
+  const axis = (text, more = {}) => ({ type: "log", title: { text }, ...more });
+  const hint = () => element("p", { class: "hint" }, "Star: the ρ that was chosen, with the least error of validation. Cross: rejected, because the constants differ too much.");
+  addChart("rho", "Whole-object fits: error of validation against the regularization ρ", () => ({
+    data: lines((stage) => stage.regularization, (stage) => percent(stage.validated), "ρ = %{x:.1e}<br>%{y:.3g} %<extra></extra>"),
+    layout: layout({ xaxis: axis("regularization ρ", { autorange: "reversed" }), yaxis: axis("error of validation, %"), hovermode: "closest" }),
+  }), [hint()]);
+  addChart("l-curve", "Whole-object fits: error of the fitted loads against the change of the constants", () => ({
+    data: lines((stage) => stage.change, (stage) => percent(stage.trained), "ρ = %{customdata:.1e}<br>change %{x:.3g}<br>%{y:.3g} %<extra></extra>"),
+    layout: layout({ xaxis: axis("change: rms of ln(factor) on the constants"), yaxis: axis("error of the fitted loads, %"), hovermode: "closest" }),
+  }), [hint()]);
 }
 
 function addMotion(record) {
@@ -108,6 +138,7 @@ function showCharts(record) {
   addHistogram(record);
   addModuli(record);
   addWhole(record);
+  addPaths(record);
   addMotion(record);
   if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has neither loads nor fits, so there is nothing to draw."));
 }

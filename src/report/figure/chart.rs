@@ -1,31 +1,14 @@
 //! A chart in the plane for a paper: axes fitted to the data, marks and lines that differ in colour, form and grey.
 
+use super::axis::{Axis, log_marks, number};
+use super::palette::{COLORS, DASHES, REFERENCE};
+use super::sheet::{Columns, LETTERS, width};
 use crate::error::{Error, Result};
 use crate::text::printable;
-use clap::ValueEnum;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 use std::ops::Range;
-
-/// The width of a figure in a paper.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Columns {
-    /// 85 mm.
-    #[default]
-    One,
-    /// 178 mm.
-    Two,
-}
-
-/// An axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    /// What is measured, with its unit.
-    pub title: String,
-    /// Whether it is logarithmic where its values span a decade; values above zero alone are shown.
-    pub is_log: bool,
-}
 
 /// How the points of a series are shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +19,10 @@ pub enum Shape {
     Below,
     /// As a line.
     Line,
+    /// As a line with marks.
+    Curve,
+    /// As a thin grey line with its name at its last point, for comparison; no place is made for it.
+    Guide,
     /// As bars of this width.
     Bars(f64),
 }
@@ -64,33 +51,20 @@ pub struct Chart {
     pub series: Vec<Series>,
 }
 
-/// Okabe and Ito (2008): told apart by all eyes; in an order whose neighbours differ in grey.
-const COLORS: [RGBColor; 8] = [
-    RGBColor(0, 114, 178),
-    RGBColor(230, 159, 0),
-    RGBColor(0, 0, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(120, 120, 120),
-];
-/// Pixels of a line of the legend, and of a character of its text.
-const LINE: i32 = 15;
-const CHARACTER: f64 = 6.2;
+/// Units of the drawing in a pixel: the drawing library places all at whole units.
+const FINE: i32 = 8;
+/// Units of a line of the legend.
+const LINE: i32 = 15 * FINE;
+/// Units of lines.
+const THICK: u32 = 2 * FINE as u32 - FINE as u32 / 4;
+const THIN: u32 = FINE as u32;
+/// Units from the middle of a mark to its edge.
+const MARK: i32 = 7 * FINE / 2;
+/// Units of letters, as the drawing library counts them.
+const FONT: i32 = FINE * LETTERS as i32 * 5 / 4;
 
 type Fallible = std::result::Result<(), Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-impl Columns {
-    /// Millimetres across.
-    fn width(self) -> u32 {
-        match self {
-            Columns::One => 85,
-            Columns::Two => 178,
-        }
-    }
-}
 
 impl Chart {
     /// The chart as an SVG file's text.
@@ -98,8 +72,9 @@ impl Chart {
     /// # Errors
     /// Nothing can be shown.
     pub fn svg(&self, columns: Columns) -> Result<String> {
+        let own = || self.series.iter().filter(|series| series.shape != Shape::Guide);
         let values = |axis: &Axis, value: &dyn Fn(&(f64, f64)) -> f64| -> Vec<f64> {
-            let all = self.series.iter().flat_map(|series| series.points.iter().map(value));
+            let all = own().flat_map(|series| series.points.iter().map(value));
             all.filter(|v| v.is_finite() && (*v > 0.0 || !axis.is_log)).collect()
         };
         let (xs, ys) = (values(&self.x, &|p| p.0), values(&self.y, &|p| p.1));
@@ -107,31 +82,33 @@ impl Chart {
             return Err(Error::new(format!("nothing to draw: {} has no values", printable(&self.title))));
         }
         let bars = self.series.iter().any(|series| matches!(series.shape, Shape::Bars(_)));
-        let logs = [self.x.is_log && spans_decade(&xs), self.y.is_log && spans_decade(&ys)];
-        let (x, mut y) = (fitted(&xs, logs[0]), fitted(&ys, logs[1]));
+        let (x, mut y) = (self.x.range(&xs), self.y.range(&ys));
         if bars {
             y.start = 0.0;
         }
-        // 96 pixels an inch.
-        let width = (f64::from(columns.width()) * 96.0 / 25.4) as u32;
+        let width = columns.pixels() * FINE as u32;
         let rows = self.legend(width as i32).last().map_or(0, |(row, ..)| row + 1);
-        let height = (0.72 * f64::from(width.min(440))) as u32 + (LINE * rows) as u32;
+        let height = (0.72 * f64::from(width.min(440 * FINE as u32))) as u32 + (LINE * rows) as u32;
         let mut text = String::new();
-        self.draw(&mut text, (width, height), x, y, logs)
+        self.draw(&mut text, (width, height), x, y)
             .map_err(|e| Error::new(format!("the figure cannot be drawn: {e}")))?;
-        Ok(titled(&text, &self.title, columns.width(), (width, height)))
+        Ok(titled(&text, &self.title, columns.millimetres(), (width, height)))
     }
 
-    fn draw(&self, text: &mut String, size: (u32, u32), x: Range<f64>, y: Range<f64>, logs: [bool; 2]) -> Fallible {
+    fn draw(&self, text: &mut String, size: (u32, u32), x: Range<f64>, y: Range<f64>) -> Fallible {
         let area = SVGBackend::with_string(text, size).into_drawing_area();
         area.fill(&WHITE)?;
         let legend = self.legend(size.0 as i32);
         let rows = legend.last().map_or(0, |(row, ..)| row + 1);
-        let (plot, names) = area.split_vertically(size.1 as i32 - LINE * rows - 4);
-        match logs.into() {
-            (true, true) => self.panel(&plot, x.log_scale(), y.log_scale())?,
-            (true, false) => self.panel(&plot, x.log_scale(), y)?,
-            (false, true) => self.panel(&plot, x, y.log_scale())?,
+        let (plot, names) = area.split_vertically(size.1 as i32 - LINE * rows - 4 * FINE);
+        let marked = |range: Range<f64>| {
+            let marks = log_marks(&range);
+            range.log_scale().with_key_points(marks)
+        };
+        match (self.x.is_log, self.y.is_log) {
+            (true, true) => self.panel(&plot, marked(x), marked(y))?,
+            (true, false) => self.panel(&plot, marked(x), y)?,
+            (false, true) => self.panel(&plot, x, marked(y))?,
             (false, false) => self.panel(&plot, x, y)?,
         }
         for (row, left, series) in legend {
@@ -149,25 +126,26 @@ impl Chart {
         Y::CoordDescType: ValueFormatter<f64>,
     {
         let mut chart = ChartBuilder::on(area)
-            .margin(6)
-            .margin_right(14)
-            .x_label_area_size(36)
-            .y_label_area_size(52)
+            .margin(6 * FINE)
+            .margin_right(14 * FINE)
+            .x_label_area_size(36 * FINE)
+            .y_label_area_size(52 * FINE)
             .build_cartesian_2d(x, y)?;
         let grey = BLACK.mix(0.12);
         chart
             .configure_mesh()
             .light_line_style(WHITE.mix(0.0))
-            .bold_line_style(grey)
-            .axis_style(BLACK.mix(0.6))
+            .bold_line_style(grey.stroke_width(FINE as u32 * 3 / 4))
+            .axis_style(BLACK.mix(0.6).stroke_width(FINE as u32))
+            .set_all_tick_mark_size(4 * FINE)
             .x_labels(6)
             .y_labels(6)
             .x_desc(printable(&self.x.title))
             .y_desc(printable(&self.y.title))
             .x_label_formatter(&number)
             .y_label_formatter(&number)
-            .label_style(("sans-serif", 11))
-            .axis_desc_style(("sans-serif", 12))
+            .label_style(("sans-serif", FONT))
+            .axis_desc_style(("sans-serif", FONT))
             .draw()?;
         for (i, series) in self.series.iter().enumerate() {
             let color = COLORS[i % COLORS.len()];
@@ -178,28 +156,48 @@ impl Chart {
                     };
                     chart.draw_series(series.points.iter().map(bar))?;
                 }
-                Shape::Line => match i % 4 {
-                    0 => {
-                        chart.draw_series(LineSeries::new(series.points.iter().copied(), color.stroke_width(2)))?;
-                    }
-                    k => {
-                        let (on, off) = [(8, 3), (3, 3), (12, 5)][k - 1];
+                Shape::Line | Shape::Curve => match DASHES[i % DASHES.len()] {
+                    [on, off, ..] => {
                         let points = series.points.iter().copied();
-                        chart.draw_series(DashedLineSeries::new(points, on, off, color.stroke_width(2)))?;
+                        chart.draw_series(DashedLineSeries::new(
+                            points,
+                            *on * FINE,
+                            *off * FINE,
+                            color.stroke_width(THICK),
+                        ))?;
+                    }
+                    _ => {
+                        chart.draw_series(LineSeries::new(series.points.iter().copied(), color.stroke_width(THICK)))?;
                     }
                 },
-                Shape::Marks | Shape::Below => {
-                    for point in &series.points {
-                        match mark(i, series.shape) {
-                            Mark::Disc => chart.draw_series([Circle::new(*point, 4, color.filled())])?,
-                            Mark::Ring => chart.draw_series([Circle::new(*point, 4, color.stroke_width(2))])?,
-                            Mark::Triangle => chart.draw_series([TriangleMarker::new(*point, 5, color.filled())])?,
-                            Mark::Cross => chart.draw_series([Cross::new(*point, 4, color.stroke_width(2))])?,
-                            Mark::Open => {
-                                chart.draw_series([TriangleMarker::new(*point, -5, color.stroke_width(1))])?
-                            }
-                        };
-                    }
+                Shape::Guide => {
+                    let points = series.points.iter().copied();
+                    chart.draw_series(DashedLineSeries::new(
+                        points,
+                        4 * FINE,
+                        4 * FINE,
+                        REFERENCE.stroke_width(THIN),
+                    ))?;
+                    let at = series.points.last().copied().into_iter();
+                    let name =
+                        |at| Text::new(series.name.clone(), at, ("sans-serif", FONT - FINE).into_font().color(&GUIDE));
+                    chart.draw_series(at.map(name))?;
+                }
+                Shape::Marks | Shape::Below => {}
+            }
+            if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
+                for point in &series.points {
+                    match mark(i, series.shape) {
+                        Mark::Disc => chart.draw_series([Circle::new(*point, MARK, color.filled())])?,
+                        Mark::Ring => chart.draw_series([Circle::new(*point, MARK, color.stroke_width(THICK))])?,
+                        Mark::Triangle => {
+                            chart.draw_series([TriangleMarker::new(*point, MARK + FINE, color.filled())])?
+                        }
+                        Mark::Cross => chart.draw_series([Cross::new(*point, MARK, color.stroke_width(THICK))])?,
+                        Mark::Open => {
+                            chart.draw_series([TriangleMarker::new(*point, -MARK - FINE, color.stroke_width(THIN))])?
+                        }
+                    };
                 }
             }
         }
@@ -208,51 +206,61 @@ impl Chart {
 
     /// The row and the left end of each name, and its place among the series.
     fn legend(&self, width: i32) -> Vec<(i32, i32, usize)> {
-        if self.series.len() < 2 {
+        let named = || self.series.iter().enumerate().filter(|(_, series)| series.shape != Shape::Guide);
+        if named().count() < 2 {
             return Vec::new();
         }
-        let (mut row, mut left) = (0, 8);
+        let (mut row, mut left) = (0, 8 * FINE);
         let place = |(i, series): (usize, &Series)| {
-            let own = 24 + (CHARACTER * series.name.chars().count() as f64) as i32 + 14;
-            if left > 8 && left + own > width {
-                (row, left) = (row + 1, 8);
+            let own = (24 + self::width(&series.name) as i32 + 14) * FINE;
+            if left > 8 * FINE && left + own > width {
+                (row, left) = (row + 1, 8 * FINE);
             }
             let found = (row, left, i);
             left += own;
             found
         };
-        self.series.iter().enumerate().map(place).collect()
+        named().map(place).collect()
     }
 
     fn name(&self, area: &Area, i: usize, (left, top): (i32, i32)) -> Fallible {
-        let (series, color, at) = (&self.series[i], COLORS[i % COLORS.len()], (left + 9, top + 6));
+        let (series, color, at) = (&self.series[i], COLORS[i % COLORS.len()], (left + 9 * FINE, top + 6 * FINE));
         match series.shape {
-            Shape::Bars(_) => {
-                area.draw(&Rectangle::new([(left + 3, top + 1), (left + 15, top + 11)], color.filled()))?
-            }
-            Shape::Line => {
-                let ends = [(left, at.1), (left + 18, at.1)];
-                match i % 4 {
-                    0 => area.draw(&PathElement::new(ends, color.stroke_width(2)))?,
-                    _ => {
-                        for from in [left, left + 7, left + 14] {
-                            area.draw(&PathElement::new([(from, at.1), (from + 4, at.1)], color.stroke_width(2)))?;
-                        }
+            Shape::Bars(_) => area.draw(&Rectangle::new(
+                [(left + 3 * FINE, top + FINE), (left + 15 * FINE, top + 11 * FINE)],
+                color.filled(),
+            ))?,
+            Shape::Line | Shape::Curve | Shape::Guide => match DASHES[i % DASHES.len()] {
+                [] => {
+                    area.draw(&PathElement::new([(left, at.1), (left + 18 * FINE, at.1)], color.stroke_width(THICK)))?
+                }
+                _ => {
+                    for from in [left, left + 7 * FINE, left + 14 * FINE] {
+                        area.draw(&PathElement::new(
+                            [(from, at.1), (from + 4 * FINE, at.1)],
+                            color.stroke_width(THICK),
+                        ))?;
                     }
                 }
-            }
-            Shape::Marks | Shape::Below => match mark(i, series.shape) {
-                Mark::Disc => area.draw(&Circle::new(at, 4, color.filled()))?,
-                Mark::Ring => area.draw(&Circle::new(at, 4, color.stroke_width(2)))?,
-                Mark::Triangle => area.draw(&TriangleMarker::new(at, 5, color.filled()))?,
-                Mark::Cross => area.draw(&Cross::new(at, 4, color.stroke_width(2)))?,
-                Mark::Open => area.draw(&TriangleMarker::new(at, -5, color.stroke_width(1)))?,
             },
+            Shape::Marks | Shape::Below => {}
         }
-        area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24, top), ("sans-serif", 11)))?;
+        if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
+            match mark(i, series.shape) {
+                Mark::Disc => area.draw(&Circle::new(at, MARK, color.filled()))?,
+                Mark::Ring => area.draw(&Circle::new(at, MARK, color.stroke_width(THICK)))?,
+                Mark::Triangle => area.draw(&TriangleMarker::new(at, MARK + FINE, color.filled()))?,
+                Mark::Cross => area.draw(&Cross::new(at, MARK, color.stroke_width(THICK)))?,
+                Mark::Open => area.draw(&TriangleMarker::new(at, -MARK - FINE, color.stroke_width(THIN)))?,
+            }
+        }
+        area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24 * FINE, top), ("sans-serif", FONT)))?;
         Ok(())
     }
 }
+
+/// Of the names of guides.
+const GUIDE: RGBColor = RGBColor(110, 110, 110);
 
 #[derive(Clone, Copy)]
 enum Mark {
@@ -267,38 +275,31 @@ enum Mark {
 fn mark(i: usize, shape: Shape) -> Mark {
     match shape {
         Shape::Below => Mark::Open,
-        Shape::Marks | Shape::Line | Shape::Bars(_) => {
+        Shape::Marks | Shape::Line | Shape::Curve | Shape::Guide | Shape::Bars(_) => {
             [Mark::Disc, Mark::Triangle, Mark::Cross, Mark::Ring][(i + i / COLORS.len()) % 4]
         }
     }
 }
 
-/// Whether a logarithmic axis has two powers of ten to be marked.
-fn spans_decade(values: &[f64]) -> bool {
-    let power = |v: f64| v.log10().floor();
-    let (least, largest) = values.iter().fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
-    power(1.3 * largest) - power(least / 1.3) >= 2.0
-}
-
-/// The range of the values with some room on both sides.
-fn fitted(values: &[f64], is_log: bool) -> Range<f64> {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if is_log {
-        let room = (largest / least).powf(0.06).max(1.3);
-        return least / room..largest * room;
+/// Charts one above the other, as one SVG file's text.
+///
+/// # Errors
+/// A chart shows nothing.
+pub fn stacked(title: &str, charts: &[Chart], columns: Columns) -> Result<String> {
+    let drawn: Vec<String> = charts.iter().map(|chart| chart.svg(columns)).collect::<Result<_>>()?;
+    let height = |svg: &str| -> f64 {
+        let size = svg.split_once("viewBox=\"0 0 ").and_then(|(_, rest)| rest.split_once('"')?.0.split_once(' '));
+        size.and_then(|(_, height)| height.parse().ok()).unwrap_or(0.0)
+    };
+    let width = columns.pixels() * FINE as u32;
+    let (mut text, mut top) = (String::new(), 0.0);
+    for svg in &drawn {
+        let own = height(svg);
+        let place = format!("<svg y=\"{top}\" width=\"{width}\" height=\"{own}\" viewBox");
+        text += &svg.split_once("viewBox").map_or(String::new(), |(_, rest)| format!("{place}{rest}"));
+        top += own;
     }
-    let room = 0.05 * (largest - least).max(1e-9 * largest.abs()).max(f64::MIN_POSITIVE);
-    least - room..largest + room
-}
-
-/// The number as it is written at an axis.
-fn number(v: &f64) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        size if (1e-3..1e5).contains(&size) => format!("{}", (v * 1e6).round() / 1e6),
-        _ => format!("{v:.0e}"),
-    }
+    Ok(titled(&format!("<svg>{text}</svg>\n"), title, columns.millimetres(), (width, top as u32)))
 }
 
 /// The width in millimetres, and a title, in place of the library's first tag.

@@ -1,10 +1,27 @@
 //! Figures of a run for a paper, from the files that the run wrote.
 
+mod axis;
+mod camera;
 mod chart;
+mod convergence;
+mod deformation;
+mod format;
+mod moduli;
+mod palette;
 mod run_folder;
+mod shapes;
+mod sheet;
 
-pub use chart::{Axis, Chart, Columns, Series, Shape};
+pub use axis::Axis;
+pub use chart::{Chart, Series, Shape};
+pub use deformation::Deformation;
+pub use format::PictureFormat;
+pub use moduli::{Moduli, ModulusCurve};
 pub use run_folder::RunFolder;
+pub use sheet::Columns;
+
+pub(super) use chart::stacked;
+pub(super) use convergence::{CONVERGENCE_TABLE, convergence_charts};
 
 use crate::error::{Error, Result};
 use crate::report::json::Report;
@@ -19,6 +36,23 @@ pub enum Figure {
     Constants,
     /// The distance from the finite elements over time.
     Motion,
+    /// The body under a load: at rest, with finite elements and with springs; from a run with [output] vtu = true.
+    Deformation,
+    /// Young's modulus of each network by direction.
+    Moduli,
+    /// Errors against the size of the cells, from the folder of springfit converge.
+    Convergence,
+}
+
+/// A figure that is yet to be drawn.
+#[derive(Debug, Clone)]
+pub enum Picture {
+    /// In the plane of two axes.
+    Chart(Chart),
+    /// By direction.
+    Moduli(Moduli),
+    /// A body.
+    Deformation(Box<Deformation>),
 }
 
 /// Decades below the largest error within which errors are shown: an exact network has errors of rounding.
@@ -29,25 +63,37 @@ const BELOW: f64 = 3.0;
 const INTERVALS: usize = 40;
 
 impl Figure {
-    /// The chart of a run, of one load or network if a name is given.
+    /// The picture of a run: of one fit or load if a name is given, under the load that is named.
     ///
     /// # Errors
     /// The run does not have it, or a file cannot be read.
-    pub fn chart(self, run: &RunFolder, of: Option<&str>) -> Result<Chart> {
-        match self {
-            Figure::WorkPrecision => precision(&run.report()?, of),
-            Figure::Constants => constants(run, of),
-            Figure::Motion => motion(&run.report()?),
+    pub fn picture(self, run: &RunFolder, of: Option<&str>, load: Option<&str>) -> Result<Picture> {
+        if let (Some(load), false) = (load, self == Figure::Deformation) {
+            return Err(Error::expected("--load", "the figure deformation; other figures have --of", load));
         }
+        Ok(match self {
+            Figure::WorkPrecision => Picture::Chart(precision(&run.report()?, of)?),
+            Figure::Constants => Picture::Chart(constants(run, of)?),
+            Figure::Motion => Picture::Chart(motion(&run.report()?)?),
+            Figure::Deformation => Picture::Deformation(Box::new(Deformation::of(run, of, load)?)),
+            Figure::Moduli => Picture::Moduli(Moduli::of(run, of)?),
+            Figure::Convergence => Picture::Chart(convergence::convergence_chart(&run.file(CONVERGENCE_TABLE), of)?),
+        })
     }
 }
 
-fn log(title: &str) -> Axis {
-    Axis { title: title.into(), is_log: true }
-}
-
-fn linear(title: &str) -> Axis {
-    Axis { title: title.into(), is_log: false }
+impl Picture {
+    /// The figure as an SVG file's text.
+    ///
+    /// # Errors
+    /// Nothing can be shown.
+    pub fn svg(&self, columns: Columns) -> Result<String> {
+        match self {
+            Picture::Chart(chart) => chart.svg(columns),
+            Picture::Moduli(moduli) => Ok(moduli.svg(columns)),
+            Picture::Deformation(deformation) => Ok(deformation.svg(columns)),
+        }
+    }
 }
 
 fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
@@ -75,8 +121,8 @@ fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
     });
     Ok(Chart {
         title: format!("{}: error under {name} against time to fit", report.scene),
-        x: log("time to fit, µs per element"),
-        y: log(&format!("e_rms under {name}, %")),
+        x: Axis::log("time to fit, µs per element"),
+        y: Axis::log(format!("e_rms under {name}, %")),
         series: series.collect(),
     })
 }
@@ -101,8 +147,8 @@ fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
     let series = vec![part("k ≥ 0", |k| k >= 0.0), part("k < 0", |k| k < 0.0)];
     Ok(Chart {
         title: format!("{name}: constants of {} springs between two points", values.len()),
-        x: linear("constant k, N/m"),
-        y: linear("springs"),
+        x: Axis::linear("constant k, N/m"),
+        y: Axis::linear("springs"),
         series: series.into_iter().filter(|part| !part.points.is_empty()).collect(),
     })
 }
@@ -119,8 +165,8 @@ fn motion(report: &Report) -> Result<Chart> {
     }
     Ok(Chart {
         title: format!("{}: distance from the finite elements over time", report.scene),
-        x: linear("time, s"),
-        y: linear("e_rms, % of the largest displacement"),
+        x: Axis::linear("time, s"),
+        y: Axis::linear("e_rms, % of the largest |u|"),
         series,
     })
 }

@@ -24,7 +24,7 @@ impl RunFolder {
     /// # Errors
     /// The folder has no report, or the report has another version.
     pub fn report(&self) -> Result<Report> {
-        let path = self.path.join("report.json");
+        let path = self.file("report.json");
         let text = std::fs::read_to_string(&path).map_err(|e| {
             let advice = "the folder of a run has one unless [output] report is false";
             Error::new(format!("cannot be read: {e}; {advice}")).in_file(&path)
@@ -41,24 +41,40 @@ impl RunFolder {
             .map_err(|e| Error::at(e.path().to_string(), format!("{}", e.inner())).in_file(&path))
     }
 
+    /// A file of the folder.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// The place of the fit with this name, or of the first.
+    pub(super) fn place(report: &Report, fit: Option<&str>) -> Result<usize> {
+        let names = || report.fits.iter().map(|fit| fit.name.as_str());
+        let Some(name) = fit else {
+            return match report.fits.is_empty() {
+                false => Ok(0),
+                true => Err(Error::new("the run has no fit, so there is nothing to draw")),
+            };
+        };
+        let known = || names().collect::<Vec<_>>().join(", ");
+        let place = names().position(|known| known == name);
+        place.ok_or_else(|| Error::expected("--of", format!("a fit of the run: {}", known()), name))
+    }
+
     /// The network of the fit with this name, or of the first.
     ///
     /// # Errors
     /// The run has no such fit, or its network was not written.
     pub fn network(&self, fit: Option<&str>) -> Result<NetworkRecord> {
         let report = self.report()?;
-        let names: Vec<&str> = report.fits.iter().map(|fit| fit.name.as_str()).collect();
-        let place = match fit {
-            None => 0,
-            Some(name) => names
-                .iter()
-                .position(|known| *known == name)
-                .ok_or_else(|| Error::expected("--of", format!("a fit of the run: {}", names.join(", ")), name))?,
-        };
-        let stems = crate::report::outputs::file_stems(names.iter().copied());
-        let Some(stem) = stems.get(place) else {
-            return Err(Error::new("the run has no fit, so there is no network to draw"));
-        };
-        read_network(&self.path.join(format!("{stem}.json")))
+        let place = RunFolder::place(&report, fit)?;
+        let stems = crate::report::outputs::file_stems(report.fits.iter().map(|fit| fit.name.as_str()));
+        let path = self.file(&format!("{}.json", stems[place]));
+        match path.is_file() {
+            true => read_network(&path),
+            false => {
+                let advice = "a run writes it unless [output] json of the scene is false";
+                Err(Error::new(format!("is not there, and has the network; {advice}")).in_file(&path))
+            }
+        }
     }
 }
