@@ -5,7 +5,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::material::Material;
-use springfit::mesh::Mesh;
+use springfit::mesh::{Mesh, listed_endings};
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::study::{DraftMaterial, draft};
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct New {
-    /// The mesh: .msh, .vtu or .vtk
+    #[arg(help = format!("The mesh: {}", listed_endings()))]
     mesh: PathBuf,
     /// Young's modulus, such as "5 kPa" [default: 10 kPa]
     #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
