@@ -25,6 +25,7 @@ mod exports;
 mod extremes;
 mod fields;
 mod fits;
+mod formats;
 mod fraction;
 mod generate;
 mod golden;

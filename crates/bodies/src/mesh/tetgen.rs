@@ -7,9 +7,9 @@ use super::reader::quoted;
 use super::source::MeshSource;
 use crate::error::{Error, ErrorKind, Result};
 
-/// The order of VTK by places in that of TetGen: its middles are those of the edges 2-3, 1-3, 1-2, 1-4, 2-4 and 3-4, and
+/// The order of VTK by places in that of TetGen: its middles are those of the edges 3-4, 1-4, 1-2, 2-3, 2-4 and 1-3, and
 /// those of Triangle of the edges 2-3, 1-3 and 1-2.
-const TET10: [usize; 10] = [0, 1, 2, 3, 6, 4, 5, 7, 8, 9];
+const TET10: [usize; 10] = [0, 1, 2, 3, 6, 7, 9, 5, 8, 4];
 const TRI6: [usize; 6] = [0, 1, 2, 5, 3, 4];
 
 /// Reads the points and tetrahedra of TetGen, of four or ten nodes, or triangles of Triangle, of three or six. The last

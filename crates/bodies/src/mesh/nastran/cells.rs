@@ -5,7 +5,7 @@ use crate::error::{ErrorKind, Result};
 use crate::mesh::lines::whole;
 use crate::mesh::polytope::CellType;
 
-/// A kind of element card.
+/// A kind of element card. Cells with middle nodes may have an underscore after their name, as meshio writes them.
 pub(super) struct Shape {
     name: &'static str,
     /// The index of the field of the first node.
@@ -63,7 +63,7 @@ pub(super) struct ElementCard {
 /// # Errors
 /// The card has a wrong field, some of its middle nodes alone, or is of an element without one here.
 pub(super) fn element(card: &Card) -> Result<Option<ElementCard>> {
-    let Some(shape) = SHAPES.iter().find(|shape| shape.name == card.name) else {
+    let Some(shape) = SHAPES.iter().find(|shape| shape.name == card.name.trim_end_matches('_')) else {
         if OTHERS.contains(&card.name.as_str()) {
             let known = SHAPES.map(|shape| shape.name).join(", ");
             return Err(card.unsupported(&format!("one of the elements {known}"), &card.name));
