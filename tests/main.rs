@@ -24,6 +24,7 @@ mod exact;
 mod exports;
 mod extremes;
 mod fields;
+mod fills;
 mod fits;
 mod formats;
 mod fraction;

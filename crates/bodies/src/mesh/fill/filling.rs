@@ -50,9 +50,41 @@ pub struct Filled {
     pub branched: Option<(usize, [f64; 3])>,
 }
 
+impl Filled {
+    /// The fill beside its surface, and what is wrong with the surface, in lines of words.
+    pub fn lines(&self) -> Vec<String> {
+        let (cells, of) = (self.volume, self.surface_volume);
+        let more = 100.0 * (cells / of - 1.0);
+        let mut lines =
+            vec![format!("{} cells fill a surface: {cells:.4e} m³ of {of:.4e} m³, {more:+.2} %", self.cells)];
+        let at = |[x, y, z]: [f64; 3]| format!("({x:.4e}, {y:.4e}, {z:.4e}) m");
+        if self.turned {
+            lines.push("all normals of the surface were inwards and were turned".into());
+        }
+        if self.flat > 0 {
+            lines.push(format!("{} triangles without an area were left out", self.flat));
+        }
+        if let Some((count, place)) = self.branched {
+            lines.push(format!("{count} edges of the surface have more than two triangles, one at {}", at(place)));
+        }
+        if let Some((count, place)) = self.overlaps {
+            let words = "cells are inside several layers of the surface, which overlaps or meets itself";
+            lines.push(format!("{count} {words}, one at {}: each is filled once", at(place)));
+        }
+        if let Some((count, place)) = self.inverted {
+            let words = "cells are inside a part of the surface that is inside out, and are not filled";
+            lines.push(format!("{count} {words}, one at {}", at(place)));
+        }
+        if self.loose > 0 {
+            lines.push(format!("{} cells that hung on others by an edge or a corner alone were left out", self.loose));
+        }
+        lines
+    }
+}
+
 const MOST_CELLS: usize = bound::CELLS as usize;
-/// The largest number of lines along which the surface is crossed, of each pattern of cells.
-const MOST_LINES: f64 = 2e7;
+/// The largest number of cubes around the surface, filled or not.
+const MOST_CUBES: f64 = 5e8;
 
 /// The lattice: cubes from `origin`, so many along each axis, with one more around them.
 struct Grid {
@@ -106,12 +138,12 @@ impl FillMesh {
         Ok(mesh)
     }
 
-    /// That the number of cells, which the volume gives, and of lines through the lattice are in their bounds.
+    /// That the number of cells, which the volume gives, and of cubes around the surface are in their bounds.
     fn forecast(&self, surface: &Surface, of_cube: usize) -> Result<()> {
         let cells = surface.volume / self.cell.powi(3) * of_cube as f64;
-        let lines = (0..2).map(|k| (surface.high[k] - surface.low[k]) / self.cell + 3.0).product::<f64>();
-        if cells > 1.2 * MOST_CELLS as f64 || lines > MOST_LINES {
-            return Err(self.too_many((cells / MOST_CELLS as f64).cbrt().max((lines / MOST_LINES).sqrt()), cells));
+        let cubes = (0..3).map(|k| (surface.high[k] - surface.low[k]) / self.cell + 3.0).product::<f64>();
+        if cells > 1.2 * MOST_CELLS as f64 || cubes > MOST_CUBES {
+            return Err(self.too_many((cells / MOST_CELLS as f64).max(cubes / MOST_CUBES).cbrt(), cells));
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Closed surfaces of triangles.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::resolution::check_size;
 use crate::mesh::source::{Format, MeshSource};
 use std::collections::HashMap;
 
@@ -11,7 +12,6 @@ pub(super) struct Surface {
     pub triangles: Vec<[usize; 3]>,
     /// The enclosed volume by the divergence theorem, `∫ x·n dA / 3`, m³.
     pub volume: f64,
-    pub area: f64,
     pub low: [f64; 3],
     pub high: [f64; 3],
     /// Whether all normals were inwards and have been turned.
@@ -66,6 +66,7 @@ impl Surface {
         if triangles.is_empty() {
             return Err(Error::expected("surface", "triangles or quadrangles", "none"));
         }
+        check_size(points.iter().flatten().copied())?;
         let branched = check_edges(&points, &triangles)?;
         let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
             triangles.iter().flatten().map(|&p| points[p][k]).fold(start, pick)
@@ -73,12 +74,10 @@ impl Surface {
         let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
         let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
         let from_low = |p: usize| std::array::from_fn::<f64, 3, _>(|k| points[p][k] - low[k]);
-        let (mut volume, mut area) = (0.0, 0.0);
+        let mut volume = 0.0;
         for &[a, b, c] in &triangles {
             let [x, y, z] = [a, b, c].map(from_low);
             volume += dot(&x, &cross(&y, &z)) / 6.0;
-            let normal = cross(&std::array::from_fn(|k| y[k] - x[k]), &std::array::from_fn(|k| z[k] - x[k]));
-            area += dot(&normal, &normal).sqrt() / 2.0;
         }
         let is_turned = volume < 0.0;
         if is_turned {
@@ -88,7 +87,7 @@ impl Surface {
         if !(volume > 0.0) {
             return Err(Error::expected("surface", "a surface that encloses a volume", format!("{volume} m³")));
         }
-        Ok(Surface { points, triangles, volume, area, low, high, is_turned, flat, branched })
+        Ok(Surface { points, triangles, volume, low, high, is_turned, flat, branched })
     }
 }
 
