@@ -66,7 +66,7 @@ fn each_fault_has_its_kind() {
         (ErrorKind::Invalid, expression("y")),
         (ErrorKind::Invalid, expression("1/0")),
         (ErrorKind::Invalid, failed(cells(0).build())),
-        (ErrorKind::Unsupported, failed(MeshSource::parse(b"", "stl"))),
+        (ErrorKind::Unsupported, failed(MeshSource::parse(b"", "med"))),
         (ErrorKind::Unsupported, failed(Field::read(Path::new("u.txt"), &cells(1).build().unwrap(), 1.0))),
         (ErrorKind::Unsupported, mesh("$MeshFormat\n3.0 0 8\n")),
         (ErrorKind::Unsupported, mesh(unknown)),

@@ -4,7 +4,7 @@ use crate::messages::reads;
 use proptest::prelude::*;
 use springfit::error::ErrorKind;
 use springfit::mesh::vtk::{Array, Grid, write};
-use springfit::mesh::{Field, Format, Mesh, MeshSource, SourceBlock};
+use springfit::mesh::{Field, Format, Mesh, MeshSource, NumberOrigin, SourceBlock};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -28,7 +28,13 @@ fn tetrahedra(count: usize) -> Mesh {
     };
     let corners = |side: f64| [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, 1.0]];
     let points = (0..count).flat_map(|i| corners(if i == 0 { 1.0 } else { -1.0 })).collect();
-    let source = MeshSource { format: Format::Gmsh, points, numbers: Vec::new(), blocks: vec![block] };
+    let source = MeshSource {
+        format: Format::Gmsh,
+        origin: NumberOrigin::GmshTag,
+        points,
+        numbers: Vec::new(),
+        blocks: vec![block],
+    };
     Mesh::resolve(&source, &[], 1.0).unwrap()
 }
 

@@ -3,7 +3,7 @@
 use crate::shapes::Random;
 use springfit::element::{Cell, Element, SHIPPED, Side};
 use springfit::error::Result;
-use springfit::mesh::{Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, SourceBlock};
+use springfit::mesh::{Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, NumberOrigin, SourceBlock};
 use springfit::model::{Support, unheld_bodies};
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -44,6 +44,7 @@ fn source_of(mesh: &Mesh) -> MeshSource {
     let place = |x: &[f64]| std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0));
     MeshSource {
         format: Format::Gmsh,
+        origin: NumberOrigin::GmshTag,
         points: mesh.points.chunks_exact(d).map(place).collect(),
         numbers: (1..=mesh.point_count() as u64).collect(),
         blocks: mesh.blocks.iter().map(block).collect(),

@@ -59,7 +59,7 @@ impl Mesh {
         Ok(Mesh(Arc::new(mesh)))
     }
 
-    /// The mesh of a .msh, .vtu or .vtk file; `scale` is the length of one of its units in metres.
+    /// The mesh of a file in one of the formats that are read, such as .msh, .vtu, .inp, .bdf or .stl; `scale` is the length of one of its units in metres.
     #[staticmethod]
     #[pyo3(signature = (path, scale=1.0, elements=Vec::new(), below=None, least=None))]
     fn read(

@@ -8,7 +8,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::material::{CellMap, MaterialMap};
-use springfit::mesh::{Mesh, Selection};
+use springfit::mesh::{Mesh, Selection, listed_endings};
 use springfit::model::Support;
 use springfit::quantity::Quantity;
 use springfit::range;
@@ -25,7 +25,7 @@ use std::sync::Arc;
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Fit {
-    /// The mesh: .msh, .vtu or .vtk
+    #[arg(help = format!("The mesh: {}", listed_endings()))]
     mesh: PathBuf,
     /// Print what would be done, with estimates of time and memory, and stop
     #[arg(long)]

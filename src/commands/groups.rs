@@ -6,6 +6,7 @@ use super::scene_file::{Settings, is_scene};
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::Result;
+use springfit::mesh::listed_endings;
 use springfit::report::MeshRecord;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,7 +15,7 @@ use std::process::ExitCode;
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Groups {
-    /// The mesh: .msh, .vtu or .vtk; or a scene, whose mesh is read or generated
+    #[arg(help = format!("The mesh: {}; or a scene, whose mesh is read or generated", listed_endings()))]
     mesh: PathBuf,
     #[command(flatten)]
     options: MeshOptions,

@@ -5,7 +5,7 @@ use springfit::error::{Error, Result};
 use springfit::mesh::{Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::study::load_elements;
+use springfit::study::{FillEntry, load_elements};
 use std::path::Path;
 
 /// How a mesh file is read.
@@ -22,6 +22,12 @@ pub struct MeshOptions {
     /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
     #[arg(long)]
     least: Option<f64>,
+    /// The mesh is a closed surface: fill it with cells of this edge, in mesh units
+    #[arg(long)]
+    fill: Option<f64>,
+    /// The element that fills a surface, such as tet4 [default: hex8]
+    #[arg(long, requires = "fill")]
+    fill_element: Option<String>,
     /// An element file to look in before the shipped ones; may be repeated
     #[arg(long)]
     element: Vec<String>,
@@ -54,10 +60,22 @@ impl MeshOptions {
     pub fn mesh(&self, file: &Path) -> Result<Mesh> {
         let scale = self.scale()?;
         let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
+        if let Some(fill) = self.filling(file) {
+            let fault = |e: Error| {
+                e.placed(|e| if e.key() == Some("cell") { e.at_key("--fill") } else { e.at_key("--fill-element") })
+            };
+            return fill.build(scale, Path::new("")).map_err(fault);
+        }
         let source = MeshSource::read(file)?;
         let asked = self.below.is_some() || self.least.is_some();
         let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
         Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))
+    }
+
+    /// How the surface in the file is filled, if it is.
+    pub fn filling(&self, surface: &Path) -> Option<FillEntry> {
+        let element = self.fill_element.clone().unwrap_or_else(|| "hex8".into());
+        self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element })
     }
 
     /// That none is given with a scene, which has its own.
@@ -69,6 +87,7 @@ impl MeshOptions {
             ("--scale", self.scale != "1"),
             ("--below", self.below.is_some()),
             ("--least", self.least.is_some()),
+            ("--fill", self.fill.is_some()),
             ("--element", !self.element.is_empty()),
         ];
         match given.iter().find(|(_, given)| *given) {

@@ -5,10 +5,10 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::material::Material;
-use springfit::mesh::Mesh;
+use springfit::mesh::{Mesh, listed_endings};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::study::{DraftMaterial, draft};
+use springfit::study::{DraftMaterial, DraftSource, draft};
 use springfit::{check_file, write_whole};
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct New {
-    /// The mesh: .msh, .vtu or .vtk
+    #[arg(help = format!("The mesh: {}", listed_endings()))]
     mesh: PathBuf,
     /// Young's modulus, such as "5 kPa" [default: 10 kPa]
     #[arg(long, allow_hyphen_values = true, help_heading = "Material")]
@@ -40,6 +40,7 @@ Examples:
   springfit new organ.msh -o organ.toml
   springfit new organ.msh --scale mm > organ.toml     # a mesh in millimetres
   springfit new organ.msh --young 5kPa --poisson 0.45 --density 1060 -o organ.toml
+  springfit new organ.stl --scale mm --fill 4 -o organ.toml   # a closed surface, filled with cubes of 4 mm
   springfit run organ.toml";
 
 impl New {
@@ -57,7 +58,16 @@ impl New {
             self.options.elements().iter().map(|name| own_file(name, folder.unwrap_or(Path::new("")))).collect();
         let title = self.mesh.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let unit = self.options.unit();
-        let text = draft(&mesh, &file.to_string_lossy(), unit, &elements, &title, &self.material(&mesh)?);
+        let file = file.to_string_lossy();
+        let fill = self.options.filling(&self.mesh);
+        let numbers = fill.as_ref().map(|fill| fill.cell.to_string()).unwrap_or_default();
+        let here = folder.unwrap_or(Path::new(""));
+        let own = fill.as_ref().map(|fill| own_file(&fill.element, here)).unwrap_or_default();
+        let source = match &fill {
+            Some(_) => DraftSource::Fill { surface: &file, cell: &numbers, element: &own },
+            None => DraftSource::File(&file),
+        };
+        let text = draft(&mesh, source, unit, &elements, &title, &self.material(&mesh)?);
         match &self.output {
             None => terminal.print(&text)?,
             Some(output) => {

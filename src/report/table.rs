@@ -9,7 +9,7 @@ use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
 use super::region_record::RegionRecord;
 use crate::fit::Spread;
-use crate::mesh::Quality;
+use crate::mesh::{Filled, Quality};
 use crate::solve::{Ending, Standing};
 use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading, extent};
 use crate::text::printable;
@@ -88,7 +88,7 @@ pub(super) fn size(extent: &[f64]) -> String {
 
 /// What is wrong with the cells and points of a mesh, one line each.
 fn quality(quality: &Quality) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines = quality.filled.as_ref().map_or(Vec::new(), Filled::lines);
     if quality.skipped > 0 {
         lines.push(format!("{} cells that are flat, tangled or of poor quality were left out", quality.skipped));
     }

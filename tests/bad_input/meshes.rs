@@ -103,8 +103,8 @@ fn truncated_meshes() {
 fn contents_of_another_kind() {
     let mut refusals = Refusals::default();
     for (name, content, words) in [
-        ("mesh.stl", "solid\n", ".msh, .vtu or .vtk"),
-        ("mesh", "", ".msh, .vtu or .vtk"),
+        ("mesh.med", "", "found .med; what converts it: gmsh mesh.med"),
+        ("mesh", "", "expected a mesh ending in .msh, .vtu, "),
         ("mesh.vtu", "", "found none"),
         ("mesh.vtu", "$MeshFormat\n", "found none"),
     ] {

@@ -52,6 +52,7 @@ fn scene_with(table: &str) -> String {
         "scene" => head = zzz.into(),
         "mesh" => mesh = mesh + "\n" + zzz,
         "mesh box" => mesh = box_of(", zzz = 1"),
+        "mesh fill" => mesh = "fill = { zzz = 1 }\n".into(),
         "mesh disc" => mesh = "disc = { zzz = 1 }\n".into(),
         "mesh quality" => mesh = "file = \"a.msh\"\nquality = { zzz = 1 }\n".into(),
         "material" => young += zzz,
@@ -96,7 +97,7 @@ fn the_page_of_scenes_has_every_key() {
         }
         compare(table, names, &known);
     }
-    assert_eq!(tables.len(), 31);
+    assert_eq!(tables.len(), 32);
 }
 
 #[test]

@@ -51,7 +51,7 @@ const FILES: [(&str, &str); 4] = [
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n\
          1 2 2 0 1 1 2 3\n$EndElements\n",
     ),
-    super::samples::FILES[1],
+    super::samples::FILES[2],
     (
         "scene.toml",
         "mesh = { box = { element = \"tri3\", size = [1, 1], cells = [1, 1] } }\nmaterial = { young = 1e4, poisson = 0.3 }\n\

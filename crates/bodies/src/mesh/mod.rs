@@ -3,6 +3,7 @@
 //! [`MeshSource`] is what a file says; [`Mesh::resolve`] gives its cells their elements and checks them. [`BoxMesh`]
 //! and [`DiscMesh`] generate meshes.
 
+mod abaqus;
 mod affine;
 mod alike;
 mod arrays;
@@ -12,15 +13,22 @@ mod disc;
 mod duplicates;
 mod embedding;
 mod field;
+mod fill;
 mod folds;
+mod formats;
 pub mod gmsh;
 mod grouping;
 mod hanging;
+mod indices;
 mod inspection;
+mod lines;
+mod listing;
 #[allow(clippy::module_inception)]
 mod mesh;
+mod nastran;
 mod numbering;
 mod places;
+mod polytope;
 mod quality;
 mod reader;
 mod reading;
@@ -29,6 +37,8 @@ mod resolution;
 mod selection;
 mod source;
 mod surface;
+mod surfaces;
+mod tetgen;
 pub mod vtk;
 
 pub use arrays::MeshArrays;
@@ -36,6 +46,8 @@ pub use boxes::BoxMesh;
 pub use disc::DiscMesh;
 pub use embedding::Embedding;
 pub use field::{Field, Holder, Interpolation, Samples};
+pub use fill::{FillMesh, Filled};
+pub use formats::{MESH_FORMATS, MeshFormat, listed_endings};
 pub use mesh::{CellBlock, CellIndex, Group, Mesh, SideIndex};
 pub use numbering::{NumberOrigin, Numbering};
 pub use quality::{Below, Gate, Quality, Worst};

@@ -1,7 +1,5 @@
 //! The numbers that the nodes of a mesh have in its source.
 
-use super::source::Format;
-
 /// The numbers that the points of a mesh have in the file or in the arrays that they come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbering {
@@ -19,18 +17,12 @@ pub enum NumberOrigin {
     GmshTag,
     /// The index of a point in a VTK file, from 0.
     VtkPlace,
+    /// The number that a node has in a file that numbers its nodes, such as those of Abaqus, Nastran and TetGen.
+    NodeNumber,
+    /// The place of a point among those of a file of a surface, from 0; corners at equal coordinates are one point in STL.
+    FilePlace,
     /// The index of a point in the caller's array, from 0.
     ArrayPlace,
-}
-
-impl NumberOrigin {
-    /// The meaning of the numbers in a file of this format.
-    pub(super) fn of(format: Format) -> NumberOrigin {
-        match format {
-            Format::Gmsh => NumberOrigin::GmshTag,
-            Format::Vtk => NumberOrigin::VtkPlace,
-        }
-    }
 }
 
 impl Numbering {
@@ -39,6 +31,8 @@ impl Numbering {
         match self.origin {
             NumberOrigin::GmshTag => "Gmsh node tags",
             NumberOrigin::VtkPlace => "places in the VTK file, from 0",
+            NumberOrigin::NodeNumber => "node numbers of the file",
+            NumberOrigin::FilePlace => "places among the points of the file, from 0",
             NumberOrigin::ArrayPlace => "places in the array of points, from 0",
         }
     }

@@ -1,5 +1,6 @@
 //! The quality of the cells of a mesh, and what happens to poor cells.
 
+use super::fill::Filled;
 use crate::error::{Error, Result};
 use crate::named::unknown;
 
@@ -84,6 +85,8 @@ pub struct Quality {
     /// The number of points on an edge or a face of a cell that does not have them; `None` as for `coincident`, and for
     /// meshes that are generated or divided.
     pub hanging: Option<usize>,
+    /// The fill of a surface, beside it.
+    pub filled: Option<Filled>,
     /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.
     pub pieces: Option<usize>,
 }

@@ -1,48 +1,55 @@
-//! The formats of mesh files, chosen by the extension of the file.
+//! Reads mesh files, each in the format of its extension.
 
+use super::formats::{Parse, parser};
 use super::source::MeshSource;
-use super::{gmsh, vtk};
-use crate::error::{Error, ErrorKind, Result};
+use super::tetgen;
+use crate::error::{Error, Result};
 use std::path::Path;
 
-type Parse = fn(&[u8]) -> Result<MeshSource>;
-
-/// Each extension, in lower case, and the reader of such files.
-const FORMATS: [(&str, Parse); 3] = [("msh", gmsh::parse), ("vtu", vtk::parse_xml), ("vtk", vtk::parse_legacy)];
-
 impl MeshSource {
-    /// Reads a mesh file in the format of its extension: `.msh`, `.vtu` or `.vtk`.
+    /// Reads a mesh file in the format of its extension, one of [`MESH_FORMATS`](super::MESH_FORMATS). Of TetGen, the
+    /// file `.node` or `.ele` is named, the other is beside it, and a `.face` is read if it is there.
     ///
     /// # Errors
     /// The file is missing, of another kind, damaged or cut short, or has a coordinate that is not finite.
     pub fn read(path: &Path) -> Result<MeshSource> {
-        let bytes = crate::file::read(path)?;
-        MeshSource::parse(&bytes, &crate::file::ending(path)).map_err(|e| e.in_file(path))
+        let ending = crate::file::ending(path);
+        let in_file = |e: Error| e.in_file(path);
+        match parser(&ending).map_err(in_file)? {
+            Parse::Alone(_) => MeshSource::parse(&crate::file::read(path)?, &ending).map_err(in_file),
+            Parse::TetGen => {
+                let other = |ending: &str| path.with_extension(ending);
+                let (node, ele) = (crate::file::read(&other("node"))?, crate::file::read(&other("ele"))?);
+                let face = other("face").exists().then(|| crate::file::read(&other("face"))).transpose()?;
+                let source = tetgen::parse(&node, &ele, face.as_deref());
+                source.and_then(checked).map_err(in_file)
+            }
+        }
     }
 
     /// Reads the content of a file with this extension, given without its dot.
     ///
     /// # Errors
-    /// Those of [`MeshSource::read`].
+    /// Those of [`MeshSource::read`]; or the format needs several files.
     pub fn parse(bytes: &[u8], ending: &str) -> Result<MeshSource> {
-        let Some((_, parse)) = FORMATS.iter().find(|(known, _)| *known == ending) else {
-            return Err(
-                Error::new(format!("expected a mesh ending in {}", listed_endings())).of_kind(ErrorKind::Unsupported)
-            );
-        };
-        let source = parse(bytes)?;
-        check(&source)?;
-        Ok(source)
+        match parser(ending)? {
+            Parse::Alone(parse) => checked(parse(bytes)?),
+            Parse::TetGen => Err(tetgen::alone(ending)),
+        }
+    }
+
+    /// Reads the contents of the files `.node`, `.ele` and, if it is there, `.face` of TetGen.
+    ///
+    /// # Errors
+    /// A file is damaged or cut short, or names a point that is not there. The key of the error begins with the file's
+    /// ending.
+    pub fn parse_tetgen(node: &[u8], ele: &[u8], face: Option<&[u8]>) -> Result<MeshSource> {
+        checked(tetgen::parse(node, ele, face)?)
     }
 }
 
-/// `.a, .b or .c`.
-fn listed_endings() -> String {
-    let [others @ .., last] = FORMATS.map(|(ending, _)| format!(".{ending}"));
-    format!("{} or {last}", others.join(", "))
-}
-
-fn check(source: &MeshSource) -> Result<()> {
+/// The source, if its coordinates are finite and its cells within its points.
+fn checked(source: MeshSource) -> Result<MeshSource> {
     let count = source.points.len();
     if let Some(i) = source.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
         let [x, y, z] = source.points[i];
@@ -50,6 +57,6 @@ fn check(source: &MeshSource) -> Result<()> {
     }
     match source.blocks.iter().flat_map(|block| &block.connectivity).find(|&&i| i >= count) {
         Some(i) => Err(Error::expected("cells", format!("node indices below {count}"), i)),
-        None => Ok(()),
+        None => Ok(source),
     }
 }

@@ -1,7 +1,7 @@
 //! Gives the cells of a file their elements.
 
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
-use super::numbering::{NumberOrigin, Numbering};
+use super::numbering::Numbering;
 use super::places::Places;
 use super::quality::{Below, Gate};
 use super::source::{Format, MeshSource, SourceBlock};
@@ -199,7 +199,7 @@ pub(super) fn check_size(coordinates: impl Iterator<Item = f64>) -> Result<()> {
 /// The numbers of the points in the file, if there is one.
 fn numbering(source: &MeshSource) -> Option<Numbering> {
     let known = source.numbers.len() == source.points.len();
-    known.then(|| Numbering { origin: NumberOrigin::of(source.format), nodes: source.numbers.clone() })
+    known.then(|| Numbering { origin: source.origin, nodes: source.numbers.clone() })
 }
 
 fn entry(element: &Element, format: Format) -> Option<&FormatEntry> {

@@ -1,6 +1,8 @@
 //! The content of a mesh file, before its cells have elements.
 
-/// The numbering of cell types that a file uses.
+use super::numbering::NumberOrigin;
+
+/// The numbering of cell types of a source. Readers of other formats turn their types and node orders into those of VTK.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// That of Gmsh.
@@ -14,10 +16,11 @@ pub enum Format {
 pub struct MeshSource {
     /// The numbering of the cell types.
     pub format: Format,
+    /// The meaning of the numbers of the points.
+    pub origin: NumberOrigin,
     /// The coordinates in mesh units, always three.
     pub points: Vec<[f64; 3]>,
-    /// The numbers of the points in the file, `[points]`: tags in Gmsh's formats, indices from 0 in VTK's. Empty if
-    /// there is no file.
+    /// The numbers of the points in the file, `[points]`. Empty if there is no file.
     pub numbers: Vec<u64>,
     /// The cells.
     pub blocks: Vec<SourceBlock>,

@@ -1,7 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::extent;
-use crate::mesh::{CellBlock, Group, Mesh};
+use crate::mesh::{CellBlock, Filled, Group, Mesh};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -26,7 +26,23 @@ pub struct DraftMaterial {
     pub density: Option<String>,
 }
 
-/// The text of a scene for the mesh in `file`, relative to the scene, whose unit is `unit`, such as `0.001` or `mm`, and which has
+/// Where the mesh of a first scene comes from; paths are relative to the scene.
+#[derive(Debug, Clone, Copy)]
+pub enum DraftSource<'a> {
+    /// A file.
+    File(&'a str),
+    /// A filled surface.
+    Fill {
+        /// The file of the surface.
+        surface: &'a str,
+        /// The edge of a cube, mesh units, as it is typed.
+        cell: &'a str,
+        /// The element of the cells.
+        element: &'a str,
+    },
+}
+
+/// The text of a scene for the mesh in `source`, whose unit is `unit`, such as `0.001` or `mm`, and which has
 /// cells of the files `elements`.
 ///
 /// A solid or plane body is held at a group, or at the points that lie lowest along its longest axis, so that no part of it can move as
@@ -34,7 +50,7 @@ pub struct DraftMaterial {
 /// resist all motions.
 pub fn draft(
     mesh: &Mesh,
-    file: &str,
+    source: DraftSource,
     unit: &str,
     elements: &[String],
     title: &str,
@@ -45,10 +61,19 @@ pub fn draft(
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
     let sizes: Vec<String> = extent(mesh).iter().map(|x| rounded(*x, 3)).collect();
     line(&format!("# {} points, {}; {} m", mesh.point_count(), cells.join(", "), sizes.join(" x ")));
+    mesh.quality.filled.iter().flat_map(Filled::lines).for_each(|words| line(&format!("# {words}")));
     line("# Quantities are in SI units, or texts with a unit such as \"10 kPa\".");
     line(&format!("title = {}\n", quoted(title)));
     line("[mesh]");
-    line(&format!("file  = {}", quoted(file)));
+    match source {
+        DraftSource::File(file) => line(&format!("file  = {}", quoted(file))),
+        DraftSource::Fill { surface, cell, element } => {
+            let (surface, element) = (quoted(surface), quoted(element));
+            line(&format!(
+                "fill  = {{ surface = {surface}, cell = {cell}, element = {element} }} # edge in mesh units; or tet4"
+            ));
+        }
+    }
     let scale = if unit.parse::<f64>().is_ok() { unit.to_string() } else { quoted(unit) };
     line(&format!("scale = {scale:<17} # metres per mesh unit; \"mm\" for a mesh in millimetres"));
     if !elements.is_empty() {

@@ -47,7 +47,7 @@ pub use convergence::{
     Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
     limit_of, most_unknowns, rates, refinements,
 };
-pub use draft::{DraftMaterial, contents, draft};
+pub use draft::{DraftMaterial, DraftSource, contents, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
@@ -71,8 +71,8 @@ pub use paper::{
 pub use progress::{Event, Progress};
 pub use run::{run, run_with};
 pub use scene::{
-    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, LoadCase, LoadKind, MeshInput, MotionRecipe, Output, Part,
-    PrescribedMotion, ReferenceEntry, Scene, Setting, load_elements, scene_schema,
+    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, LoadCase, LoadKind, MeshInput, MotionRecipe, Output,
+    Part, PrescribedMotion, ReferenceEntry, Scene, Setting, load_elements, scene_schema,
 };
 pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};

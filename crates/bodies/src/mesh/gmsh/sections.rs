@@ -4,6 +4,7 @@ use super::nodes::Nodes;
 use super::{types, v22, v41};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grouping::Gather;
+use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::reader::{Encoding, Reader, quoted};
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
 use std::collections::{HashMap, HashSet};
@@ -120,7 +121,8 @@ impl File {
             let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
             blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups });
         }
-        Ok(MeshSource { format: Format::Gmsh, points: nodes.points, numbers: nodes.tags, blocks })
+        let origin = NumberOrigin::GmshTag;
+        Ok(MeshSource { format: Format::Gmsh, origin, points: nodes.points, numbers: nodes.tags, blocks })
     }
 }
 

@@ -3,6 +3,7 @@
 use super::cells::{shape, without_raster};
 use crate::error::{Error, Result};
 use crate::mesh::grouping::Gather;
+use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -125,7 +126,8 @@ pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
         Some(SourceBlock { dimension, cell_type: cell_type.into(), nodes_per_cell, connectivity, groups })
     });
     let numbers = (0..points.len() as u64).collect();
-    Ok(MeshSource { format: Format::Vtk, blocks: blocks.collect(), points, numbers })
+    let origin = NumberOrigin::VtkPlace;
+    Ok(MeshSource { format: Format::Vtk, origin, blocks: blocks.collect(), points, numbers })
 }
 
 fn check_lengths(piece: &Piece) -> Result<()> {

@@ -4,13 +4,13 @@ use super::elements::{load_element, load_elements};
 use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
-use crate::mesh::{BoxMesh, DiscMesh, Gate, Mesh, MeshSource};
+use crate::mesh::{BoxMesh, DiscMesh, FillMesh, Gate, Mesh, MeshSource};
 use crate::range;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// The mesh of a scene: a file, a box or a disc.
+/// The mesh of a scene: a file, a box, a disc or a filled surface.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshInput {
@@ -21,6 +21,8 @@ pub struct MeshInput {
     pub generated: Option<BoxEntry>,
     /// A disc that is generated.
     pub disc: Option<DiscEntry>,
+    /// A closed surface that is filled with cells.
+    pub fill: Option<FillEntry>,
     /// The length of a mesh unit, m.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     #[schemars(schema_with = "value::quantity")]
@@ -81,6 +83,38 @@ pub struct DiscEntry {
     pub rim: Option<usize>,
 }
 
+/// A closed surface in a file, filled with the cells of a lattice.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FillEntry {
+    /// The path of a file of triangles or quadrangles, relative to the scene.
+    pub surface: PathBuf,
+    /// The edge of a cube of the lattice, mesh units.
+    pub cell: f64,
+    /// The name of a shipped element of hexahedra or tetrahedra, or a path relative to the scene that ends in .toml.
+    #[serde(default = "hex8")]
+    pub element: String,
+}
+
+fn hex8() -> String {
+    "hex8".into()
+}
+
+impl FillEntry {
+    /// Fills the surface, with `scale` metres per mesh unit; paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// The file, the element or the surface is wrong, or there are no cells or too many.
+    pub fn build(&self, scale: f64, folder: &Path) -> Result<Mesh> {
+        let element = load_element(&self.element, folder)?;
+        let path = folder.join(&self.surface);
+        let source = MeshSource::read(&path)?;
+        FillMesh { element, cell: scale * self.cell }
+            .build(&source, scale)
+            .map_err(|e| if e.key() == Some("surface") { e.in_file(&path) } else { e })
+    }
+}
+
 /// The largest number of rings; a disc with six more points in each ring then has about two million points.
 const MOST_RINGS: usize = 800;
 /// The largest number of points, see [`bound::CELLS`].
@@ -96,14 +130,18 @@ impl MeshInput {
     /// # Errors
     /// There is no source of the mesh or more than one, or a number is out of its range.
     pub fn check(&self) -> Result<()> {
-        let given: Vec<&str> =
-            [("file", self.file.is_some()), ("box", self.generated.is_some()), ("disc", self.disc.is_some())]
-                .into_iter()
-                .filter_map(|(key, given)| given.then_some(key))
-                .collect();
+        let given: Vec<&str> = [
+            ("file", self.file.is_some()),
+            ("box", self.generated.is_some()),
+            ("disc", self.disc.is_some()),
+            ("fill", self.fill.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(key, given)| given.then_some(key))
+        .collect();
         if given.len() != 1 {
             let found = if given.is_empty() { "none".into() } else { given.join(" and ") };
-            return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\"", found));
+            return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\", \"fill\"", found));
         }
         range::positive("mesh.scale", self.scale, "metres per mesh unit")?;
         if let Some(quality) = &self.quality {
@@ -118,12 +156,18 @@ impl MeshInput {
     /// The files that the entry names, relative to `folder`; the names of shipped elements are not files.
     pub fn files(&self, folder: &Path) -> Vec<PathBuf> {
         let of_box = self.generated.iter().map(|entry| &entry.element);
-        let elements = of_box.chain(self.disc.iter().map(|entry| &entry.element)).chain(&self.elements);
-        self.file.iter().map(|file| folder.join(file)).chain(elements.map(|name| folder.join(name))).collect()
+        let of_fill = self.fill.iter().map(|entry| &entry.element);
+        let of_disc = self.disc.iter().map(|entry| &entry.element);
+        let elements = of_box.chain(of_disc).chain(of_fill).chain(&self.elements);
+        let meshes = self.file.iter().chain(self.fill.iter().map(|entry| &entry.surface));
+        meshes.map(|file| folder.join(file)).chain(elements.map(|name| folder.join(name))).collect()
     }
 
     /// What is read or generated, in words.
     pub fn title(&self) -> String {
+        if let Some(entry) = &self.fill {
+            return format!("fill {} with {}", entry.surface.display(), entry.element);
+        }
         match (&self.file, &self.generated, &self.disc) {
             (Some(file), ..) => format!("read {}", file.display()),
             (_, Some(entry), _) => format!("generate {:?} cells of {}", entry.cells, entry.element),
@@ -187,7 +231,10 @@ impl MeshInput {
         if let Some(disc) = &self.disc {
             return disc.build(self.scale, folder).map_err(at("mesh.disc"));
         }
-        let entry = self.generated.as_ref().expect("a scene has a file, a box or a disc");
+        if let Some(fill) = &self.fill {
+            return fill.build(self.scale, folder).map_err(at("mesh.fill"));
+        }
+        let entry = self.generated.as_ref().expect("a scene has a file, a box, a disc or a surface");
         let element = load_element(&entry.element, folder).map_err(at("mesh.box"))?;
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);

@@ -6,7 +6,7 @@ use crate::dynamics::largest_square;
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::Moduli;
-use crate::mesh::{BoxMesh, Format, Gate, Mesh, MeshSource, Selection, SourceBlock};
+use crate::mesh::{BoxMesh, Format, Gate, Mesh, MeshSource, NumberOrigin, Selection, SourceBlock};
 use crate::model::{Action, Entries, LengthSpring, Network, Support, finite_elements, nodal_forces, unheld_bodies};
 use crate::solve::{Factor, System};
 use crate::springs::norm;
@@ -140,6 +140,7 @@ fn compliance(factor: &Factor, size: usize) -> f64 {
 fn meshes() -> Vec<(&'static str, MeshSource, bool)> {
     let grid = |points: &[[f64; 2]], cells: &[[usize; 4]]| MeshSource {
         format: Format::Gmsh,
+        origin: NumberOrigin::GmshTag,
         points: points.iter().map(|p| [p[0], p[1], 0.0]).collect(),
         numbers: Vec::new(),
         blocks: vec![SourceBlock {

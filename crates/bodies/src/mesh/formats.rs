@@ -1,0 +1,83 @@
+//! The formats of mesh files: one row for each, which reading, errors and help texts ask.
+
+use super::source::MeshSource;
+use super::{abaqus, gmsh, nastran, surfaces, vtk};
+use crate::error::{Error, ErrorKind, Result};
+
+/// A format of mesh files.
+#[derive(Debug)]
+pub struct MeshFormat {
+    /// The program or standard that it comes from.
+    pub name: &'static str,
+    /// The endings of its files, in lower case and without a dot.
+    pub endings: &'static [&'static str],
+    pub(super) parse: Parse,
+}
+
+/// How a file is read.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Parse {
+    /// By itself.
+    Alone(fn(&[u8]) -> Result<MeshSource>),
+    /// With the other files of TetGen beside it.
+    TetGen,
+}
+
+/// The formats that are read.
+pub const MESH_FORMATS: [MeshFormat; 10] = [
+    MeshFormat { name: "Gmsh", endings: &["msh"], parse: Parse::Alone(gmsh::parse) },
+    MeshFormat { name: "VTK XML", endings: &["vtu"], parse: Parse::Alone(vtk::parse_xml) },
+    MeshFormat { name: "legacy VTK", endings: &["vtk"], parse: Parse::Alone(vtk::parse_legacy) },
+    MeshFormat { name: "Abaqus and CalculiX", endings: &["inp"], parse: Parse::Alone(abaqus::parse) },
+    MeshFormat { name: "Nastran", endings: &["bdf", "nas", "dat"], parse: Parse::Alone(nastran::parse) },
+    MeshFormat { name: "TetGen", endings: &["node", "ele"], parse: Parse::TetGen },
+    MeshFormat { name: "STL", endings: &["stl"], parse: Parse::Alone(surfaces::parse_stl) },
+    MeshFormat { name: "OBJ", endings: &["obj"], parse: Parse::Alone(surfaces::parse_obj) },
+    MeshFormat { name: "PLY", endings: &["ply"], parse: Parse::Alone(surfaces::parse_ply) },
+    MeshFormat { name: "OFF", endings: &["off"], parse: Parse::Alone(surfaces::parse_off) },
+];
+
+/// Endings of formats that are not read, the command that turns such a file into one that is, and what runs it.
+const CONVERTED: [(&[&str], &str); 10] = [
+    (&["med"], "gmsh mesh.med -save -format msh41 -o mesh.msh"),
+    (&["unv"], "gmsh mesh.unv -save -format msh41 -o mesh.msh"),
+    (&["cgns"], "gmsh mesh.cgns -save -format msh41 -o mesh.msh"),
+    (
+        &["step", "stp", "iges", "igs", "brep"],
+        "gmsh body.step -3 -format msh41 -o mesh.msh, which makes a mesh of a shape",
+    ),
+    (&["geo"], "gmsh body.geo -3 -format msh41 -o mesh.msh"),
+    (&["xdmf", "xmf"], "meshio convert mesh.xdmf mesh.vtu"),
+    (&["e", "exo", "ex2"], "meshio convert mesh.e mesh.vtu"),
+    (&["mesh", "meshb", "vol", "h5m", "su2", "avs", "f3grid", "ugrid"], "meshio convert mesh.mesh mesh.vtu"),
+    (&["blend", "glb", "gltf", "fbx", "dae", "3ds", "usd"], "Blender's export to .stl, .obj or .ply"),
+    (
+        &["vtp", "vti", "vts", "vtr", "pvtu"],
+        "pyvista: pyvista.read(FILE).cast_to_unstructured_grid().save(\"mesh.vtu\")",
+    ),
+];
+
+/// `.a, .b or .c`: the endings that are read.
+pub fn listed_endings() -> String {
+    let endings: Vec<String> =
+        MESH_FORMATS.iter().flat_map(|format| format.endings).map(|ending| format!(".{ending}")).collect();
+    match &endings[..] {
+        [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => endings.concat(),
+    }
+}
+
+/// How files with this ending are read.
+///
+/// # Errors
+/// They are not. The error says what converts them, where that is known.
+pub(super) fn parser(ending: &str) -> Result<Parse> {
+    if let Some(format) = MESH_FORMATS.iter().find(|format| format.endings.contains(&ending)) {
+        return Ok(format.parse);
+    }
+    let error = Error::new(format!("expected a mesh ending in {}", listed_endings())).of_kind(ErrorKind::Unsupported);
+    Err(match CONVERTED.iter().find(|(endings, _)| endings.contains(&ending)) {
+        Some((_, way)) => error.followed_by(format!(", found .{ending}; what converts it: {way}")),
+        None => error,
+    })
+}

@@ -1,0 +1,220 @@
+//! Numbered nodes and cells, and the groups that list them by number, as finite element programs write them.
+
+use super::grouping::Gather;
+use super::indices::Indices;
+use super::numbering::NumberOrigin;
+use super::polytope::CellType;
+use super::source::{Format, MeshSource, SourceBlock};
+use crate::error::{Error, ErrorKind, Result};
+use std::collections::{BTreeMap, HashSet};
+
+/// What a file of numbered nodes and cells holds.
+#[derive(Default)]
+pub(super) struct Listing {
+    pub node_numbers: Vec<u64>,
+    pub points: Vec<[f64; 3]>,
+    pub cells: CellList,
+}
+
+/// Cells in the order of the file, with the numbers of their nodes.
+#[derive(Default)]
+pub(super) struct CellList {
+    pub numbers: Vec<u64>,
+    types: Vec<CellType>,
+    ends: Vec<usize>,
+    nodes: Vec<u64>,
+    lines: Vec<usize>,
+}
+
+impl CellList {
+    /// Adds a cell of this line with its nodes in the order of VTK.
+    pub fn push(&mut self, line: usize, number: u64, cell_type: CellType, nodes: impl IntoIterator<Item = u64>) {
+        self.lines.push(line);
+        self.numbers.push(number);
+        self.types.push(cell_type);
+        self.nodes.extend(nodes);
+        self.ends.push(self.nodes.len());
+    }
+
+    pub fn len(&self) -> usize {
+        self.types.len()
+    }
+
+    pub fn cell_type(&self, cell: usize) -> CellType {
+        self.types[cell]
+    }
+
+    fn range(&self, cell: usize) -> std::ops::Range<usize> {
+        cell.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[cell]
+    }
+}
+
+/// Nodes and cells whose numbers have been found.
+pub(super) struct Resolved {
+    pub node_numbers: Vec<u64>,
+    points: Vec<[f64; 3]>,
+    pub nodes: Indices,
+    pub cells: Indices,
+    pub list: CellList,
+    /// The indices of the nodes of all cells, as in `list`.
+    connectivity: Vec<usize>,
+    groups: Groups,
+}
+
+/// Members of groups by name.
+#[derive(Default)]
+struct Groups {
+    /// The names, and their numbers by what is compared: names that differ in upper and lower case are the same.
+    names: Vec<String>,
+    numbers: BTreeMap<String, u32>,
+    /// A cell and a group.
+    cells: Vec<(u32, u32)>,
+    /// A group and a node.
+    nodes: Vec<(u32, u32)>,
+    sides: Vec<(u32, CellType, Vec<usize>)>,
+    /// How many members may still be counted.
+    left: usize,
+}
+
+impl Listing {
+    /// Finds the nodes of the cells in a file of `length` bytes, in which cells are called `cell` (`element`).
+    ///
+    /// # Errors
+    /// A number occurs twice, or a cell names a node that is not there.
+    pub fn resolve(self, length: usize, cell: &str) -> Result<Resolved> {
+        let twice =
+            |what: &str, number: u64| Error::new(format!("{what} {number} occurs twice")).of_kind(ErrorKind::Syntax);
+        let nodes = Indices::of(&self.node_numbers).map_err(|number| twice("node", number))?;
+        let cells = Indices::of(&self.cells.numbers).map_err(|number| twice(cell, number))?;
+        let mut connectivity = Vec::with_capacity(self.cells.nodes.len());
+        for i in 0..self.cells.len() {
+            for &number in &self.cells.nodes[self.cells.range(i)] {
+                let Some(node) = nodes.index(number) else {
+                    let problem = format!("names node {number}, which the file lacks");
+                    let error = Error::at(format!("{cell} {}", self.cells.numbers[i]), problem);
+                    return Err(error.of_kind(ErrorKind::Syntax).on_line(self.cells.lines[i]));
+                };
+                connectivity.push(node);
+            }
+        }
+        let mut list = self.cells;
+        list.nodes = Vec::new();
+        // A group is a name and its members, each at least two characters, except where a line stands for a range.
+        let groups = Groups { left: (1 << 20) + 4 * length, ..Groups::default() };
+        Ok(Resolved { node_numbers: self.node_numbers, points: self.points, nodes, cells, list, connectivity, groups })
+    }
+}
+
+impl Resolved {
+    pub fn cell_nodes(&self, cell: usize) -> &[usize] {
+        &self.connectivity[self.list.range(cell)]
+    }
+
+    /// The number of the group with this name.
+    pub fn group(&mut self, name: &str) -> u32 {
+        let groups = &mut self.groups;
+        let next = groups.names.len() as u32;
+        let number = *groups.numbers.entry(name.to_lowercase()).or_insert(next);
+        if number == next {
+            groups.names.push(name.to_string());
+        }
+        number
+    }
+
+    /// Counts so many members, or numbers that could be members.
+    ///
+    /// # Errors
+    /// There are more than a file of this length lists.
+    pub fn charge(&mut self, members: usize) -> Result<()> {
+        let groups = &mut self.groups;
+        groups.left = groups.left.checked_sub(members).ok_or_else(|| {
+            Error::expected("groups", "fewer members in a file of this length", "more").of_kind(ErrorKind::Limit)
+        })?;
+        Ok(())
+    }
+
+    pub fn add_cell(&mut self, group: u32, cell: usize) -> Result<()> {
+        self.groups.cells.push((cell as u32, group));
+        self.charge(1)
+    }
+
+    pub fn add_node(&mut self, group: u32, node: usize) -> Result<()> {
+        self.groups.nodes.push((group, node as u32));
+        self.charge(1)
+    }
+
+    /// Adds a side by its nodes.
+    pub fn add_face(&mut self, group: u32, cell_type: CellType, nodes: Vec<usize>) -> Result<()> {
+        self.groups.sides.push((group, cell_type, nodes));
+        self.charge(1)
+    }
+
+    /// Adds the side with this index of a cell; a cell without such a side adds nothing.
+    pub fn add_side(&mut self, group: u32, cell: usize, index: usize) -> Result<()> {
+        match self.list.cell_type(cell).side(index, self.cell_nodes(cell)) {
+            Some((cell_type, nodes)) => self.add_face(group, cell_type, nodes),
+            None => Ok(()),
+        }
+    }
+
+    /// The sides that belong to one cell alone among the cells of the highest dimension.
+    pub fn outer_sides(&self) -> HashSet<(usize, usize)> {
+        let top = (0..self.list.len()).map(|cell| self.list.cell_type(cell).dimension()).max().unwrap_or(0);
+        let mut met: BTreeMap<Vec<usize>, Option<(usize, usize)>> = BTreeMap::new();
+        for cell in (0..self.list.len()).filter(|&cell| self.list.cell_type(cell).dimension() == top) {
+            let nodes = self.cell_nodes(cell);
+            for (index, corners) in self.list.cell_type(cell).sides().iter().enumerate() {
+                let mut key: Vec<usize> = corners.iter().map(|&a| nodes[a]).collect();
+                key.sort_unstable();
+                met.entry(key).and_modify(|first| *first = None).or_insert(Some((cell, index)));
+            }
+        }
+        met.into_values().flatten().collect()
+    }
+
+    /// The blocks: cells of one type in the same groups, then the points and sides of each group.
+    pub fn into_source(mut self) -> MeshSource {
+        let Groups { names, mut cells, mut nodes, mut sides, .. } = std::mem::take(&mut self.groups);
+        let named = |groups: &[u32]| groups.iter().map(|&group| names[group as usize].clone()).collect::<Vec<_>>();
+        cells.sort_unstable();
+        cells.dedup();
+        let mut members = cells.into_iter().peekable();
+        let mut gather: Gather<(CellType, Vec<u32>)> = Gather::new();
+        let mut key = (CellType::POINT, Vec::new());
+        for cell in 0..self.list.len() {
+            key.0 = self.list.cell_type(cell);
+            key.1.clear();
+            while let Some((_, group)) = members.next_if(|(member, _)| *member as usize == cell) {
+                key.1.push(group);
+            }
+            gather.list(&key).extend_from_slice(self.cell_nodes(cell));
+        }
+        let block = |cell_type: CellType, connectivity: Vec<usize>, groups: Vec<String>| SourceBlock {
+            dimension: cell_type.dimension(),
+            cell_type: cell_type.0.into(),
+            nodes_per_cell: cell_type.nodes(),
+            connectivity,
+            groups,
+        };
+        let mut blocks: Vec<SourceBlock> =
+            gather.into_lists().map(|((cell_type, groups), list)| block(cell_type, list, named(&groups))).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        for members in nodes.chunk_by(|a, b| a.0 == b.0) {
+            let list = members.iter().map(|(_, node)| *node as usize).collect();
+            blocks.push(block(CellType::POINT, list, named(&[members[0].0])));
+        }
+        sides.sort_unstable_by_key(|(group, cell_type, _)| (*group, cell_type.0));
+        for members in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            let list = members.iter().flat_map(|(.., nodes)| nodes).copied().collect();
+            blocks.push(block(members[0].1, list, named(&[members[0].0])));
+        }
+        MeshSource {
+            format: Format::Vtk,
+            origin: NumberOrigin::NodeNumber,
+            points: self.points,
+            numbers: self.node_numbers,
+            blocks,
+        }
+    }
+}

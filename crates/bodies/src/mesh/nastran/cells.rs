@@ -1,0 +1,109 @@
+//! The element cards of Nastran, and their node orders.
+
+use super::card::Card;
+use crate::error::{ErrorKind, Result};
+use crate::mesh::lines::whole;
+use crate::mesh::polytope::CellType;
+
+/// A kind of element card. Cells with middle nodes may have an underscore after their name, as meshio writes them.
+pub(super) struct Shape {
+    name: &'static str,
+    /// The index of the field of the first node.
+    first: usize,
+    corners: CellType,
+    /// The cell with middle nodes.
+    full: Option<CellType>,
+}
+
+const fn shape(name: &'static str, corners: CellType, full: Option<CellType>) -> Shape {
+    Shape { name, first: 2, corners, full }
+}
+
+const SHAPES: [Shape; 16] = [
+    shape("CTETRA", CellType::TET4, Some(CellType::TET10)),
+    shape("CHEXA", CellType::HEX8, Some(CellType::HEX20)),
+    shape("CPENTA", CellType::WEDGE6, Some(CellType::WEDGE15)),
+    shape("CPYRAM", CellType::PYRAMID5, Some(CellType::PYRAMID13)),
+    shape("CPYRA", CellType::PYRAMID5, Some(CellType::PYRAMID13)),
+    shape("CTRIA3", CellType::TRI3, None),
+    shape("CTRIAR", CellType::TRI3, None),
+    shape("CTRIA6", CellType::TRI3, Some(CellType::TRI6)),
+    shape("CQUAD4", CellType::QUAD4, None),
+    shape("CQUADR", CellType::QUAD4, None),
+    shape("CQUAD8", CellType::QUAD4, Some(CellType::QUAD8)),
+    shape("CBAR", CellType::LINE2, None),
+    shape("CBEAM", CellType::LINE2, None),
+    shape("CROD", CellType::LINE2, None),
+    shape("CTUBE", CellType::LINE2, None),
+    Shape { name: "CONROD", first: 1, corners: CellType::LINE2, full: None },
+];
+
+/// Cards of elements with a body that have no element here.
+const OTHERS: [&str; 14] = [
+    "CQUAD", "CQUADX", "CTRIAX", "CTRIAX6", "CQUADX4", "CQUADX8", "CTRIAX3", "CBEAM3", "CBEND", "CSHEAR", "CTQUAD",
+    "CTTRIA", "CHEXA1", "CHEXA2",
+];
+
+/// The places in VTK's order, by place in that of Nastran, whose upright edges come before those on top.
+const HEX20: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15];
+const WEDGE15: [usize; 15] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11];
+
+/// What an element card holds.
+pub(super) struct ElementCard {
+    pub number: u64,
+    /// The number of its property.
+    pub property: Option<u64>,
+    pub cell_type: CellType,
+    /// In the order of VTK.
+    pub nodes: Vec<u64>,
+}
+
+/// The element of the card; `None` for another card.
+///
+/// # Errors
+/// The card has a wrong field, some of its middle nodes alone, or is of an element without one here.
+pub(super) fn element(card: &Card) -> Result<Option<ElementCard>> {
+    let Some(shape) = SHAPES.iter().find(|shape| shape.name == card.name.trim_end_matches('_')) else {
+        if OTHERS.contains(&card.name.as_str()) {
+            let known = SHAPES.map(|shape| shape.name).join(", ");
+            return Err(card.unsupported(&format!("one of the elements {known}"), &card.name));
+        }
+        return Ok(None);
+    };
+    let number = card.whole(0, "the number of an element")?;
+    let is_property = shape.first == 2;
+    let property = is_property.then(|| match card.field(1) {
+        // A property without a number has that of the element.
+        b"" => Ok(number),
+        _ => card.whole(1, "the number of a property"),
+    });
+    let mut nodes = Vec::new();
+    for index in 0..shape.corners.nodes() {
+        nodes.push(card.whole(shape.first + index, "the number of a grid point")?);
+    }
+    let middles = shape.full.map_or(0, CellType::nodes).saturating_sub(nodes.len());
+    let start = shape.first + nodes.len();
+    let given = (start..start + middles).filter(|&index| !matches!(card.field(index), b"" | b"0")).count();
+    let mut cell_type = shape.corners;
+    if let Some(full) = shape.full.filter(|_| given > 0) {
+        if given < middles {
+            let expected = format!("no middle nodes, or all {middles}");
+            return Err(card.unsupported(&expected, &format!("{given} in element {number}")));
+        }
+        cell_type = full;
+        for index in start..start + middles {
+            let node = whole(card.field(index));
+            nodes.push(node.ok_or_else(|| card.expected("the number of a grid point", card.field(index)))?);
+        }
+        let order: &[usize] = match cell_type {
+            CellType::HEX20 => &HEX20,
+            CellType::WEDGE15 => &WEDGE15,
+            _ => &[],
+        };
+        if !order.is_empty() {
+            nodes = order.iter().map(|&place| nodes[place]).collect();
+        }
+    }
+    let property = property.transpose().map_err(|e| e.of_kind(ErrorKind::Syntax))?;
+    Ok(Some(ElementCard { number, property, cell_type, nodes }))
+}

@@ -1,0 +1,233 @@
+//! PLY, text and binary in both byte orders.
+
+use super::faces::{Faces, TRIANGULATE};
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::reader::{Encoding, Reader, quoted};
+use crate::mesh::source::MeshSource;
+
+/// Reads the `vertex` and `face` elements of a PLY file; other elements and properties are passed over.
+///
+/// # Errors
+/// The file has faces with more than four corners, or is damaged or cut short.
+pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
+    let mut reader = Reader::new(bytes);
+    let elements = header(&mut reader)?;
+    let mut points = Vec::new();
+    let mut faces = Faces::new();
+    let is_there = |name: &str| elements.iter().any(|element| element.name == name);
+    if !is_there("vertex") {
+        return Err(reader.expected("an element vertex in the header", "none"));
+    }
+    for element in &elements {
+        reader.enter(format!("element {}", element.name));
+        reader.announce("of them", element.count);
+        match element.name.as_str() {
+            "vertex" => vertices(&mut reader, element, &mut points)?,
+            "face" => polygons(&mut reader, element, points.len(), &mut faces)?,
+            _ => {
+                if element.properties.is_empty() {
+                    continue;
+                }
+                for _ in 0..element.count {
+                    element.properties.iter().try_for_each(|property| property.skip(&mut reader))?;
+                    reader.count_one();
+                }
+            }
+        }
+    }
+    Ok(faces.into_source(points, 0))
+}
+
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+struct Property {
+    name: String,
+    /// The type of the number of items, if it is a list.
+    list: Option<Scalar>,
+    scalar: Scalar,
+}
+
+#[derive(Clone, Copy)]
+enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn named(name: &[u8]) -> Option<Scalar> {
+        Some(match name {
+            b"char" | b"int8" => Scalar::I8,
+            b"uchar" | b"uint8" => Scalar::U8,
+            b"short" | b"int16" => Scalar::I16,
+            b"ushort" | b"uint16" => Scalar::U16,
+            b"int" | b"int32" => Scalar::I32,
+            b"uint" | b"uint32" => Scalar::U32,
+            b"float" | b"float32" => Scalar::F32,
+            b"double" | b"float64" => Scalar::F64,
+            _ => return None,
+        })
+    }
+
+    fn real(self, reader: &mut Reader) -> Result<f64> {
+        if reader.encoding == Encoding::Text {
+            return reader.number();
+        }
+        Ok(match self {
+            Scalar::I8 => reader.number::<i8>()?.into(),
+            Scalar::U8 => reader.number::<u8>()?.into(),
+            Scalar::I16 => reader.number::<i16>()?.into(),
+            Scalar::U16 => reader.number::<u16>()?.into(),
+            Scalar::I32 => reader.number::<i32>()?.into(),
+            Scalar::U32 => reader.number::<u32>()?.into(),
+            Scalar::F32 => reader.number::<f32>()?.into(),
+            Scalar::F64 => reader.number()?,
+        })
+    }
+
+    /// A number of items, or an index.
+    fn index(self, reader: &mut Reader) -> Result<u64> {
+        let value = self.real(reader)?;
+        if value >= 0.0 && value.fract() == 0.0 && value < 2f64.powi(53) {
+            return Ok(value as u64);
+        }
+        Err(reader.expected("a whole number of at least zero", &value.to_string()))
+    }
+}
+
+impl Property {
+    fn skip(&self, reader: &mut Reader) -> Result<()> {
+        let items = match self.list {
+            Some(count) => count.index(reader)?,
+            None => 1,
+        };
+        (0..items).try_for_each(|_| self.scalar.real(reader).map(drop))
+    }
+}
+
+fn header(reader: &mut Reader) -> Result<Vec<Element>> {
+    reader.enter("header");
+    if reader.line().trim_ascii() != b"ply" {
+        return Err(
+            Error::expected("header", "the word \"ply\" on the first line", "another").of_kind(ErrorKind::Syntax)
+        );
+    }
+    let mut elements: Vec<Element> = Vec::new();
+    let mut encoding = None;
+    loop {
+        if reader.rest().is_empty() {
+            return Err(reader.ends());
+        }
+        // The line is read after its faults have been found, so that they name it.
+        let line = reader.rest_of_line();
+        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
+        match words[..] {
+            [b"format", format, _] => {
+                encoding = Some(match format {
+                    b"ascii" => Encoding::Text,
+                    b"binary_little_endian" => Encoding::Binary { big_endian: false },
+                    b"binary_big_endian" => Encoding::Binary { big_endian: true },
+                    _ => {
+                        return Err(
+                            reader.expected("ascii, binary_little_endian or binary_big_endian", &quoted(format))
+                        );
+                    }
+                });
+            }
+            [b"element", name, count] => {
+                let count = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
+                let count = count.ok_or_else(|| reader.expected("a number of elements", &quoted(line)))?;
+                elements.push(Element {
+                    name: String::from_utf8_lossy(name).into_owned(),
+                    count,
+                    properties: Vec::new(),
+                });
+            }
+            [b"property", ref types @ .., name] => {
+                let [list, scalar] = match types {
+                    [scalar] => [None, Some(*scalar)],
+                    [b"list", count, scalar] => [Some(*count), Some(*scalar)],
+                    _ => [None, None],
+                };
+                let known = |name: &[u8]| {
+                    Scalar::named(name).ok_or_else(|| reader.expected("a type of numbers", &quoted(name)))
+                };
+                let list = list.map(known).transpose()?;
+                let scalar = known(scalar.unwrap_or_default())?;
+                let Some(element) = elements.last_mut() else {
+                    return Err(reader.expected("an element before its properties", &quoted(line)));
+                };
+                element.properties.push(Property { name: String::from_utf8_lossy(name).into_owned(), list, scalar });
+            }
+            [b"end_header"] => break,
+            [] | [b"comment" | b"obj_info", ..] => {}
+            _ => return Err(reader.expected("a line of a PLY header", &quoted(line))),
+        }
+        reader.line();
+    }
+    let Some(encoding) = encoding else { return Err(reader.expected("a line such as \"format ascii 1.0\"", "none")) };
+    reader.line();
+    reader.encoding = encoding;
+    Ok(elements)
+}
+
+fn vertices(reader: &mut Reader, element: &Element, points: &mut Vec<[f64; 3]>) -> Result<()> {
+    let find = |name: &str| element.properties.iter().position(|p| p.name == name && p.list.is_none());
+    let axes = ["x", "y", "z"].map(find);
+    if axes.iter().any(Option::is_none) {
+        return Err(reader.expected("properties x, y and z", "others"));
+    }
+    points.reserve(reader.capacity::<f32>(element.count, 3));
+    for _ in 0..element.count {
+        let mut point = [0.0; 3];
+        for (index, property) in element.properties.iter().enumerate() {
+            match axes.iter().position(|axis| *axis == Some(index)) {
+                Some(k) => point[k] = property.scalar.real(reader)?,
+                None => property.skip(reader)?,
+            }
+        }
+        points.push(point);
+        reader.count_one();
+    }
+    Ok(())
+}
+
+fn polygons(reader: &mut Reader, element: &Element, point_count: usize, faces: &mut Faces) -> Result<()> {
+    let is_corners = |p: &Property| p.list.is_some() && (p.name == "vertex_indices" || p.name == "vertex_index");
+    let Some(corners) = element.properties.iter().position(is_corners) else {
+        return Err(reader.expected("a list vertex_indices", "none"));
+    };
+    let mut nodes = Vec::new();
+    for face in 0..element.count {
+        for (index, property) in element.properties.iter().enumerate() {
+            let Some(count) = property.list.filter(|_| index == corners) else {
+                property.skip(reader)?;
+                continue;
+            };
+            let count = count.index(reader)?;
+            if !(3..=4).contains(&count) {
+                let found = format!("face {face} with {count} corners");
+                return Err(reader.expected(TRIANGULATE, &found).of_kind(ErrorKind::Unsupported));
+            }
+            nodes.clear();
+            for _ in 0..count {
+                let node = property.scalar.index(reader)?;
+                let known = usize::try_from(node).ok().filter(|&node| node < point_count);
+                let expected = || reader.expected(&format!("an index below {point_count}"), &node.to_string());
+                nodes.push(known.ok_or_else(expected)?);
+            }
+            faces.push(&nodes);
+        }
+        reader.count_one();
+    }
+    Ok(())
+}

@@ -1,0 +1,343 @@
+//! Meshes that Gmsh, meshio, trimesh, VTK and TetGen have written (`meshes/formats.py`), in the formats of other programs,
+//! beside the same meshes in the formats of Gmsh; and damage to them.
+
+use springfit::element::{Quadrature, Tabulation};
+use springfit::mesh::{MESH_FORMATS, Mesh, MeshSource, NumberOrigin, listed_endings};
+use springfit::stiffness::each_cell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const SOLIDS: [&str; 18] = [
+    "bar.inp",
+    "bar_free.bdf",
+    "bar_small.bdf",
+    "bar_large.bdf",
+    "hex20.inp",
+    "hex20.bdf",
+    "hex20_meshio.inp",
+    "hex20_meshio.bdf",
+    "wedge15.inp",
+    "wedge15.bdf",
+    "tet10.inp",
+    "tet10.bdf",
+    "tri6.inp",
+    "tri6.bdf",
+    "quad8.inp",
+    "quad8.bdf",
+    "pyramid13.inp",
+    "curve3.inp",
+];
+const EGGS: [&str; 7] =
+    ["egg.off", "egg.obj", "egg.ply", "egg_ascii.ply", "egg_big_endian.ply", "egg.stl", "egg_ascii.stl"];
+
+fn path(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(file)
+}
+
+fn mesh(file: &str) -> Mesh {
+    Mesh::resolve(&MeshSource::read(&path(file)).unwrap(), &[], 1.0).unwrap()
+}
+
+fn parse(bytes: &[u8], ending: &str) -> springfit::error::Result<MeshSource> {
+    MeshSource::parse(bytes, ending)
+}
+
+fn error(text: &str, ending: &str) -> String {
+    parse(text.as_bytes(), ending).unwrap_err().to_string()
+}
+
+/// The element and the positions of the nodes of each cell, sorted.
+fn cells(mesh: &Mesh) -> Vec<(String, Vec<f64>)> {
+    let of = |block: &springfit::mesh::CellBlock| {
+        let name = block.element.name.clone();
+        block
+            .cells()
+            .map(|nodes| (name.clone(), nodes.iter().flat_map(|&p| mesh.point(p).to_vec()).collect()))
+            .collect::<Vec<_>>()
+    };
+    let mut cells: Vec<(String, Vec<f64>)> = mesh.blocks.iter().flat_map(of).collect();
+    // Places of different cells differ by far more than a thousandth; no coordinate is near the middle of two.
+    cells.sort_by_key(|(name, x)| {
+        (name.clone(), x.iter().map(|x| (x * 1e3 + 0.137).round() as i64).collect::<Vec<_>>())
+    });
+    cells
+}
+
+fn assert_same_cells(found: &Mesh, expected: &Mesh, tolerance: f64, file: &str) {
+    let (found, expected) = (cells(found), cells(expected));
+    assert_eq!(found.len(), expected.len(), "{file}");
+    for ((name, x), (expected_name, y)) in found.iter().zip(&expected) {
+        assert_eq!((name, x.len()), (expected_name, y.len()), "{file}");
+        assert!(x.iter().zip(y).all(|(x, y)| (x - y).abs() <= tolerance), "{file}: {name} {x:?}, expected {y:?}");
+    }
+}
+
+/// The points of each group by the numbers of the file.
+fn groups(mesh: &Mesh) -> BTreeMap<String, BTreeSet<u64>> {
+    let numbers = |points: &[usize]| points.iter().map(|&p| mesh.point_number(p)).collect();
+    mesh.groups.iter().map(|(name, group)| (name.clone(), numbers(&group.points))).collect()
+}
+
+/// Cells have their nodes at the same places in the same order, so that every middle node is on its edge.
+#[test]
+fn cells_are_those_that_gmsh_writes_in_its_own_format() {
+    for file in SOLIDS {
+        let stem = file.split(['.', '_']).next().unwrap();
+        let reference = mesh(&if stem == "bar" { "bar_41_ascii.msh".into() } else { format!("{stem}.msh") });
+        let found = mesh(file);
+        // Gmsh writes 6 digits into narrow cards, 9 into wide ones.
+        let digit = if file.contains("small") || file.contains("free") { 1e-6 } else { 2e-8 };
+        assert_same_cells(&found, &reference, digit, file);
+        assert_eq!(found.reversed, reference.reversed, "{file}");
+        assert_eq!(found.numbering.as_ref().unwrap().origin, NumberOrigin::NodeNumber);
+        if !file.contains("meshio") {
+            assert_eq!(found.numbering.unwrap().nodes, reference.numbering.unwrap().nodes, "{file}");
+        }
+    }
+}
+
+#[test]
+fn sets_of_elements_and_nodes_are_groups() {
+    let (found, reference) = (mesh("bar.inp"), mesh("bar_41_ascii.msh"));
+    let (all, expected) = (groups(&found), groups(&reference));
+    for (name, points) in &expected {
+        let name = match name.as_str() {
+            "1:9" => "PhysicalLine9".into(),
+            other => other.replace(' ', "_"),
+        };
+        assert_eq!(&all[&name], points, "{name}");
+    }
+    assert_eq!(found.groups["load"].sides.len(), reference.groups["load"].sides.len());
+    assert_eq!(found.groups["body"].cells.len(), 8);
+    let small = mesh("bar_small.bdf");
+    let listed: Vec<_> = small.groups.iter().map(|(name, group)| (name.as_str(), group.cells.len())).collect();
+    assert_eq!(listed, [("pid=1", 2), ("pid=2", 6), ("pid=26", 0), ("pid=49", 0)]);
+}
+
+/// The volume of the egg is that which trimesh computes.
+#[test]
+fn a_surface_is_the_same_in_every_format() {
+    let reference = mesh("egg.ply");
+    assert_eq!((reference.point_count(), reference.cell_count()), (42, 80));
+    for file in EGGS {
+        let found = mesh(file);
+        assert_eq!((found.point_count(), found.cell_count()), (42, 80), "{file}");
+        assert_same_cells(&found, &reference, 1e-6, file);
+    }
+}
+
+#[test]
+fn tetrahedra_of_tetgen_fill_their_brick() {
+    for file in ["brick10.ele", "brick10.node", "brick4.node"] {
+        let mesh = mesh(file);
+        let element = &mesh.blocks[0].element;
+        let rule = Quadrature::of_degree(element.cell, 12);
+        let table = Tabulation::new(&element.functions, &rule, None);
+        let mut content = 0.0;
+        each_cell(&table, &mesh.points, &mesh.blocks[0].connectivity, |_, _, g| content += g.content()).unwrap();
+        assert!((content - 2.0).abs() < 1e-12, "{file}: {content}");
+        assert_eq!(mesh.reversed, if file == "brick4.node" { mesh.reversed } else { 0 });
+    }
+    let mesh = mesh("brick10.ele");
+    let middles = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+    for nodes in mesh.blocks[0].cells() {
+        for (node, [a, b]) in nodes[4..].iter().zip(middles) {
+            let (a, b) = (mesh.point(nodes[a]), mesh.point(nodes[b]));
+            let middle = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
+            assert!(mesh.point(*node).iter().zip(middle).all(|(x, y)| (x - y).abs() < 1e-12));
+        }
+    }
+}
+
+#[test]
+fn marks_and_regions_of_tetgen_are_groups() {
+    let node = b"# points\n4 3 1 1\n1 0 0 0 9.5 0\n2 1 0 0 9.5 7\n3 0 1 0 9.5 -3\n4 0 0 1 9.5 7\n";
+    let ele = b"1 4 1\n1 1 2 3 4 12\n";
+    let face = b"2 1\n1 1 2 3 5\n2 1 2 4 0\n";
+    let mesh = Mesh::resolve(&MeshSource::parse_tetgen(node, ele, Some(face)).unwrap(), &[], 1.0).unwrap();
+    let listed: Vec<_> =
+        mesh.groups.iter().map(|(n, g)| (n.as_str(), g.points.len(), g.sides.len(), g.cells.len())).collect();
+    assert_eq!(listed, [("mark=-3", 1, 0, 0), ("mark=5", 3, 1, 0), ("mark=7", 2, 0, 0), ("region=12", 4, 0, 1)]);
+    let wrong = MeshSource::parse_tetgen(node, b"1 4 0\n1 1 2 3 5\n", None).unwrap_err().to_string();
+    assert_eq!(wrong, "line 2: .ele: cell 1: names node 5, which the file lacks");
+    let cut = MeshSource::parse_tetgen(node, b"2 4 0\n1 1 2 3 4\n", None).unwrap_err().to_string();
+    assert_eq!(cut, "the file ends inside .ele: expected 2 cells, found 1");
+}
+
+const PART: &str = "*Heading\n ** not a comment\n*Part, name=P\n*Node\n1, 0, 0\n2, 1., 0., 0.\n3, 0., 1.D0, 0\n4, 0, 0, 1\n5, 1, 1, 1\n\
+    *Element, type=C3D4R, elset=lower\n7, 1, 2, 3,\n4\n*Element, type=C3D4\n8, 2, 3, 5, 4\n\
+    *Nset, nset=Base, generate\n1, 3\n*Elset, elset=ALL, generate\n1, 100, 1\n*Elset, elset=both\nlower, 8\n*End Part\n";
+const ASSEMBLY: &str = "*Assembly, name=A\n*Instance, name=P-1, part=P\n10, 0, 0\n10, 0, 0, 10, 0, 1, 90\n*End Instance\n\
+    *Node\n1, 5, 5, 5\n*Nset, nset=pilot\n1,\n*Nset, nset=tip, instance=P-1\n5,\n*Nset, nset=named\nP-1.4, tip\n\
+    *Elset, elset=_s1, internal, instance=P-1\n7,\n*Surface, type=ELEMENT, name=Under\n_s1, S1\n\
+    *Surface, type=ELEMENT, name=skin\nP-1.all,\n*End Assembly\n*Material, name=m\n*Elastic\n1e6, 0.3\n";
+
+#[test]
+fn one_part_and_its_instance_are_a_mesh() {
+    let mesh = Mesh::resolve(&parse(format!("{PART}{ASSEMBLY}").as_bytes(), "inp").unwrap(), &[], 1.0).unwrap();
+    let listed: Vec<_> =
+        mesh.groups.iter().map(|(n, g)| (n.as_str(), g.points.len(), g.sides.len(), g.cells.len())).collect();
+    let expected = [
+        ("ALL", 5, 0, 2),
+        ("Base", 3, 0, 0),
+        ("Under", 3, 1, 0),
+        ("_s1", 4, 0, 1),
+        ("both", 5, 0, 2),
+        ("lower", 4, 0, 1),
+        ("named", 2, 0, 0),
+        ("skin", 5, 6, 0),
+        ("tip", 1, 0, 0),
+    ];
+    assert_eq!(listed, expected);
+    // Moved by 10 along x, then turned by 90° about an axis along z through (10, 0, 0): (1, 0, 0) comes to (10, 1, 0).
+    let turned = mesh.point(1);
+    assert!(turned.iter().zip([10.0, 1.0, 0.0]).all(|(x, y)| (x - y).abs() < 1e-12), "{turned:?}");
+}
+
+#[test]
+fn decks_that_are_no_single_body_are_refused_with_a_way_out() {
+    let second = format!("{PART}*Part, name=Q\n");
+    assert!(
+        error(&second, "inp").starts_with("line 22: *PART: expected one part, found a second: merge them"),
+        "{}",
+        error(&second, "inp")
+    );
+    let twice = format!("{PART}*Assembly\n*Instance, name=a, part=P\n*End Instance\n*Instance, name=b, part=P\n");
+    assert!(error(&twice, "inp").starts_with("line 25: *INSTANCE: expected one instance of the part, found a second"));
+    let include = "*NODE\n1, 0, 0, 0\n*INCLUDE, INPUT=more.inp\n";
+    assert_eq!(
+        error(include, "inp"),
+        "line 3: *INCLUDE: expected its lines in this file, found INPUT=more.inp: put the content of more.inp in its place"
+    );
+    let kind = "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=CAX4\n1, 1, 1, 1, 1\n";
+    assert!(error(kind, "inp").starts_with("line 3: *ELEMENT: expected one of the types C3D4, C3D10, C3D8, "));
+    assert!(error(kind, "inp").ends_with(", found CAX4"));
+    let short = "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 1, 1\n*END STEP\n";
+    assert_eq!(error(short, "inp"), "line 5: *ELEMENT: expected 4 nodes of element 1, found 3 before this line");
+    let node = "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=T3D2\n1, 1,\n2\n";
+    assert_eq!(error(node, "inp"), "line 5: element 1: names node 2, which the file lacks");
+    let number = "*NODE\n1, 0, o, 0\n";
+    assert_eq!(error(number, "inp"), "line 2: *NODE: expected a coordinate, found \"o\"");
+}
+
+#[test]
+fn cards_of_every_layout_are_read() {
+    let text = "SOL 101\nCEND\nBEGIN BULK\n$ a comment\nGRID,1,,0.,0.,0.\nGRID    2               1.0     0.0     0.0\n\
+        GRID*                  3                             0.0           1.0+0\n*                  0.0-3\n\
+        GRID\t4\t0\t.0\t.0\t1.-0\nCTETRA,12,5,1,2,+a\n+a\nCROD,9,,1,2\nPSOLID,5,1\nENDDATA\nCTETRA,x\n";
+    let text = text.replace("CTETRA,12,5,1,2,+a\n+a\n", "CTETRA  12      5       1       2       3       4\n");
+    let mesh = Mesh::resolve(&parse(text.as_bytes(), "nas").unwrap(), &[], 1.0).unwrap();
+    assert_eq!(mesh.points, [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1.]);
+    let names: Vec<_> = mesh.groups.keys().map(String::as_str).collect();
+    assert_eq!(names, ["pid=5", "pid=9"]);
+    let system = "GRID,1,3,0.,0.,0.\n";
+    assert!(
+        error(system, "bdf").starts_with("line 1: GRID: expected coordinates in the basic system, 0, found system 3")
+    );
+    let partial = "CTETRA,1,1,1,2,3,4,5,6\n";
+    assert_eq!(error(partial, "bdf"), "line 1: CTETRA: expected no middle nodes, or all 6, found 2 in element 1");
+    let blank = "GRID,1,,0.,0.,0.\nCQUAD4,1,1,1,2,3\n";
+    assert_eq!(error(blank, "bdf"), "line 2: CQUAD4: expected the number of a grid point, found a blank field");
+    let long = "GRID,1,,0.,0.,0.,,,,,,\n";
+    assert_eq!(error(long, "bdf"), "line 1: expected at most 8 fields after the name, found 11");
+}
+
+#[test]
+fn faults_of_surfaces_name_the_line() {
+    assert_eq!(
+        error("solid a\nfacet\nouter loop\nvertex 0 0 x\n", "stl"),
+        "line 4: solid: expected a coordinate, found \"x\""
+    );
+    assert_eq!(error("solid a\nfacet\n", "stl"), "the file ends inside solid");
+    let header = [&[0_u8; 80][..], &9_u32.to_le_bytes(), &[0; 60]].concat();
+    let cut = parse(&header, "stl").unwrap_err().to_string();
+    assert_eq!(
+        cut,
+        "header: expected the word \"solid\", or 9 facets of 50 bytes after the header, found 1 facets and 10 bytes"
+    );
+    assert_eq!(
+        error("v 0 0 0\nf 1 1 2\n", "obj"),
+        "line 2: expected the number of one of 1 points before it, found \"2\""
+    );
+    let five = "OFF\n5 1 0\n0 0 0\n1 0 0\n1 1 0\n0 2 0\n0 1 0\n5 0 1 2 3 4\n";
+    assert!(error(five, "off").starts_with("line 8: expected triangles or quadrangles"));
+    assert_eq!(error("OFF\n3 1 0\n0 0 0\n", "off"), "the file ends too early: expected 3 points, found 1");
+    let counts = "ply\nformat ascii 1.0\nelement vertex 99999999999999\nproperty float x\nproperty float y\nproperty float z\n\
+                  end_header\n0 0 0\n";
+    assert!(error(counts, "ply").contains("expected 99999999999999"), "{}", error(counts, "ply"));
+}
+
+/// Each row of the table of formats is asked for by its endings.
+#[test]
+fn endings_are_those_of_the_table() {
+    let endings: BTreeSet<&str> = MESH_FORMATS.iter().flat_map(|format| format.endings).copied().collect();
+    assert_eq!(endings.len(), MESH_FORMATS.iter().map(|format| format.endings.len()).sum::<usize>());
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/src/reference/meshes.md")).unwrap();
+    for ending in endings {
+        assert!(listed_endings().contains(&format!(".{ending}")));
+        assert!(page.contains(&format!("`.{ending}`")), "{ending} is not on the page of meshes");
+    }
+    for (ending, command) in [("step", "gmsh body.step -3"), ("xdmf", "meshio convert"), ("glb", "Blender")] {
+        assert!(error("", ending).contains(command));
+    }
+}
+
+fn assert_sound(mesh: &MeshSource) {
+    for block in &mesh.blocks {
+        assert!(block.dimension <= 3 && block.nodes_per_cell > 0 && !block.connectivity.is_empty());
+        assert_eq!(block.connectivity.len() % block.nodes_per_cell, 0);
+        assert!(block.connectivity.iter().all(|&node| node < mesh.points.len()));
+    }
+}
+
+#[test]
+fn no_damaged_file_makes_a_reader_panic() {
+    let mut state = 7_u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let whole = |file: &&str| (fs::read(path(file)).unwrap(), file.rsplit('.').next().unwrap().to_string());
+    let mut files: Vec<_> = SOLIDS.iter().chain(&EGGS).map(whole).collect();
+    files.push((format!("{PART}{ASSEMBLY}").into_bytes(), "inp".into()));
+    files.retain(|(bytes, _)| bytes.len() < 9000);
+    for (whole, ending) in &files {
+        for round in 0..400 {
+            let mut bytes = whole.clone();
+            bytes.truncate(if round % 4 == 0 { random(whole.len()) + 1 } else { whole.len() });
+            for _ in 0..1 + round % 3 {
+                let at = random(bytes.len());
+                match random(6) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => bytes[at] = b"0123456789 -.,$\"<>=*+\n"[random(22)],
+                    2 => bytes[at] ^= 1 << random(8),
+                    3 if bytes.len() > 1 => drop(bytes.remove(at)),
+                    4 => bytes.insert(at, b'9'),
+                    _ => {
+                        let end = (at + random(16)).min(bytes.len());
+                        bytes[at..end].fill(255);
+                    }
+                }
+            }
+            match parse(&bytes, ending) {
+                Ok(mesh) => assert_sound(&mesh),
+                Err(error) => assert_eq!(error.to_string().lines().count(), 1),
+            }
+        }
+    }
+}
+
+/// Formats that count or close what they hold are not read if they are cut.
+#[test]
+fn no_surface_cut_short_is_read() {
+    for file in EGGS.into_iter().filter(|file| !file.ends_with(".obj")) {
+        let bytes = fs::read(path(file)).unwrap();
+        for length in (0..bytes.len()).step_by(7) {
+            let (start, rest) = bytes.split_at(length);
+            if parse(start, file.rsplit('.').next().unwrap()).is_ok() {
+                assert!(rest.trim_ascii().len() < 12, "{file} cut to {length} bytes");
+            }
+        }
+    }
+}
