@@ -5,7 +5,6 @@ use super::camera::{Camera, Seen, nearness, silhouette, turning};
 use super::deformation::Deformation;
 use super::palette::{COLORS, faded, ramp};
 use super::sheet::{Columns, cut, line, outline, sheet, tenth, words};
-use crate::report::result_table::significant;
 use crate::springs::norm;
 use plotters::style::RGBColor;
 use svg::Document;
@@ -229,7 +228,7 @@ impl Deformation {
         let long = (0.26 * width).max(110.0).min(width - left - MARGIN);
         let number = format!("{}", (largest / factor * 100.0).round() / 100.0);
         let times = if self.factor == 1.0 { "drawn to scale".into() } else { format!("drawn × {}", self.factor) };
-        let error = self.error.map_or(String::new(), |error| format!("(c) e_rms {} %", significant(error, 3)));
+        let error = self.error.map_or(String::new(), |error| format!("(c) e_rms {error:.2} %"));
         // Beside the bar, or below it.
         let is_wide = width - left - long > 2.0 * long;
         let below = if is_wide { [left + 90.0, top + 41.0] } else { [left, top + 56.0] };
