@@ -1,6 +1,7 @@
 //! Tables, CSV and a work-precision plot of a comparison.
 
 use super::columns::{Heading, aligned, texts};
+use super::figure::{Columns, precision_chart};
 use super::result_table::ResultTable;
 use super::rows::csv;
 use super::table::summary_line;
@@ -8,7 +9,6 @@ use super::write_files;
 use crate::error::{Error, Result};
 use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
 use crate::text::printable;
-use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// What [`Comparison::write`] writes.
@@ -159,101 +159,10 @@ impl Comparison {
     /// # Errors
     /// No method has a time and an error above zero.
     pub fn plot(&self) -> Result<String> {
-        let known: Vec<_> = self.points.iter().filter(|(_, s, e)| *s > 0.0 && *e > 0.0).collect();
-        // Errors of rounding are drawn under the others, with their numbers: an axis down to them would show nothing else.
-        let largest = known.iter().map(|(_, _, e)| *e).fold(0.0, f64::max);
-        let least = known.iter().map(|(_, _, e)| *e).filter(|e| *e >= largest * 1e-4).fold(largest, f64::min);
-        let placed = |(name, s, e): &(String, f64, f64)| match *e < largest * 1e-4 {
-            true => (format!("{name} ({e:.0e})"), *s, least / 3.0),
-            false => (name.clone(), *s, *e),
-        };
-        let shown: Vec<_> = known.into_iter().map(placed).collect();
-        let shown: Vec<_> = shown.iter().collect();
-        if shown.is_empty() {
+        let known: Vec<_> = self.points.iter().filter(|(_, s, e)| *s > 0.0 && *e > 0.0).cloned().collect();
+        if known.is_empty() {
             return Err(Error::new("nothing to plot: no fit has an error above zero"));
         }
-        let range = |values: &dyn Fn(&(String, f64, f64)) -> f64| {
-            let least = shown.iter().map(|p| values(p)).fold(f64::INFINITY, f64::min);
-            let largest = shown.iter().map(|p| values(p)).fold(0.0, f64::max);
-            let fitted = least / 1.3..largest * 1.3;
-            // Whole decades where the axis had less than two numbers.
-            match fitted.end.log10().floor() - fitted.start.log10().ceil() >= 1.0 {
-                true => fitted,
-                // A little more, so that rounding does not take the numbers at the ends from the axis.
-                false => {
-                    let [start, end] = [fitted.start.log10().floor(), fitted.end.log10().ceil()];
-                    10f64.powf(start) * 0.999..10f64.powf(end) * 1.001
-                }
-            }
-        };
-        let mut text = String::new();
-        draw(&mut text, self, &shown, range(&|p| 1e6 * p.1), range(&|p| p.2))
-            .map_err(|e| Error::new(format!("the plot cannot be drawn: {e}")))?;
-        Ok(text)
+        precision_chart(self.title.clone(), self.error.clone(), &known).svg(Columns::Two)
     }
-}
-
-/// Okabe and Ito (2008): told apart by all eyes and on paper. Each eight methods share a mark.
-pub(super) const COLORS: [RGBColor; 8] = [
-    RGBColor(0, 0, 0),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(0, 158, 115),
-    RGBColor(180, 170, 30),
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(204, 121, 167),
-];
-
-fn draw(
-    text: &mut String,
-    comparison: &Comparison,
-    points: &[&(String, f64, f64)],
-    seconds: std::ops::Range<f64>,
-    errors: std::ops::Range<f64>,
-) -> std::result::Result<(), Box<dyn std::error::Error>> {
-    const HEIGHT: i32 = 520;
-    let legend = 22 * points.len() as i32;
-    let area = SVGBackend::with_string(text, (980, HEIGHT.max(legend + 80) as u32)).into_drawing_area();
-    area.fill(&WHITE)?;
-    let (plot, names) = area.split_horizontally(640);
-    let mut chart = ChartBuilder::on(&plot)
-        .margin(16)
-        .caption(&comparison.title, ("sans-serif", 17))
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d(seconds.log_scale(), errors.log_scale())?;
-    let number =
-        |v: &f64| if *v >= 0.01 && *v < 1e5 { format!("{}", (v * 1e4).round() / 1e4) } else { format!("{v:.0e}") };
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .x_desc("fit, microseconds per element")
-        .y_desc(&comparison.error)
-        .x_label_formatter(&number)
-        .y_label_formatter(&number)
-        .label_style(("sans-serif", 13))
-        .draw()?;
-    for (i, (name, s, e)) in points.iter().enumerate() {
-        let color = COLORS[i % COLORS.len()];
-        let at = (1e6 * s, *e);
-        let label = 30 + 22 * i as i32;
-        match i / COLORS.len() % 3 {
-            0 => {
-                chart.draw_series([Circle::new(at, 5, color.filled())])?;
-                names.draw(&Circle::new((14, label + 7), 5, color.filled()))?;
-            }
-            1 => {
-                chart.draw_series([TriangleMarker::new(at, 7, color.filled())])?;
-                names.draw(&TriangleMarker::new((14, label + 7), 7, color.filled()))?;
-            }
-            _ => {
-                chart.draw_series([Cross::new(at, 5, color.stroke_width(3))])?;
-                names.draw(&Cross::new((14, label + 7), 5, color.stroke_width(3)))?;
-            }
-        }
-        names.draw(&Text::new(name.clone(), (30, label), ("sans-serif", 14)))?;
-    }
-    area.present()?;
-    Ok(())
 }

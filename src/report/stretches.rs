@@ -1,7 +1,7 @@
 //! Tables and figures of springs at large deformation.
 
 use super::columns::{Heading, aligned, texts};
-use super::comparison::COLORS;
+use super::figure::COLORS;
 use super::result_table::ResultTable;
 use super::rows::csv;
 use super::write_files;

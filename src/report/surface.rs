@@ -1,6 +1,6 @@
 //! Moduli of networks against the constants that were asked for.
 
-use super::comparison::COLORS;
+use super::figure::COLORS;
 use crate::error::{Error, Result};
 use crate::study::Surface;
 use plotters::coord::Shift;
@@ -53,7 +53,7 @@ fn draw(text: &mut String, title: &str, surfaces: &[&Surface]) -> Fallible {
 const GREY: RGBColor = RGBColor(165, 165, 165);
 
 fn hue(i: usize) -> RGBColor {
-    COLORS[[5, 1, 0, 3, 6, 2, 7, 4][i % 8]]
+    COLORS[[0, 1, 2, 5, 4, 3, 6, 7][i % 8]]
 }
 
 fn panel(

@@ -66,19 +66,25 @@ function addPrecision(record) {
 }
 
 function addWhole(record) {
-  const rows = record.report.fits.filter((fit) => fit.whole).flatMap((fit) => [
-    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: `${cut(fit.name, 20)}, ${cut(load.load, 16)}` })),
-    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${cut(fit.name, 20)}, ${cut(load.load, 16)} (v.)` })),
-  ]);
-  if (!rows.length) return;
-  addChart("whole", "Whole-object fits: relative error before and after; v.: validation", () => {
+  const fits = record.report.fits.filter((fit) => fit.whole);
+  if (!fits.length) return;
+  const rowsOf = (fit) => [
+    ...fit.whole.relative_errors_fitted.map((load) => ({ ...load, name: cut(load.load, 26) })),
+    ...fit.whole.relative_errors_validated.map((load) => ({ ...load, name: `${cut(load.load, 20)} (validation)` })),
+  ];
+  let chosen = fits[0];
+  const draw = () => {
+    const rows = rowsOf(chosen);
     // Rows have numbers: names that are cut may be alike.
     const places = rows.map((_, i) => i);
     const names = rows.map((row) => label(row.name));
     const dots = (name, key, color, symbol) => ({ type: "scatter", mode: "markers", name, y: places, text: names, x: rows.map((row) => row[key] === null ? null : 100 * row[key]), marker: { size: 10, color, symbol }, hovertemplate: "%{text}<br>%{x:.3g} %<extra></extra>" });
     const line = { type: "scatter", mode: "lines", y: places.flatMap((place) => [place, place, null]), x: rows.flatMap((row) => [100 * row.before, 100 * row.after, null]), line: { color: theme.color("soft") }, showlegend: false, hoverinfo: "skip" };
-    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed", tickvals: places, ticktext: names }, height: 180 + 26 * rows.length }) };
-  });
+    return { data: [line, dots("before", "before", HUES[1], "circle-open"), dots("after", "after", HUES[0], "circle")], layout: layout({ xaxis: { type: "log", title: { text: "‖u − ū‖/‖ū‖, %" } }, yaxis: { autorange: "reversed", tickvals: places, ticktext: names } }) };
+  };
+  const { select, field } = chooser("whole-fit", "Network", fits.map((fit, i) => [i, cut(fit.name)]), (value) => { chosen = fits[value]; show(); });
+  const show = addChart("whole", "Whole-object fits: relative error before and after", draw, [field]);
+  select.value = "0";
 }
 
 /** The paths of regularizations of whole-object fits: errors against ρ, and the errors of the fitted loads against the change (L-curve). */

@@ -8,6 +8,7 @@ mod deformation;
 mod format;
 mod moduli;
 mod palette;
+mod precision;
 mod run_folder;
 mod shapes;
 mod sheet;
@@ -22,6 +23,8 @@ pub use sheet::Columns;
 
 pub(super) use chart::stacked;
 pub(super) use convergence::{CONVERGENCE_TABLE, convergence_charts};
+pub(super) use palette::COLORS;
+pub(super) use precision::precision_chart;
 
 use crate::error::{Error, Result};
 use crate::report::json::Report;
@@ -55,10 +58,6 @@ pub enum Picture {
     Deformation(Box<Deformation>),
 }
 
-/// Decades below the largest error within which errors are shown: an exact network has errors of rounding.
-const DECADES: f64 = 4.0;
-/// Smaller errors have a mark that is so many times below the least that is shown.
-const BELOW: f64 = 3.0;
 /// Intervals of a distribution.
 const INTERVALS: usize = 40;
 
@@ -109,22 +108,10 @@ fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
         return Err(Error::new("the run has no loads, so its fits have no errors to draw"));
     };
     let error = |fit: &crate::report::FitRecord| fit.loads.get(place)?.e_rms;
-    let largest = report.fits.iter().filter_map(error).fold(0.0, f64::max);
-    let least = largest * 10f64.powf(-DECADES);
-    let shown = report.fits.iter().filter_map(error).filter(|error| *error >= least).fold(largest, f64::min);
-    let floor = shown / BELOW;
-    let series = report.fits.iter().filter_map(|fit| {
-        let found = error(fit)?;
-        let shape = if found < least { Shape::Below } else { Shape::Marks };
-        let name = if found < least { format!("{} ({found:.0e} %)", fit.name) } else { fit.name.clone() };
-        Some(Series { name, points: vec![(1e6 * fit.seconds_per_element, found.max(floor))], shape })
-    });
-    Ok(Chart {
-        title: format!("{}: error under {name} against time to fit", report.scene),
-        x: Axis::log("time to fit, µs per element"),
-        y: Axis::log(format!("e_rms under {name}, %")),
-        series: series.collect(),
-    })
+    let point = |fit: &crate::report::FitRecord| Some((fit.name.clone(), fit.seconds_per_element, error(fit)?));
+    let points: Vec<_> = report.fits.iter().filter_map(point).collect();
+    let title = format!("{}: error under {name} against time to fit", report.scene);
+    Ok(precision_chart(title, format!("e_rms under {name}, %"), &points))
 }
 
 fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
