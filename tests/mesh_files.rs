@@ -281,7 +281,8 @@ fn gmsh_errors_say_what_was_expected_and_found() {
     assert_eq!(with_elements(""), "the file ends before $Elements");
     assert_eq!(gmsh_error(""), "the file ends before $MeshFormat");
     assert_eq!(gmsh_error("solid a\n"), "line 1: expected a section such as $MeshFormat, found \"solid\"");
-    let version = "line 2: $MeshFormat: expected version 4.1 or 2.2, found \"4\"";
+    let version = "line 2: $MeshFormat: expected version 4.1 or 2.2, found \"4\"; \
+                   what converts it: gmsh old.msh -save -format msh41 -o new.msh";
     assert_eq!(gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n"), version);
     let parts = gmsh_error(&format!("{FORMAT}$PartitionedEntities\n"));
     assert_eq!(parts, "line 4: $PartitionedEntities: partitioned meshes are not supported");

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::mesh::{Gate, Mesh, MeshSource};
+use springfit::mesh::{FillMesh, Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::study::{FillEntry, load_elements};
@@ -25,7 +25,7 @@ pub struct MeshOptions {
     /// The mesh is a closed surface: fill it with cells of this edge, in mesh units
     #[arg(long)]
     fill: Option<f64>,
-    /// The element that fills a surface, such as tet4 [default: hex8]
+    /// The element of hexahedra or tetrahedra that fills a surface [default: cubes of eight nodes]
     #[arg(long, requires = "fill")]
     fill_element: Option<String>,
     /// An element file to look in before the shipped ones; may be repeated
@@ -74,7 +74,7 @@ impl MeshOptions {
 
     /// How the surface in the file is filled, if it is.
     pub fn filling(&self, surface: &Path) -> Option<FillEntry> {
-        let element = self.fill_element.clone().unwrap_or_else(|| "hex8".into());
+        let element = self.fill_element.clone().unwrap_or_else(|| FillMesh::cube().into());
         self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element })
     }
 

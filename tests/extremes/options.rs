@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 16] = [
+const RUNS: [&[&str]; 19] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -35,12 +35,15 @@ const RUNS: [&[&str]; 16] = [
     &["new", "mesh.msh"],
     &["new", "plate.msh"],
     &["groups", "mesh.msh"],
+    &["groups", "octahedron.off", "--fill=0.4"],
+    &["new", "octahedron.off", "--fill=0.4"],
+    &["fit", "octahedron.off", "--fill=0.4", "--young=10kPa", "--poisson=0.3", "--output=springs.json"],
 ];
 
 const EXTREMES: [&str; 12] =
     ["0", "-1", "1e-308", "1e-160", "1e160", "1e308", "nan", "inf", "1e-30", "1e30", "5e-324", "1e-31"];
 
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     (
         "mesh.msh",
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n\
@@ -51,6 +54,7 @@ const FILES: [(&str, &str); 4] = [
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n\
          1 2 2 0 1 1 2 3\n$EndElements\n",
     ),
+    super::samples::FILES[0],
     super::samples::FILES[2],
     (
         "scene.toml",

@@ -15,7 +15,15 @@ impl MeshSource {
     pub fn read(path: &Path) -> Result<MeshSource> {
         let ending = crate::file::ending(path);
         let in_file = |e: Error| e.in_file(path);
-        match parser(&ending).map_err(in_file)? {
+        let parse = match parser(&ending) {
+            Ok(parse) => parse,
+            // A file that is not there is the first fault.
+            Err(error) => {
+                return Err(std::fs::metadata(path).map_or_else(|e| Error::io("cannot be read", e), |_| error))
+                    .map_err(in_file);
+            }
+        };
+        match parse {
             Parse::Alone(_) => MeshSource::parse(&crate::file::read(path)?, &ending).map_err(in_file),
             Parse::TetGen => {
                 let other = |ending: &str| path.with_extension(ending);

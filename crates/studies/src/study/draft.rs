@@ -70,7 +70,7 @@ pub fn draft(
         DraftSource::Fill { surface, cell, element } => {
             let (surface, element) = (quoted(surface), quoted(element));
             line(&format!(
-                "fill  = {{ surface = {surface}, cell = {cell}, element = {element} }} # edge in mesh units; or tet4"
+                "fill  = {{ surface = {surface}, cell = {cell}, element = {element} }} # the edge of a cube in mesh units"
             ));
         }
     }

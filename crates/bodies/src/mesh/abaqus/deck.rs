@@ -81,6 +81,9 @@ struct Deck {
     is_apart: bool,
 }
 
+/// The keywords that state the mesh.
+const MESH: [&str; 6] = ["NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "INCLUDE"];
+
 const FLAT: &str = "merge them in the program that wrote the file, or write one file for each";
 
 impl Deck {
@@ -89,7 +92,7 @@ impl Deck {
         self.block = Block::Passed;
         let line = lines.number();
         let is_outside = self.in_assembly && !self.in_instance;
-        if let Some(input) = keyword.value("INPUT").filter(|_| keyword.name != "PARAMETER") {
+        if let Some(input) = keyword.value("INPUT").filter(|_| MESH.contains(&keyword.name.as_str())) {
             let problem = format!(
                 "expected its lines in this file, found INPUT={input}: put the content of {input} in its place"
             );

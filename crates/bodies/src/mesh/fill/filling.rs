@@ -1,17 +1,18 @@
 //! Cells whose centres are inside a closed surface.
 
 use super::columns::Columns;
+use super::filled::Filled;
 use super::lattice::{Pattern, patterns};
 use super::parts::kept;
 use super::surface::Surface;
 use crate::bound;
-use crate::element::{Cell, Element};
+use crate::element::{Cell, Element, ElementFile, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::affine::Affine;
 use crate::mesh::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
+use crate::mesh::polytope::CellType;
 use crate::mesh::selection::Selection;
 use crate::mesh::source::MeshSource;
-use crate::range;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -25,61 +26,6 @@ pub struct FillMesh {
     pub element: Arc<Element>,
     /// The edge of a cube, m.
     pub cell: f64,
-}
-
-/// What a fill is beside its surface.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Filled {
-    /// The volume that the surface encloses, by the divergence theorem, m³.
-    pub surface_volume: f64,
-    /// The volume of the cells, m³.
-    pub volume: f64,
-    /// The number of cells.
-    pub cells: usize,
-    /// Cells that hung on others by an edge or a corner alone, and were left out.
-    pub loose: usize,
-    /// Whether all normals were inwards and have been turned.
-    pub turned: bool,
-    /// Triangles without an area, which were left out.
-    pub flat: usize,
-    /// Cells whose centres are within several layers of the surface, and the centre of one: it overlaps or meets itself.
-    pub overlaps: Option<(usize, [f64; 3])>,
-    /// Centres around which the surface winds the other way round, and one of them: a part of it is inside out.
-    pub inverted: Option<(usize, [f64; 3])>,
-    /// Edges with more than two triangles, and the middle of one.
-    pub branched: Option<(usize, [f64; 3])>,
-}
-
-impl Filled {
-    /// The fill beside its surface, and what is wrong with the surface, in lines of words.
-    pub fn lines(&self) -> Vec<String> {
-        let (cells, of) = (self.volume, self.surface_volume);
-        let more = 100.0 * (cells / of - 1.0);
-        let mut lines =
-            vec![format!("{} cells fill a surface: {cells:.4e} m³ of {of:.4e} m³, {more:+.2} %", self.cells)];
-        let at = |[x, y, z]: [f64; 3]| format!("({x:.4e}, {y:.4e}, {z:.4e}) m");
-        if self.turned {
-            lines.push("all normals of the surface were inwards and were turned".into());
-        }
-        if self.flat > 0 {
-            lines.push(format!("{} triangles without an area were left out", self.flat));
-        }
-        if let Some((count, place)) = self.branched {
-            lines.push(format!("{count} edges of the surface have more than two triangles, one at {}", at(place)));
-        }
-        if let Some((count, place)) = self.overlaps {
-            let words = "cells are inside several layers of the surface, which overlaps or meets itself";
-            lines.push(format!("{count} {words}, one at {}: each is filled once", at(place)));
-        }
-        if let Some((count, place)) = self.inverted {
-            let words = "cells are inside a part of the surface that is inside out, and are not filled";
-            lines.push(format!("{count} {words}, one at {}", at(place)));
-        }
-        if self.loose > 0 {
-            lines.push(format!("{} cells that hung on others by an edge or a corner alone were left out", self.loose));
-        }
-        lines
-    }
 }
 
 const MOST_CELLS: usize = bound::CELLS as usize;
@@ -100,6 +46,12 @@ impl Grid {
 }
 
 impl FillMesh {
+    /// The name of the shipped element of cubes with corners alone.
+    pub fn cube() -> &'static str {
+        let is_cube = |file: &&ElementFile| file.vtk == Some(i64::from(CellType::HEX8.0));
+        SHIPPED.iter().find(is_cube).map_or("", |file| file.name)
+    }
+
     /// Fills the surface in `source`, with `scale` metres per unit.
     ///
     /// # Errors
@@ -110,7 +62,10 @@ impl FillMesh {
         if patterns.is_empty() {
             return Err(Error::expected("element", "an element of hexahedra or tetrahedra", &self.element.name));
         }
-        let edge = range::positive("cell", self.cell, "m")?;
+        let edge = self.cell;
+        if !(edge > 0.0 && edge.is_finite()) {
+            return Err(Error::expected("cell", "a positive length", format!("{edge} m")));
+        }
         let surface = Surface::of(source, scale)?;
         let mut filled = Filled {
             surface_volume: surface.volume,

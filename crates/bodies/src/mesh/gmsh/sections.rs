@@ -84,6 +84,11 @@ impl File {
             ("PhysicalNames" | "Entities" | "Nodes" | "ParametricNodes" | "Elements", None) => {
                 return Err(reader.fault("expected $MeshFormat before it".into()));
             }
+            // Files of version 1 begin with their nodes.
+            ("NOD", None) => {
+                let error = reader.fault("expected version 4.1 or 2.2, found 1".into());
+                return Err(error.of_kind(ErrorKind::Unsupported).followed_by(CONVERTS));
+            }
             ("PartitionedEntities", _) => {
                 let error = reader.fault("partitioned meshes are not supported".into());
                 return Err(error.of_kind(ErrorKind::Unsupported));
@@ -155,11 +160,14 @@ fn format(reader: &mut Reader) -> Result<Version> {
     Ok(version)
 }
 
+/// What turns other versions into one that is read.
+const CONVERTS: &str = "; what converts it: gmsh old.msh -save -format msh41 -o new.msh";
+
 /// A file that ends here, or has no number here, has no version at all.
 fn unknown_version(reader: &mut Reader) -> Error {
     let is_number = reader.peek().first().is_some_and(u8::is_ascii_digit);
     let error = reader.unexpected("version 4.1 or 2.2");
-    if is_number { error.of_kind(ErrorKind::Unsupported) } else { error }
+    if is_number { error.of_kind(ErrorKind::Unsupported).followed_by(CONVERTS) } else { error }
 }
 
 /// Reads the names of the physical groups, which are text in binary files too.

@@ -92,12 +92,12 @@ pub struct FillEntry {
     /// The edge of a cube of the lattice, mesh units.
     pub cell: f64,
     /// The name of a shipped element of hexahedra or tetrahedra, or a path relative to the scene that ends in .toml.
-    #[serde(default = "hex8")]
+    #[serde(default = "cubes")]
     pub element: String,
 }
 
-fn hex8() -> String {
-    "hex8".into()
+fn cubes() -> String {
+    FillMesh::cube().into()
 }
 
 impl FillEntry {
@@ -106,12 +106,13 @@ impl FillEntry {
     /// # Errors
     /// The file, the element or the surface is wrong, or there are no cells or too many.
     pub fn build(&self, scale: f64, folder: &Path) -> Result<Mesh> {
+        range::positive("cell", self.cell, "mesh units")?;
         let element = load_element(&self.element, folder)?;
         let path = folder.join(&self.surface);
         let source = MeshSource::read(&path)?;
         FillMesh { element, cell: scale * self.cell }
             .build(&source, scale)
-            .map_err(|e| if e.key() == Some("surface") { e.in_file(&path) } else { e })
+            .map_err(|e| if matches!(e.key(), Some("surface" | "points")) { e.in_file(&path) } else { e })
     }
 }
 

@@ -1,0 +1,56 @@
+//! What a fill is beside its surface, in figures and words.
+
+/// What a fill is beside its surface.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Filled {
+    /// The volume that the surface encloses, by the divergence theorem, m³.
+    pub surface_volume: f64,
+    /// The volume of the cells, m³.
+    pub volume: f64,
+    /// The number of cells.
+    pub cells: usize,
+    /// Cells that hung on others by an edge or a corner alone, and were left out.
+    pub loose: usize,
+    /// Whether all normals were inwards and have been turned.
+    pub turned: bool,
+    /// Triangles without an area, which were left out.
+    pub flat: usize,
+    /// Cells whose centres are within several layers of the surface, and the centre of one: it overlaps or meets itself.
+    pub overlaps: Option<(usize, [f64; 3])>,
+    /// Centres around which the surface winds the other way round, and one of them: a part of it is inside out.
+    pub inverted: Option<(usize, [f64; 3])>,
+    /// Edges with more than two triangles, and the middle of one.
+    pub branched: Option<(usize, [f64; 3])>,
+}
+
+impl Filled {
+    /// The fill beside its surface, and what is wrong with the surface, in lines of words.
+    pub fn lines(&self) -> Vec<String> {
+        let (cells, of) = (self.volume, self.surface_volume);
+        let more = 100.0 * (cells / of - 1.0);
+        let mut lines =
+            vec![format!("{} cells fill a surface: {cells:.4e} m³ of {of:.4e} m³, {more:+.2} %", self.cells)];
+        let at = |[x, y, z]: [f64; 3]| format!("({x:.4e}, {y:.4e}, {z:.4e}) m");
+        if self.turned {
+            lines.push("all normals of the surface were inwards and were turned".into());
+        }
+        if self.flat > 0 {
+            lines.push(format!("{} triangles without an area were left out", self.flat));
+        }
+        if let Some((count, place)) = self.branched {
+            lines.push(format!("{count} edges of the surface have more than two triangles, one at {}", at(place)));
+        }
+        if let Some((count, place)) = self.overlaps {
+            let words = "cells are inside several layers of the surface, which overlaps or meets itself";
+            lines.push(format!("{count} {words}, one at {}: each is filled once", at(place)));
+        }
+        if let Some((count, place)) = self.inverted {
+            let words = "cells are inside a part of the surface that is inside out, and are not filled";
+            lines.push(format!("{count} {words}, one at {}", at(place)));
+        }
+        if self.loose > 0 {
+            lines.push(format!("{} cells that hung on others by an edge or a corner alone were left out", self.loose));
+        }
+        lines
+    }
+}
