@@ -35,9 +35,9 @@ const RUNS: [&[&str]; 19] = [
     &["new", "mesh.msh"],
     &["new", "plate.msh"],
     &["groups", "mesh.msh"],
-    &["groups", "octahedron.off", "--fill=0.4"],
-    &["new", "octahedron.off", "--fill=0.4"],
-    &["fit", "octahedron.off", "--fill=0.4", "--young=10kPa", "--poisson=0.3", "--output=springs.json"],
+    &["groups", "octahedron.off", "--fill=0.2"],
+    &["new", "octahedron.off", "--fill=0.2"],
+    &["fit", "octahedron.off", "--fill=0.2", "--young=10kPa", "--poisson=0.3", "--output=springs.json"],
 ];
 
 const EXTREMES: [&str; 12] =

@@ -366,7 +366,7 @@ displacement = ["free", 0, "0.01*t"]
 /// An octahedron in a file, filled with cubes.
 pub const FILLED: &str = r#"
 [mesh]
-fill = { surface = "octahedron.off", cell = 0.4, element = "hex8" }
+fill = { surface = "octahedron.off", cell = 0.2, element = "hex8" }
 scale = 1.0
 [material]
 young = 10e3
@@ -400,7 +400,7 @@ pub const ALL: [(&str, &str); 13] = [
 pub const FILES: [(&str, &str); 5] = [
     (
         "octahedron.off",
-        "OFF\n6 8 12\n1.03 0 0\n-1.01 0 0\n0 0.97 0\n0 -1.05 0\n0 0 1.07\n0 0 -0.95\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n\
+        "OFF\n6 8 12\n0.53 0 0\n-0.51 0 0\n0 0.47 0\n0 -0.55 0\n0 0 0.57\n0 0 -0.45\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n\
          3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n",
     ),
     ("measured.csv", "point,ux,uy,uz\n4,0.001,0,0.01\n5,0,0,0.01\n6,0,0.001,0.01\n7,0,0,0.01\n"),

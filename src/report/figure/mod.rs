@@ -39,7 +39,7 @@ pub enum Figure {
     Constants,
     /// The distance from the finite elements over time.
     Motion,
-    /// The body under a load: at rest, with finite elements and with springs; from a run with [output] vtu = true.
+    /// The body under a load: at rest, with finite elements and with springs; from a run with `vtu = true` in `[output]`.
     Deformation,
     /// Young's modulus of each network by direction.
     Moduli,
