@@ -61,6 +61,17 @@ impl MeshOptions {
         let scale = self.scale()?;
         let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
         if let Some(fill) = self.filling(file) {
+            let others = [
+                ("--below", self.below.is_some()),
+                ("--least", self.least.is_some()),
+                ("--element", !self.element.is_empty()),
+            ];
+            if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
+                return Err(Error::at(
+                    *option,
+                    "belongs to the cells of a file, found it with --fill, whose cells are regular",
+                ));
+            }
             let fault = |e: Error| {
                 e.placed(|e| if e.key() == Some("cell") { e.at_key("--fill") } else { e.at_key("--fill-element") })
             };
