@@ -61,12 +61,14 @@ impl MeshOptions {
         let scale = self.scale()?;
         let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
         if let Some(fill) = self.filling(file) {
-            let gates = [("--below", self.below.is_some()), ("--least", self.least.is_some())];
-            if let Some((option, _)) = gates.into_iter().find(|(_, given)| *given) {
-                return Err(Error::at(
-                    option,
-                    "belongs to cells of a file, found it with --fill, whose cells are all alike",
-                ));
+            let others = [
+                ("--below", self.below.is_some()),
+                ("--least", self.least.is_some()),
+                ("--element", !self.element.is_empty()),
+            ];
+            if let Some((option, _)) = others.into_iter().find(|(_, given)| *given) {
+                let problem = "belongs to the cells of a file, found it with --fill, whose cells are all alike";
+                return Err(Error::at(option, problem));
             }
             let fault = |e: Error| {
                 e.placed(|e| if e.key() == Some("cell") { e.at_key("--fill") } else { e.at_key("--fill-element") })

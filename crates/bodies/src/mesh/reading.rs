@@ -19,8 +19,8 @@ impl MeshSource {
             Ok(parse) => parse,
             // A file that is not there is the first fault.
             Err(error) => {
-                let fault = std::fs::metadata(path).map_or_else(|e| Error::io("cannot be read", e), |_| error);
-                return Err(in_file(fault));
+                let error = std::fs::metadata(path).map_or_else(|e| Error::io("cannot be read", e), |_| error);
+                return Err(in_file(error));
             }
         };
         match parse {
