@@ -158,7 +158,8 @@ fn verdict(output: &Output, folder: &Path, option: &str) -> Result<(), String> {
             let named = said.lines().count() == 1 || first.contains("invalid value");
             let left = written(folder).len();
             // An option may be about the mesh, whose cells are named then.
-            let of_mesh = ["--scale", "--least"].contains(&option) && first.contains(".msh: ");
+            let is_mesh = [".msh: ", ".off: "].iter().any(|file| first.contains(file));
+            let of_mesh = ["--scale", "--least"].contains(&option) && is_mesh;
             match first.contains(option) || of_mesh {
                 true if named && left == 0 => Ok(()),
                 _ => Err(format!("{left} files written, and: {said}")),
