@@ -103,8 +103,6 @@ struct Workspace<'a, T: Packed> {
     closed: Option<Closed<T>>,
     /// For objectives that need the reduced element.
     method: Option<Method<T>>,
-    /// For anisotropic laws, of which no objective has a closed form.
-    anisotropic: Option<Method<T>>,
     packing: Packing<'a, T>,
     /// Gradients of the springs on functions, `[functions × nodes·dimension]`.
     measured: Vec<T>,
@@ -120,8 +118,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             hooke: PackedHooke::new(&zero, element.dimension(), hooke.clone()),
             fit,
             closed: Closed::of(springs, &fit),
-            method: Method::like(&zero, springs, &fit, false),
-            anisotropic: None,
+            method: Method::like(&zero, springs, &fit),
             packing: Packing::new(&zero, element, points),
             measured: vec![zero.clone(); springs.functions.len() * element.nodes() * element.dimension()],
             geometry: Geometry::like(&zero, &element.tabulation),
@@ -132,16 +129,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
     /// Jacobian of a cell is not safely positive or its equations are not regular.
     fn fit(&mut self, first: usize, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
         self.hooke.set(first, nodes.len() / self.element.nodes());
-        let is_anisotropic = self.hooke.lanes.is_anisotropic();
-        if is_anisotropic && self.anisotropic.is_none() {
-            self.anisotropic = Method::like(&self.geometry.volumes[0], self.springs, &self.fit, true);
-        }
-        let none = self.closed.is_none() && self.method.is_none() || is_anisotropic && self.anisotropic.is_none();
-        if none || !self.packing.gather(nodes) {
+        if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
             return false;
         }
-        let own = if is_anisotropic { &mut self.anisotropic } else { &mut self.method };
-        let Some(mut method) = own.take() else { return self.fit_closed(constants, tally) };
+        let Some(mut method) = self.method.take() else { return self.fit_closed(constants, tally) };
         let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
             && self.measure(nodes.len() / self.element.nodes());
         if regular {
@@ -158,15 +149,15 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 tally.add(verdict);
             }
         }
-        *(if is_anisotropic { &mut self.anisotropic } else { &mut self.method }) = Some(method);
+        self.method = Some(method);
         regular
     }
 
     /// [`Workspace::fit`] for objectives with a closed form.
     fn fit_closed(&mut self, constants: &mut [f64], tally: &mut Tally) -> bool {
         let Workspace { element, springs, fit, .. } = *self;
-        let (Some(closed), Hooke::Isotropic(moduli)) = (&mut self.closed, &self.hooke.lanes) else { return false };
-        if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, moduli) {
+        let (Some(closed), hooke) = (&mut self.closed, &self.hooke.lanes) else { return false };
+        if !closed.solve(&element.tabulation, springs, &self.packing.x, &mut self.geometry, hooke) {
             return false;
         }
         let m = springs.len();
@@ -179,7 +170,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
-        let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, moduli) else {
+        let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, hooke) else {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
@@ -227,13 +218,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 return Ok(verdict);
             }
         }
-        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit, hooke.is_anisotropic()) {
+        if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit) {
             method.solve(self.springs, &x, &geometry, &hooke.of_kind(&0.0), &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }
-        let normal = match (&self.closed, hooke) {
-            (Some(closed), Hooke::Isotropic(moduli)) => closed.equations_alone(self.springs, &x, &geometry, moduli),
-            _ => off_diagonal_equations(self.springs, &x, &geometry, hooke),
+        let normal = match &self.closed {
+            Some(closed) => closed.equations_alone(self.springs, &x, &geometry, hooke),
+            None => off_diagonal_equations(self.springs, &x, &geometry, hooke),
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };

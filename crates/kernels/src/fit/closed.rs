@@ -9,7 +9,7 @@ use super::settings::Fit;
 use super::sizes::of_size;
 use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::scalar::Real;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -68,16 +68,16 @@ impl<T: Real> Closed<T> {
         springs: &Springs,
         x: &[T],
         geometry: &mut Geometry<T>,
-        moduli: &Moduli<T>,
+        hooke: &Hooke<T>,
     ) -> bool
     where
         T: Real,
     {
         if self.steps == Steps::Nodes {
-            return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, moduli, &mut self.normal);
+            return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, hooke, &mut self.normal);
         }
         let regular = of_size!(T, x[0], (springs.dimension, springs.nodes), |D, n| {
-            self.solve_in::<D>(n, table, springs, x, geometry, moduli)
+            self.solve_in::<D>(n, table, springs, x, geometry, hooke)
         });
         regular && self.finish(springs)
     }
@@ -90,12 +90,12 @@ impl<T: Real> Closed<T> {
         springs: &Springs,
         x: &[T],
         geometry: &mut Geometry<T>,
-        moduli: &Moduli<T>,
+        hooke: &Hooke<T>,
     ) -> bool {
         if !geometry.update_in::<D>(n, table, x) {
             return false;
         }
-        equations::<T, D>(n, self.weight, springs, x, geometry, moduli, &mut self.normal);
+        equations::<T, D>(n, self.weight, springs, x, geometry, hooke, &mut self.normal);
         if self.steps == Steps::Decoupled {
             for b in &mut self.normal.rhs {
                 *b = b.clone().scaled(&0.5);
@@ -130,9 +130,9 @@ impl<T: Real> Closed<T> {
     }
 
     /// The equations of a single element, one per spring.
-    pub fn equations_alone(&self, springs: &Springs, x: &[f64], geometry: &Geometry, moduli: &Moduli) -> Normal {
+    pub fn equations_alone(&self, springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
         let mut normal = Normal::default();
-        normal_equations(self.weight, springs, x, geometry, moduli, &mut normal);
+        normal_equations(self.weight, springs, x, geometry, hooke, &mut normal);
         normal
     }
 
@@ -143,12 +143,12 @@ impl<T: Real> Closed<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli<T>,
+        hooke: &Hooke<T>,
     ) -> Option<&Normal<T>> {
         match self.steps {
             Steps::Decoupled => None,
             Steps::Nodes => {
-                normal_equations(self.weight, springs, x, geometry, moduli, &mut self.normal);
+                normal_equations(self.weight, springs, x, geometry, hooke, &mut self.normal);
                 Some(&self.normal)
             }
             Steps::Springs | Steps::Groups => Some(&self.kept),

@@ -8,7 +8,7 @@ use super::normal::Normal;
 use super::weight::{ClosedWeight, Weight};
 use crate::element::{Element, permutations};
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli};
 use crate::scalar::Scalar;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -138,7 +138,14 @@ impl ClosedForm {
         let by_axis = !is_isotropic(&moduli);
         let classes = classes(element, springs, &x, by_axis);
         let mut plain = Normal::default();
-        normal_equations(ClosedWeight::None, springs, &x, &geometry, &any_moduli().of_kind(&x[0]), &mut plain);
+        normal_equations(
+            ClosedWeight::None,
+            springs,
+            &x,
+            &geometry,
+            &Hooke::Isotropic(any_moduli().of_kind(&x[0])),
+            &mut plain,
+        );
         let stiffness: Vec<_> = moduli.iter().map(|modulus| modulus.stiffness(&geometry)).collect();
         let norm = quadratic(moduli.len(), |i, j| inner(&stiffness[i], &stiffness[j]));
         let mut exact = self::classes(element, &Springs::exact(element, false, false), &x, by_axis);
@@ -192,16 +199,16 @@ impl ClosedForm {
             }
             ClosedWeight::Modal(_) => {
                 let of_moduli = |moduli: Moduli<BigRational>| {
-                    let moduli = moduli.of_kind(&self.positions[0]);
+                    let hooke = Hooke::Isotropic(moduli.of_kind(&self.positions[0]));
                     let mut normal = Normal::default();
-                    normal_equations(closed, &self.springs, &self.positions, &self.geometry, &moduli, &mut normal);
+                    normal_equations(closed, &self.springs, &self.positions, &self.geometry, &hooke, &mut normal);
                     solve(&normal)
                 };
                 units().into_iter().map(of_moduli).collect::<Result<Vec<_>>>()?
             }
             ClosedWeight::None | ClosedWeight::OffDiagonal => {
                 let mut normal = Normal::default();
-                let any = any_moduli().of_kind(&self.positions[0]);
+                let any = Hooke::Isotropic(any_moduli().of_kind(&self.positions[0]));
                 normal_equations(closed, &self.springs, &self.positions, &self.geometry, &any, &mut normal);
                 let of_stiffness = |r: &Vec<Fraction>| {
                     let mut normal = normal.clone();

@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::material::{BlockValues, Hooke, Moduli};
 use crate::springs::distance;
 use std::collections::HashMap;
-use std::hash::Hash;
 
 /// The relative difference below which lengths are equal; rounding in generated boxes is about 1e-14.
 const EQUAL: f64 = 1e-12;
@@ -33,7 +32,7 @@ impl Congruence {
         hooke: &BlockValues<Hooke>,
     ) -> Result<Congruence> {
         let d = element.dimension();
-        let material = |cell: usize| match hooke {
+        let moduli = |cell: usize| match hooke {
             BlockValues::Uniform(_) => Vec::new(),
             BlockValues::Each(all) => match &all[cell] {
                 Hooke::Isotropic(Moduli { lambda, mu }) => vec![lambda.to_bits(), mu.to_bits()],
@@ -42,12 +41,12 @@ impl Congruence {
         };
         if hooke.values().iter().any(Hooke::is_anisotropic) {
             // The axes of the material do not turn with the cell.
-            return Congruence::by(element, points, connectivity, material, |x| differences(x, d));
+            return Congruence::by(element, points, connectivity, moduli, |x| differences(x, d));
         }
-        Congruence::by(element, points, connectivity, material, |x| {
-            let nodes: Vec<&[f64]> = x.chunks_exact(d).collect();
-            let pairs = (0..nodes.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-            pairs.map(|(a, b)| distance(nodes[a], nodes[b])).collect()
+        Congruence::by(element, points, connectivity, moduli, |x| {
+            let node = |a: usize| &x[a * d..(a + 1) * d];
+            let pairs = (0..element.nodes()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            pairs.map(|(a, b)| distance(node(a), node(b))).collect()
         })
     }
 
@@ -57,28 +56,29 @@ impl Congruence {
     /// A cell is reversed, tangled or flat.
     pub fn by_translation(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<Congruence> {
         let d = element.dimension();
-        Congruence::by(element, points, connectivity, |_| (), |x| differences(x, d))
+        Congruence::by(element, points, connectivity, |_| Vec::new(), |x| differences(x, d))
     }
 
-    /// `lengths` computes, from the node positions, the numbers that are equal for cells of one shape; `material` is equal
-    /// for cells that may be of one shape.
-    fn by<M: Eq + Hash>(
+    /// Two cells are of one shape if they have the same `moduli`, as bits, and `lengths`, which are computed from the node
+    /// positions.
+    fn by(
         element: &Element,
         points: &[f64],
         connectivity: &[usize],
-        material: impl Fn(usize) -> M,
+        moduli: impl Fn(usize) -> Vec<u64>,
         lengths: impl Fn(&[f64]) -> Vec<f64>,
     ) -> Result<Congruence> {
         let mut congruence = Congruence { representatives: Vec::new(), shapes: Vec::new() };
-        let mut known: HashMap<(M, Vec<i64>), usize> = HashMap::new();
+        let mut known: HashMap<Vec<i64>, usize> = HashMap::new();
         let mut unit = 0.0;
         each_cell(element, points, connectivity, 0, |cell, x, _| {
             let lengths = lengths(x);
             if unit == 0.0 {
                 unit = EQUAL * lengths.iter().fold(0.0, |a, length| length.abs().max(a));
             }
-            let key = lengths.iter().map(|length| (length / unit).round() as i64).collect();
-            let shape = *known.entry((material(cell), key)).or_insert_with(|| {
+            let moduli = moduli(cell).into_iter().map(u64::cast_signed);
+            let key = moduli.chain(lengths.iter().map(|length| (length / unit).round() as i64)).collect();
+            let shape = *known.entry(key).or_insert_with(|| {
                 congruence.representatives.push(cell);
                 congruence.representatives.len() - 1
             });

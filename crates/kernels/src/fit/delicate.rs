@@ -37,14 +37,14 @@ impl DelicateCells<'_> {
         if !geometry.update(&element.tabulation, &x) {
             return None;
         }
-        let route = fit.objective.route(hooke.is_anisotropic() || !springs.functions.is_empty());
-        let (Route::Closed(weight), Hooke::Isotropic(moduli)) = (route, hooke) else {
+        let route = fit.objective.route(!springs.functions.is_empty());
+        let Route::Closed(weight) = route else {
             let measured = measured(springs, &x)?;
             let method = solved(springs, &x, &geometry, hooke, &measured, fit)?;
             return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
         };
         let mut normal = Normal::default();
-        normal_equations(weight, springs, &x, &geometry, &moduli.of_kind(&any), &mut normal);
+        normal_equations(weight, springs, &x, &geometry, &hooke.of_kind(&any), &mut normal);
         let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         fit.spread(springs, constants, &k);

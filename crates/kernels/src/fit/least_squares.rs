@@ -12,10 +12,11 @@
 //!
 //! Theory: pages *Least squares* and *Modal weights* of the book.
 
+use super::edge_cell::{EdgeCell, Gradients, scales};
 use super::input::check_length;
 use super::linear_motions::{LinearMotions, from_mean};
 use super::normal::Normal;
-use super::weight::{ClosedWeight, Higher, Weight};
+use super::weight::{ClosedWeight, Weight};
 use crate::element::Tabulation;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Hooke, Moduli};
@@ -49,7 +50,7 @@ pub fn constants_in<T: Scalar>(
         return Err(none("the Jacobian is not positive everywhere"));
     }
     let mut normal = Normal::default();
-    normal_equations(weight, springs, x, &geometry, &moduli.of_kind(&x[0]), &mut normal);
+    normal_equations(weight, springs, x, &geometry, &Hooke::Isotropic(moduli.of_kind(&x[0])), &mut normal);
     // NaN is not equal to itself plus one.
     let is_finite = |k: &T| (k.one() + &(k.clone() - k)).exceeds(&k.zero());
     if !(normal.solve_regular() && normal.rhs.iter().all(is_finite)) {
@@ -64,16 +65,16 @@ pub fn normal_equations<T: Scalar>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli<T>,
+    hooke: &Hooke<T>,
     normal: &mut Normal<T>,
 ) {
     let n = springs.nodes;
     x[0].vectorize(
         #[inline(always)]
         || match springs.dimension {
-            1 => equations::<T, 1>(n, weight, springs, x, geometry, moduli, normal),
-            2 => equations::<T, 2>(n, weight, springs, x, geometry, moduli, normal),
-            _ => equations::<T, 3>(n, weight, springs, x, geometry, moduli, normal),
+            1 => equations::<T, 1>(n, weight, springs, x, geometry, hooke, normal),
+            2 => equations::<T, 2>(n, weight, springs, x, geometry, hooke, normal),
+            _ => equations::<T, 3>(n, weight, springs, x, geometry, hooke, normal),
         },
     );
 }
@@ -86,7 +87,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     springs: &Springs,
     x: &[T],
     geometry: &Geometry<T>,
-    moduli: &Moduli<T>,
+    hooke: &Hooke<T>,
     normal: &mut Normal<T>,
 ) {
     let x = &x.as_chunks::<D>().0[..n];
@@ -97,8 +98,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     gram.resize(m * m, zero.clone());
     images.resize(lengths * D, zero.clone());
     let images = images.as_chunks_mut::<D>().0;
-    let cell = EdgeCell::new(springs, x, geometry, moduli, edges, q, rhs);
-    let edges = cell.edges;
+    let cell = EdgeCell::new(springs, x, geometry, hooke, edges, q, rhs);
     let two = zero.one() + &zero.one();
     match weight {
         ClosedWeight::None => {
@@ -117,7 +117,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
                 #[inline(always)]
                 |s, grad: &[[T; D]]| {
                     let [i, j] = pairs[s];
-                    (dot(&edges[s], &grad[i]) * &dot(&edges[s], &grad[j]), dot(&grad[i], &grad[j]))
+                    Gradients::Two(grad[i].clone(), grad[j].clone())
                 },
             );
             for b in rhs.iter_mut() {
@@ -148,8 +148,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
                 #[inline(always)]
                 |s, grad: &[[T; D]]| {
                     let plain = difference(&grad[pairs[s][1]], &grad[pairs[s][0]]);
-                    let w = plus_multiple(&of_springs[s], &h2, &plain);
-                    (dot(&edges[s], &w).squared(), dot(&w, &w))
+                    Gradients::Same(plus_multiple(&of_springs[s], &h2, &plain))
                 },
             );
             // g_s·y_t = (h² c_st + (1 − h²) d_sᵀ S⁻¹ d_t) n_s·n_t, with d_sᵀ S⁻¹ d_t in the basis where S is diagonal,
@@ -174,7 +173,7 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     }
 }
 
-/// The equations of the blocks of different nodes if springs measure functions, of which only g is known, or R is that of an anisotropic law:
+/// The equations of the blocks of different nodes if springs measure functions, of which only g is known:
 /// `M_st = (g_s·g_t)² − Σ_a (g_sa·g_ta)²`, `b_s = g_sᵀ R g_s − Σ_a g_saᵀ R_aa g_sa`.
 pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
     let (d, m, size) = (springs.dimension, springs.len(), x.len());
@@ -195,189 +194,6 @@ pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry,
         }
     }
     normal
-}
-
-/// One element, or one per lane, with the vectors of its length springs.
-pub struct EdgeCell<'a, T, const D: usize> {
-    springs: &'a Springs,
-    x: &'a [[T; D]],
-    /// `d_s = x_j − x_i`
-    pub edges: &'a [[T; D]],
-    /// `1/‖d_s‖²`
-    pub q: &'a [T],
-    geometry: &'a Geometry<T>,
-    lambda: T,
-    mu: T,
-}
-
-impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
-    /// Fills `edges` and `q` with those of the element, and `rhs` with zeros.
-    #[inline(always)]
-    pub fn new(
-        springs: &'a Springs,
-        x: &'a [[T; D]],
-        geometry: &'a Geometry<T>,
-        moduli: &Moduli<T>,
-        edges: &'a mut Vec<T>,
-        q: &'a mut Vec<T>,
-        rhs: &mut Vec<T>,
-    ) -> EdgeCell<'a, T, D> {
-        let zero = x[0][0].zero();
-        let lengths = springs.pairs.len();
-        rhs.clear();
-        rhs.resize(springs.len(), zero.clone());
-        edges.resize(lengths * D, zero.clone());
-        q.resize(lengths, zero.clone());
-        let edges = edges.as_chunks_mut::<D>().0;
-        for ((d, q), &[i, j]) in edges.iter_mut().zip(&mut *q).zip(&springs.pairs) {
-            *d = difference(&x[j], &x[i]);
-            *q = zero.one() / &dot(d, d);
-        }
-        let (lambda, mu) = (moduli.lambda.clone(), moduli.mu.clone());
-        EdgeCell { springs, x, edges, q: &q[..lengths], geometry, lambda, mu }
-    }
-
-    /// `b_s = g_sᵀ R g_s` of the length springs.
-    #[inline(always)]
-    pub fn plain_energies(&self, rhs: &mut [T]) {
-        let (edges, pairs) = (self.edges, &self.springs.pairs[..]);
-        self.energies(
-            rhs,
-            #[inline(always)]
-            |s, grad: &[[T; D]]| {
-                let w = difference(&grad[pairs[s][1]], &grad[pairs[s][0]]);
-                (dot(&edges[s], &w).squared(), dot(&w, &w))
-            },
-        );
-    }
-
-    /// `(n_s·n_t)²`.
-    #[inline(always)]
-    fn cosine_squared(&self, s: usize, t: usize) -> T {
-        dot(&self.edges[s], &self.edges[t]).squared() * &(self.q[s].clone() * &self.q[t])
-    }
-
-    /// Adds the energies `∫ (λ + μ)(n·w)² + μ w·w dV` of motions with the gradient `n wᵀ`; `terms(s, gradients)` gives
-    /// `(d·w)²` and `w·w` at a quadrature point.
-    #[inline(always)]
-    fn energies(&self, rhs: &mut [T], terms: impl Fn(usize, &[[T; D]]) -> (T, T)) {
-        let (n, rhs) = (self.x.len(), &mut rhs[..self.q.len()]);
-        for (grad, v, w) in self.geometry.each_point() {
-            let grad = &grad.as_chunks::<D>().0[..n];
-            let across = self.mu.clone() * v;
-            let along = (self.lambda.clone() * w) + &across;
-            for (s, b) in rhs.iter_mut().enumerate() {
-                let (squared, plain) = terms(s, grad);
-                let energy = b.clone().plus_product(&across, &plain);
-                *b = energy.plus_product(&(along.clone() * &self.q[s]), &squared);
-            }
-        }
-    }
-
-    /// The last row of `M` and entry of `b`, of the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V
-    /// the content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
-    pub fn content(&self, weight: ClosedWeight, row: &mut [T], rhs: &mut [T]) {
-        self.lambda.vectorize(
-            #[inline(always)]
-            || self.add_content(weight, row, rhs),
-        );
-    }
-
-    #[inline(always)]
-    fn add_content(&self, weight: ClosedWeight, row: &mut [T], rhs: &mut [T]) {
-        let last = self.springs.len() - 1;
-        let zero = self.lambda.zero();
-        let two = zero.one() + &zero.one();
-        let gradient = self.geometry.content_gradient();
-        let c = gradient.as_chunks::<D>().0;
-        let (mut cc, mut fourth) = (zero.clone(), zero.clone());
-        for c in c {
-            let size = dot(c, c);
-            cc = cc + &size;
-            fourth = fourth.plus_product(&size, &size);
-        }
-        let volume = self.geometry.content();
-        // y_a = h² c_a + (1 − h²) V S⁻¹ r_a, ∇y = h² Σ_a c_a ∇N_aᵀ + linear
-        let (mut h2, mut linear) = (zero.one(), zero.repeated_rows());
-        let mut q = self.x.to_vec();
-        let mut motions = None;
-        match weight {
-            ClosedWeight::None | ClosedWeight::OffDiagonal => {}
-            ClosedWeight::Modal(higher) => {
-                let rest;
-                (h2, rest) = scales(&zero, higher);
-                from_mean(self.x, &mut q);
-                let (found, factor) = (LinearMotions::of(&mut q), rest * &volume);
-                linear = found.inverse_spread(&factor);
-                motions = Some((found, factor));
-            }
-        }
-        for (s, &[i, j]) in self.springs.pairs.iter().enumerate() {
-            let d = &self.edges[s];
-            row[s] = match weight {
-                ClosedWeight::OffDiagonal => {
-                    zero.clone() - &(two.clone() * &self.q[s] * &dot(d, &c[i]) * &dot(d, &c[j]))
-                }
-                ClosedWeight::None | ClosedWeight::Modal(_) => {
-                    let mut along = h2.clone() * &dot(d, &difference(&c[j], &c[i]));
-                    if let Some((motions, factor)) = &motions {
-                        let turned = difference(&q[j], &q[i]);
-                        along = along + &dot(&turned, &motions.weighted(factor, &turned));
-                    }
-                    along.squared() * &self.q[s]
-                }
-            };
-        }
-        row[last] = match weight {
-            ClosedWeight::OffDiagonal => cc.squared() - &fourth,
-            ClosedWeight::None | ClosedWeight::Modal(_) => {
-                let mut trace = linear[0][0].clone();
-                for k in 1..D {
-                    trace = trace + &linear[k][k];
-                }
-                (h2.clone() * &cc).plus_product(&trace, &volume).squared()
-            }
-        };
-        for (grad, v, w) in self.geometry.each_point() {
-            let grad = grad.as_chunks::<D>().0;
-            let (lambda, mu) = (self.lambda.clone() * w, self.mu.clone() * v);
-            let mut h = linear.clone();
-            let mut alone = zero.clone();
-            for (c, g) in c.iter().zip(grad) {
-                let mut outer: [[T; D]; D] = zero.repeated_rows();
-                for k in 0..D {
-                    for l in 0..D {
-                        outer[k][l] = c[k].clone() * &g[l];
-                        h[k][l] = h[k][l].clone().plus_product(&h2, &outer[k][l]);
-                    }
-                }
-                if weight == ClosedWeight::OffDiagonal {
-                    alone = alone + &density(&outer, &lambda, &mu);
-                }
-            }
-            rhs[last] = rhs[last].clone() + &(density(&h, &lambda, &mu) - &alone);
-        }
-    }
-}
-
-/// Twice the energy density, `λ (tr H)² + μ (H : H + H : Hᵀ)`, of a displacement gradient H.
-#[inline(always)]
-fn density<T: Scalar, const D: usize>(h: &[[T; D]; D], lambda: &T, mu: &T) -> T {
-    let (mut trace, mut squares) = (lambda.zero(), lambda.zero());
-    for k in 0..D {
-        trace = trace + &h[k][k];
-        for l in 0..D {
-            squares = squares.plus_product(&h[k][l], &(h[k][l].clone() + &h[l][k]));
-        }
-    }
-    (lambda.clone() * &trace.squared()).plus_product(mu, &squares)
-}
-
-/// `h²` and `1 − h²`.
-#[inline(always)]
-fn scales<T: Scalar>(zero: &T, higher: Higher) -> (T, T) {
-    let h2 = zero.constant(&T::exact(higher.value())).squared();
-    (h2.clone(), zero.one() - &h2)
 }
 
 /// Sets the lower triangle to zero.

@@ -106,11 +106,9 @@ pub struct Verdict {
 }
 
 impl<T: Real> Method<T> {
-    /// None for objectives that do not require the reduced element; closed forms are those of isotropic laws.
-    pub fn like(any: &T, springs: &Springs, fit: &Fit, is_anisotropic: bool) -> Option<Method<T>> {
-        let Route::Reduced(weight) = fit.objective.route(is_anisotropic || !springs.functions.is_empty()) else {
-            return None;
-        };
+    /// None for objectives that do not require the reduced element.
+    pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
+        let Route::Reduced(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
         let reduced = Reduced::like(any, springs, fit.tied);
         let m = springs.len();
         let solver = match fit.objective {
@@ -228,9 +226,12 @@ impl<T: Real> Method<T> {
         let found = self.finish(Real::rounded, || 1.0, constants);
         verdict = Verdict { reached: found.reached && is_known, ..found };
         let Some(mut certificate) = verdict.certificate else { return verdict };
-        // The constants are rounded to the numbers that are stored; what value these reach is found by trial.
+        // The constants are rounded to the numbers that are stored. What value these reach is found by trial from a small
+        // excess on, because the bound of the rounding is rarely attained.
         certificate.rounding = certificate.size * self.rounding(constants);
-        let (reached, mut excess) = (certificate.value, certificate.rounding);
+        let unit = f64::EPSILON * certificate.size;
+        let most = 4.0 * self.reduced.order as f64 * unit;
+        let (reached, mut excess) = (certificate.value, certificate.rounding.clamp(unit, most));
         for _ in 0..TRIALS {
             certificate.value = reached + excess;
             if self.distance_from_optimum(constants, certificate.value).is_some() {

@@ -19,6 +19,7 @@ mod dense;
 mod descent;
 mod difference;
 mod divergence;
+mod edge_cell;
 mod exact;
 mod extremes;
 mod input;

@@ -8,10 +8,10 @@
 //! Theory: page *Least squares* of the book.
 
 use super::dense::solve as substitute;
-use super::least_squares::EdgeCell;
+use super::edge_cell::EdgeCell;
 use super::normal::Normal;
 use super::weight::ClosedWeight;
-use crate::material::Moduli;
+use crate::material::Hooke;
 use crate::scalar::Scalar;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -48,14 +48,14 @@ impl<T: Scalar> Nodal<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli<T>,
+        hooke: &Hooke<T>,
         normal: &mut Normal<T>,
     ) -> bool {
         x[0].vectorize(
             #[inline(always)]
             || match springs.dimension {
-                2 => self.solve_in::<2>(springs, x, geometry, moduli, normal),
-                _ => self.solve_in::<3>(springs, x, geometry, moduli, normal),
+                2 => self.solve_in::<2>(springs, x, geometry, hooke, normal),
+                _ => self.solve_in::<3>(springs, x, geometry, hooke, normal),
             },
         )
     }
@@ -66,13 +66,13 @@ impl<T: Scalar> Nodal<T> {
         springs: &Springs,
         x: &[T],
         geometry: &Geometry<T>,
-        moduli: &Moduli<T>,
+        hooke: &Hooke<T>,
         normal: &mut Normal<T>,
     ) -> bool {
         let (n, m, lengths) = (springs.nodes, springs.len(), springs.pairs.len());
         let x = &x.as_chunks::<D>().0[..n];
         let Normal { rhs, edges, inverse_squares, .. } = normal;
-        let cell = EdgeCell::<T, D>::new(springs, x, geometry, moduli, edges, inverse_squares, rhs);
+        let cell = EdgeCell::<T, D>::new(springs, x, geometry, hooke, edges, inverse_squares, rhs);
         cell.plain_energies(rhs);
         let zero = x[0][0].zero();
         self.border.clear();

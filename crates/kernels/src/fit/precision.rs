@@ -60,7 +60,7 @@ fn closed_equations<T: Real>(
         return Err(no_answer("the Jacobian is not positive everywhere"));
     }
     let mut normal = Normal::default();
-    normal_equations(weight, springs, &x, &geometry, &moduli.of_kind(any), &mut normal);
+    normal_equations(weight, springs, &x, &geometry, &Hooke::Isotropic(*moduli).of_kind(any), &mut normal);
     Ok(Some(normal.by_unknowns(springs, fit.tied)))
 }
 
@@ -170,7 +170,7 @@ pub(super) fn solved<T: Real>(
     measured: &[T],
     fit: &Fit,
 ) -> Option<Method<T>> {
-    let mut method = Method::like(&x[0], springs, fit, hooke.is_anisotropic())?;
+    let mut method = Method::like(&x[0], springs, fit)?;
     method.solve(springs, x, geometry, &hooke.of_kind(&x[0]), measured);
     Some(method)
 }
@@ -189,7 +189,7 @@ pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64]
     let mut geometry = Geometry::new(&element.tabulation);
     geometry.set(&element.tabulation, &x).map_err(|fault| no_answer(&fault.to_string()))?;
     let mut normal = Normal::default();
-    normal_equations(weight, springs, &x, &geometry, moduli, &mut normal);
+    normal_equations(weight, springs, &x, &geometry, &Hooke::Isotropic(*moduli), &mut normal);
     let (scaled, _) = normal.scaled();
     let m = scaled.size();
     let eigenvalues = nalgebra::DMatrix::from_vec(m, m, scaled.gram).symmetric_eigenvalues();
