@@ -130,7 +130,7 @@ function addDescents(record) {
       const last = stage.objective.length - 1;
       return {
         type: "scatter", mode: "lines+markers", name: `ρ = ${label(short(stage.regularization))}${isChosen ? " (chosen)" : ""}`, x: stage.objective.map((_, k) => start + k), y: stage.objective,
-        line: { color: hue, width: isChosen ? 3 : 1.5, dash: DASHES[i % DASHES.length] }, marker: { color: hue, symbol: stage.objective.map((_, k) => isChosen && k === last ? "star" : "circle"), size: stage.objective.map((_, k) => isChosen && k === last ? 14 : 6) },
+        line: { color: hue, width: isChosen ? 3 : 1.5 }, marker: { color: hue, symbol: stage.objective.map((_, k) => isChosen && k === last ? "star" : "circle"), size: stage.objective.map((_, k) => isChosen && k === last ? 14 : 6) },
         hovertemplate: "step %{x}<br>%{y:.4g}<extra></extra>",
       };
     });
@@ -172,6 +172,6 @@ function showCharts(record) {
   addPaths(record);
   addDescents(record);
   addMotion(record);
-  if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has neither loads nor fits, so there is nothing to draw."));
+  if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has no fits, so there is no figure."));
 }
 
