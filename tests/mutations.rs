@@ -67,7 +67,7 @@ fn sound() -> Vec<(String, MeshSource)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
     let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
-    assert_eq!(files.len(), 11);
+    assert_eq!(files.len(), 12);
     all.extend(files.iter().map(|path| (path.display().to_string(), MeshSource::read(path).unwrap())));
     all
 }

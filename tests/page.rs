@@ -1,5 +1,6 @@
 //! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
 
+use springfit::model::LengthSpring;
 use springfit::report::page::{PageRecord, page_html};
 use springfit::report::{Report, write_outputs};
 use springfit::study::{Outcome, Scene, run};
@@ -113,6 +114,42 @@ fn a_run_without_loads_and_one_of_a_single_spring_have_pages() {
     assert_eq!(single["report"]["fits"][0]["springs"], 1);
     // One edge of one cell: two places of 32 bits in base64.
     assert_eq!(single["view"]["edges"], "AAAAAAEAAAA=");
+}
+
+#[test]
+fn a_run_without_fits_has_a_page_and_a_scene_without_them_an_error() {
+    let error = Scene::parse(&[PLANE, LOAD].concat(), Path::new("scene.toml")).unwrap_err().to_string();
+    assert_eq!(error, "scene.toml: fit: expected at least one [[fit]], found none");
+    let mut without = outcome(&[PLANE, FIT, LOAD].concat());
+    without.fits.clear();
+    let record = record(&page(&without));
+    assert_eq!((without.fits.len(), record["view"]["networks"].as_array().unwrap().len()), (0, 0));
+    assert_eq!(record["view"]["loads"].as_array().unwrap().len(), 1);
+}
+
+/// A spring of a network of ten million adds nothing to the page, which has some of them and says how many.
+#[test]
+fn a_network_of_ten_million_springs_is_thinned() {
+    let boxed = PLANE.replace("cells = [2, 1]", "cells = [60, 60]");
+    let mut large = outcome(&[&boxed, FIT, LOAD].concat());
+    let points = large.mesh.point_count();
+    let spring = large.fits[0].network.lengths[0];
+    let one = |s: usize| LengthSpring { points: [s % (points - 1), points - 1], constant: s as f64, ..spring };
+    large.fits[0].network.lengths = (0..10_000_000).map(one).collect();
+    let start = std::time::Instant::now();
+    let page = page(&large);
+    let seconds = start.elapsed().as_secs_f64();
+    assert!(seconds < 60.0, "{seconds} s");
+    assert!(page.len() < 10_000_000, "{} bytes", page.len());
+    let view = PageRecord::of(&large).view;
+    let drawn = &view.meshes[0].numbers.0;
+    assert_eq!((drawn.len(), view.networks[0].constants.0.len()), (100_000, 100_000));
+    assert!(drawn.windows(2).all(|pair| (100..=101).contains(&(pair[1] - pair[0]))), "the steps are even");
+    let counted: usize = view.networks[0].histograms.iter().flat_map(|h| h.counts.iter().chain(&h.outside)).sum();
+    assert_eq!(counted, 10_000_000);
+    let words = "drawn are 100000 of 10000000 springs";
+    assert!(view.left_out.iter().any(|line| line.contains(words)), "{:?}", view.left_out);
+    assert!(page.contains(words), "the page says so");
 }
 
 #[test]

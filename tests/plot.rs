@@ -144,6 +144,65 @@ fn what_a_run_lacks_is_named() {
     assert!(error.contains("converge.csv:2") && error.contains("h_m"), "{error}");
 }
 
+#[test]
+fn damaged_parts_of_a_run_are_named() {
+    let damaged = tempfile::tempdir().unwrap();
+    let report = damaged.path().join("report.json");
+    for (text, words) in [
+        ("", "is not JSON"),
+        ("{\"version\": 2", "is not JSON"),
+        ("[]", "expected 2, that of this program, found none"),
+        ("{\"version\": 3}", "found 3; run the scene again"),
+        ("{\"version\": 2}", "missing field"),
+        ("{\"version\": 2, \"scene\": 7}", "scene"),
+    ] {
+        std::fs::write(&report, text).unwrap();
+        let error = RunFolder::at(damaged.path()).report().unwrap_err().to_string();
+        assert!(error.contains("report.json") && error.contains(words) && !error.contains('\n'), "{text}: {error}");
+    }
+    std::fs::remove_file(&report).unwrap();
+    std::fs::create_dir(&report).unwrap();
+    let error = RunFolder::at(damaged.path()).report().unwrap_err().to_string();
+    assert!(error.contains("report.json: cannot be read"), "{error}");
+    let cube = folder("cube_tet.toml");
+    std::fs::write(cube.path().join("offdiag.json"), "{\"version\": 0}").unwrap();
+    let error = fault(Figure::Constants, &RunFolder::at(cube.path()), Some("offdiag"), None);
+    assert!(error.contains("offdiag.json") && error.contains("springfit network"), "{error}");
+}
+
+const FEW_STAGES: &str = r#"
+[mesh]
+box = { element = "quad4", size = [2, 1], cells = [2, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+plane = "stress"
+[[fit]]
+objective = "whole"
+[[fix]]
+group = "xmin"
+[[load]]
+group = "xmax"
+traction = [1.0, 0]
+"#;
+
+/// A report without keys that were added since has its figures all the same.
+#[test]
+fn a_report_without_objectives_of_steps_is_read() {
+    let run = folder_of(&Scene::parse(FEW_STAGES, Path::new("scene.toml")).unwrap());
+    let path = run.path().join("report.json");
+    let mut report: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let stages = report["fits"][0]["whole"]["curve"].as_array_mut().unwrap();
+    assert!(!stages.is_empty());
+    for stage in stages {
+        assert!(stage.as_object_mut().unwrap().remove("objective").is_some());
+    }
+    std::fs::write(&path, report.to_string()).unwrap();
+    let read = RunFolder::at(run.path()).report().unwrap();
+    assert!(read.fits[0].whole.as_ref().unwrap().curve.iter().all(|stage| stage.objective.is_empty()));
+    assert!(Figure::WorkPrecision.picture(&RunFolder::at(run.path()), None, None).is_ok());
+}
+
 /// 1/E in a direction of a cube: that of the first axis is the first entry of the inverse.
 #[test]
 fn an_exact_network_has_the_modulus_of_the_material_in_all_directions() {

@@ -21,7 +21,7 @@ fn every_command_that_prints_tables_typesets_them() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, mesh) = (root("scenes/square_quad.toml"), root("scenes/meshes/cube_tet.msh"));
     let sweep = "sweep.over={material.poisson=[0.1,0.3]}";
-    let commands: [(&[&str], usize); 13] = [
+    let commands: [(&[&str], usize); 14] = [
         (&["elements"], 1),
         (&["materials"], 1),
         (&["check", "tet4", "hex8"], 1),
@@ -30,6 +30,7 @@ fn every_command_that_prints_tables_typesets_them() {
         (&["compare", "tri3", "--law", "neo-hookean", "--plane", "strain"], 3),
         (&["compare", &scene], 1),
         (&["converge", &scene, "--levels", "2"], 2),
+        (&["stability", "tri3"], 1),
         (&["sweep", &scene, "--set", sweep], 1),
         (&["sweep", &scene, "--set", sweep, "--explain"], 1),
         (&["run", &scene], 4),
@@ -40,7 +41,7 @@ fn every_command_that_prints_tables_typesets_them() {
         for language in ["markdown", "latex"] {
             let out = format!("{}-{language}", arguments[0]);
             let more: &[&str] = match arguments[0] {
-                "compare" | "converge" | "sweep" | "run" | "paper" => &["--out", &out],
+                "compare" | "converge" | "stability" | "sweep" | "run" | "paper" => &["--out", &out],
                 _ => &[],
             };
             let _ = std::fs::remove_dir_all(folder.path().join(&out));

@@ -216,6 +216,14 @@ fn moduli_of_two_halves_come_back() {
     // Every stage is on the curve, and the fitted loads follow it down.
     assert_eq!(found.curve.len(), 4);
     assert!(found.curve.windows(2).all(|pair| pair[1].trained.unwrap() < pair[0].trained.unwrap()));
+    for stage in &found.curve {
+        // The last objective is the sum that the errors and the change give, and each step lowered it.
+        let sum = 24.0 * stage.trained.unwrap().powi(2) + stage.regularization * stage.change.powi(2);
+        let last = *stage.objective.last().unwrap();
+        assert!((last - sum).abs() <= 1e-9 * sum, "{last} {sum}");
+        assert!(stage.objective.windows(2).all(|pair| pair[1] < pair[0]), "{:?}", stage.objective);
+    }
+    assert!(found.curve[0].objective.len() > 1);
 }
 
 /// The moduli of two regions, one four times as stiff, from displacements with noise: 95 % intervals hold the truth in at least nine of
@@ -386,6 +394,7 @@ fn what_a_network_did_is_found() {
         let regularizations = vec![1e-4, 1e-8, 0.0];
         let settings = WholeSettings { regularizations, iterations: 100, method, residual, ..WholeSettings::default() };
         let found = quietly(&object, &wanted, &settings);
+        assert!(found.curve.iter().all(|s| !s.objective.is_empty() && s.objective.windows(2).all(|p| p[1] < p[0])));
         let worst = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
         let (before, after) = (worst(&found.trained[0].loads), worst(&found.trained[1].loads));
         assert!(before > 0.05 && after < limit, "{residual:?} {method:?}: {before} {after}");

@@ -1,4 +1,7 @@
-"""A picture of a page: python picture.py PAGE OUT.jpg [--whole] [CONTROL=VALUE ...], such as load=1 color=error layer-points=true."""
+"""A picture of a page: python picture.py PAGE OUT.jpg [--whole | --chart=NAME] [CONTROL=VALUE ...].
+
+It is one of the view, of what the window shows, or of a figure, such as descent. Controls are such as load=1 color=error layer-points=true.
+"""
 
 import pathlib
 import shutil
@@ -17,7 +20,7 @@ def main():
         page.set_default_timeout(240_000)
         page.goto(pathlib.Path(page_file).resolve().as_uri())
         page.wait_for_function("document.documentElement.dataset.ready === 'true'")
-        for given in (word for word in rest if word != "--whole"):
+        for given in (word for word in rest if not word.startswith("--")):
             name, value = given.split("=")
             control = page.locator(f"#{name}")
             kind = control.evaluate("(e) => e.type")
@@ -33,7 +36,8 @@ def main():
         if "--whole" in rest:
             page.screenshot(path=out, type="jpeg", quality=86)
         else:
-            page.locator(".stage").screenshot(path=out, type="jpeg", quality=86)
+            charts = [word.removeprefix("--chart=") for word in rest if word.startswith("--chart=")]
+            page.locator(f"figure:has(#chart-{charts[0]})" if charts else ".stage").screenshot(path=out, type="jpeg", quality=86)
         browser.close()
 
 

@@ -1,6 +1,7 @@
 """Proves pages of reports in a browser: python prove.py PAGE...
 
-Each page is opened offline in headless Chromium. It must ask for nothing, report no error, draw the body, and answer its controls.
+Each page is opened offline in headless Chromium. It must ask for nothing, report no error, draw the body, answer its controls,
+and have what accessibility.js lists.
 With --pictures FOLDER the views are kept as PNG files; with --frame SECONDS, turning a view must take at most so long for each frame.
 """
 
@@ -73,12 +74,15 @@ UNNAMED = """() => [...document.querySelectorAll('button, select, input, [role],
   !(e.labels?.length || e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() || e.getAttribute('role') === 'status')).map((e) => e.outerHTML.slice(0, 80))"""
 
 
+ACCESSIBILITY = pathlib.Path(__file__).with_name("accessibility.js").read_text(encoding="utf-8")
+
 RECORD = "JSON.parse(document.getElementById('record').textContent)"
 # Charts and what a record has where they are drawn.
 CHARTS = {
     "whole": f"{RECORD}.report.fits.some((fit) => fit.whole)",
     "rho": f"{RECORD}.report.fits.some((fit) => fit.whole?.curve.length > 1)",
     "l-curve": f"{RECORD}.report.fits.some((fit) => fit.whole?.curve.length > 1)",
+    "descent": f"{RECORD}.report.fits.some((fit) => fit.whole?.curve.some((stage) => stage.objective?.length > 1))",
     "constants": f"{RECORD}.view.networks.some((network) => network.histograms.length > 0)",
 }
 
@@ -112,6 +116,15 @@ class Prover:
         act()
         self.check(self.pixels()["sum"] != before, f"{what} changes nothing in the view")
 
+    def accessible(self, scheme):
+        """In both colours of the system: the page follows them without being loaded again."""
+        for own in [scheme, "dark" if scheme == "light" else "light"]:
+            self.page.emulate_media(color_scheme=own)
+            self.page.wait_for_timeout(700)
+            self.faults += [f"{own} colours: {fault}" for fault in self.page.evaluate(ACCESSIBILITY)]
+        self.page.emulate_media(color_scheme=scheme)
+        self.page.wait_for_timeout(700)
+
     def controls(self):
         page = self.page
         # Nothing is asked of controls that the run has no use for.
@@ -140,12 +153,12 @@ class Prover:
             self.changes("play", lambda: (page.click("#play"), page.wait_for_timeout(1500), page.click("#play")))
         heading = page.locator("#tables table th.number button").first
         if heading.count():
-            first = lambda: page.locator("#tables table").first.locator("tbody td.number").first.inner_text()
+            # What is not known is last either way.
+            known = lambda: [text for text in page.locator("#tables table").first.locator("tbody tr").evaluate_all("(rows) => rows.map((row) => row.querySelector('td.number').textContent)") if text != "–"]
             heading.click()
-            least = first()
+            rising = known()
             heading.click()
-            rows = page.locator("#tables table").first.locator("tbody tr").count()
-            self.check(rows < 2 or first() != least or least == "0", "a heading does not sort")
+            self.check(rising == known()[::-1], "a heading does not sort")
         was = page.evaluate("getComputedStyle(document.body).backgroundColor")
         page.click("#theme")
         self.check(was != page.evaluate("getComputedStyle(document.body).backgroundColor"), "the theme does not change")
@@ -165,6 +178,7 @@ def prove(browser, path, arguments):
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         prover.check(wide <= 0, f"the page is {wide} pixels wider than the screen")
         prover.check(not page.evaluate(UNNAMED), f"controls without a name: {page.evaluate(UNNAMED)}")
+        prover.accessible(scheme)
         if arguments.pictures:
             folder = pathlib.Path(arguments.pictures)
             folder.mkdir(parents=True, exist_ok=True)

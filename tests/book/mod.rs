@@ -1,6 +1,7 @@
 //! README and book: links lead somewhere, commands print what the pages say, files are read, figures are measured again.
 
 mod figures;
+mod gallery;
 mod links;
 mod markdown;
 mod printed;

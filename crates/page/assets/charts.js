@@ -115,6 +115,31 @@ function addPaths(record) {
   }), [hint()]);
 }
 
+/** The objective of a whole-object fit after each step: a line for each ρ of the path, one after another. */
+function addDescents(record) {
+  const fits = record.report.fits.filter((fit) => fit.whole?.curve.some((stage) => stage.objective?.length > 1));
+  if (!fits.length) return;
+  let chosen = fits[0];
+  const draw = () => {
+    let step = 0;
+    const data = chosen.whole.curve.filter((stage) => stage.objective.length).map((stage, i) => {
+      const start = step;
+      step += stage.objective.length - 1;
+      const isChosen = stage.regularization === chosen.whole.regularization;
+      const hue = HUES[i % HUES.length];
+      const last = stage.objective.length - 1;
+      return {
+        type: "scatter", mode: "lines+markers", name: `ρ = ${label(short(stage.regularization))}${isChosen ? " (chosen)" : ""}`, x: stage.objective.map((_, k) => start + k), y: stage.objective,
+        line: { color: hue, width: isChosen ? 3 : 1.5 }, marker: { color: hue, symbol: stage.objective.map((_, k) => isChosen && k === last ? "star" : "circle"), size: stage.objective.map((_, k) => isChosen && k === last ? 14 : 6) },
+        hovertemplate: "step %{x}<br>%{y:.4g}<extra></extra>",
+      };
+    });
+    return { data, layout: layout({ xaxis: { title: { text: "step of the path" }, rangemode: "tozero" }, yaxis: { type: "log", title: { text: "objective" } }, hovermode: "closest" }) };
+  };
+  const { field } = chooser("descent-fit", "Network", fits.map((fit, i) => [i, cut(fit.name)]), (value) => { chosen = fits[value]; show(); });
+  const show = addChart("descent", "Whole-object fits: objective after each step", draw, [field, element("p", { class: "hint" }, "Each ρ starts from the end of the one before. Its objective is another one, so that the lines do not join.")]);
+}
+
 function addMotion(record) {
   const models = record.report.motion.filter((model) => model.time.length > 1);
   if (!models.length) return;
@@ -145,7 +170,8 @@ function showCharts(record) {
   addModuli(record);
   addWhole(record);
   addPaths(record);
+  addDescents(record);
   addMotion(record);
-  if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has neither loads nor fits, so there is nothing to draw."));
+  if (!document.querySelector(".charts").children.length) document.querySelector(".charts").append(element("p", { class: "missing" }, "The run has no fits, so there is no figure."));
 }
 

@@ -26,7 +26,7 @@ class Controls {
     const network = chooser("network", "Network", networks.map((network, i) => [i, network.name]), (value) => { state.network = Number(value); state.picked = null; this.show(); });
     const load = chooser("load", "Load", body.cases.map((own, i) => [i, own.name]), (value) => this.choose(Number(value)));
     const color = chooser("color", "Springs coloured by", body.cases.length ? COLORS : COLORS.slice(0, 1), (value) => { state.color = value; this.show(); });
-    const layers = LAYERS.filter(([name]) => name !== "points" || body.count <= MOST_DOTS).map(([name, text]) => {
+    const layers = LAYERS.filter(([name]) => (name !== "points" || body.count <= MOST_DOTS) && (name !== "network" || networks.length > 0)).map(([name, text]) => {
       const box = element("input", { type: "checkbox", id: `layer-${name}`, checked: state.layers[name], onchange: () => { state.layers[name] = box.checked; this.show(); } });
       return element("label", { for: `layer-${name}`, class: `layer ${name}` }, box, text);
     });
@@ -45,7 +45,7 @@ class Controls {
     this.info = element("dl", { id: "picked", "aria-live": "polite" });
     const find = element("fieldset", {}, element("legend", {}, "Numbers"),
       element("div", { class: "pair" },
-        number("find-spring", "Spring", 0, (value) => this.find("spring", value)),
+        networks.length > 0 ? number("find-spring", "Spring", 0, (value) => this.find("spring", value)) : null,
         number("find-point", "Point", 0, (value) => this.find("point", value))), this.info);
     const reset = element("button", { type: "button", id: "reset", onclick: () => this.view.reset() }, "Reset view");
     this.form.append(...[

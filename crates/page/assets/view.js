@@ -128,12 +128,14 @@ class View {
     return found;
   }
 
-  /** The range of the colours: the middle 98 % of the values, even about zero where they have both signs. */
+  /** The range of the colours: of constants the middle 98 % of the values, even about zero where they have both signs. */
   scale(values, own) {
     const what = this.state.color;
     const sorted = Float32Array.from(values).filter(Number.isFinite).sort();
     let [low, high] = [quantile(sorted, 0.01), quantile(sorted, 0.99)];
-    if (what !== "constant") [low, high] = [0, Math.max(quantile(sorted, 0.995), what === "error" ? 1e-3 : 0)];
+    // That of displacements is the same in all states, so that a colour keeps its meaning while the body moves.
+    if (what === "displacement") [low, high] = [0, own?.largest ?? 0];
+    if (what === "error") [low, high] = [0, Math.max(quantile(sorted, 0.995), 1e-3)];
     const both = what === "constant" && sorted[0] < 0;
     if (both) high = Math.max(-low, high), low = -high;
     if (!(high > low)) [low, high] = Number.isFinite(low) ? [low - Math.abs(low || 1) / 2, low + Math.abs(low || 1) / 2] : [0, 1];

@@ -118,15 +118,25 @@ fn drawn(network: &Network, on_surface: &[bool], most: usize) -> Vec<usize> {
     if all <= most {
         return (0..all).collect();
     }
+    // Springs are counted first: a list of those of the surface would be as long as the network.
     let is_seen = |s: &usize| network.lengths[*s].points.iter().all(|&p| on_surface[p]);
-    let seen: Vec<usize> = (0..all).filter(is_seen).collect();
-    spread(if seen.is_empty() { (0..all).collect() } else { seen }, most)
+    match (0..all).filter(is_seen).count() {
+        0 => steps(all, most).collect(),
+        count => {
+            let mut kept = steps(count, most).peekable();
+            let seen = (0..all).filter(is_seen).enumerate();
+            seen.filter(|(place, _)| kept.next_if_eq(place).is_some()).map(|(_, s)| s).collect()
+        }
+    }
+}
+
+/// At most so many of the places 0 to `count`, in even steps.
+fn steps(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    let kept = count.min(most);
+    (0..kept).map(move |i| i * count / kept)
 }
 
 /// At most so many of the entries, in even steps.
 pub fn spread<T: Copy>(entries: Vec<T>, most: usize) -> Vec<T> {
-    match entries.len() > most {
-        true => (0..most).map(|i| entries[i * entries.len() / most]).collect(),
-        false => entries,
-    }
+    steps(entries.len(), most).map(|place| entries[place]).collect()
 }

@@ -21,7 +21,7 @@ impl HistogramRecord {
     }
 
     fn of(kind: SpringKind, mut constants: Vec<f64>) -> Option<HistogramRecord> {
-        constants.sort_by(f64::total_cmp);
+        constants.sort_unstable_by(f64::total_cmp);
         let (least, largest) = (*constants.first()?, *constants.last()?);
         let skipped = (OUTSIDE * constants.len() as f64) as usize;
         let inner = [constants[skipped], constants[constants.len() - 1 - skipped]];

@@ -1,4 +1,4 @@
-//! L-BFGS on the objective of a whole-object fit.
+//! What a descent of the objective of a whole-object fit finds, and L-BFGS.
 
 use super::linearized::LeastSquares;
 use crate::error::{Error, Result};
@@ -6,6 +6,14 @@ use argmin::core::{CostFunction, Executor, Gradient, IterState};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use std::cell::RefCell;
+
+/// The end of a descent, and the way to it.
+pub(super) struct Descent {
+    /// The lowest point.
+    pub theta: Vec<f64>,
+    /// The objective at the start and at each lower point; empty if the network is unstable at the start.
+    pub objective: Vec<f64>,
+}
 
 /// The objective for argmin, which requests value and gradient separately; the last point is stored for both.
 struct Objective<'a> {
@@ -17,6 +25,7 @@ struct Objective<'a> {
 struct Known<'a> {
     last: Option<(Vec<f64>, f64, Vec<f64>)>,
     best: (f64, Vec<f64>),
+    lowered: Vec<f64>,
     visit: &'a mut dyn FnMut(&[f64], f64) -> bool,
     /// The error that ended the search, if there was one.
     error: Option<Error>,
@@ -41,6 +50,7 @@ impl Objective<'_> {
         known.last = Some((theta.to_vec(), value, gradient.clone()));
         if value < known.best.0 {
             known.best = (value, theta.to_vec());
+            known.lowered.push(value);
             if !(known.visit)(theta, value) {
                 return Err(Error::new("cancelled").into());
             }
@@ -67,8 +77,8 @@ impl Gradient for &Objective<'_> {
     }
 }
 
-/// Minimises from θ in at most `iterations` steps with `memory` pairs of steps and gradients (Liu and Nocedal 1989);
-/// returns the lowest point. `visit` is called with each new lowest point and may end the search by returning false.
+/// Minimises from θ in at most `iterations` steps with `memory` pairs of steps and gradients (Liu and Nocedal 1989),
+/// to the lowest point. `visit` is called with each new lowest point and may end the search by returning false.
 pub(super) fn lbfgs(
     problem: &dyn LeastSquares,
     rho: f64,
@@ -76,8 +86,8 @@ pub(super) fn lbfgs(
     memory: usize,
     iterations: usize,
     visit: &mut dyn FnMut(&[f64], f64) -> bool,
-) -> Result<Vec<f64>> {
-    let known = Known { last: None, best: (f64::INFINITY, theta.to_vec()), visit, error: None };
+) -> Result<Descent> {
+    let known = Known { last: None, best: (f64::INFINITY, theta.to_vec()), lowered: Vec::new(), visit, error: None };
     let objective = Objective { problem, rho, known: RefCell::new(known) };
     let configure = |state: IterState<_, _, _, _, _, f64>| state.param(theta.to_vec()).max_iters(iterations as u64);
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), memory);
@@ -86,6 +96,6 @@ pub(super) fn lbfgs(
     let known = objective.known.into_inner();
     match known.error {
         Some(error) => Err(error),
-        None => Ok(known.best.1),
+        None => Ok(Descent { theta: known.best.1, objective: known.lowered }),
     }
 }

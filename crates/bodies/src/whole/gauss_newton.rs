@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
+use super::descent::Descent;
 use super::linearized::{LeastSquares, Linearized};
 use crate::error::Result;
 use crate::springs::{dot, norm};
@@ -31,8 +32,8 @@ const LEAST_RADIUS: f64 = 1e-6;
 const ACCEPTED: f64 = 1e-3;
 
 impl GaussNewton {
-    /// Minimises from θ in at most `iterations` steps; returns the lowest point. `visit` is called with each point and
-    /// may end the search by returning false.
+    /// Minimises from θ in at most `iterations` steps, to the lowest point. `visit` is called with each point and may end
+    /// the search by returning false.
     pub(super) fn descend(
         &self,
         problem: &dyn LeastSquares,
@@ -40,10 +41,11 @@ impl GaussNewton {
         theta: &[f64],
         iterations: usize,
         visit: &mut dyn FnMut(&[f64], f64) -> bool,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<Descent> {
         let mut theta = theta.to_vec();
-        let Some(mut now) = problem.at(&theta)? else { return Ok(theta) };
+        let Some(mut now) = problem.at(&theta)? else { return Ok(Descent { theta, objective: Vec::new() }) };
         let (mut value, mut gradient) = now.objective(rho);
+        let mut objective = vec![value];
         let root = (theta.len().max(1) as f64).sqrt();
         let mut radius = RADIUS * root;
         for _ in 0..iterations {
@@ -75,11 +77,12 @@ impl GaussNewton {
             (theta, now) = (tried, next);
             let enough = lowered <= self.decrease * value;
             (value, gradient) = now.objective(rho);
+            objective.push(value);
             if !visit(&theta, value) || enough {
                 break;
             }
         }
-        Ok(theta)
+        Ok(Descent { theta, objective })
     }
 
     /// A step towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d` with `‖d‖ ≤ radius`, and the predicted decrease (Steihaug

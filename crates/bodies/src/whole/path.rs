@@ -3,7 +3,7 @@
 //! Theory: page *Whole-object fits* of the book.
 
 use super::balance::ResidualForces;
-use super::descent::lbfgs;
+use super::descent::{Descent, lbfgs};
 use super::displacements::{Displacements, Errors};
 use super::linearized::LeastSquares;
 use super::object::Object;
@@ -40,6 +40,9 @@ pub struct Stage {
     pub change: f64,
     /// Whether it was rejected because of its range of constants.
     pub rejected: bool,
+    /// The objective at its start and after each step, of the residuals that were minimised last.
+    #[serde(default)]
+    pub objective: Vec<f64>,
 }
 
 /// The best of the finished stages.
@@ -123,7 +126,9 @@ impl Path<'_> {
             };
             problem.forget();
             judge.forget();
-            let theta = self.stage(problem, stage, &snapshot.theta, &mut visit)?;
+            let Descent { theta, mut objective } = self.stage(problem, stage, &snapshot.theta, &mut visit)?;
+            // JSON has no infinity.
+            objective.retain(|value| value.is_finite());
             let error = judge.errors(&theta)?.and_then(|errors| mean(&errors));
             let better = match (error, snapshot.best.error) {
                 (Some(now), Some(before)) => now < before,
@@ -148,6 +153,7 @@ impl Path<'_> {
                 trained: problem.errors(&theta)?.and_then(|errors| root_mean_square(&errors.loads)),
                 change: root_mean_square(&theta).unwrap_or(0.0),
                 rejected: wide,
+                objective,
             });
             let left_out = std::mem::take(&mut snapshot.left_out);
             *snapshot = Snapshot { stage: stage + 1, theta, best, curve, left_out };
@@ -161,7 +167,7 @@ impl Path<'_> {
         stage: usize,
         theta: &[f64],
         visit: &mut dyn FnMut(&[f64], f64) -> bool,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<Descent> {
         let rho = self.settings.regularizations[stage];
         let mut theta = theta.to_vec();
         let forces = match self.settings.residual {
@@ -173,12 +179,13 @@ impl Path<'_> {
             let missing = || Error::expected("residual", "the stiffness of the finite elements for it", "none");
             let body = self.wanted.body.as_ref().ok_or_else(missing)?;
             let balance = ResidualForces::new(self.object, problem.targets.clone(), body)?;
-            theta = self.descend(&balance, rho, &theta, visit)?;
+            let found = self.descend(&balance, rho, &theta, visit)?;
+            if self.settings.residual == Residual::Forces {
+                return Ok(found);
+            }
+            theta = found.theta;
         }
-        match self.settings.residual {
-            Residual::Forces => Ok(theta),
-            _ => self.descend(problem, rho, &theta, visit),
-        }
+        self.descend(problem, rho, &theta, visit)
     }
 
     fn descend(
@@ -187,7 +194,7 @@ impl Path<'_> {
         rho: f64,
         theta: &[f64],
         visit: &mut dyn FnMut(&[f64], f64) -> bool,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<Descent> {
         let iterations = self.settings.iterations;
         match self.settings.method {
             DescentMethod::GaussNewton(method) => method.descend(problem, rho, theta, iterations, visit),
@@ -222,7 +229,7 @@ pub(super) fn leave_one_out(
                 goes_on = watch(None);
                 goes_on
             };
-            theta = path.stage(&problem, stage, &theta, &mut visit)?;
+            theta = path.stage(&problem, stage, &theta, &mut visit)?.theta;
             if !goes_on {
                 return Ok(Vec::new());
             }

@@ -147,6 +147,9 @@ pub struct StageRecord {
     pub change: f64,
     /// Whether it was rejected because of the range of its constants.
     pub rejected: bool,
+    /// The objective at the start of the stage and after each step, of the residuals that were minimised last.
+    #[serde(default)]
+    pub objective: Vec<f64>,
 }
 
 /// The relative error under a load; null if the network is not stable.
@@ -205,6 +208,7 @@ impl WholeOutcomeRecord {
             trained: stage.trained,
             change: stage.change,
             rejected: stage.rejected,
+            objective: stage.objective.clone(),
         };
         let [before, after] = [0, 1].map(|i| outcome.frequencies[i].iter().map(|error| finite(*error)).collect());
         WholeOutcomeRecord {
