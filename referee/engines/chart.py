@@ -2,14 +2,14 @@
 from table import LOADS
 
 SHADES = ["#22577a", "#c7703c", "#5b8c5a", "#8a6bb0"]
-HEIGHT, LEFT, RIGHT, SCALE = 9, 330, 40, 4.0  # of a bar, margins, and units per percent
+HEIGHT, LEFT, RIGHT, SCALE = 9, 370, 40, 4.0  # of a bar, margins, and units per percent
 MOST = 60  # percent
 
 
 def svg(record):
     groups = {}
     for row in record["rows"]:
-        groups.setdefault(f"{row['engine']} {row['solver']}, {row['model']}, ν = {row['poisson']}", {})[row["load"]] = row
+        groups.setdefault(f"{row['engine']} {row['solver']}, {row['model'].replace(' nu ', ' ν ')}, ν = {row['poisson']}", {})[row["load"]] = row
     groups = {name: rows for name, rows in groups.items() if "classical" not in name}
     width, zero = LEFT + 2 * 20 * SCALE + MOST * SCALE + RIGHT, LEFT + 20 * SCALE
     height = 60 + len(groups) * (4 * HEIGHT + 10)

@@ -4,7 +4,8 @@ LOADS = ["tension", "shear", "torsion", "bending"]
 
 
 def number(row, key):
-    return f"{row[key]:+.1f}".replace("-", "−") if key in row else "not at rest"
+    # Adding zero makes a zero of a negative one.
+    return f"{round(row[key], 1) + 0.0:+.1f}".replace("-", "−").replace("+0.0", "0.0") if key in row else "not at rest"
 
 
 def line(row):
