@@ -4,7 +4,7 @@ use super::grid_kind::{Extent, GridKind, Regular, polygon_counts};
 use super::polydata::KINDS;
 use super::scalar_type::ScalarType;
 use super::storage::{Storage, Stored};
-use super::xml_tag::{Tag, next_tag, text_after};
+use super::xml_tag::{Tag, next_tag, number, quoted, shown_value, text_after};
 use crate::error::{Error, Result};
 use std::ops::Range;
 
@@ -333,25 +333,8 @@ fn array(section: Section, tag: &Tag, bytes: &[u8]) -> Result<ArrayTag> {
     Ok(ArrayTag { section, name, scalar, components, place, start: tag.start })
 }
 
-/// An attribute that is a whole number.
-pub(super) fn number(tag: &Tag, name: &str) -> Result<u64> {
-    let value = tag.attribute(name);
-    let number = value.as_deref().unwrap_or_default().trim().parse();
-    number.map_err(|_| Error::expected(name, "a whole number", shown_value(value)))
-}
-
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at].iter().filter(|&&b| b == b'\n').count()
-}
-
-/// The value of an attribute, for an error.
-pub(super) fn shown_value(value: Option<String>) -> String {
-    value.map_or("none".into(), |value| quoted(&value))
-}
-
-/// The start of a text, in quotes.
-fn quoted(value: &str) -> String {
-    format!("\"{}\"", value.chars().take(40).collect::<String>())
 }
 
 /// The start of a name, on one line.

@@ -1,9 +1,8 @@
 //! The kinds of grid in XML files, and where a regular one is.
 
-use super::document::{number, shown_value};
 use super::image::Image;
 use super::lattice::Lattice;
-use super::xml_tag::Tag;
+use super::xml_tag::{Tag, number, shown_value};
 use crate::error::{Error, Result};
 
 /// What `VTKFile.type` names.

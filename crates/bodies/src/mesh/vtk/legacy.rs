@@ -135,11 +135,11 @@ impl File<'_> {
     }
 
     fn dataset(&mut self) -> Result<()> {
-        let Some(dataset) = Dataset::ALL.into_iter().find(|(name, _)| self.reader.next_is(name)) else {
-            return Err(self.reader.unexpected(&Dataset::ALL.map(|(name, _)| name).join(", ")));
+        let Some(place) = Dataset::NAMES.iter().position(|name| self.reader.next_is(name)) else {
+            return Err(self.reader.unexpected(&Dataset::NAMES.join(", ")));
         };
         self.reader.word();
-        self.dataset = dataset.1();
+        self.dataset = Dataset::at(place);
         Ok(())
     }
 

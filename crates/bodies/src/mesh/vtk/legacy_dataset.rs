@@ -31,16 +31,20 @@ pub(super) struct Voxels {
 const AXES: [&str; 3] = ["X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES"];
 
 impl Dataset {
-    /// The kinds by name.
-    pub const ALL: [(&str, fn() -> Dataset); 5] = [
-        ("UNSTRUCTURED_GRID", || Dataset::Unstructured),
-        ("POLYDATA", || Dataset::Polygons(Default::default())),
-        ("STRUCTURED_GRID", || Dataset::Structured(None)),
-        ("RECTILINEAR_GRID", || Dataset::Rectilinear(None, Default::default())),
-        ("STRUCTURED_POINTS", || {
-            Dataset::Points(Voxels { lattice: None, origin: [0.0; 3], spacing: [1.0; 3], of_points: Vec::new() })
-        }),
-    ];
+    /// The names of the kinds.
+    pub const NAMES: [&str; 5] =
+        ["UNSTRUCTURED_GRID", "POLYDATA", "STRUCTURED_GRID", "RECTILINEAR_GRID", "STRUCTURED_POINTS"];
+
+    /// The kind with this place among the names.
+    pub fn at(place: usize) -> Dataset {
+        match place {
+            0 => Dataset::Unstructured,
+            1 => Dataset::Polygons(Default::default()),
+            2 => Dataset::Structured(None),
+            3 => Dataset::Rectilinear(None, Default::default()),
+            _ => Dataset::Points(Voxels { lattice: None, origin: [0.0; 3], spacing: [1.0; 3], of_points: Vec::new() }),
+        }
+    }
 
     /// The sections that a file must have.
     pub fn sections(&self) -> &'static [&'static str] {

@@ -50,7 +50,7 @@ pub(super) fn fill(piece: &mut Piece, kinds: [Cells; 4]) -> Result<()> {
             }
             sources.extend(std::iter::repeat_n(source, piece.types.len() - before));
             source += 1;
-            start = nodes.len() + start;
+            start += nodes.len();
         }
         if start != cells.connectivity.len() {
             let expected = format!("{start} nodes, where the last cell ends");
