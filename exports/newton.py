@@ -22,8 +22,8 @@ volumes, k_volume, rest_volume = (net[name] for name in ["volumes", "k_volume", 
 step = 0.5 * float(net["dt_max"])  # s
 
 
-def model(material=None):
-    """The model; or Newton's own finite elements of the same tetrahedra, of material (E, nu)."""
+def build(material=None):
+    """The model, to which more may be added; or Newton's own finite elements of the same tetrahedra, of material (E, nu)."""
     builder = newton.ModelBuilder(gravity=tuple(net["gravity"].tolist()))
     mass = masses.copy()
     mass[net["fixed"]] = 0.0
@@ -34,7 +34,7 @@ def model(material=None):
         mu, lam = young / (2 + 2 * poisson), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
         for corners in net["tets"].tolist():
             builder.add_tetrahedron(*corners, mu, lam, 0.0)
-        return builder.finalize()
+        return builder
     builder.spring_indices.extend(springs.ravel().tolist())
     builder.spring_rest_length.extend(rest.tolist())
     builder.spring_stiffness.extend(k.tolist())
@@ -48,12 +48,12 @@ def model(material=None):
         builder.tet_poses.append(np.linalg.inv(scale * edges).tolist())
         builder.tet_activations.append(0.0)
         builder.tet_materials.append((0.0, constant * at_rest, 0.0))
-    return builder.finalize()
+    return builder
 
 
 def move(steps, after_step=None, material=None):
     """Positions after so many steps, or when `after_step` says so."""
-    made = model(material)
+    made = build(material).finalize()
     solver = newton.solvers.SolverSemiImplicit(made)
     now, after = made.state(), made.state()
     control = made.control()

@@ -3,6 +3,7 @@
 mod door;
 mod element;
 mod expression;
+pub mod formats;
 mod gmsh;
 mod meshes;
 mod scene;
@@ -60,4 +61,9 @@ fn gmsh_meshes() {
 #[test]
 fn vtk_grids() {
     replay("vtk", vtk::check);
+}
+
+#[test]
+fn meshes_of_every_format() {
+    replay("formats", formats::check);
 }

@@ -78,4 +78,5 @@ mod sums;
 mod sweeps;
 mod symmetry;
 mod typeset;
+mod voxels;
 mod whole;

@@ -454,8 +454,10 @@ fn xml_error(file: &str, from: &str, to: &str) -> String {
 fn errors_of_the_structure_name_the_line() {
     let error = |from, to| xml_error("bar_ascii.vtu", from, to);
     assert_eq!(error("</VTKFile>", ""), "line 246: VTKFile: expected </VTKFile>, found the end of the file");
-    let kind = "line 2: VTKFile.type: expected UnstructuredGrid, found";
-    assert_eq!(error("\"UnstructuredGrid\"", "\"PolyData\""), format!("{kind} \"PolyData\""));
+    let kind = "line 2: VTKFile.type: expected one of UnstructuredGrid, PolyData, ImageData, StructuredGrid, RectilinearGrid, found";
+    assert_eq!(error("\"UnstructuredGrid\"", "\"Table\""), format!("{kind} \"Table\""));
+    let none = "PolyData: expected at least one <Piece>, found none";
+    assert_eq!(error("\"UnstructuredGrid\"", "\"PolyData\""), none);
     assert_eq!(error("\"UnstructuredGrid\"", "\"Poly\nData\""), format!("{kind} \"Poly\u{fffd}Data\""));
     assert_eq!(error("<VTKFile", "<svg"), "line 2: VTKFile: expected <VTKFile>, found <svg>");
     assert_eq!(error("</Points>", "</Cells>"), "line 70: Cells: expected </Points>, found </Cells>");

@@ -5,7 +5,11 @@ use springfit::mesh::{Mesh, MeshSource};
 use std::sync::{Arc, OnceLock};
 
 pub fn check(bytes: &[u8], ending: &str) {
-    match MeshSource::parse(bytes, ending) {
+    check_result(MeshSource::parse(bytes, ending));
+}
+
+pub fn check_result(result: springfit::error::Result<MeshSource>) {
+    match result {
         Ok(source) => {
             check_source(&source);
             if let Ok(mesh) = Mesh::resolve(&source, shipped(), 1e-3) {

@@ -1,7 +1,7 @@
 //! The formats of mesh files: one row for each, which reading, errors and help texts ask.
 
 use super::source::MeshSource;
-use super::{abaqus, gmsh, nastran, surfaces, vtk};
+use super::{abaqus, gmsh, nastran, numpy, surfaces, vtk};
 use crate::error::{Error, ErrorKind, Result};
 
 /// A format of mesh files.
@@ -24,9 +24,9 @@ pub(super) enum Parse {
 }
 
 /// The formats that are read.
-pub const MESH_FORMATS: [MeshFormat; 10] = [
+pub const MESH_FORMATS: [MeshFormat; 11] = [
     MeshFormat { name: "Gmsh", endings: &["msh"], parse: Parse::Alone(gmsh::parse) },
-    MeshFormat { name: "VTK XML", endings: &["vtu"], parse: Parse::Alone(vtk::parse_xml) },
+    MeshFormat { name: "VTK XML", endings: &["vtu", "vtp", "vti", "vts", "vtr"], parse: Parse::Alone(vtk::parse_xml) },
     MeshFormat { name: "legacy VTK", endings: &["vtk"], parse: Parse::Alone(vtk::parse_legacy) },
     MeshFormat { name: "Abaqus and CalculiX", endings: &["inp"], parse: Parse::Alone(abaqus::parse) },
     MeshFormat { name: "Nastran", endings: &["bdf", "nas", "dat"], parse: Parse::Alone(nastran::parse) },
@@ -35,10 +35,11 @@ pub const MESH_FORMATS: [MeshFormat; 10] = [
     MeshFormat { name: "OBJ", endings: &["obj"], parse: Parse::Alone(surfaces::parse_obj) },
     MeshFormat { name: "PLY", endings: &["ply"], parse: Parse::Alone(surfaces::parse_ply) },
     MeshFormat { name: "OFF", endings: &["off"], parse: Parse::Alone(surfaces::parse_off) },
+    MeshFormat { name: "NumPy, labels of voxels", endings: &["npy"], parse: Parse::Alone(numpy::parse) },
 ];
 
 /// Endings of formats that are not read, the command that turns such a file into one that is, and what runs it.
-const CONVERTED: [(&[&str], &str); 10] = [
+const CONVERTED: [(&[&str], &str); 11] = [
     (&["med"], "gmsh mesh.med -save -format msh41 -o mesh.msh"),
     (&["unv"], "gmsh mesh.unv -save -format msh41 -o mesh.msh"),
     (&["cgns"], "gmsh mesh.cgns -save -format msh41 -o mesh.msh"),
@@ -52,8 +53,12 @@ const CONVERTED: [(&[&str], &str); 10] = [
     (&["mesh", "meshb", "vol", "h5m", "su2", "avs", "f3grid", "ugrid"], "meshio convert mesh.mesh mesh.vtu"),
     (&["blend", "glb", "gltf", "fbx", "dae", "3ds", "usd"], "Blender's export to .stl, .obj or .ply"),
     (
-        &["vtp", "vti", "vts", "vtr", "pvtu"],
+        &["pvtu", "pvtp", "pvti", "pvts", "pvtr", "vtm"],
         "pyvista: pyvista.read(FILE).cast_to_unstructured_grid().save(\"mesh.vtu\")",
+    ),
+    (
+        &["nrrd", "nhdr", "mha", "mhd", "nii", "dcm", "tif", "tiff"],
+        "SimpleITK and NumPy: numpy.save(\"labels.npy\", SimpleITK.GetArrayFromImage(SimpleITK.ReadImage(FILE)).T)",
     ),
 ];
 

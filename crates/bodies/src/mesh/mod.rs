@@ -27,6 +27,7 @@ mod listing;
 mod mesh;
 mod nastran;
 mod numbering;
+mod numpy;
 mod places;
 mod polytope;
 mod quality;

@@ -1,8 +1,10 @@
-//! The structure of a `.vtu`: its pieces, their arrays and where these are stored.
+//! The structure of an XML file: its pieces, their arrays and where these are stored.
 
+use super::grid_kind::{Extent, GridKind, Regular, polygon_counts};
+use super::polydata::KINDS;
 use super::scalar_type::ScalarType;
 use super::storage::{Storage, Stored};
-use super::xml_tag::{Tag, next_tag, text_after};
+use super::xml_tag::{Tag, next_tag, number, quoted, shown_value, text_after};
 use crate::error::{Error, Result};
 use std::ops::Range;
 
@@ -10,14 +12,15 @@ use std::ops::Range;
 const DEEPEST_TAGS: usize = 32;
 /// The largest number of pieces, because a piece takes up more memory than its tag does.
 const MOST_PIECES: usize = 4096;
-/// The tags around the arrays of a grid.
-const ARRAY_PATH: [&[u8]; 3] = [b"VTKFile", b"UnstructuredGrid", b"Piece"];
 /// The end tag of the appended data.
 const APPENDED_END: &[u8] = b"</AppendedData";
 
-/// A `.vtu` whose tags have been read.
+/// A file whose tags have been read.
 pub(super) struct Document<'a> {
     bytes: &'a [u8],
+    pub kind: GridKind,
+    /// Where the points of an image are.
+    pub regular: Regular,
     pub storage: Storage,
     pub pieces: Vec<PieceTag>,
     appended: Option<Stored<'a>>,
@@ -26,6 +29,12 @@ pub(super) struct Document<'a> {
 pub(super) struct PieceTag {
     pub points: u64,
     pub cells: u64,
+    /// The points of a lattice.
+    pub extent: Option<Extent>,
+    /// How many vertices, lines, polygons and strips there are.
+    pub polygons: [u64; 4],
+    /// The array of the points and of the cells that is marked as the one that counts.
+    pub active: [Option<String>; 2],
     pub arrays: Vec<ArrayTag>,
 }
 
@@ -36,6 +45,9 @@ pub(super) enum Section {
     Cells,
     PointData,
     CellData,
+    Coordinates,
+    /// Vertices, lines, polygons or strips.
+    Polygons(usize),
 }
 
 pub(super) struct ArrayTag {
@@ -76,7 +88,14 @@ impl<'a> Document<'a> {
     /// # Errors
     /// The file is of another kind, cut short, stored in a way that is not supported, or its tags do not match.
     pub fn read(bytes: &'a [u8]) -> Result<Document<'a>> {
-        let mut document = Document { bytes, storage: Storage::default(), pieces: Vec::new(), appended: None };
+        let mut document = Document {
+            bytes,
+            kind: GridKind::default(),
+            regular: Regular::default(),
+            storage: Storage::default(),
+            pieces: Vec::new(),
+            appended: None,
+        };
         let mut open: Vec<&[u8]> = Vec::new();
         let mut at = 0;
         loop {
@@ -120,23 +139,53 @@ impl<'a> Document<'a> {
             ([], b"VTKFile") => self.root(tag)?,
             ([], other) => return Err(Error::expected("VTKFile", "<VTKFile>", format!("<{}>", shown(other)))),
             ([b"VTKFile"], b"AppendedData") => return self.appended_data(tag),
-            ([b"VTKFile", b"UnstructuredGrid"], b"Piece") if self.pieces.len() == MOST_PIECES => {
-                return Err(Error::expected("Piece", format!("at most {MOST_PIECES} pieces"), "more"));
+            ([b"VTKFile"], name) if name == self.kind.name().as_bytes() => self.regular = Regular::read(tag)?,
+            ([b"VTKFile", grid], b"Piece") if *grid == self.kind.name().as_bytes() => {
+                if self.pieces.len() == MOST_PIECES {
+                    return Err(Error::expected("Piece", format!("at most {MOST_PIECES} pieces"), "more"));
+                }
+                if self.kind.is_lattice() && !self.pieces.is_empty() {
+                    return Err(Error::expected("Piece", format!("one piece of {}", self.kind.name()), "several"));
+                }
+                self.pieces.push(self.piece(tag)?);
             }
-            ([b"VTKFile", b"UnstructuredGrid"], b"Piece") => {
-                let count = |name| number(tag, name).map_err(|error| error.under("Piece"));
-                let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
-                self.pieces.push(PieceTag { points, cells, arrays: Vec::new() });
-            }
-            ([path @ .., section], b"DataArray") if path == ARRAY_PATH => {
+            ([path @ .., section], b"DataArray") if self.is_piece(path) => {
                 if let (Some(section), Some(piece)) = (Section::called(section), self.pieces.last_mut()) {
                     piece.arrays.push(array(section, tag, self.bytes)?);
+                }
+            }
+            (path, name) if self.is_piece(path) => {
+                if let Some(piece) = self.pieces.last_mut() {
+                    match Section::called(name) {
+                        Some(Section::PointData) => piece.active[0] = tag.attribute("Scalars"),
+                        Some(Section::CellData) => piece.active[1] = tag.attribute("Scalars"),
+                        _ => {}
+                    }
                 }
             }
             // Field data, and what other programs may add.
             _ => {}
         }
         Ok(tag.end)
+    }
+
+    /// Whether the open tags are those of a piece.
+    fn is_piece(&self, open: &[&[u8]]) -> bool {
+        matches!(open, [b"VTKFile", grid, b"Piece"] if *grid == self.kind.name().as_bytes())
+    }
+
+    fn piece(&self, tag: &Tag) -> Result<PieceTag> {
+        let count = |name| number(tag, name).map_err(|error| error.under("Piece"));
+        let extent = if self.kind.is_lattice() { Some(Extent::read(tag)?) } else { None };
+        let polygons = polygon_counts(tag).map_err(|error| error.under("Piece"))?;
+        let (points, cells) = match (self.kind, extent) {
+            (_, Some(Extent { lattice, .. })) => (lattice.point_count() as u64, lattice.cell_count() as u64),
+            (GridKind::Polygonal, _) => {
+                (count("NumberOfPoints")?, polygons.iter().fold(0, |all: u64, count| all.saturating_add(*count)))
+            }
+            _ => (count("NumberOfPoints")?, count("NumberOfCells")?),
+        };
+        Ok(PieceTag { points, cells, extent, polygons, active: [None, None], arrays: Vec::new() })
     }
 
     fn root(&mut self, tag: &Tag) -> Result<()> {
@@ -146,10 +195,7 @@ impl<'a> Document<'a> {
             Some(value) if value == known[1] => Ok(true),
             Some(other) => Err(Error::expected(format!("VTKFile.{name}"), known.join(" or "), quoted(&other))),
         };
-        let kind = tag.attribute("type");
-        if kind.as_deref() != Some("UnstructuredGrid") {
-            return Err(Error::expected("VTKFile.type", "UnstructuredGrid", shown_value(kind)));
-        }
+        self.kind = GridKind::called(tag.attribute("type"))?;
         let compressed = match tag.attribute("compressor") {
             None => false,
             Some(name) if name == "vtkZLibDataCompressor" => true,
@@ -187,7 +233,7 @@ impl<'a> Document<'a> {
     /// An element inside an array may precede its text, which then follows the end tag of that element.
     fn continue_text(&mut self, open: &[&[u8]], at: usize) {
         let [path @ .., section, b"DataArray"] = open else { return };
-        if path != ARRAY_PATH || Section::called(section).is_none() {
+        if !self.is_piece(path) || Section::called(section).is_none() {
             return;
         }
         let array = self.pieces.last_mut().and_then(|piece| piece.arrays.last_mut());
@@ -241,7 +287,8 @@ impl Section {
             b"Cells" => Some(Section::Cells),
             b"PointData" => Some(Section::PointData),
             b"CellData" => Some(Section::CellData),
-            _ => None,
+            b"Coordinates" => Some(Section::Coordinates),
+            _ => KINDS.iter().position(|(kind, _)| kind.as_bytes() == name).map(Section::Polygons),
         }
     }
 
@@ -249,7 +296,10 @@ impl Section {
     fn key(self, name: &str) -> String {
         match self {
             Section::Points => "Points".to_string(),
-            Section::Cells | Section::PointData | Section::CellData => format!("{self:?}.{name}"),
+            Section::Polygons(kind) => format!("{}.{name}", KINDS[kind].0),
+            Section::Cells | Section::PointData | Section::CellData | Section::Coordinates => {
+                format!("{self:?}.{name}")
+            }
         }
     }
 }
@@ -283,25 +333,8 @@ fn array(section: Section, tag: &Tag, bytes: &[u8]) -> Result<ArrayTag> {
     Ok(ArrayTag { section, name, scalar, components, place, start: tag.start })
 }
 
-/// An attribute that is a whole number.
-fn number(tag: &Tag, name: &str) -> Result<u64> {
-    let value = tag.attribute(name);
-    let number = value.as_deref().unwrap_or_default().trim().parse();
-    number.map_err(|_| Error::expected(name, "a whole number", shown_value(value)))
-}
-
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at].iter().filter(|&&b| b == b'\n').count()
-}
-
-/// The value of an attribute, for an error.
-fn shown_value(value: Option<String>) -> String {
-    value.map_or("none".into(), |value| quoted(&value))
-}
-
-/// The start of a text, in quotes.
-fn quoted(value: &str) -> String {
-    format!("\"{}\"", value.chars().take(40).collect::<String>())
 }
 
 /// The start of a name, on one line.

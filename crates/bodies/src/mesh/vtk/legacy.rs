@@ -1,5 +1,7 @@
-//! Legacy `.vtk` files with an unstructured grid, file versions 1 to 5.
+//! Legacy `.vtk` files, versions 1 to 5.
 
+use super::legacy_cells;
+use super::legacy_dataset::Dataset;
 use super::piece::{self, DataArray, Labels, Piece};
 use super::scalar_type::ScalarType;
 use crate::error::{Error, Result};
@@ -14,7 +16,7 @@ enum Place {
     Cells(u64),
 }
 
-/// Reads the unstructured grid of a `.vtk`, text or binary. Cells form blocks as in [`parse_xml`](super::parse_xml).
+/// Reads the grid of a `.vtk`, text or binary. Cells form blocks as in [`parse_xml`](super::parse_xml).
 ///
 /// # Errors
 /// The file is of another kind, damaged or cut short, or has cells without a fixed shape such as polygons.
@@ -30,11 +32,13 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
 pub(in crate::mesh) fn piece(bytes: &[u8]) -> Result<Piece> {
     let mut reader = Reader::new(bytes);
     header(&mut reader)?;
-    let mut file = File { reader, piece: Piece::default(), seen: Vec::new(), place: Place::File };
+    let mut file =
+        File { reader, piece: Piece::default(), dataset: Dataset::default(), seen: Vec::new(), place: Place::File };
     while !file.reader.peek().is_empty() {
         file.read_section()?;
     }
-    for section in ["DATASET", "POINTS", "CELLS", "CELL_TYPES"] {
+    let needed = std::iter::once("DATASET").chain(file.dataset.sections().iter().copied());
+    for section in needed {
         if !file.seen.iter().any(|seen| seen == section) {
             return Err(Error::new(format!("the file ends before {section}")));
         }
@@ -42,7 +46,7 @@ pub(in crate::mesh) fn piece(bytes: &[u8]) -> Result<Piece> {
     if file.reader.encoding == Encoding::Text && !bytes.last().is_some_and(u8::is_ascii_whitespace) {
         return Err(Error::new("the file ends within a line: expected a line end after its last number"));
     }
-    Ok(file.piece)
+    file.dataset.finish(file.piece)
 }
 
 fn header(reader: &mut Reader) -> Result<()> {
@@ -68,6 +72,7 @@ fn header(reader: &mut Reader) -> Result<()> {
 struct File<'a> {
     reader: Reader<'a>,
     piece: Piece,
+    dataset: Dataset,
     seen: Vec<String>,
     place: Place,
 }
@@ -77,7 +82,8 @@ impl File<'_> {
         let word = self.reader.peek();
         self.reader.enter("");
         let section = String::from_utf8_lossy(word).to_ascii_uppercase();
-        if ["DATASET", "POINTS", "CELLS", "CELL_TYPES"].contains(&section.as_str()) {
+        let of_dataset = self.dataset.sections().contains(&section.as_str()) || self.dataset.has(&section);
+        if section == "DATASET" || of_dataset {
             if self.seen.contains(&section) {
                 return Err(self.reader.fault(format!("{section} stands in the file a second time")));
             }
@@ -85,13 +91,21 @@ impl File<'_> {
         }
         match section.as_str() {
             "DATASET" => self.after(&section).dataset(),
-            "POINTS" => self.after(&section).points(),
-            "CELLS" => self.after(&section).cells(),
-            "CELL_TYPES" => self.after(&section).cell_types(),
+            "POINTS" if of_dataset => self.after(&section).points(),
+            "CELLS" if of_dataset => {
+                let cells = legacy_cells::read(&mut self.after(&section).reader)?;
+                (self.piece.ends, self.piece.connectivity) = (cells.ends, cells.connectivity);
+                Ok(())
+            }
+            "CELL_TYPES" if of_dataset => self.after(&section).cell_types(),
+            _ if of_dataset => {
+                self.after(&section);
+                self.dataset.read(&section, &mut self.reader)
+            }
             "CELL_DATA" => {
                 let count = self.after(&section).reader.text_number()?;
                 self.place = Place::Cells(count);
-                let cells = self.piece.types.len();
+                let cells = self.dataset.cell_count(&self.piece);
                 if count != cells as u64 {
                     return Err(self.reader.expected(&format!("{cells} cells"), &count.to_string()));
                 }
@@ -100,7 +114,7 @@ impl File<'_> {
             "POINT_DATA" => {
                 let count = self.after(&section).reader.text_number()?;
                 self.place = Place::Points(count);
-                let points = self.piece.points.len();
+                let points = self.dataset.point_count(&self.piece);
                 if count != points as u64 {
                     return Err(self.reader.expected(&format!("{points} points"), &count.to_string()));
                 }
@@ -121,64 +135,20 @@ impl File<'_> {
     }
 
     fn dataset(&mut self) -> Result<()> {
-        if !self.reader.next_is("UNSTRUCTURED_GRID") {
-            return Err(self.reader.unexpected("UNSTRUCTURED_GRID"));
-        }
+        let Some(place) = Dataset::NAMES.iter().position(|name| self.reader.next_is(name)) else {
+            return Err(self.reader.unexpected(&Dataset::NAMES.join(", ")));
+        };
         self.reader.word();
+        self.dataset = Dataset::at(place);
         Ok(())
     }
 
     fn points(&mut self) -> Result<()> {
         let count: u64 = self.reader.text_number()?;
-        let scalar = self.scalar_type()?;
+        let scalar = legacy_cells::scalar_type(&mut self.reader)?;
         let coordinates = scalar.reals(&mut self.reader, count.saturating_mul(3))?;
         self.piece.points = coordinates.as_chunks().0.to_vec();
         Ok(())
-    }
-
-    fn cells(&mut self) -> Result<()> {
-        let count: u64 = self.reader.text_number()?;
-        let size: u64 = self.reader.text_number()?;
-        if self.reader.next_is("OFFSETS") {
-            self.reader.word();
-            let offsets = self.indices(count)?;
-            self.piece.ends = match offsets.split_first() {
-                Some((0, ends)) => ends.to_vec(),
-                Some((first, _)) => return Err(self.reader.expected("offsets from 0", &first.to_string())),
-                None => Vec::new(),
-            };
-            if !self.reader.next_is("CONNECTIVITY") {
-                return Err(self.reader.unexpected("CONNECTIVITY"));
-            }
-            self.reader.word();
-            self.piece.connectivity = self.indices(size)?;
-            return Ok(());
-        }
-        self.reader.start_data()?;
-        self.reader.announce("cells", count);
-        self.piece.ends.reserve(self.reader.capacity::<i32>(count, 2));
-        self.piece.connectivity.reserve(self.reader.capacity::<i32>(size, 1));
-        for _ in 0..count {
-            for _ in 0..self.reader.number::<u32>()? {
-                self.piece.connectivity.push(self.reader.number::<u32>()?.into());
-            }
-            self.piece.ends.push(self.piece.connectivity.len() as u64);
-            self.reader.count_one();
-        }
-        let found = self.piece.connectivity.len() as u64 + count;
-        if found == size { Ok(()) } else { Err(self.reader.expected(&format!("{size} numbers"), &found.to_string())) }
-    }
-
-    fn indices(&mut self, count: u64) -> Result<Vec<u64>> {
-        let indices = self.scalar_type()?.whole_numbers(&mut self.reader, count, "indices")?;
-        indices.ok_or_else(|| self.reader.expected("a type of whole numbers", "another"))
-    }
-
-    /// Reads the name of the type of the numbers that follow.
-    fn scalar_type(&mut self) -> Result<ScalarType> {
-        let scalar = ScalarType::read(&mut self.reader)?;
-        self.reader.start_data()?;
-        Ok(scalar)
     }
 
     fn cell_types(&mut self) -> Result<()> {
@@ -283,6 +253,13 @@ impl File<'_> {
             self.reader.start_data()?;
         }
         match self.place {
+            Place::Points(points)
+                if points == tuples && components == 1 && !scalar.is_real() && self.dataset.is_image() =>
+            {
+                if let Some(values) = scalar.whole_numbers(&mut self.reader, count, "a whole number")? {
+                    self.dataset.add_point_labels(Labels { name, values });
+                }
+            }
             Place::Cells(cells) if cells == tuples && components == 1 && !scalar.is_real() => {
                 if let Some(values) = scalar.whole_numbers(&mut self.reader, count, "a whole number")? {
                     let labels = Labels { name, values };

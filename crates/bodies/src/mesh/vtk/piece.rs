@@ -69,7 +69,7 @@ type Key = (u8, usize, Vec<(usize, i128)>);
 ///
 /// # Errors
 /// A cell is of a type without a fixed shape, has the wrong number of nodes, or names a point that its piece lacks.
-pub(super) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
+pub(in crate::mesh) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
     let arrays = grouping_arrays(&pieces);
     let places: HashMap<&str, usize> = arrays.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
     let mut points = Vec::new();

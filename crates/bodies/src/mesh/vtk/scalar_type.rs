@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::mesh::reader::{Encoding, Number, Reader};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ScalarType {
+pub(in crate::mesh) enum ScalarType {
     Bit,
     Int8,
     UInt8,

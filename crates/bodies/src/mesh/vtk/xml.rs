@@ -1,7 +1,9 @@
-//! XML `.vtu` files.
+//! XML files: `.vtu`, `.vtp`, `.vti`, `.vts` and `.vtr`.
 
 use super::document::{ArrayTag, Content, Document, PieceTag, Section};
+use super::grid_kind::GridKind;
 use super::piece::{self, DataArray, Labels, Piece};
+use super::polydata::{self, Cells, KINDS};
 use super::storage::Stored;
 use crate::error::{Error, Result};
 use crate::mesh::reader::{Encoding, Reader};
@@ -14,12 +16,12 @@ const MOST_GROWTH: u64 = 100;
 /// The number of bytes that is allowed in any file.
 const ALWAYS_ALLOWED: u64 = 1 << 24;
 
-/// Reads the unstructured grid of a `.vtu`: its arrays as text, in base64 or appended in base64 or raw, in either byte
+/// Reads a grid, its arrays as text, in base64 or appended in base64 or raw, in either byte
 /// order, uncompressed or compressed by zlib.
 ///
 /// Cells of one type form one block if they agree in every array of whole numbers that has one number per cell and at
 /// most 1000 different numbers; each such array gives the group `array=number`. Pixels and voxels become quadrangles
-/// and hexahedra.
+/// and hexahedra. Voxels of an image are cells if their label is not zero: see [`Image`](super::image::Image).
 ///
 /// # Errors
 /// The file is of another kind, damaged, cut short or compressed by another method than zlib, or has cells without a
@@ -35,7 +37,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
 pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
     let document = Document::read(bytes)?;
     if document.pieces.is_empty() {
-        return Err(Error::expected("UnstructuredGrid", "at least one <Piece>", "none"));
+        return Err(Error::expected(document.kind.name(), "at least one <Piece>", "none"));
     }
     let mut arrays = Arrays { document: &document, size: 0 };
     document.pieces.iter().map(|tag| arrays.piece(tag)).collect()
@@ -50,19 +52,37 @@ struct Arrays<'a> {
 
 impl Arrays<'_> {
     fn piece(&mut self, tag: &PieceTag) -> Result<Piece> {
-        let mut piece = Piece::default();
-        if let Some(array) = needed(tag, Section::Points, None, tag.points)? {
-            let count = tag.points.saturating_mul(3);
-            let coordinates = self.values(array, count, |reader| array.scalar.reals(reader, count))?;
-            piece.points = coordinates.as_chunks().0.to_vec();
+        let mut piece = match (self.document.kind, tag.extent) {
+            (GridKind::Image, Some(extent)) => {
+                let of_cells = self.all_labels(tag, Section::CellData, tag.cells)?;
+                // Labels of points count only if those of cells do not.
+                let of_points = if of_cells.is_empty() {
+                    self.all_labels(tag, Section::PointData, tag.points)?
+                } else {
+                    Vec::new()
+                };
+                let active = tag.active[usize::from(!of_cells.is_empty())].as_deref();
+                return extent.image(&self.document.regular).piece(of_cells, of_points, active);
+            }
+            (GridKind::Rectilinear, Some(extent)) => {
+                let lattice = extent.lattice.limited()?;
+                let axes = self.coordinates(tag, lattice.0)?;
+                lattice.piece(|_| true, false, |at| std::array::from_fn(|k| axes[k][at[k]]))?
+            }
+            (_, Some(extent)) => {
+                let points = self.points(tag)?;
+                Piece { points, ..extent.lattice.piece(|_| true, false, |_| [0.0; 3])? }
+            }
+            _ => Piece { points: self.points(tag)?, ..Piece::default() },
+        };
+        if self.document.kind == GridKind::Unstructured {
+            piece.types = self.whole_numbers(tag, (Section::Cells, "types"), tag.cells, "a cell type")?;
+            let section = Section::Cells;
+            Cells { ends: piece.ends, connectivity: piece.connectivity } = self.cells(tag, section, tag.cells)?;
         }
-        piece.types = self.whole_numbers(tag, "types", tag.cells, "a cell type")?;
-        piece.ends = self.whole_numbers(tag, "offsets", tag.cells, "an offset from 0")?;
-        let nodes = piece.ends.last().copied().unwrap_or(0);
-        piece.connectivity = self.whole_numbers(tag, "connectivity", nodes, "an index from 0")?;
         for array in &tag.arrays {
             match array.section {
-                Section::Points | Section::Cells => {}
+                Section::Points | Section::Cells | Section::Coordinates | Section::Polygons(_) => {}
                 Section::PointData => piece.point_arrays.push(self.data_array(array, tag.points)?),
                 Section::CellData if array.scalar.is_real() => {
                     piece.cell_arrays.push(self.data_array(array, tag.cells)?);
@@ -74,18 +94,65 @@ impl Arrays<'_> {
                 }
             }
         }
+        if self.document.kind == GridKind::Polygonal {
+            let mut kinds: [Cells; 4] = Default::default();
+            for (kind, cells) in kinds.iter_mut().enumerate() {
+                *cells = self.cells(tag, Section::Polygons(kind), tag.polygons[kind])?;
+            }
+            polydata::fill(&mut piece, kinds)?;
+        }
         Ok(piece)
+    }
+
+    fn points(&mut self, tag: &PieceTag) -> Result<Vec<[f64; 3]>> {
+        let Some(array) = needed(tag, Section::Points, None, tag.points)? else { return Ok(Vec::new()) };
+        let count = tag.points.saturating_mul(3);
+        let coordinates = self.values(array, count, |reader| array.scalar.reals(reader, count))?;
+        Ok(coordinates.as_chunks().0.to_vec())
+    }
+
+    /// The nodes of the cells of a section.
+    fn cells(&mut self, tag: &PieceTag, section: Section, count: u64) -> Result<Cells> {
+        let ends: Vec<u64> = self.whole_numbers(tag, (section, "offsets"), count, "an offset from 0")?;
+        let nodes = ends.last().copied().unwrap_or(0);
+        let connectivity = self.whole_numbers(tag, (section, "connectivity"), nodes, "an index from 0")?;
+        Ok(Cells { ends, connectivity })
+    }
+
+    /// The coordinates along each axis, in the order of the arrays.
+    fn coordinates(&mut self, tag: &PieceTag, counts: [usize; 3]) -> Result<[Vec<f64>; 3]> {
+        let arrays: Vec<&ArrayTag> = tag.arrays.iter().filter(|a| a.section == Section::Coordinates).collect();
+        let Ok(arrays) = <[&ArrayTag; 3]>::try_from(arrays) else {
+            let found = tag.arrays.iter().filter(|array| array.section == Section::Coordinates).count();
+            return Err(Error::expected("Coordinates", "an array for each of three axes", found));
+        };
+        let mut axes: [Vec<f64>; 3] = Default::default();
+        for (k, array) in arrays.into_iter().enumerate() {
+            let count = counts[k] as u64;
+            axes[k] = self.values(array, count, |reader| array.scalar.reals(reader, count))?;
+        }
+        Ok(axes)
+    }
+
+    /// The arrays with one whole number for each place of the section.
+    fn all_labels(&mut self, tag: &PieceTag, section: Section, places: u64) -> Result<Vec<Labels>> {
+        let arrays = tag.arrays.iter().filter(|array| array.section == section && !array.scalar.is_real());
+        let mut all = Vec::new();
+        for array in arrays {
+            all.extend(self.labels(array, places)?);
+        }
+        Ok(all)
     }
 
     /// The array of the cells with this name.
     fn whole_numbers<T: TryFrom<i128>>(
         &mut self,
         tag: &PieceTag,
-        name: &str,
+        (section, name): (Section, &str),
         count: u64,
         expected: &str,
     ) -> Result<Vec<T>> {
-        let Some(array) = needed(tag, Section::Cells, Some(name), count)? else { return Ok(Vec::new()) };
+        let Some(array) = needed(tag, section, Some(name), count)? else { return Ok(Vec::new()) };
         let values = self.values(array, count, |reader| array.scalar.whole_numbers(reader, count, expected))?;
         values.ok_or_else(|| {
             let found = format!("{:?}", array.scalar);
@@ -179,7 +246,11 @@ fn needed<'a>(tag: &'a PieceTag, section: Section, name: Option<&str>, count: u6
     let found = tag.arrays.iter().find(is_meant);
     if found.is_none() && count > 0 {
         let expected = name.map_or("an array".to_string(), |name| format!("an array \"{name}\""));
-        return Err(Error::expected(format!("{section:?}"), expected, "none"));
+        let key = match section {
+            Section::Polygons(kind) => KINDS[kind].0.to_string(),
+            other => format!("{other:?}"),
+        };
+        return Err(Error::expected(key, expected, "none"));
     }
     Ok(found)
 }

@@ -1,5 +1,6 @@
 //! The tags of an XML file, and the text between them.
 
+use crate::error::{Error, Result};
 use std::ops::Range;
 
 /// The length of the longest entity that is replaced, `&#x10FFFF;`, without its ampersand.
@@ -74,6 +75,23 @@ impl Tag<'_> {
             rest = &after[end + 1..];
         }
     }
+}
+
+/// An attribute that is a whole number.
+pub(super) fn number(tag: &Tag, name: &str) -> Result<u64> {
+    let value = tag.attribute(name);
+    let number = value.as_deref().unwrap_or_default().trim().parse();
+    number.map_err(|_| Error::expected(name, "a whole number", shown_value(value)))
+}
+
+/// The value of an attribute, for an error.
+pub(super) fn shown_value(value: Option<String>) -> String {
+    value.map_or("none".into(), |value| quoted(&value))
+}
+
+/// The start of a text, in quotes.
+pub(super) fn quoted(value: &str) -> String {
+    format!("\"{}\"", value.chars().take(40).collect::<String>())
 }
 
 fn unescaped(text: &str) -> String {

@@ -1,0 +1,81 @@
+//! Images: voxels at regular distances, of which those with a label other than zero are cells.
+
+use super::lattice::Lattice;
+use super::piece::{Labels, Piece};
+use crate::error::{Error, ErrorKind, Result};
+use std::collections::BTreeSet;
+
+/// The largest number of different labels; images of grey values have more.
+const MOST_LABELS: usize = 1000;
+
+/// A lattice of points in space.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::mesh) struct Image {
+    pub lattice: Lattice,
+    /// The place of the first point.
+    pub origin: [f64; 3],
+    /// The steps to the next point along each axis.
+    pub steps: [[f64; 3]; 3],
+}
+
+impl Image {
+    /// The mesh of the voxels whose label is not zero: one label for each cell, or else for each point, around which a voxel is.
+    ///
+    /// # Errors
+    /// There is no such array, or several and none is named as the one that counts; all labels are zero, or they are grey values.
+    pub fn piece(mut self, of_cells: Vec<Labels>, of_points: Vec<Labels>, active: Option<&str>) -> Result<Piece> {
+        let around_points = of_cells.is_empty();
+        let mut arrays = if around_points { of_points } else { of_cells };
+        let mask = match (&arrays[..], active.and_then(|name| arrays.iter().position(|labels| labels.name == name))) {
+            (_, Some(place)) => place,
+            ([_], None) => 0,
+            (several, None) => {
+                let names: Vec<String> = several.iter().map(|labels| format!("\"{}\"", labels.name)).collect();
+                let found = if names.is_empty() { "none".to_string() } else { names.join(", ") };
+                let expected = "one array of whole numbers of cells or points, whose zeros are background";
+                return Err(Error::expected("image", expected, found).of_kind(ErrorKind::Unsupported));
+            }
+        };
+        let mut places: Vec<f64> = vec![0.0; 3];
+        if around_points {
+            self.lattice = self.lattice.around_points();
+            for k in (0..3).filter(|&k| self.lattice.0[k] > 1) {
+                places[k] = -0.5;
+            }
+        }
+        let labels = &arrays[mask];
+        let count = self.lattice.cell_count();
+        if labels.values.len() != count {
+            return Err(Error::expected(&labels.name, format!("{count} labels"), labels.values.len()));
+        }
+        check(labels)?;
+        let place = |at: [usize; 3]| {
+            std::array::from_fn(|axis| {
+                (0..3).fold(self.origin[axis], |x, k| x + (at[k] as f64 + places[k]) * self.steps[k][axis])
+            })
+        };
+        let mut piece = self.lattice.piece(|cell| labels.values[cell] != 0, true, place)?;
+        let kept: Vec<bool> = labels.values.iter().map(|label| *label != 0).collect();
+        for labels in &mut arrays {
+            let mut kept = kept.iter();
+            labels.values.retain(|_| *kept.next().unwrap_or(&false));
+        }
+        piece.labels = arrays;
+        Ok(piece)
+    }
+}
+
+fn check(labels: &Labels) -> Result<()> {
+    let mut different = BTreeSet::new();
+    for &label in labels.values.iter().filter(|label| **label != 0) {
+        if different.insert(label) && different.len() > MOST_LABELS {
+            let expected = format!("at most {MOST_LABELS} different labels");
+            let error = Error::expected(&labels.name, expected, "more: is it an image of grey values?");
+            return Err(error.of_kind(ErrorKind::Limit));
+        }
+    }
+    match different.is_empty() {
+        true => Err(Error::expected(&labels.name, "a label other than zero, which is background", "zeros alone")),
+        false => Ok(()),
+    }
+}
