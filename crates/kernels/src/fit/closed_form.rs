@@ -8,7 +8,7 @@ use super::normal::Normal;
 use super::weight::{ClosedWeight, Weight};
 use crate::element::{Element, permutations};
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Hooke, Moduli};
+use crate::material::Moduli;
 use crate::scalar::Scalar;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
@@ -138,14 +138,7 @@ impl ClosedForm {
         let by_axis = !is_isotropic(&moduli);
         let classes = classes(element, springs, &x, by_axis);
         let mut plain = Normal::default();
-        normal_equations(
-            ClosedWeight::None,
-            springs,
-            &x,
-            &geometry,
-            &Hooke::Isotropic(any_moduli().of_kind(&x[0])),
-            &mut plain,
-        );
+        normal_equations(ClosedWeight::None, springs, &x, &geometry, &moduli[0].hooke(d, &x[0]), &mut plain);
         let stiffness: Vec<_> = moduli.iter().map(|modulus| modulus.stiffness(&geometry)).collect();
         let norm = quadratic(moduli.len(), |i, j| inner(&stiffness[i], &stiffness[j]));
         let mut exact = self::classes(element, &Springs::exact(element, false, false), &x, by_axis);
@@ -174,8 +167,7 @@ impl ClosedForm {
     /// The constants under this weight.
     ///
     /// # Errors
-    /// The weight has no closed form, such as `relative`, or is modal and the material is orthotropic; or the weight does not determine
-    /// the springs.
+    /// The weight has no closed form, such as `relative`; or the weight does not determine the springs.
     pub fn fit(&self, weight: Weight) -> Result<ClosedFit> {
         let closed = weight.closed(false)?;
         let zero = self.positions[0].zero();
@@ -193,23 +185,12 @@ impl ClosedForm {
             tied.solve_regular().then_some(tied.rhs).ok_or_else(none)
         };
         let solved = match closed {
-            ClosedWeight::Modal(_) if !is_isotropic(&self.moduli) => {
-                let why = "modal weights have closed forms of isotropic materials only";
-                return Err(Error::new(why).of_kind(ErrorKind::Unsupported));
-            }
             ClosedWeight::Modal(_) => {
-                let of_moduli = |moduli: Moduli<BigRational>| {
-                    let hooke = Hooke::Isotropic(moduli.of_kind(&self.positions[0]));
-                    let mut normal = Normal::default();
-                    normal_equations(closed, &self.springs, &self.positions, &self.geometry, &hooke, &mut normal);
-                    solve(&normal)
-                };
-                units().into_iter().map(of_moduli).collect::<Result<Vec<_>>>()?
+                let of_modulus = |modulus: &Modulus| solve(&self.equations(closed, modulus));
+                self.moduli.iter().map(of_modulus).collect::<Result<Vec<_>>>()?
             }
             ClosedWeight::None | ClosedWeight::OffDiagonal => {
-                let mut normal = Normal::default();
-                let any = Hooke::Isotropic(any_moduli().of_kind(&self.positions[0]));
-                normal_equations(closed, &self.springs, &self.positions, &self.geometry, &any, &mut normal);
+                let normal = self.equations(closed, &self.moduli[0]);
                 let of_stiffness = |r: &Vec<Fraction>| {
                     let mut normal = normal.clone();
                     normal.rhs = self.works(r, closed == ClosedWeight::OffDiagonal);
@@ -235,6 +216,14 @@ impl ClosedForm {
         let residual = self.norm.iter().zip(&change).map(|(norm, change)| norm.clone() + change).collect();
         let class = |i: usize| solved.iter().map(|k| k[i].clone()).collect();
         Ok(ClosedFit { weight, constants: (0..self.classes.len()).map(class).collect(), residual })
+    }
+
+    /// The equations of the springs if this modulus is one and the others are zero.
+    fn equations(&self, weight: ClosedWeight, modulus: &Modulus) -> Normal<Fraction> {
+        let hooke = modulus.hooke(self.geometry.dimension, &self.positions[0]);
+        let mut normal = Normal::default();
+        normal_equations(weight, &self.springs, &self.positions, &self.geometry, &hooke, &mut normal);
+        normal
     }
 
     /// `⟨R, g_s g_sᵀ⟩` of every spring, over all blocks or over those of different nodes.
@@ -273,18 +262,6 @@ fn to_f64(value: &BigRational) -> f64 {
 /// Orthotropic materials have one, four or nine moduli.
 fn is_isotropic(moduli: &[Modulus]) -> bool {
     moduli.len() == 2
-}
-
-/// The moduli λ = 1 and μ = 1.
-fn units() -> [Moduli<BigRational>; 2] {
-    let (one, zero) = (BigRational::from_integer(1.into()), BigRational::from_integer(0.into()));
-    [Moduli { lambda: one.clone(), mu: zero.clone() }, Moduli { lambda: zero, mu: one }]
-}
-
-/// The matrix of the normal equations does not depend on the moduli.
-fn any_moduli() -> Moduli<BigRational> {
-    let [lambda, _] = units();
-    lambda
 }
 
 fn inner(a: &[Fraction], b: &[Fraction]) -> Fraction {

@@ -297,7 +297,7 @@ impl<T: Scalar> Acoustic<T> {
     /// That of the direction d, times ‖d‖².
     #[inline(always)]
     fn along<const D: usize>(&self, d: &[T; D]) -> [[T; D]; D] {
-        let mut tensor: [[T; D]; D] = d[0].repeated_rows();
+        let mut tensor: [[T; D]; D] = d[0].zero().repeated_rows();
         for k in 0..D {
             for m in 0..=k {
                 let product = d[k].clone() * &d[m];
