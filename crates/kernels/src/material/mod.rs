@@ -135,7 +135,7 @@ impl Material {
         };
         if !in_range {
             let incompressible = if poisson == 0.5 {
-                " (a solid needs a finite bulk modulus, such as that of 0.4999 with volume = \"patches\" or \"cells\" of exact networks)"
+                "; for a nearly incompressible solid take 0.4999 and exact networks with volume = \"patches\" (triangles, tetrahedra) or \"cells\""
             } else {
                 ""
             };

@@ -28,7 +28,7 @@ impl BodyConstants {
     pub fn material(&self, mesh: &Mesh) -> Result<Material> {
         let material = self.of_dimension(mesh.cell_dimension())?;
         if is_surface(mesh) && self.thickness.is_none() {
-            let expected = "the thickness of the membrane that the surface in space is, such as \"0.5 mm\"";
+            let expected = "the thickness of the membrane, such as \"0.5 mm\", because the mesh is a surface in space; fill makes a solid of a closed one";
             return Err(Error::expected("thickness", expected, "none"));
         }
         Ok(material)

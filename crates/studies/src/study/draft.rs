@@ -2,6 +2,7 @@
 
 use super::extent::extent;
 use crate::mesh::{CellBlock, Filled, Group, Mesh};
+use crate::quantity::Quantity;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -13,7 +14,11 @@ const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "le
 const MOST_HELD: f64 = 0.4;
 /// What the load strains the body by, about.
 const STRAIN: f64 = 0.01;
+/// Pa, if none is given.
 const YOUNG: f64 = 10e3;
+/// A body with fewer points than this share in the lowest layers is rounded: it is held over `DEPTH` of its length.
+const FEW: f64 = 0.05;
+const DEPTH: f64 = 0.12;
 
 /// The material of a first scene, as values of TOML. A value that is `None` is replaced by a default.
 #[derive(Debug, Clone, Default)]
@@ -123,7 +128,7 @@ pub fn draft(
     let names = mesh.blocks.first().map(|block| block.element.springs.iter().map(|group| quoted(&group.name)));
     let names = names.into_iter().flatten().collect::<Vec<_>>().join(", ");
     line(&format!("# springs = [{names}]   # spring groups; those that are not optional if absent\n"));
-    conditions(mesh, longest).iter().for_each(|written| line(written));
+    conditions(mesh, longest, material).iter().for_each(|written| line(written));
     line("\n[output]");
     line("# vtu = true              # springs and displacements for ParaView");
     line("# csv = true              # springs as a table");
@@ -168,7 +173,8 @@ pub fn contents(group: &Group) -> String {
 }
 
 /// The supports and loads.
-fn conditions(mesh: &Mesh, longest: f64) -> Vec<String> {
+fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String> {
+    let young = material.young.as_deref().and_then(|text| Quantity::Pressure.parse(text).ok()).unwrap_or(YOUNG);
     let d = mesh.dimension;
     let none = |why: &str| {
         let example = vec!["0"; d - 1].join(", ");
@@ -209,14 +215,14 @@ fn conditions(mesh: &Mesh, longest: f64) -> Vec<String> {
     lines.push("[[load]]\nname     = \"pull\"".into());
     lines.push(match loaded {
         Some((name, _)) => {
-            let traction = rounded(STRAIN * YOUNG, 1);
+            let traction = rounded(STRAIN * young, 1);
             format!(
                 "group    = {}\ntraction = [{traction}, {zeros}]   # Pa; or force (N), body (N/m^3), displacement (m)",
                 quoted(name)
             )
         }
         None => {
-            let body = rounded(STRAIN * YOUNG / longest, 1);
+            let body = rounded(STRAIN * young / longest, 1);
             format!("body     = [{body}, {zeros}]   # N/m^3; on a part: traction (Pa), force (N), displacement (m)")
         }
     });
@@ -286,7 +292,11 @@ fn lowest(mesh: &Mesh, parts: &[usize]) -> Option<(Vec<usize>, String)> {
         .collect();
     let below = |limit: f64| -> Vec<usize> { (0..places.len()).filter(|&point| places[point] < limit).collect() };
     // What holds the body holds it with more points as well.
-    let place = gaps.partition_point(|limit| !holds(mesh, parts, &below(*limit)));
+    let mut place = gaps.partition_point(|limit| !holds(mesh, parts, &below(*limit)));
+    if (below(*gaps.get(place)?).len() as f64) < FEW * places.len() as f64 {
+        let deep = along[0] + DEPTH * sizes[axis];
+        place = place.max(gaps.partition_point(|limit| *limit < deep));
+    }
     let limit = *gaps.get(place)?;
     let text = rounded(limit, 6);
     let written: f64 = text.parse().ok()?;

@@ -43,7 +43,10 @@ pub fn plan(scene: &Scene, asked: Option<usize>, usual: usize) -> Result<usize> 
         let error = match (room, asked) {
             (Some(room), Some(asked)) => Error::expected(
                 "levels",
-                format!("2 to {room} for this mesh, for there may be {limit}"),
+                match room {
+                    2 => format!("2 for this mesh, because there may be {limit}"),
+                    _ => format!("2 to {room} for this mesh, because there may be {limit}"),
+                },
                 format!("{asked}, about {} unknowns", at_level(asked)),
             ),
             _ => {

@@ -330,7 +330,7 @@ impl Scene {
         let without = |has: fn(&MaterialEntry) -> bool| self.material.all.iter().find(|entry| !has(entry));
         let thickness = without(|entry| entry.thickness.is_some()).is_none().then_some(1.0);
         let area = without(|entry| entry.area.is_some()).is_none().then_some(1.0);
-        assumed(mesh, thickness, area)
+        assumed(mesh, thickness, area).or_else(|| self.mesh.unit_assumption(mesh))
     }
 
     /// Whether the scene gives a density.

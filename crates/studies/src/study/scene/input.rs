@@ -6,9 +6,13 @@ use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, FillMesh, Gate, Mesh, MeshSource};
 use crate::range;
+use crate::study::extent::extent;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+
+/// A longer body of a file is rarely meant, m.
+const LONGEST: f64 = 10.0;
 
 /// The mesh of a scene: a file, a box, a disc or a filled surface.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -126,6 +130,14 @@ fn one() -> f64 {
 }
 
 impl MeshInput {
+    /// A sentence about the unit of a mesh file that is probably not the metre, if there is none in the scene.
+    pub fn unit_assumption(&self, mesh: &Mesh) -> Option<String> {
+        let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+        (self.file.is_some() && self.scale == 1.0 && longest > LONGEST).then(|| {
+            format!("the coordinates of the mesh are taken in metres: the body is {longest:.0} m long; scale = \"mm\" if they are in millimetres")
+        })
+    }
+
     /// Checks the entry.
     ///
     /// # Errors

@@ -6,7 +6,8 @@ use super::record::ExactRecord;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, ExactEnergy, VolumeSprings, fit_exact};
-use crate::material::{Energy, Material};
+use crate::material::{Energy, Material, MaterialMap, State};
+use crate::mesh::{CellBlock, Mesh};
 use crate::model::{Network, fibre_springs_of_regions, patch_springs};
 use crate::positive::{PositiveFit, Route, nearest_positive};
 use crate::springs::Springs;
@@ -63,6 +64,7 @@ impl FitKind for ExactRecipe {
                 .is_some_and(|laws| self.energy.is_some() && !laws.laws().all(|law| is_all_of(&fit.energy, law))),
             patches: patches.len(),
             positive: None,
+            locking: locking(mesh, material),
         };
         network.others.extend(patches);
         network.others.extend(fibres);
@@ -119,4 +121,24 @@ impl CellMethod for ExactRecipe {
         let fit = self.resolve(None)?;
         fit_exact(element, points, cells, material, &fit, &mut |_| {})
     }
+}
+
+/// Poisson's ratio from which on linear cells are noticeably too stiff.
+const LOCKS: f64 = 0.4;
+
+/// The largest Poisson's ratio from 0.4 on of linear cells that integrate changes of volume like all others, and the volume springs
+/// that do not lock there. Plane stress does not lock.
+fn locking(mesh: &Mesh, material: &MaterialMap) -> Option<(f64, VolumeSprings)> {
+    if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
+        return None;
+    }
+    let of_block = |(index, block): (usize, &CellBlock)| {
+        let element = &block.element;
+        let is_linear = element.nodes() == element.cell.corners().len() && element.tabulation.volumetric.is_empty();
+        let ratios = (0..block.cells().len()).filter_map(|cell| Some(material.isotropic(index, cell)?.poisson()));
+        let largest = ratios.fold(0.0, f64::max);
+        let remedy = if element.cell.is_simplex() { VolumeSprings::Patches } else { VolumeSprings::Cells };
+        (is_linear && largest >= LOCKS).then_some((largest, remedy))
+    };
+    mesh.blocks.iter().enumerate().filter_map(of_block).max_by(|a, b| a.0.total_cmp(&b.0))
 }

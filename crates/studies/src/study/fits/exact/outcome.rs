@@ -22,6 +22,8 @@ pub struct ExactOutcome {
     pub patches: usize,
     /// The difference of the nearest network without negative springs, if that was requested.
     pub positive: Option<PositiveOutcome>,
+    /// The largest Poisson's ratio of cells whose finite elements lock, and the volume springs that reduce it.
+    pub locking: Option<(f64, VolumeSprings)>,
 }
 
 impl ExactOutcome {
@@ -49,7 +51,13 @@ impl ExactOutcome {
             )
         });
         let volume = match self.volume {
-            VolumeSprings::Points => None,
+            VolumeSprings::Points => self.locking.map(|(poisson, remedy)| {
+                format!(
+                    "at nu = {poisson} linear cells lock: the finite elements are too stiff, and this network with them; volume = \"{}\" \
+                     reduces it, and `springfit converge` measures it",
+                    remedy.name()
+                )
+            }),
             VolumeSprings::Cells => Some(
                 "one volume spring in each cell: differs from the finite elements, which lock near nu = 0.5".into(),
             ),
