@@ -76,7 +76,7 @@ fn number(text: &str) -> String {
 /// Words without the characters that LaTeX reads as commands, and with those beyond ASCII that it may not know as commands.
 fn escaped(text: &str) -> String {
     let mut safe = String::new();
-    for c in printable(text).chars() {
+    for c in printable(text).replace(">=", "≥").replace("<=", "≤").replace("|R-K|/|R|", "‖").chars() {
         match c {
             '&' | '%' | '$' | '#' | '_' | '{' | '}' => safe.extend(['\\', c]),
             '\\' => safe.push_str("\\textbackslash{}"),
@@ -93,6 +93,8 @@ fn escaped(text: &str) -> String {
             '³' => safe.push_str("$^3$"),
             '…' => safe.push_str("\\dots{}"),
             'µ' => safe.push_str("\\textmu{}"),
+            '‖' => safe.push_str("$\\|R-K\\|/\\|R\\|$"),
+            '≤' => safe.push_str("$\\le$"),
             '≥' => safe.push_str("$\\ge$"),
             _ => safe.push(c),
         }

@@ -53,16 +53,25 @@ function addPrecision(record) {
       };
     });
     const least = points.some((p) => p.error < largest * 10 ** -DECADES) ? floor : Math.min(...points.map((p) => p.error));
-    const span = (values) => { const [a, b] = [Math.log10(Math.min(...values)), Math.log10(Math.max(...values))]; const room = Math.max(0.08 * (b - a), 0.15); return [a - room, b + room]; };
+    const span = (values) => { const [a, b] = [Math.log10(Math.min(...values)), Math.log10(Math.max(...values))]; const room = Math.max(0.08 * (b - a), 0.2); return [a - room, b + room]; };
     return { data, layout: layout({
-      xaxis: { type: "log", title: { text: "time to fit, µs per element" }, range: span(points.map((p) => p.time)), dtick: "D2" },
-      yaxis: { type: "log", title: { text: `e_rms under ${label(loads[chosen])}, %` }, range: span([least, largest]), dtick: largest / least < 100 ? "D2" : 1 },
+      xaxis: { type: "log", title: { text: "time to fit, µs per element" }, range: span(points.map((p) => p.time)), ...ticks(span(points.map((p) => p.time))) },
+      yaxis: { type: "log", title: { text: `e_rms under ${label(loads[chosen])}, %` }, range: span([least, largest]), ...ticks(span([least, largest])) },
       hovermode: "closest",
     }) };
   };
   const load = chooser("precision-load", "Load", loads.map((name, i) => [i, cut(name)]), (value) => { chosen = Number(value); show(); });
   const note = element("p", { class: "hint" }, "An open triangle, with its number: the error is too small for the axis.");
   const show = addChart("precision", "Error against time to fit", draw, [load.field, note]);
+}
+
+// The ticks of a logarithmic axis between two powers of ten, with their whole numbers: at least two.
+function ticks([from, to]) {
+  const digits = to - from < 1 ? [1, 1.5, 2, 3, 4, 5, 7] : to - from < 2 ? [1, 2, 5] : [1];
+  const values = [];
+  for (let power = Math.floor(from); power <= to; power++) for (const digit of digits) values.push(digit * 10 ** power);
+  const inside = values.filter((value) => Math.log10(value) >= from && Math.log10(value) <= to);
+  return { tickvals: inside, ticktext: inside.map((value) => String(Number(value.toPrecision(2)))) };
 }
 
 function addWhole(record) {

@@ -194,9 +194,7 @@ impl Chart {
                             chart.draw_series([TriangleMarker::new(*point, MARK + FINE, color.filled())])?
                         }
                         Mark::Cross => chart.draw_series([Cross::new(*point, MARK, color.stroke_width(THICK))])?,
-                        Mark::Open => {
-                            chart.draw_series([TriangleMarker::new(*point, -MARK - FINE, color.stroke_width(THIN))])?
-                        }
+                        Mark::Open => chart.draw_series([EmptyElement::at(*point) + open(color)])?,
                     };
                 }
             }
@@ -251,7 +249,7 @@ impl Chart {
                 Mark::Ring => area.draw(&Circle::new(at, MARK, color.stroke_width(THICK)))?,
                 Mark::Triangle => area.draw(&TriangleMarker::new(at, MARK + FINE, color.filled()))?,
                 Mark::Cross => area.draw(&Cross::new(at, MARK, color.stroke_width(THICK)))?,
-                Mark::Open => area.draw(&TriangleMarker::new(at, -MARK - FINE, color.stroke_width(THIN)))?,
+                Mark::Open => area.draw(&(EmptyElement::at(at) + open(color)))?,
             }
         }
         area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24 * FINE, top), ("sans-serif", FONT)))?;
@@ -279,6 +277,15 @@ fn mark(i: usize, shape: Shape) -> Mark {
             [Mark::Disc, Mark::Triangle, Mark::Cross, Mark::Ring][(i + i / COLORS.len()) % 4]
         }
     }
+}
+
+/// The outline of a triangle that points down, around the origin. A marker would be filled.
+fn open(color: RGBColor) -> PathElement<(i32, i32)> {
+    let side = MARK + FINE;
+    PathElement::new(
+        vec![(-side, -side / 2), (side, -side / 2), (0, side), (-side, -side / 2)],
+        color.stroke_width(THIN),
+    )
 }
 
 /// Charts one above the other, as one SVG file's text.

@@ -14,9 +14,10 @@ pub fn precision_chart(title: String, error: String, points: &[(String, f64, f64
     let largest = points.iter().map(|(_, _, error)| *error).fold(0.0, f64::max);
     let least = largest * 10f64.powf(-DECADES);
     let shown = points.iter().map(|(_, _, error)| *error).filter(|error| *error >= least).fold(largest, f64::min);
+    let unit = if error.ends_with('%') { " %" } else { "" };
     let series = |(name, seconds, error): &(String, f64, f64)| {
         let is_below = *error < least;
-        let name = if is_below { format!("{name} ({error:.0e})") } else { name.clone() };
+        let name = if is_below { format!("{name} ({error:.0e}{unit})") } else { name.clone() };
         let shape = if is_below { Shape::Below } else { Shape::Marks };
         Series { name, points: vec![(1e6 * seconds, error.max(shown / BELOW))], shape }
     };

@@ -21,7 +21,7 @@ const ALWAYS_ALLOWED: u64 = 1 << 24;
 ///
 /// Cells of one type form one block if they agree in every array of whole numbers that has one number per cell and at
 /// most 1000 different numbers; each such array gives the group `array=number`. Pixels and voxels become quadrangles
-/// and hexahedra. Voxels of an image are cells if their label is not zero: see [`Image`](super::image::Image).
+/// and hexahedra. Voxels of an image are cells if their label is not zero.
 ///
 /// # Errors
 /// The file is of another kind, damaged, cut short or compressed by another method than zlib, or has cells without a
