@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Notebook: into a simulator
+# # Into a simulator
 #
 # A network of springs is useful where a simulator has springs and no finite elements of your kind. Here a soft finger is fitted, exported to
 # MuJoCo, and swings under its weight. It requires `pip install mujoco`.
@@ -117,9 +117,9 @@ for fit, module in modules.items():
     print(f"{fit:10} {rest[fit]:.2f} mm in MuJoCo, {sag['']:.2f} mm with finite elements")
 
 # %% [markdown]
-# In MuJoCo the exact network hangs within 2 % of the finite elements; what remains is their linear theory, because the bar turns by more than a
-# tenth of a radian. The classical network has an error of its own and is more than 2.5 % off. Released at rest, a body without losses swings to
-# twice its sag; the implicit steps of MuJoCo take a little energy, so that the bar swings to at least 1.7 times.
+# In MuJoCo the exact network hangs within 2 % of the finite elements. They are linear, and the tip sags by about a tenth of the length; MuJoCo's
+# energy is that of the network for small deformations. The classical network has an error of its own and is more than 2.5 % off. The bar that
+# is let go swings to between 1.7 times and twice its sag. A body without losses would go on; the implicit steps of MuJoCo take energy.
 
 # %%
 assert abs(rest["exact"] / sag[""] - 1) < 0.02

@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Notebook: sampled nonlinear fitting
+# # Sampled nonlinear fitting
 #
 # At large deformation a spring needs a law of force. Here the laws are chosen as expressions, and their parameters are fitted to the forces of
 # a neo-Hookean cell in many deformed shapes. Then the fit finds a law that leaves no error at all.
@@ -122,7 +122,7 @@ print(table.round(2))
 # The bent bar from the side, as finite elements and as networks
 bar = sf.Mesh.box("tet4", size=[0.1, 0.02, 0.02], cells=[10, 2, 2])
 figure, axes = plt.subplots()
-for (name, u), style in zip(report.displacements["bend"].items(), ("ko", "C0x", "C1+", "C2.")):
+for (name, u), style in zip(report.displacements["bend"].items(), ("ko", "C0x", "C1+")):
     axes.plot(*(bar.points + u)[:, [0, 2]].T, style, ms=5, mfc="none", label=name or "finite elements")
 axes.set(aspect="equal", xlabel="x, m", ylabel="z, m")
 axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
