@@ -1,4 +1,4 @@
-"""The table of the book: all rows of results/*.json.
+"""The tables of the book, one for each load: all rows of results/*.json.
 
     python table.py              print it
     python table.py --write      put it into the page, docs/src/studies/benchmark.md
@@ -17,15 +17,18 @@ def table():
     bodies = sorted({row["body"] for row in rows})
     methods = list(dict.fromkeys(row["method"] for row in rows))
     cells = {(row["method"], row["body"]): row for row in rows}
-    lines = ["| method | " + " | ".join(bodies) + " |", "|---" * (len(bodies) + 1) + "|"]
-    for method in methods:
-        entries = []
-        for body in bodies:
-            row = cells.get((method, body))
-            figures = "–" if row is None else " / ".join(f"{load['e_rms']:.2f}" for load in row["loads"].values())
-            entries.append(figures + (" †" if row is not None and not row["definite"] else ""))
-        lines.append(f"| {method} | " + " | ".join(entries) + " |")
-    return "\n".join(lines) + "\n"
+    parts = []
+    for load in rows[0]["loads"]:
+        lines = [f"| {load} | " + " | ".join(f"`{body}`" for body in bodies) + " |", "|---" * (len(bodies) + 1) + "|"]
+        for method in methods:
+            entries = [entry(cells.get((method, body)), load) for body in bodies]
+            lines.append(f"| {method} | " + " | ".join(entries) + " |")
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
+def entry(row, load):
+    return "–" if row is None else f"{row['loads'][load]['e_rms']:.2f}" + ("" if row["definite"] else " †")
 
 
 def of_page():
