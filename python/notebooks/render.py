@@ -37,7 +37,9 @@ def run(name):
     notebook.cells.insert(0, new_code_cell(STYLE))
     notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
     with tempfile.TemporaryDirectory() as folder:
-        client = NotebookClient(notebook, timeout=120, startup_timeout=60, resources={"metadata": {"path": folder}})
+        # What a cell prints comes in pieces whose number depends on time: they are one.
+        options = {"timeout": 120, "startup_timeout": 60, "coalesce_streams": True}
+        client = NotebookClient(notebook, resources={"metadata": {"path": folder}}, **options)
         kernel = client.create_kernel_manager()
         # Not over the network.
         kernel.transport, kernel.ip = "ipc", str(Path(folder) / "kernel")
