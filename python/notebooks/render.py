@@ -6,6 +6,8 @@ A notebook is a script with cells (`# %%`), which Jupyter opens by Jupytext: rig
 folder. Requires jupytext, nbclient, ipykernel, matplotlib and what the notebook imports.
 """
 import argparse
+import os
+import sys
 import tempfile
 from pathlib import Path
 
@@ -43,7 +45,9 @@ def run(name):
         kernel = client.create_kernel_manager()
         # Not over the network.
         kernel.transport, kernel.ip = "ipc", str(Path(folder) / "kernel")
-        client.execute()
+        # The command is beside the interpreter.
+        search = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+        client.execute(env={**os.environ, "PATH": search})
     return notebook.cells[1:]
 
 
