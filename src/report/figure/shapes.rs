@@ -8,7 +8,7 @@ use super::sheet::{Columns, cut, line, outline, sheet, tenth, words};
 use crate::springs::norm;
 use plotters::style::RGBColor;
 use svg::Document;
-use svg::node::element::{Circle, Path, Rectangle};
+use svg::node::element::{Circle, Mask, Path, Rectangle};
 
 /// Pixels: around a panel, of its caption, and of the key below all panels.
 const MARGIN: f64 = 10.0;
@@ -23,6 +23,8 @@ const STEPS: i32 = 40;
 const LINE: f64 = 15.0;
 /// The longest arrow as a part of the larger side of the picture of the body.
 const ARROW: f64 = 0.14;
+/// Pixels across the lines around a body.
+const OUTLINE: f64 = 0.8;
 const BLACK: RGBColor = RGBColor(0, 0, 0);
 const SOFT: RGBColor = RGBColor(120, 120, 120);
 
@@ -154,7 +156,7 @@ impl Deformation {
         let share = |p: &usize| norm(&self.displacements[0][p * d..][..d]) / largest;
         let color = |face: &[usize]| ramp(face.iter().map(share).sum::<f64>() / face.len() as f64);
         let document = drawn(document, self.surface(scale, body, color));
-        self.outline(document, scale, rest, SOFT, &[3, 2])
+        self.outline(document, scale, rest, ("b-rest", SOFT, &[3, 2]))
     }
 
     fn network(&self, document: Document, scale: &Scale, rest: &[Seen], shapes: &[Vec<Seen>; 2]) -> Document {
@@ -170,16 +172,36 @@ impl Deformation {
             (nearness(ends, points), path.set("stroke", faded(color, fade)))
         };
         let document = drawn(document, self.springs.iter().map(part).collect());
-        let document = self.outline(document, scale, rest, SOFT, &[3, 2]);
-        self.outline(document, scale, &shapes[0], BLACK, &[])
+        let document = self.outline(document, scale, rest, ("c-rest", SOFT, &[3, 2]));
+        self.outline(document, scale, &shapes[0], ("c-body", BLACK, &[]))
     }
 
-    /// The edges around a shape.
-    fn outline(&self, document: Document, scale: &Scale, points: &[Seen], color: RGBColor, dashes: &[i32]) -> Document {
+    /// The edges around a shape, with a name of its own, a colour and dashes. Of a solid the outer half of the lines around it: a mask
+    /// hides those in front of the body, such as those of steps.
+    fn outline(
+        &self,
+        document: Document,
+        scale: &Scale,
+        points: &[Seen],
+        (name, color, dashes): (&str, RGBColor, &[i32]),
+    ) -> Document {
         let edges =
             if self.faces.is_empty() { self.edges.clone() } else { silhouette(&self.faces, points, self.is_solid()) };
-        let data: String = edges.iter().map(|ends| outline(&ends.map(|p| scale.place(points[p].at)))).collect();
-        document.add(line(&[], color, 0.8, dashes).set("d", data))
+        let place = |p: usize| scale.place(points[p].at);
+        let data: String = edges.iter().map(|ends| outline(&ends.map(place))).collect();
+        let path = line(&[], color, OUTLINE, dashes).set("d", data).set("stroke-linecap", "round");
+        if !self.is_solid() {
+            return document.add(path);
+        }
+        let seen = self.faces.iter().filter(|face| turning(face, points) > 0.0);
+        let body: String =
+            seen.map(|face| outline(&face.iter().map(|&p| place(p)).collect::<Vec<_>>()) + "z").collect();
+        let all = Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white");
+        let mask = Mask::new().set("id", name).set("maskUnits", "userSpaceOnUse").set("x", 0).set("y", 0);
+        let mask = mask.set("width", "100%").set("height", "100%").add(all);
+        // The line closes the gaps between faces.
+        let mask = mask.add(Path::new().set("d", body).set("stroke", "black").set("stroke-width", 0.4));
+        document.add(mask).add(path.set("stroke-width", 2.0 * OUTLINE).set("mask", format!("url(#{name})")))
     }
 
     /// The shade of a face in the light, from 0 to 255.
@@ -226,7 +248,7 @@ impl Deformation {
     fn key(&self, document: Document, [left, top]: [f64; 2], width: f64, largest: f64) -> Document {
         let (factor, unit) = prefix(largest);
         let long = (0.26 * width).max(110.0).min(width - left - MARGIN);
-        let number = format!("{}", (largest / factor * 100.0).round() / 100.0);
+        let number = format!("{:.2e}", largest / factor).parse::<f64>().unwrap_or_default().to_string();
         let times = if self.factor == 1.0 { "drawn to scale".into() } else { format!("drawn × {}", self.factor) };
         let error = self.error.map_or(String::new(), |error| format!("(c) e_rms {error:.2} %"));
         // Beside the bar, or below it.
@@ -248,9 +270,9 @@ impl Deformation {
         let surface = if self.is_surface_only { "springs of the surface" } else { "springs" };
         let negative = self.springs.iter().any(|(_, is_negative)| *is_negative);
         let mut entries: Vec<(&str, RGBColor, f64, &[i32])> =
-            vec![(surface, COLORS[0], 1.2, &[]), ("k < 0", COLORS[4], 1.2, &[2, 2])];
+            vec![(surface, COLORS[0], 0.6, &[]), ("k < 0", COLORS[4], 1.2, &[2, 2])];
         entries.truncate(if negative { 2 } else { 1 });
-        entries.push(("finite elements", BLACK, 0.8, &[]));
+        entries.push(("finite elements", BLACK, 1.6 * OUTLINE, &[]));
         entries.push(("at rest", SOFT, 0.8, &[3, 2]));
         let first = if is_wide { left + long.max(190.0) + 22.0 } else { left };
         let begin = if is_wide { top + 10.0 } else { top + 70.0 };
