@@ -18,7 +18,7 @@ BODIES = {
     "cantilever, nu 0.3": ("bar", 0.3, 0.45, 0.13),
     "cantilever, nu 0.49": ("bar", 0.49, 0.45, 0.13),
     "block with a hole, nu 0.3": ("hole", 0.3, 0.4, 0.12),
-    "organ-like, nu 0.45": ("organ", 0.45, 0.4, 0.13),
+    "organ-like, nu 0.45": ("organ", 0.45, 0.3, 0.1),
 }
 SCENE = """
 [mesh]

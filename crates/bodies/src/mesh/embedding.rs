@@ -23,10 +23,10 @@ pub struct Embedding {
 }
 
 /// The largest distance of a point from the centre of its cell, as a multiple of that of the border in its direction. Meshes of one
-/// curved body differ near its surface.
-const FARTHEST: f64 = 1.6;
+/// curved body differ near its surface, most of all at sharp rims, where cells are thin.
+const FARTHEST: f64 = 3.0;
 /// The multiples that are tried.
-const MULTIPLES: [f64; 6] = [1.0 + 1e-8, 1.02, 1.08, 1.2, 1.4, FARTHEST];
+const MULTIPLES: [f64; 9] = [1.0 + 1e-8, 1.02, 1.08, 1.2, 1.4, 1.6, 2.0, 2.5, FARTHEST];
 const ITERATIONS: usize = 30;
 
 impl Embedding {
