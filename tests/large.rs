@@ -100,7 +100,7 @@ fn a_scene_without_a_law_leaves_large_deformation_out() {
     );
 }
 
-/// A load beyond what a model carries is no error: how far it came is told.
+/// A load that a model cannot carry is not an error: the share of it that was reached is reported.
 #[test]
 fn a_load_that_is_not_reached_is_told() {
     let (_folder, scene) = bar("[[fit]]\nobjective = \"frobenius\"\n[newton]\niterations = 1", &[]);

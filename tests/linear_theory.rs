@@ -68,7 +68,7 @@ fn strains_and_rotations_are_those_of_the_gradient() {
     assert!(found.strain < 1e-12 && (found.rotation - 0.2).abs() < 1e-12, "{found:?}");
 }
 
-/// A linear answer grows with the load; what is beyond the theory is told in a note and in the report, with its figure.
+/// A linear answer grows with the load; a load outside the range of the theory has a note and a figure in the report.
 #[test]
 fn results_beyond_the_linear_theory_are_told() {
     let bent = |traction: f64| {
@@ -146,7 +146,7 @@ displacement = ["free", 0.01]
     }
 }
 
-/// Springs turn, linear finite elements do not: the error of a network that is exact is all theirs, and this is told with both figures.
+/// Springs turn, linear finite elements do not: the whole error of an exact network comes from the linear theory, and a note says so with both figures.
 #[test]
 fn turning_springs_beside_a_linear_body_are_told() {
     let swung = |gravity: f64, keys: &str| {

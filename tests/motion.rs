@@ -449,7 +449,7 @@ fn a_force_may_end_with_the_motion() {
     assert!(outcome(&text).motion.unwrap().models.iter().all(|model| model.ending == MotionEnding::Complete));
 }
 
-/// A network of negative springs is told with how fast it runs away; a linear step too long for that is not begun, and the others are.
+/// A network with negative springs is reported with its rate of growth. A motion whose linear step is too long for it is not begun, and the others are.
 #[test]
 fn an_indefinite_network_is_told() {
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cylinder_hex.msh");

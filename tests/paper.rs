@@ -132,7 +132,7 @@ const TRIANGLES: &str = "[mesh]\nbox = { element = \"tri3\", size = [1, 1], cell
                          poisson = 0.3\n[[fit]]\nobjective = \"lloyd\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\n\
                          group = \"xmax\"\ntraction = [1, 0]\n";
 
-/// A published method is an objective; what it takes for granted and does not find is told.
+/// A published method is an objective; an assumption of it that a mesh does not meet is reported.
 #[test]
 fn published_methods_tell_what_they_take_for_granted() {
     let (_folder, path) = written(TRIANGLES);

@@ -113,7 +113,7 @@ def assemble(network):
         columns.append(np.tile(freedoms, (1, freedoms.shape[1])).ravel())
         values.append(block.ravel())
     if not values:
-        raise Fault("springs: there is none")
+        raise Fault("springs: expected at least one, found none")
     size = x.size
     return coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (size, size)).tocsc(), forces
 
@@ -127,7 +127,7 @@ def score(body, network):
     extent = np.ptp(points, axis=0).max()
     far = np.flatnonzero(distance > SAME_PLACE * extent)
     if len(far):
-        raise Fault(f"points: none is at {points[far[0]].tolist()} m, and {len(far)} points of the body are missing in all")
+        raise Fault(f"points: expected every point of the body, found {len(far)} missing, the first at {points[far[0]].tolist()} m")
     stiffness, at_rest = assemble(network)
     free = np.ones(x.shape, bool)
     free[place[body["held"]]] = False

@@ -9,7 +9,7 @@ from typing import Any
 
 @contextmanager
 def listener(progress: "bool | Callable[[str, int, int], Any]"):
-    """What is told of each step: nothing, the caller's function, or a bar of ``tqdm``; without that, nothing."""
+    """What reports each step: nothing, the caller's function, or a bar of ``tqdm``; without that, nothing."""
     if callable(progress):
         yield progress
         return

@@ -1,4 +1,4 @@
-"""Does a simulator have the modulus that it is told? Standard bodies at rest in it, beside finite elements.
+"""The modulus that a simulator shows, against the modulus in its input. Standard bodies at rest in it, beside finite elements.
 
     python referee/engines/run.py --engine mujoco --engine newton [--springfit PROGRAM] [--out FOLDER]
 

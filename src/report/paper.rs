@@ -151,7 +151,7 @@ fn cells(table: &PaperTable) -> (Vec<Heading>, Vec<Vec<String>>) {
     (header, rows)
 }
 
-/// What is told under a table: the best of both, why figures differ, and its note.
+/// The lines below a table: the best of both, why figures differ, and its note.
 fn remarks(table: &PaperTable) -> Vec<String> {
     let mut lines = Vec::new();
     let errors = |values: &[Option<f64>]| {

@@ -1,6 +1,7 @@
 //! A body seen from a direction, in parallel projection.
 
 use crate::mesh::Mesh;
+use crate::springs::cross;
 use std::collections::HashMap;
 
 /// Degrees above the horizon, and around the vertical from the axis that lies across the view.
@@ -77,8 +78,4 @@ pub fn silhouette(faces: &[Vec<usize>], points: &[Seen], is_solid: bool) -> Vec<
     let mut edges: Vec<[usize; 2]> = sides.into_iter().filter(|(_, count)| is_edge(*count)).map(|(e, _)| e).collect();
     edges.sort_unstable();
     edges
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -5,7 +5,7 @@ use super::camera::{Camera, Seen, nearness, silhouette, turning};
 use super::deformation::Deformation;
 use super::palette::{COLORS, faded, ramp};
 use super::sheet::{Columns, cut, line, outline, sheet, tenth, words};
-use crate::springs::norm;
+use crate::springs::{cross, dot, norm};
 use plotters::style::RGBColor;
 use svg::Document;
 use svg::node::element::{Circle, Mask, Path, Rectangle};
@@ -212,10 +212,9 @@ impl Deformation {
         let at = |i: usize| [points[face[i]].at[0], points[face[i]].at[1], points[face[i]].near];
         let from = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let (a, b) = (from(at(0), at(1)), from(at(0), at(2)));
-        let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let normal = cross(a, b);
         let light = [-0.3, 0.75, 0.6];
-        let inner = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let cosine = inner(normal, light) / (inner(normal, normal).sqrt() * inner(light, light).sqrt()).max(1e-300);
+        let cosine = dot(&normal, &light) / (norm(&normal) * norm(&light)).max(1e-300);
         (190.0 + 60.0 * cosine.clamp(-0.5, 1.0)) as u8
     }
 

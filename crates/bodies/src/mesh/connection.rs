@@ -1,23 +1,20 @@
 //! The connected parts of a mesh: those that share no node with each other.
 
+use super::disjoint::DisjointSets;
 use super::mesh::Mesh;
 
 impl Mesh {
     /// The points of each connected part, ascending; the parts are in the order of their first points. Two cells are
     /// connected if they share a node: different nodes at one position do not connect cells.
     pub fn pieces(&self) -> Vec<Vec<usize>> {
-        let mut parent: Vec<usize> = (0..self.point_count()).collect();
+        let mut sets = DisjointSets::new(self.point_count());
         for nodes in self.blocks.iter().flat_map(|block| block.cells()) {
-            let first = root(&mut parent, nodes[0]);
-            for &node in &nodes[1..] {
-                let other = root(&mut parent, node);
-                parent[other] = first;
-            }
+            nodes[1..].iter().for_each(|&node| sets.join(node, nodes[0]));
         }
-        let mut piece_of_root = vec![usize::MAX; parent.len()];
+        let mut piece_of_root = vec![usize::MAX; self.point_count()];
         let mut pieces: Vec<Vec<usize>> = Vec::new();
-        for point in 0..parent.len() {
-            let piece = &mut piece_of_root[root(&mut parent, point)];
+        for point in 0..self.point_count() {
+            let piece = &mut piece_of_root[sets.root(point)];
             if *piece == usize::MAX {
                 *piece = pieces.len();
                 pieces.push(Vec::new());
@@ -26,13 +23,4 @@ impl Mesh {
         }
         pieces
     }
-}
-
-/// The point that represents the part of `point`; paths to it are halved on the way.
-fn root(parent: &mut [usize], mut point: usize) -> usize {
-    while parent[point] != point {
-        parent[point] = parent[parent[point]];
-        point = parent[point];
-    }
-    point
 }

@@ -47,6 +47,17 @@ impl<'a> Lines<'a> {
         Some((line.strip_suffix(b"\r").unwrap_or(line), self.rest.get(end + 1..).unwrap_or_default()))
     }
 
+    /// The words before a comment in the next line that has any; `None` at the end of the file.
+    pub fn next_words(&mut self) -> Option<Vec<&'a [u8]>> {
+        while let Some(line) = self.next() {
+            let found: Vec<&[u8]> = words(before_comment(line)).collect();
+            if !found.is_empty() {
+                return Some(found);
+            }
+        }
+        None
+    }
+
     /// A fault of the last line.
     pub fn fault(&self, problem: impl Into<String>) -> Error {
         let error = if self.section.is_empty() { Error::new(problem) } else { Error::at(&self.section, problem) };
@@ -78,6 +89,16 @@ impl<'a> Lines<'a> {
     pub fn real(&self, field: &[u8], what: &str) -> Result<f64> {
         real(field).ok_or_else(|| self.expected(what, &quoted(field)))
     }
+}
+
+/// The words of a line, between blanks.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+/// The part of a line before a comment such as `# …`.
+pub(super) fn before_comment(line: &[u8]) -> &[u8] {
+    &line[..line.iter().position(|&b| b == b'#').unwrap_or(line.len())]
 }
 
 /// A whole number of at least zero.

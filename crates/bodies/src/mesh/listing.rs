@@ -90,9 +90,8 @@ impl Listing {
         for i in 0..self.cells.len() {
             for &number in &self.cells.nodes[self.cells.range(i)] {
                 let Some(node) = nodes.index(number) else {
-                    let problem = format!("names node {number}, which the file lacks");
-                    let error = Error::at(format!("{cell} {}", self.cells.numbers[i]), problem);
-                    return Err(error.of_kind(ErrorKind::Syntax).on_line(self.cells.lines[i]));
+                    let key = format!("{cell} {}", self.cells.numbers[i]);
+                    return Err(missing(key, self.cells.lines[i], "node", number));
                 };
                 connectivity.push(node);
             }
@@ -189,25 +188,18 @@ impl Resolved {
             }
             gather.list(&key).extend_from_slice(self.cell_nodes(cell));
         }
-        let block = |cell_type: CellType, connectivity: Vec<usize>, groups: Vec<String>| SourceBlock {
-            dimension: cell_type.dimension(),
-            cell_type: cell_type.0.into(),
-            nodes_per_cell: cell_type.nodes(),
-            connectivity,
-            groups,
-        };
         let mut blocks: Vec<SourceBlock> =
-            gather.into_lists().map(|((cell_type, groups), list)| block(cell_type, list, named(&groups))).collect();
+            gather.into_lists().map(|((cell_type, groups), list)| cell_type.block(list, named(&groups))).collect();
         nodes.sort_unstable();
         nodes.dedup();
         for members in nodes.chunk_by(|a, b| a.0 == b.0) {
             let list = members.iter().map(|(_, node)| *node as usize).collect();
-            blocks.push(block(CellType::POINT, list, named(&[members[0].0])));
+            blocks.push(CellType::POINT.block(list, named(&[members[0].0])));
         }
         sides.sort_unstable_by_key(|(group, cell_type, _)| (*group, cell_type.0));
         for members in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             let list = members.iter().flat_map(|(.., nodes)| nodes).copied().collect();
-            blocks.push(block(members[0].1, list, named(&[members[0].0])));
+            blocks.push(members[0].1.block(list, named(&[members[0].0])));
         }
         MeshSource {
             format: Format::Vtk,
@@ -217,4 +209,9 @@ impl Resolved {
             blocks,
         }
     }
+}
+
+/// The error for a line that names a node or a cell that is not there.
+pub(super) fn missing(key: String, line: usize, what: &str, number: u64) -> Error {
+    Error::at(key, format!("names {what} {number}, which the file lacks")).of_kind(ErrorKind::Syntax).on_line(line)
 }

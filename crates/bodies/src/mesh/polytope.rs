@@ -1,5 +1,7 @@
 //! The cell types of VTK that the readers of numbered formats make: their faces and the middles of their edges.
 
+use super::source::SourceBlock;
+
 /// A type of cell by its number in VTK.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct CellType(pub u8);
@@ -41,6 +43,17 @@ impl CellType {
             CellType::PYRAMID5 => (3, 5, 5),
             CellType::PYRAMID13 => (3, 5, 13),
             _ => (0, 1, 1),
+        }
+    }
+
+    /// Cells of this type that belong to these groups.
+    pub fn block(self, connectivity: Vec<usize>, groups: Vec<String>) -> SourceBlock {
+        SourceBlock {
+            dimension: self.dimension(),
+            cell_type: self.0.into(),
+            nodes_per_cell: self.nodes(),
+            connectivity,
+            groups,
         }
     }
 

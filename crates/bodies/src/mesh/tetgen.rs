@@ -49,7 +49,7 @@ impl<'a> Table<'a> {
     fn new(name: &str, bytes: &'a [u8]) -> Result<Table<'a>> {
         let mut lines = Lines::new(bytes);
         lines.enter(name);
-        let Some(words) = next(&mut lines) else { return Err(lines.ends()) };
+        let Some(words) = lines.next_words() else { return Err(lines.ends()) };
         let counts: Result<Vec<u64>> = words.iter().map(|word| lines.whole(word, "a count")).collect();
         let counts = counts?;
         Ok(Table { lines, counts })
@@ -64,7 +64,7 @@ impl<'a> Table<'a> {
     fn read(&mut self, what: &str, mut each: impl FnMut(&Lines, &[&[u8]]) -> Result<()>) -> Result<()> {
         let count = self.count(0);
         for found in 0..count {
-            let Some(words) = next(&mut self.lines) else {
+            let Some(words) = self.lines.next_words() else {
                 let error = self.lines.ends();
                 return Err(error.followed_by(format!(": expected {count} {what}, found {found}")));
             };
@@ -72,18 +72,6 @@ impl<'a> Table<'a> {
         }
         Ok(())
     }
-}
-
-/// The words of the next line that is neither empty nor a comment.
-fn next<'a>(lines: &mut Lines<'a>) -> Option<Vec<&'a [u8]>> {
-    while let Some(line) = lines.next() {
-        let line = &line[..line.iter().position(|&b| b == b'#').unwrap_or(line.len())];
-        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
-        if !words.is_empty() {
-            return Some(words);
-        }
-    }
-    None
 }
 
 /// Reads the points, and returns their marks.

@@ -5,7 +5,7 @@
 use crate::material::CellMap;
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
-use crate::springs::{distance, dot, norm, unit};
+use crate::springs::{cross, distance, dot, norm, unit};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -55,7 +55,7 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: impl Into<CellMap<f
     }
     if d == 3 {
         let twist = |x: &[f64], n: &[f64]| {
-            let around = cross(&frame.axis, &frame.away(x));
+            let around = cross(three(&frame.axis), three(&frame.away(x)));
             let (along, turned) = (dot(&frame.axis, n), dot(&around, n));
             around.iter().zip(&frame.axis).map(|(t, a)| t * along + a * turned).collect()
         };
@@ -193,7 +193,7 @@ impl Frame {
         let first: Vec<f64> = (0..d).map(|k| f64::from(u8::from(k == farthest)) - axis[farthest] * axis[k]).collect();
         let mut across = vec![unit(&first)];
         if d == 3 {
-            across.push(cross(&axis, &across[0]));
+            across.push(cross(three(&axis), three(&across[0])).to_vec());
         }
         Frame { middle, size, axis, across }
     }
@@ -203,6 +203,7 @@ impl Frame {
     }
 }
 
-fn cross(a: &[f64], b: &[f64]) -> Vec<f64> {
-    (0..3).map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]).collect()
+/// The three entries of a vector of space.
+fn three(v: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|k| v[k])
 }

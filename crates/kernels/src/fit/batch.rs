@@ -125,8 +125,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
     }
 
-    /// Writes the constants of the given cells, at most one per lane, of which the first has the number `first`. Returns false, with nothing written, if the
-    /// Jacobian of a cell is not safely positive or its equations are not regular.
+    /// Writes the constants of the given cells, at most one per lane; the first has the number `first`. Returns false, with
+    /// nothing written, if the Jacobian of a cell is not safely positive or its equations are not regular.
     fn fit(&mut self, first: usize, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
         self.hooke.set(first, nodes.len() / self.element.nodes());
         if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {

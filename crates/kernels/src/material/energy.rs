@@ -181,8 +181,8 @@ impl Energy {
     /// The same energy of another material, with other values of some parameters, and with fibres in another direction.
     ///
     /// # Errors
-    /// The energy has no such parameter, a value is not finite, it has no fibres or the direction is none, or with these numbers it is not
-    /// free of stress at rest.
+    /// The energy has no such parameter, a value is not finite, it has no fibres or their direction is zero, or the body is
+    /// not free of stress at rest with these values.
     pub fn of(&self, material: Material, parameters: &[(&str, f64)], fibre: Option<[f64; 3]>) -> Result<Energy> {
         let mut constants = self.constants.clone();
         constants[..MODULI.len()].copy_from_slice(&moduli_of(material));

@@ -1,7 +1,7 @@
 //! The content (length, area or volume) of a cell at given positions, by its quadrature `Σ_q w_q |J_q|`: whole, or of
 //! single points.
 
-use super::vector::{dot, norm};
+use super::vector::{cross, dot, norm};
 use crate::element::Tabulation;
 use crate::symbolic::Jet;
 use std::ops::Range;
@@ -181,10 +181,6 @@ fn scaled(a: [f64; 3], factor: f64) -> [f64; 3] {
 
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k] + b[k])
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 /// `a · (b × c)`.

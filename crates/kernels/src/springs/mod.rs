@@ -15,7 +15,7 @@ pub use content::Content;
 pub use law::{Force, Law, LawRoom};
 pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
-pub use vector::{distance, dot, norm, unit};
+pub use vector::{cross, distance, dot, norm, unit};
 
 use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};

@@ -3,7 +3,6 @@
 use super::extent::extent;
 use crate::mesh::{CellBlock, Filled, Group, Mesh};
 use crate::quantity::Quantity;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Groups that are listed at most.
@@ -14,7 +13,7 @@ const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "le
 const MOST_HELD: f64 = 0.4;
 /// What the load strains the body by, about.
 const STRAIN: f64 = 0.01;
-/// Pa, if none is given.
+/// The modulus of a draft without one, Pa.
 const YOUNG: f64 = 10e3;
 /// A body with fewer points than this share in the lowest layers is rounded: it is held over `DEPTH` of its length.
 const FEW: f64 = 0.05;
@@ -191,8 +190,8 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
             "A surface or curve in space bends freely: it is solved with a [motion], or with a law and enough supports.",
         );
     }
-    let parts = parts(mesh);
-    let held_by = |group: &&String| holds(mesh, &parts, &mesh.groups[*group].points);
+    let pieces = mesh.pieces();
+    let held_by = |group: &&String| holds(mesh, &pieces, &mesh.groups[*group].points);
     let is_likely = |group: &&String| HELD.iter().any(|word| group.to_lowercase().contains(word));
     let able: Vec<&String> = mesh.groups.keys().filter(held_by).collect();
     // A group such as the whole surface leaves little to move.
@@ -202,7 +201,7 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
     let mut lines = Vec::new();
     let (held, fix) = match group {
         Some(group) => (mesh.groups[group].points.clone(), format!("group = {}", quoted(group))),
-        None => match lowest(mesh, &parts) {
+        None => match lowest(mesh, &pieces) {
             Some((points, condition)) => (points, format!("where = {}", quoted(&condition))),
             None => return none("Too few points are left free to load the body when it is held."),
         },
@@ -229,35 +228,12 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
     lines
 }
 
-/// The part of the body that each point belongs to: parts have no point in common.
-fn parts(mesh: &Mesh) -> Vec<usize> {
-    let mut parent: Vec<usize> = (0..mesh.point_count()).collect();
-    fn root(parent: &mut [usize], mut point: usize) -> usize {
-        while parent[point] != point {
-            parent[point] = parent[parent[point]];
-            point = parent[point];
-        }
-        point
-    }
-    for nodes in mesh.blocks.iter().flat_map(|block| block.cells()) {
-        let first = root(&mut parent, nodes[0]);
-        for &node in &nodes[1..] {
-            let other = root(&mut parent, node);
-            parent[other] = first;
-        }
-    }
-    (0..parent.len()).map(|point| root(&mut parent, point)).collect()
-}
-
-/// Whether no part of the body can move if these points are held, and some point is free.
-fn holds(mesh: &Mesh, parts: &[usize], points: &[usize]) -> bool {
-    let mut held: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    points.iter().for_each(|&point| held.entry(parts[point]).or_default().push(point));
-    let is_root = |point: &usize| parts[*point] == *point;
-    points.len() < mesh.point_count()
-        && (0..mesh.point_count())
-            .filter(is_root)
-            .all(|part| held.get(&part).is_some_and(|points| is_rigid(mesh, points)))
+/// Whether no piece of the body can move if these points are held, and some point is free.
+fn holds(mesh: &Mesh, pieces: &[Vec<usize>], points: &[usize]) -> bool {
+    let mut is_held = vec![false; mesh.point_count()];
+    points.iter().for_each(|&point| is_held[point] = true);
+    let held = |piece: &Vec<usize>| piece.iter().copied().filter(|&point| is_held[point]).collect::<Vec<_>>();
+    points.len() < mesh.point_count() && pieces.iter().all(|piece| is_rigid(mesh, &held(piece)))
 }
 
 /// Whether the points span a line in the plane, and a plane in space: a body that is held there cannot turn.
@@ -279,7 +255,7 @@ fn is_rigid(mesh: &Mesh, points: &[usize]) -> bool {
 }
 
 /// The points that lie lowest along the longest axis, as few layers as hold the body, and the condition that selects them.
-fn lowest(mesh: &Mesh, parts: &[usize]) -> Option<(Vec<usize>, String)> {
+fn lowest(mesh: &Mesh, pieces: &[Vec<usize>]) -> Option<(Vec<usize>, String)> {
     let sizes = extent(mesh);
     let axis = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
     let mut along: Vec<f64> = (0..mesh.point_count()).map(|point| mesh.point(point)[axis]).collect();
@@ -292,7 +268,7 @@ fn lowest(mesh: &Mesh, parts: &[usize]) -> Option<(Vec<usize>, String)> {
         .collect();
     let below = |limit: f64| -> Vec<usize> { (0..places.len()).filter(|&point| places[point] < limit).collect() };
     // What holds the body holds it with more points as well.
-    let mut place = gaps.partition_point(|limit| !holds(mesh, parts, &below(*limit)));
+    let mut place = gaps.partition_point(|limit| !holds(mesh, pieces, &below(*limit)));
     if (below(*gaps.get(place)?).len() as f64) < FEW * places.len() as f64 {
         let deep = along[0] + DEPTH * sizes[axis];
         place = place.max(gaps.partition_point(|limit| *limit < deep));

@@ -171,16 +171,8 @@ impl Deck {
     }
 
     fn element_set(&self, lines: &Lines, name: &str) -> Result<usize> {
-        let known = self.element_sets.find(self.local(name));
+        let known = self.element_sets.find(local(name, self.instance.as_deref()));
         known.ok_or_else(|| lines.expected("a set of elements that is listed before", &format!("\"{name}\"")))
-    }
-
-    /// A name without that of the instance before it.
-    fn local<'n>(&self, name: &'n str) -> &'n str {
-        match (name.split_once('.'), &self.instance) {
-            (Some((instance, rest)), Some(known)) if instance.eq_ignore_ascii_case(known) => rest,
-            _ => name,
-        }
     }
 
     fn read(&mut self, lines: &Lines, line: &[u8]) -> Result<()> {
@@ -274,7 +266,7 @@ impl Deck {
         let target = fields.next().unwrap_or_default();
         let label = fields.next().unwrap_or_default().to_ascii_uppercase();
         let text = String::from_utf8_lossy(target);
-        let name = self.local(text.trim_matches('"'));
+        let name = local(text.trim_matches('"'), self.instance.as_deref());
         let number = whole(name.as_bytes());
         let on = match (number, of_nodes) {
             (Some(number), true) => On::Node(number),
@@ -338,6 +330,14 @@ impl Deck {
     }
 }
 
+/// A name without that of the instance before it.
+fn local<'n>(name: &'n str, instance: Option<&str>) -> &'n str {
+    match (name.split_once('.'), instance) {
+        (Some((before, rest)), Some(known)) if before.eq_ignore_ascii_case(known) => rest,
+        _ => name,
+    }
+}
+
 /// Reads a line of a set: numbers, names of sets before it, or ranges.
 fn read_set(
     lines: &Lines,
@@ -371,12 +371,8 @@ fn read_set(
             continue;
         }
         let text = String::from_utf8_lossy(field);
-        let name = text.trim_matches('"');
-        let local = match (name.split_once('.'), instance) {
-            (Some((before, rest)), Some(known)) if before.eq_ignore_ascii_case(known) => rest,
-            _ => name,
-        };
-        match (whole(local.as_bytes()), sets.find(local)) {
+        let name = local(text.trim_matches('"'), instance);
+        match (whole(name.as_bytes()), sets.find(name)) {
             (Some(number), _) => sets.sets[set].numbers.push(number),
             (None, Some(other)) if other < set => sets.sets[set].sets.push(other),
             (None, Some(other)) if other == set => {}

@@ -1,6 +1,7 @@
 //! Where an instance puts its part.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::springs::{cross, dot, norm};
 
 /// Moves the points by the data lines of an instance: a translation, then two points of an axis and an angle in degrees,
 /// by which the translated part is turned (Rodrigues).
@@ -23,7 +24,7 @@ pub(super) fn place(points: &mut [[f64; 3]], lines: &[Vec<f64>]) -> Result<()> {
     let Some(turn) = turn else { return Ok(()) };
     let &[ax, ay, az, bx, by, bz, angle] = &turn[..] else { return Err(wrong()) };
     let axis = [bx - ax, by - ay, bz - az];
-    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let length = norm(&axis);
     if !(length > 0.0) {
         return Err(wrong());
     }
@@ -31,10 +32,9 @@ pub(super) fn place(points: &mut [[f64; 3]], lines: &[Vec<f64>]) -> Result<()> {
     let (sine, cosine) = angle.to_radians().sin_cos();
     for p in points {
         let v = [p[0] - ax, p[1] - ay, p[2] - az];
-        let along = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let (along, turned) = (dot(&u, &v), cross(u, v));
         let origin = [ax, ay, az];
-        *p = std::array::from_fn(|k| origin[k] + v[k] * cosine + cross[k] * sine + u[k] * along * (1.0 - cosine));
+        *p = std::array::from_fn(|k| origin[k] + v[k] * cosine + turned[k] * sine + u[k] * along * (1.0 - cosine));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::indices::Indices;
-use crate::mesh::listing::Resolved;
+use crate::mesh::listing::{Resolved, missing};
 use std::collections::{HashMap, HashSet};
 
 /// Sets of one kind by name.
@@ -62,11 +62,7 @@ impl Sets {
                 match places.index(number) {
                     Some(place) => list.push(place),
                     None if left_out.contains(&number) => {}
-                    None => {
-                        let problem = format!("names {what} {number}, which the file lacks");
-                        let key = format!("set \"{}\"", set.name);
-                        return Err(Error::at(key, problem).of_kind(ErrorKind::Syntax).on_line(set.line));
-                    }
+                    None => return Err(missing(format!("set \"{}\"", set.name), set.line, what, number)),
                 }
             }
             for &range in &set.ranges {
@@ -138,10 +134,7 @@ pub(super) fn add_surfaces(
     let outer = if surfaces.iter().any(is_outer) { resolved.outer_sides() } else { HashSet::new() };
     for (name, line, patches) in surfaces {
         let group = resolved.group(name);
-        let missing = |what: &str, number: u64| {
-            let problem = format!("names {what} {number}, which the file lacks");
-            Error::at(format!("surface \"{name}\""), problem).of_kind(ErrorKind::Syntax).on_line(*line)
-        };
+        let missing = |what: &str, number: u64| missing(format!("surface \"{name}\""), *line, what, number);
         for patch in patches {
             let one;
             let cells: &[usize] = match &patch.on {

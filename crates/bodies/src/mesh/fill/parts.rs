@@ -1,11 +1,12 @@
 //! Parts of a lattice whose cells are joined by faces.
 
+use crate::mesh::disjoint::DisjointSets;
 use std::collections::HashMap;
 
 /// Which cells to keep: of the parts that are joined by faces, those that share a corner with a larger kept part are left out,
 /// because they would turn about it freely. `cells` are the corners of each cell, and `faces` their places in a cell.
 pub(super) fn kept(cells: &[Vec<usize>], faces: &[&[usize]]) -> Vec<bool> {
-    let mut parent: Vec<usize> = (0..cells.len()).collect();
+    let mut parts = DisjointSets::new(cells.len());
     let mut first: HashMap<Vec<usize>, usize> = HashMap::new();
     for (index, corners) in cells.iter().enumerate() {
         for face in faces {
@@ -13,14 +14,13 @@ pub(super) fn kept(cells: &[Vec<usize>], faces: &[&[usize]]) -> Vec<bool> {
             key.sort_unstable();
             // A face has two cells at most.
             if let Some(other) = first.remove(&key) {
-                let (a, b) = (root(&mut parent, index), root(&mut parent, other));
-                parent[a] = b;
+                parts.join(index, other);
             } else {
                 first.insert(key, index);
             }
         }
     }
-    let roots: Vec<usize> = (0..cells.len()).map(|cell| root(&mut parent, cell)).collect();
+    let roots: Vec<usize> = (0..cells.len()).map(|cell| parts.root(cell)).collect();
     let mut sizes: HashMap<usize, usize> = HashMap::new();
     roots.iter().for_each(|root| *sizes.entry(*root).or_default() += 1);
     if sizes.len() == 1 {
@@ -42,12 +42,4 @@ pub(super) fn kept(cells: &[Vec<usize>], faces: &[&[usize]]) -> Vec<bool> {
         }
     }
     keep
-}
-
-fn root(parent: &mut [usize], mut cell: usize) -> usize {
-    while parent[cell] != cell {
-        parent[cell] = parent[parent[cell]];
-        cell = parent[cell];
-    }
-    cell
 }

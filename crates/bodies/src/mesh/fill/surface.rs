@@ -1,8 +1,10 @@
 //! Closed surfaces of triangles.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::coincident::Coincident;
 use crate::mesh::resolution::check_size;
 use crate::mesh::source::{Format, MeshSource};
+use crate::springs::{cross, dot};
 use std::collections::HashMap;
 
 /// Triangles that close one or several volumes, with their normals outwards.
@@ -28,16 +30,8 @@ impl Surface {
     /// # Errors
     /// It has other cells than triangles and quadrangles, or is not closed, or its triangles are not turned alike.
     pub fn of(source: &MeshSource, scale: f64) -> Result<Surface> {
-        let mut places = HashMap::new();
-        let mut points: Vec<[f64; 3]> = Vec::new();
-        let mut first = |p: [f64; 3]| {
-            // −0 and 0 are the same place.
-            let p = p.map(|x| x * scale + 0.0);
-            *places.entry(p.map(f64::to_bits)).or_insert_with(|| {
-                points.push(p);
-                points.len() - 1
-            })
-        };
+        let mut coincident = Coincident::default();
+        let mut index = |node: usize| coincident.index(source.points[node].map(|x| x * scale));
         let mut triangles = Vec::new();
         let mut flat = 0;
         for block in source.blocks.iter().filter(|block| block.dimension > 1) {
@@ -52,7 +46,7 @@ impl Surface {
                 );
             }
             for cell in block.connectivity.chunks_exact(block.nodes_per_cell) {
-                let nodes: Vec<usize> = cell.iter().map(|&node| first(source.points[node])).collect();
+                let nodes: Vec<usize> = cell.iter().map(|&node| index(node)).collect();
                 for i in 2..nodes.len() {
                     let triangle = [nodes[0], nodes[i - 1], nodes[i]];
                     let [a, b, c] = triangle;
@@ -66,6 +60,7 @@ impl Surface {
         if triangles.is_empty() {
             return Err(Error::expected("surface", "triangles or quadrangles", "none"));
         }
+        let points = coincident.points;
         check_size(points.iter().flatten().copied())?;
         let branched = check_edges(&points, &triangles)?;
         let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
@@ -77,7 +72,7 @@ impl Surface {
         let mut volume = 0.0;
         for &[a, b, c] in &triangles {
             let [x, y, z] = [a, b, c].map(from_low);
-            volume += dot(&x, &cross(&y, &z)) / 6.0;
+            volume += dot(&x, &cross(y, z)) / 6.0;
         }
         let is_turned = volume < 0.0;
         if is_turned {
@@ -131,12 +126,4 @@ fn check_edges(points: &[[f64; 3]], triangles: &[[usize; 3]]) -> Result<Option<(
         (count + 1, Some(one.map_or(edge, |one| one.min(edge))))
     });
     Ok(one.map(|[a, b]| (count, std::array::from_fn(|k| (points[a][k] + points[b][k]) / 2.0))))
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

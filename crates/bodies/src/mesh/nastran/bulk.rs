@@ -120,15 +120,12 @@ impl Bulk {
             return Err(Error::new("the file ends before a GRID card").of_kind(ErrorKind::Syntax));
         }
         let mut resolved = self.listing.resolve(length, "element")?;
-        for (cell, property) in self.properties.iter().enumerate() {
-            if let Some(property) = property {
-                let group = resolved.group(&format!("pid={property}"));
-                resolved.add_cell(group, cell)?;
-            }
-        }
         let mut of_property: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
         for (cell, property) in self.properties.iter().enumerate() {
-            property.iter().for_each(|property| of_property.entry(*property).or_default().push(cell));
+            let Some(property) = property else { continue };
+            let group = resolved.group(&format!("pid={property}"));
+            resolved.add_cell(group, cell)?;
+            of_property.entry(*property).or_default().push(cell);
         }
         for set in &self.sets {
             let group = resolved.group(&format!("set={}", set.number));

@@ -72,7 +72,7 @@ impl<'a> Card<'a> {
     /// The whole number in a field.
     ///
     /// # Errors
-    /// It is none, or blank.
+    /// The field is blank or not a number.
     pub fn whole(&self, index: usize, what: &str) -> Result<u64> {
         whole(self.field(index)).ok_or_else(|| self.expected(what, self.field(index)))
     }

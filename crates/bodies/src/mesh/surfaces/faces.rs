@@ -3,7 +3,7 @@
 use crate::mesh::grouping::Gather;
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::polytope::CellType;
-use crate::mesh::source::{Format, MeshSource, SourceBlock};
+use crate::mesh::source::{Format, MeshSource};
 
 pub(super) struct Faces {
     gather: Gather<(CellType, Vec<String>)>,
@@ -37,13 +37,7 @@ impl Faces {
 
     /// The mesh of these faces; the numbers of the points count from `first`.
     pub fn into_source(self, points: Vec<[f64; 3]>, first: u64) -> MeshSource {
-        let blocks = self.gather.into_lists().map(|((cell_type, groups), connectivity)| SourceBlock {
-            dimension: cell_type.dimension(),
-            cell_type: cell_type.0.into(),
-            nodes_per_cell: cell_type.nodes(),
-            connectivity,
-            groups,
-        });
+        let blocks = self.gather.into_lists().map(|((cell_type, groups), list)| cell_type.block(list, groups));
         let numbers = (first..first + points.len() as u64).collect();
         let origin = if first == 0 { NumberOrigin::FilePlace } else { NumberOrigin::NodeNumber };
         MeshSource { format: Format::Vtk, origin, blocks: blocks.collect(), points, numbers }

@@ -2,7 +2,7 @@
 
 use super::faces::{Faces, TRIANGULATE};
 use crate::error::{Error, ErrorKind, Result};
-use crate::mesh::lines::Lines;
+use crate::mesh::lines::{Lines, before_comment, words};
 use crate::mesh::reader::quoted;
 use crate::mesh::source::MeshSource;
 
@@ -34,8 +34,8 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
                 &whole[..]
             }
         };
-        let line = &line[..line.iter().position(|&b| b == b'#').unwrap_or(line.len())];
-        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let line = before_comment(line);
+        let mut words = words(line);
         match words.next() {
             Some(b"v") => {
                 let mut point = [0.0; 3];

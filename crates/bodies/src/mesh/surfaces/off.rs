@@ -54,14 +54,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     Ok(faces.into_source(points, 0))
 }
 
-/// The words of the next line that is neither empty nor a comment.
 fn next<'a>(lines: &mut Lines<'a>, expected: &str) -> Result<Vec<&'a [u8]>> {
-    while let Some(line) = lines.next() {
-        let line = &line[..line.iter().position(|&b| b == b'#').unwrap_or(line.len())];
-        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
-        if !words.is_empty() {
-            return Ok(words);
-        }
-    }
-    Err(Error::new(format!("the file ends too early: expected {expected}")).of_kind(ErrorKind::Syntax))
+    let early = || Error::new(format!("the file ends too early: expected {expected}")).of_kind(ErrorKind::Syntax);
+    lines.next_words().ok_or_else(early)
 }

@@ -2,6 +2,7 @@
 
 use super::faces::{Faces, TRIANGULATE};
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::lines::words;
 use crate::mesh::reader::{Encoding, Reader, quoted};
 use crate::mesh::source::MeshSource;
 
@@ -129,8 +130,7 @@ fn header(reader: &mut Reader) -> Result<Vec<Element>> {
         }
         // The line is read after its faults have been found, so that they name it.
         let line = reader.rest_of_line();
-        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
-        match words[..] {
+        match words(line).collect::<Vec<_>>()[..] {
             [b"format", format, _] => {
                 encoding = Some(match format {
                     b"ascii" => Encoding::Text,

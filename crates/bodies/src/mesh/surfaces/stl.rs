@@ -2,10 +2,10 @@
 
 use super::faces::Faces;
 use crate::error::{Error, ErrorKind, Result};
-use crate::mesh::lines::Lines;
+use crate::mesh::coincident::Coincident;
+use crate::mesh::lines::{Lines, words};
 use crate::mesh::reader::quoted;
 use crate::mesh::source::MeshSource;
-use std::collections::HashMap;
 
 /// Bytes before the facets of a binary file, and of each facet.
 const HEADER: usize = 84;
@@ -34,31 +34,13 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     }
 }
 
-/// Points of which those at the same place are one.
-#[derive(Default)]
-struct Points {
-    points: Vec<[f64; 3]>,
-    known: HashMap<[u64; 3], usize>,
-}
-
-impl Points {
-    fn place(&mut self, point: [f64; 3]) -> usize {
-        // −0 and 0 are the same place.
-        let point = point.map(|x| x + 0.0);
-        *self.known.entry(point.map(f64::to_bits)).or_insert_with(|| {
-            self.points.push(point);
-            self.points.len() - 1
-        })
-    }
-}
-
 fn binary(facets: &[u8]) -> MeshSource {
-    let mut points = Points::default();
+    let mut points = Coincident::default();
     let mut faces = Faces::new();
     for facet in facets.chunks_exact(FACET) {
         // A normal, three corners, and two bytes without a meaning.
         let corner = |c: usize| {
-            points.place(std::array::from_fn(|k| {
+            points.index(std::array::from_fn(|k| {
                 let at = 12 + 12 * c + 4 * k;
                 f64::from(f32::from_le_bytes([facet[at], facet[at + 1], facet[at + 2], facet[at + 3]]))
             }))
@@ -78,12 +60,12 @@ enum Place {
 
 fn text(bytes: &[u8]) -> Result<MeshSource> {
     let mut lines = Lines::new(bytes);
-    let mut points = Points::default();
+    let mut points = Coincident::default();
     let mut faces = Faces::new();
     let mut place = Place::Outside;
     let mut corners: Vec<usize> = Vec::new();
     while let Some(line) = lines.next() {
-        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let mut words = words(line);
         let Some(word) = words.next() else { continue };
         let is = |keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
         let expected = match &place {
@@ -121,7 +103,7 @@ fn text(bytes: &[u8]) -> Result<MeshSource> {
                 if corners.len() == 3 {
                     return Err(lines.expected("three corners of a facet", "a fourth"));
                 }
-                corners.push(points.place(point));
+                corners.push(points.index(point));
                 continue;
             }
             Place::Loop if is("endloop") && corners.len() == 3 => {

@@ -22,7 +22,7 @@ impl Image {
     /// The mesh of the voxels whose label is not zero: one label for each cell, or else for each point, around which a voxel is.
     ///
     /// # Errors
-    /// There is no such array, or several and none is named as the one that counts; all labels are zero, or they are grey values.
+    /// There is no such array; there are several and the file does not mark one of them as active; all labels are zero, or they are grey values.
     pub fn piece(mut self, of_cells: Vec<Labels>, of_points: Vec<Labels>, active: Option<&str>) -> Result<Piece> {
         let around_points = of_cells.is_empty();
         let mut arrays = if around_points { of_points } else { of_cells };

@@ -6,6 +6,9 @@ use crate::error::{Error, ErrorKind, Result};
 /// The largest number of points of a lattice whose points are not listed in the file one by one, and of voxels that are cells.
 const MOST: usize = 1 << 23;
 
+/// The keys of the coordinates along each axis in a file.
+pub(super) const AXES: [&str; 3] = ["X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES"];
+
 /// How many points there are along each axis. An axis with one point is flat: cells between the points along the others are areas
 /// or lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +70,7 @@ impl Lattice {
     /// # Errors
     /// It has not.
     pub fn check_axis(&self, axis: usize, found: usize) -> Result<()> {
-        self.same(["X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES"][axis], self.0[axis], found)
+        self.same(AXES[axis], self.0[axis], found)
     }
 
     fn same(&self, key: &str, expected: usize, found: usize) -> Result<()> {

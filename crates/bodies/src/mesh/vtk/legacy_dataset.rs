@@ -1,7 +1,7 @@
 //! The kinds of grid in legacy files, and what only some of them have.
 
 use super::image::Image;
-use super::lattice::Lattice;
+use super::lattice::{AXES, Lattice};
 use super::legacy_cells;
 use super::piece::{Labels, Piece};
 use super::polydata::{self, Cells, KINDS};
@@ -28,8 +28,6 @@ pub(super) struct Voxels {
     of_points: Vec<Labels>,
 }
 
-const AXES: [&str; 3] = ["X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES"];
-
 impl Dataset {
     /// The names of the kinds.
     pub const NAMES: [&str; 5] =
@@ -52,7 +50,7 @@ impl Dataset {
             Dataset::Unstructured => &["POINTS", "CELLS", "CELL_TYPES"],
             Dataset::Polygons(_) => &["POINTS"],
             Dataset::Structured(_) => &["DIMENSIONS", "POINTS"],
-            Dataset::Rectilinear(..) => &["DIMENSIONS", "X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES"],
+            Dataset::Rectilinear(..) => &["DIMENSIONS", AXES[0], AXES[1], AXES[2]],
             Dataset::Points(_) => &["DIMENSIONS"],
         }
     }

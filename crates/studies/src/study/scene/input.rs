@@ -130,7 +130,7 @@ fn one() -> f64 {
 }
 
 impl MeshInput {
-    /// A sentence about the unit of a mesh file that is probably not the metre, if there is none in the scene.
+    /// A note if the scene has no unit of the mesh file and the size of the mesh suggests that it is not the metre.
     pub fn unit_assumption(&self, mesh: &Mesh) -> Option<String> {
         let longest = extent(mesh).into_iter().fold(0.0, f64::max);
         (self.file.is_some() && self.scale == 1.0 && longest > LONGEST).then(|| {
