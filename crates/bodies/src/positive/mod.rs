@@ -21,12 +21,15 @@
 
 mod balance;
 mod contents;
+mod dual;
 mod edges;
+mod interior;
 mod nearest;
 mod outcome;
 mod programme;
+mod quadratic;
 mod vibrations;
 
 pub use nearest::{PositiveFit, nearest_positive};
 pub use outcome::{PositiveOutcome, Route};
-pub use programme::SearchProgress;
+pub use quadratic::SearchProgress;
