@@ -234,7 +234,7 @@ fn compare(title: &str, mesh: &Mesh) {
     let moduli = material.moduli();
     let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
     let exact = |energy: ExactEnergy, volume: VolumeSprings| {
-        let fit = ExactFit { energy, volume, large: true };
+        let fit = ExactFit { energy, volume, large: true, ..ExactFit::default() };
         let cells = fit_exact(element, &mesh.points, connectivity, material, &fit, &mut |_| {});
         let mut network = Network::assemble(mesh, &[cells.expect("every cell has a volume")]);
         if volume == VolumeSprings::Patches {

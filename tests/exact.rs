@@ -5,7 +5,7 @@ use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::{DMatrix, DVector};
 use springfit::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use springfit::element::Element;
-use springfit::fit::{CellFits, ExactEnergy, ExactFit, VolumeSprings, element_errors, fit_exact};
+use springfit::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, element_errors, fit_exact};
 use springfit::material::{Energy, Material, Moduli, Plane, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::{
@@ -19,8 +19,12 @@ use springfit::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
-const POINTS: ExactFit =
-    ExactFit { energy: ExactEnergy::StableNeoHookean, volume: VolumeSprings::Points, large: false };
+const POINTS: ExactFit = ExactFit {
+    energy: ExactEnergy::StableNeoHookean,
+    shear: ShearSprings::Cells,
+    volume: VolumeSprings::Points,
+    large: false,
+};
 
 /// A random shape whose Jacobian is positive at all points.
 fn valid(element: &Element, random: &mut Random) -> Vec<f64> {
@@ -283,7 +287,7 @@ fn volume_springs_on_cells_are_selective_integration() {
         let expected =
             geometry.stiffness(Moduli { lambda: 0.0, mu }) + &g * g.transpose() * (lambda / geometry.content());
         for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
-            let fit = ExactFit { energy, volume: VolumeSprings::Cells, large: false };
+            let fit = ExactFit { energy, volume: VolumeSprings::Cells, ..ExactFit::default() };
             let network = network(&mesh, material, fit);
             let found = dense(mesh.points.len(), &network.stiffness(&mesh.points));
             let error = (&found - &expected).norm() / expected.norm();
@@ -309,7 +313,7 @@ fn patches_have_their_energy() {
     };
     for held in [&held[..], &[]] {
         for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
-            let fit = ExactFit { energy, volume: VolumeSprings::Patches, large: true };
+            let fit = ExactFit { energy, volume: VolumeSprings::Patches, large: true, ..ExactFit::default() };
             let mut network = network(&mesh, material, fit);
             network.others.extend(patch_springs(&mesh, material, &fit, held).unwrap());
             let found = Elastic::energy(&network, &x).unwrap() - Elastic::energy(&network, &mesh.points).unwrap();
@@ -405,7 +409,7 @@ fn the_json_of_a_network_has_all_that_its_energy_needs() {
         ("hex8", ExactEnergy::StableMooneyRivlin { share: 0.4 }, VolumeSprings::Points),
     ] {
         let mesh = cube(element, [2, 1, 1], [0.02; 3]);
-        let fit = ExactFit { energy, volume, large: false };
+        let fit = ExactFit { energy, volume, ..ExactFit::default() };
         let mut network = network(&mesh, material, fit);
         if volume == VolumeSprings::Patches {
             network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());

@@ -15,6 +15,7 @@ mod covariance;
 mod crash;
 mod derive;
 mod digits;
+mod domains;
 mod door;
 mod dynamics;
 mod elements;

@@ -11,7 +11,8 @@ use springfit::report;
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use springfit::study::{
-    FitEntry, FitOutcome, Lattice, NetworkMaterial, Outcome, Recipe, Reference, fit_mesh, network_material,
+    FitEntry, FitOutcome, Lattice, NetworkMaterial, Outcome, Recipe, Reference, SpringOwners, fit_mesh,
+    network_material,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -151,7 +152,7 @@ fn wrong_constants_are_measured() {
         fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
     fits.constants.iter_mut().chain(&mut fits.parameters).for_each(|k| *k *= 1.3);
     let network = Network::assemble(&mesh, std::slice::from_ref(&fits));
-    let found = network_material(&mesh, material, &[fits], &network);
+    let found = network_material(&mesh, material, SpringOwners::Cells(&[fits]), &network);
     for distance in [found.distance, found.mean_distance, found.largest_distance] {
         assert!((distance - 0.3).abs() < 1e-9, "{found:?}");
     }
@@ -179,7 +180,7 @@ fn boxes_of_equal_cells_are_their_lattices() {
         let kelvin = |i: usize| if i < d { 1.0 } else { f64::sqrt(2.0) };
         let known = DMatrix::from_fn(known.nrows(), known.ncols(), |i, j| kelvin(i) * kelvin(j) * known[(i, j)]);
         let outcome = fitted(&mesh, material, FitEntry::new("frobenius"));
-        let whole = network_material(&mesh, material, &[], &outcome.network);
+        let whole = network_material(&mesh, material, SpringOwners::Body, &outcome.network);
         let off = |found: &NetworkMaterial| (&found.stiffness - &known).norm() / known.norm();
         let is_simplex = element.nodes() == d + 1;
         let tolerance = if is_simplex { 1e-2 } else { 1e-9 };
@@ -276,7 +277,7 @@ fn it_costs_next_to_nothing() {
         fit_exact(&block.element, &mesh.points, &block.connectivity, material, &ExactFit::default(), &mut |_| {});
     let fits = [fits.unwrap()];
     let network = Network::assemble(&mesh, &fits);
-    let seconds = (0..10).map(|_| network_material(&mesh, material, &fits, &network).seconds);
+    let seconds = (0..10).map(|_| network_material(&mesh, material, SpringOwners::Cells(&fits), &network).seconds);
     let least = seconds.fold(f64::INFINITY, f64::min);
     assert!(least < 0.25, "{least} s");
 }

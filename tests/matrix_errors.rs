@@ -61,7 +61,7 @@ fn fits(element: &Element, points: &[f64], nodes: &[usize], material: Material) 
     }
     for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::StableMooneyRivlin { share: 0.3 }] {
         for volume in [VolumeSprings::Points, VolumeSprings::Cells] {
-            let exact = ExactFit { energy, volume, large: false };
+            let exact = ExactFit { energy, volume, ..ExactFit::default() };
             if let Ok(fits) = fit_exact(element, points, nodes, material, &exact, &mut |_| {}) {
                 found.push((format!("{energy:?} {volume:?}"), fits));
             }

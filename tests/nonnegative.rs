@@ -4,7 +4,7 @@ use crate::shapes::Random;
 use nalgebra::{DMatrix, DVector};
 use springfit::element::Element;
 use springfit::error::ErrorKind;
-use springfit::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
+use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use springfit::material::Material;
 use springfit::mesh::{BoxMesh, Mesh, MeshSource};
 use springfit::model::{Elastic, LengthSpring, Network, Support};
@@ -15,7 +15,12 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-const EXACT: ExactFit = ExactFit { energy: ExactEnergy::StableNeoHookean, volume: VolumeSprings::Points, large: false };
+const EXACT: ExactFit = ExactFit {
+    energy: ExactEnergy::StableNeoHookean,
+    shear: ShearSprings::Cells,
+    volume: VolumeSprings::Points,
+    large: false,
+};
 
 /// A mesh of tetrahedra made by gmsh.
 fn gmsh(name: &str) -> Mesh {

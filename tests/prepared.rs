@@ -130,7 +130,8 @@ fn prepared_networks_pull_as_networks_of_every_element() {
                 check(&classical(mesh, material), &mesh.points, &mut random, &format!("{} classical", element.name));
                 for energy in ENERGIES {
                     for volume in [VolumeSprings::Points, VolumeSprings::Cells, VolumeSprings::Patches] {
-                        let fit = ExactFit { energy, volume, large: volume == VolumeSprings::Points };
+                        let fit =
+                            ExactFit { energy, volume, large: volume == VolumeSprings::Points, ..ExactFit::default() };
                         let Some(cells) = exact(mesh, material, fit) else { continue };
                         let mut network = Network::assemble(mesh, &[cells]);
                         if volume == VolumeSprings::Patches {
@@ -264,7 +265,7 @@ fn what_has_no_force_is_said() {
     let material = Material::new(1.0, 0.4, State::Solid).unwrap();
     for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
         for volume in [VolumeSprings::Points, VolumeSprings::Patches] {
-            let fit = ExactFit { energy, volume, large: false };
+            let fit = ExactFit { energy, volume, ..ExactFit::default() };
             let mut network = Network::assemble(&mesh, &[exact(&mesh, material, fit).unwrap()]);
             if volume == VolumeSprings::Patches {
                 network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
@@ -344,7 +345,7 @@ fn registers_compute_what_arrays_do() {
 fn evaluations_do_not_depend_on_those_before() {
     let mesh = cube();
     let material = Material::new(1.0, 0.4, State::Solid).unwrap();
-    let fit = ExactFit { volume: VolumeSprings::Patches, energy: ExactEnergy::NeoHookean, large: false };
+    let fit = ExactFit { volume: VolumeSprings::Patches, energy: ExactEnergy::NeoHookean, ..ExactFit::default() };
     let mut network = Network::assemble(&mesh, &[exact(&mesh, material, fit).unwrap()]);
     network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
     let prepared = network.prepared();

@@ -2,7 +2,7 @@
 //! times are those of the processor.
 //! With `export=FOLDER` the matrix is written for other solvers.
 
-#[path = "../tests/all/elastic/mod.rs"]
+#[path = "../tests/multigrid/elastic/mod.rs"]
 mod elastic;
 
 use elastic::{Body, Shape};

@@ -68,6 +68,15 @@ pub struct SideIndex {
 }
 
 impl CellBlock {
+    /// The points of a cell, `[nodes]`.
+    ///
+    /// # Panics
+    /// There is no such cell.
+    pub fn cell(&self, cell: usize) -> &[usize] {
+        let n = self.element.nodes();
+        &self.connectivity[cell * n..(cell + 1) * n]
+    }
+
     /// The points of each cell, `[nodes]`.
     pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
         self.connectivity.chunks_exact(self.element.nodes())

@@ -9,6 +9,7 @@
 mod assembly;
 mod blocks;
 mod deformation;
+mod domains;
 mod elastic;
 mod fibres;
 mod forces;
@@ -22,6 +23,7 @@ mod numbering;
 mod patches;
 mod prepared;
 mod pressure;
+mod simplices;
 mod size;
 mod steady;
 mod support;
@@ -30,6 +32,7 @@ mod tension;
 
 pub use blocks::BlockStiffness;
 pub use deformation::Deformation;
+pub use domains::edge_springs;
 pub use elastic::{Body, Elastic, RegionsBody};
 pub use fibres::{fibre_springs, fibre_springs_of_regions};
 pub use linear::LinearElastic;

@@ -8,6 +8,7 @@
 //! Theory: page *Exact networks and patches* of the book.
 
 use super::network::MeasureSpring;
+use super::simplices::{Simplices, linear_simplices};
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit};
@@ -33,22 +34,13 @@ pub fn patch_springs(
     held: &[bool],
 ) -> Result<Vec<MeasureSpring>> {
     let material = material.into();
-    let expected =
-        "\"points\" or \"cells\": patches are for meshes of linear triangles or linear tetrahedra in their own space";
-    let unsupported = |found: String| {
-        Err(Error::expected("volume", expected, format!("\"patches\" with {found}")).of_kind(ErrorKind::Unsupported))
-    };
-    let [block] = &mesh.blocks[..] else {
-        let names: Vec<&str> = mesh.blocks.iter().map(|block| block.element.name.as_str()).collect();
-        return unsupported(format!("cells of {}", names.join(", ")));
-    };
-    let (element, d) = (&block.element, mesh.dimension);
-    let is_simplex = element.nodes() == d + 1 && element.tabulation.points() == 1;
-    if !is_simplex || mesh.cell_dimension() != d || d < 2 {
-        return unsupported(element.name.clone());
-    }
+    let others = "\"points\" or \"cells\": patches";
+    let Simplices { block, element } = linear_simplices(mesh, "volume", others, "patches")?;
+    let d = mesh.dimension;
     if fit.large && matches!(material.state(), State::PlaneStress { .. }) {
-        return unsupported("a law in plane stress, where no cell locks".into());
+        let expected = format!("{others} are for bodies that lock");
+        let found = "\"patches\" with a law in plane stress, where no cell locks";
+        return Err(Error::expected("volume", expected, found).of_kind(ErrorKind::Unsupported));
     }
     let (mut shares, mut alone) = (vec![Vec::new(); mesh.point_count()], Vec::new());
     for (cell, nodes) in block.cells().enumerate() {

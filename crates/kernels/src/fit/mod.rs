@@ -50,7 +50,9 @@ mod weight;
 
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
-pub use exact::{ExactEnergy, ExactFit, VolumeSprings, exact_constants_of_kind, fit_exact};
+pub use exact::{
+    DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, exact_constants_of_kind, fit_exact,
+};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use modulus::Modulus;

@@ -14,7 +14,7 @@ use crate::bound::{self, check_count};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::published::{self, Method};
-use crate::fit::{Fit, MotionWeight, Objective, Search, Solver, Spread, VolumeSprings, element_errors};
+use crate::fit::{Fit, MotionWeight, Objective, Search, ShearSprings, Solver, Spread, VolumeSprings, element_errors};
 use crate::material::{EnergyMap, Material, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Springs;
@@ -143,10 +143,12 @@ pub fn measure_recipes(
     Ok(outcomes)
 }
 
-/// The exact networks that the body can have: with volume springs at points, on cells, and on patches if these exist.
+/// The exact networks that the body can have: with volume springs at points, on cells, and on patches if these exist,
+/// and the same with shear springs on the domains of edges.
 fn exact_fits(law: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> Vec<NamedFit> {
-    let recipe = |volume: VolumeSprings| ExactRecipe { volume, ..ExactRecipe::default() };
-    let recipes = VolumeSprings::all().map(recipe).filter(|recipe| recipe.serves(law, mesh, material));
+    let recipe = |shear| move |volume| ExactRecipe { shear, volume, ..ExactRecipe::default() };
+    let recipes = ShearSprings::all().flat_map(|shear| VolumeSprings::all().map(recipe(shear)));
+    let recipes = recipes.filter(|recipe| recipe.serves(law, mesh, material));
     recipes.map(|recipe| NamedFit::of(Recipe::Exact(recipe), None)).collect()
 }
 

@@ -33,7 +33,7 @@ pub fn fit_mesh(
         errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit)?);
     }
     let spread = |values: &[f64]| (!of_cells.is_empty()).then(|| Spread::of(values));
-    let as_material = network_material(mesh, material, &fitted.cells, &fitted.network);
+    let as_material = network_material(mesh, material, fitted.owners(), &fitted.network);
     Ok(FitOutcome {
         fit: named.clone(),
         seconds: fitted.seconds,

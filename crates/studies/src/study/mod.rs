@@ -79,4 +79,4 @@ pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, 
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
 pub use sweep::{Study, Sweep, SweepEntry};
-pub use tensor::{NetworkMaterial, network_material};
+pub use tensor::{NetworkMaterial, SpringOwners, network_material};

@@ -193,6 +193,19 @@ impl Coefficients {
         Ok(Coefficients { lengths, areas: 0.0, tension, slope, lambda, law_lambda: solid_lambda })
     }
 
+    /// The mean of coefficients with these shares.
+    pub fn mean<'a>(parts: impl Iterator<Item = (&'a Coefficients, f64)>) -> Coefficients {
+        let zero = Coefficients { lengths: 0.0, areas: 0.0, tension: 0.0, slope: 0.0, lambda: 0.0, law_lambda: 0.0 };
+        parts.fold(zero, |sum, (of, share)| Coefficients {
+            lengths: sum.lengths + share * of.lengths,
+            areas: sum.areas + share * of.areas,
+            tension: sum.tension + share * of.tension,
+            slope: sum.slope + share * of.slope,
+            lambda: sum.lambda + share * of.lambda,
+            law_lambda: sum.law_lambda + share * of.law_lambda,
+        })
+    }
+
     /// The coefficients as numbers of the kind of `any`.
     pub fn of_kind<T: Real>(&self, any: &T) -> Coefficients<T> {
         let Coefficients { lengths, areas, tension, slope, lambda, law_lambda } = self;

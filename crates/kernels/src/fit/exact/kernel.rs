@@ -203,7 +203,7 @@ impl ExactBatch<'_> {
             if let Some((constant, parameters)) = springs.next() {
                 let content = volumes[q].magnitude().choose(&volumes[q], &volumetric[q]);
                 let volumes = [&volumes[q], &volumetric[q]];
-                self.content(coefficients, self.shares.points, &content, volumes, constant, parameters);
+                content_spring(coefficients, self.shares.points, &content, volumes, constant, parameters);
             }
         }
         if let Some((constant, parameters)) = springs.next() {
@@ -212,35 +212,33 @@ impl ExactBatch<'_> {
                 content = content + v;
                 whole = whole + w;
             }
-            self.content(coefficients, self.shares.cell, &content, [&content, &whole], constant, parameters);
+            content_spring(coefficients, self.shares.cell, &content, [&content, &whole], constant, parameters);
         }
     }
+}
 
-    /// The spring on this content, with the volumes of the two terms: its constant, and `k L₀` or `a` and `b` of its
-    /// law.
-    #[inline(always)]
-    fn content<T: Real>(
-        &self,
-        coefficients: &Coefficients<T>,
-        shares: [f64; 2],
-        content: &T,
-        [volume, volumetric]: [&T; 2],
-        constant: &mut T,
-        parameters: &mut [T],
-    ) {
-        let Coefficients { tension, slope, lambda, law_lambda, .. } = coefficients;
-        let share = |of: &T, share: f64| of.clone().scaled(&share);
-        let pull = volume.clone() * &share(tension, shares[0]);
-        let slope = volume.clone() * &share(slope, shares[0]) + &(volumetric.clone() * &share(lambda, shares[1]));
-        *constant = slope.clone() / &(content.clone() * content);
-        match parameters {
-            [rest] => *rest = (slope + &pull) / content,
-            [a, b] => {
-                *a = pull / content;
-                *b = volumetric.clone() * &share(law_lambda, shares[1]) / content;
-            }
-            _ => {}
+/// The spring on this content, with the volumes of the two terms: its constant, and `k L₀` or `a` and `b` of its law.
+#[inline(always)]
+pub fn content_spring<T: Real>(
+    coefficients: &Coefficients<T>,
+    shares: [f64; 2],
+    content: &T,
+    [volume, volumetric]: [&T; 2],
+    constant: &mut T,
+    parameters: &mut [T],
+) {
+    let Coefficients { tension, slope, lambda, law_lambda, .. } = coefficients;
+    let share = |of: &T, share: f64| of.clone().scaled(&share);
+    let pull = volume.clone() * &share(tension, shares[0]);
+    let slope = volume.clone() * &share(slope, shares[0]) + &(volumetric.clone() * &share(lambda, shares[1]));
+    *constant = slope.clone() / &(content.clone() * content);
+    match parameters {
+        [rest] => *rest = (slope + &pull) / content,
+        [a, b] => {
+            *a = pull / content;
+            *b = volumetric.clone() * &share(law_lambda, shares[1]) / content;
         }
+        _ => {}
     }
 }
 

@@ -13,13 +13,17 @@
 //!
 //! Theory: page *Exact networks and patches* of the book.
 
+mod domain;
 mod energy;
 mod kernel;
 mod precision;
+mod shear;
 mod volume;
 
+pub use domain::{DomainSprings, ExactDomains};
 pub use energy::ExactEnergy;
 pub use precision::exact_constants_of_kind;
+pub use shear::ShearSprings;
 pub use volume::VolumeSprings;
 
 use super::cells::{CHUNK, CellFits, ROUND};
@@ -39,6 +43,8 @@ use rayon::prelude::*;
 pub struct ExactFit {
     /// The energy that the network has.
     pub energy: ExactEnergy,
+    /// The domains over which the springs for μ average the deformation.
+    pub shear: ShearSprings,
     /// The contents that the springs for λ measure.
     pub volume: VolumeSprings,
     /// Whether planes and rods without stress have the energy at any deformation, with the stretch across them. If only
@@ -53,8 +59,9 @@ pub struct ExactFit {
 /// `progress` is called from time to time with the number of finished cells.
 ///
 /// # Errors
-/// An array has a wrong length; a number is not finite; a cell is reversed, tangled, flat or curved in space; or the
-/// energy has no form with springs in this state (kind `Unsupported`).
+/// An array has a wrong length; a number is not finite; a cell is reversed, tangled, flat or curved in space; the
+/// energy has no form with springs in this state, or the springs belong to domains of several cells (kind
+/// `Unsupported`).
 pub fn fit_exact<'a>(
     element: &Element,
     points: &[f64],
@@ -64,6 +71,14 @@ pub fn fit_exact<'a>(
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
     let material = material.into();
+    match fit.shear {
+        ShearSprings::Cells => {}
+        ShearSprings::Edges => {
+            let expected = "\"cells\" for the springs of single cells: a mesh has those of the domains of edges";
+            let found = format!("\"{}\"", fit.shear.name());
+            return Err(Error::expected("shear", expected, found).of_kind(ErrorKind::Unsupported));
+        }
+    }
     check_cells(element, points, connectivity)?;
     let cells = connectivity.len() / element.nodes();
     material.check("material", cells)?;

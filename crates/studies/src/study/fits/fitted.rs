@@ -5,11 +5,12 @@ use super::published::PublishedOutcome;
 use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
-use crate::fit::{CellFits, VolumeSprings};
+use crate::fit::{CellFits, ShearSprings, VolumeSprings};
 use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Springs;
+use crate::study::tensor::SpringOwners;
 use std::time::Instant;
 
 /// The springs of a fit.
@@ -61,6 +62,17 @@ impl Fitted {
     }
 }
 
+impl Fitted {
+    /// To what the springs belong.
+    pub fn owners(&self) -> SpringOwners<'_> {
+        match self.kind.exact() {
+            Some(outcome) if outcome.shear == ShearSprings::Edges => SpringOwners::Edges(outcome.at_rest()),
+            _ if self.cells.is_empty() => SpringOwners::Body,
+            _ => SpringOwners::Cells(&self.cells),
+        }
+    }
+}
+
 impl FittedKind {
     /// Notes for the reader, one sentence each. The body has `cells` cells of `material`.
     pub fn notes(&self, cells: usize, material: &MaterialMap) -> Vec<String> {
@@ -73,10 +85,11 @@ impl FittedKind {
         }
     }
 
-    /// Whether the springs of each cell are its whole stiffness. Springs on the content of patches belong to several
-    /// cells.
+    /// Whether the springs of each cell are its whole stiffness. Springs on patches and on the domains of edges belong to
+    /// several cells.
     pub fn is_of_cells(&self) -> bool {
-        self.exact().is_none_or(|outcome| outcome.volume != VolumeSprings::Patches)
+        let of_cells = |of: &ExactOutcome| of.shear == ShearSprings::Cells && of.volume != VolumeSprings::Patches;
+        self.exact().is_none_or(of_cells)
     }
 
     /// The moduli of the finite elements with whose energies those of the network are compared.

@@ -3,9 +3,11 @@
 mod frame;
 mod isotropic;
 mod network_material;
+mod owners;
 mod piece;
 mod relaxation;
 mod sample;
 
 pub(in crate::study) use network_material::most_samples;
 pub use network_material::{NetworkMaterial, network_material};
+pub use owners::SpringOwners;

@@ -2,13 +2,13 @@
 
 use super::frame::frame;
 use super::isotropic::{constants, distance, of_material};
+use super::owners::SpringOwners;
 use super::piece::Piece;
 use super::relaxation::{body_tensor, tensor};
 use super::sample::Stars;
-use crate::fit::CellFits;
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::Mesh;
-use crate::model::Network;
+use crate::model::{Network, edge_springs};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -63,15 +63,13 @@ pub(in crate::study) fn most_samples(mesh: &Mesh) -> usize {
     SAMPLES.min(mesh.point_count().div_ceil(POINTS))
 }
 
-/// Measures a network that was fitted to `material`, at rest. `cells` has the springs of each block of cells. It is
-/// empty if the springs belong to no cell, as those of whole-object fits; each spring is then shared equally among the
-/// cells that have all of its points.
+/// Measures a network that was fitted to `material`, at rest.
 ///
 /// On curved surfaces and curves the samples are single cells, each in its own plane.
 pub fn network_material(
     mesh: &Mesh,
     material: impl Into<MaterialMap>,
-    cells: &[CellFits],
+    owners: SpringOwners,
     network: &Network,
 ) -> NetworkMaterial {
     let material = &material.into();
@@ -88,11 +86,14 @@ pub fn network_material(
             sample = single();
             directions = frame(&sample, mesh.cell_dimension()).0;
         }
-        let piece = match cells {
-            [] => Piece::of_network(mesh, &stars, &sample, network),
-            cells => Piece::of_cells(mesh, &sample, cells, network),
-        };
         let own = material.of_some(&sample.cells);
+        let whole = || Piece::of_network(mesh, &stars, &sample, network);
+        let piece = match owners {
+            SpringOwners::Body => whole(),
+            SpringOwners::Cells(cells) => Piece::of_cells(mesh, &sample, cells, network),
+            SpringOwners::Edges(fit) => edge_springs(&sample.mesh, own.clone(), &fit)
+                .map_or_else(|_| whole(), |of_sample| Piece::of_sample(mesh, &sample, of_sample, network)),
+        };
         let asked = match own.moduli() {
             CellMap::Uniform(one) => of_material(&one, dimension),
             moduli => body_tensor(&sample, moduli, &directions),

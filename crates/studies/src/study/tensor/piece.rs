@@ -36,7 +36,11 @@ impl Piece {
     /// that content that is in the sample.
     pub(super) fn of_cells(mesh: &Mesh, sample: &Sample, cells: &[CellFits], whole: &Network) -> Piece {
         let fits: Vec<CellFits> = cells.iter().zip(&sample.cells).map(|(fits, cells)| fits.of_cells(cells)).collect();
-        let network = Network::assemble(&sample.mesh, &fits);
+        Piece::of_sample(mesh, sample, Network::assemble(&sample.mesh, &fits), whole)
+    }
+
+    /// The springs `network` of the sample alone, and its share of the patches.
+    pub(super) fn of_sample(mesh: &Mesh, sample: &Sample, network: Network, whole: &Network) -> Piece {
         let shares = vec![1.0; network.len()];
         let mut piece = Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() };
         piece.add_patches(mesh, sample, whole);

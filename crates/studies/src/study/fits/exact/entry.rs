@@ -1,8 +1,8 @@
 //! The keys of a `[[fit]]` with the objective "exact".
 
 use super::recipe::ExactRecipe;
-use crate::error::{Error, Result};
-use crate::fit::{ExactEnergy, VolumeSprings};
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::{ExactEnergy, ShearSprings, VolumeSprings};
 use crate::positive::PositiveFit;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -13,6 +13,8 @@ use serde::Deserialize;
 pub struct ExactEntry {
     #[schemars(extend("enum" = ExactEnergy::NAMES))]
     pub energy: Option<String>,
+    #[schemars(extend("enum" = ShearSprings::NAMES))]
+    pub shear: Option<String>,
     #[schemars(extend("enum" = VolumeSprings::NAMES))]
     pub volume: Option<String>,
     /// The share of the second invariant, for the energy "stable-mooney-rivlin".
@@ -27,8 +29,8 @@ impl ExactEntry {
     /// The fit with these spring groups.
     ///
     /// # Errors
-    /// An energy or a kind of volume springs is unknown, spring groups are named, or `across` is given without
-    /// `nonnegative`.
+    /// An energy or a kind of shear or volume springs is unknown, spring groups are named, `across` is given without
+    /// `nonnegative`, or keys contradict each other.
     pub fn recipe(&self, springs: Option<&[String]>) -> Result<ExactRecipe> {
         if let Some(springs) = springs {
             let expected = "no groups: an exact network joins all nodes of each cell and has springs on its content";
@@ -36,6 +38,16 @@ impl ExactEntry {
         }
         let energy = self.energy.as_deref().map(|name| ExactEnergy::named(name).map_err(|e| e.at_key("energy")));
         let volume = self.volume.as_deref().map(|name| VolumeSprings::named(name).map_err(|e| e.at_key("volume")));
+        let shear = self.shear.as_deref().map(|name| ShearSprings::named(name).map_err(|e| e.at_key("shear")));
+        let (shear, volume) = (shear.transpose()?.unwrap_or_default(), volume.transpose()?.unwrap_or_default());
+        if shear == ShearSprings::Edges && volume == VolumeSprings::Cells {
+            let expected = "\"points\" or \"patches\" with shear = \"edges\": springs on cells lock";
+            return Err(Error::expected("volume", expected, "\"cells\"").of_kind(ErrorKind::Unsupported));
+        }
+        if shear == ShearSprings::Edges && self.nonnegative {
+            let expected = "false with shear = \"edges\": the nearest network is sought for springs of single cells";
+            return Err(Error::expected("nonnegative", expected, true).of_kind(ErrorKind::Unsupported));
+        }
         let energy = match (energy.transpose()?, self.share) {
             (energy, None) => energy,
             (energy, Some(share)) => Some(energy.unwrap_or_default().with_share(share)?),
@@ -44,6 +56,6 @@ impl ExactEntry {
             return Err(Error::at("across", "belongs to nonnegative = true"));
         }
         let positive = self.nonnegative.then(|| PositiveFit { across: self.across, ..PositiveFit::default() });
-        Ok(ExactRecipe { energy, volume: volume.transpose()?.unwrap_or_default(), positive })
+        Ok(ExactRecipe { energy, shear, volume, positive })
     }
 }

@@ -5,10 +5,10 @@ use super::recipe::ExactRecipe;
 use super::record::ExactRecord;
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{CellFits, ExactEnergy, VolumeSprings, fit_exact};
+use crate::fit::{CellFits, ExactEnergy, ShearSprings, VolumeSprings, fit_exact};
 use crate::material::{Energy, Material, MaterialMap, State};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::{Network, fibre_springs_of_regions, patch_springs};
+use crate::model::{Network, edge_springs, fibre_springs_of_regions, patch_springs};
 use crate::positive::{PositiveFit, Route, nearest_positive};
 use crate::springs::Springs;
 use crate::study::fits::fitted::{Fitted, FittedKind};
@@ -20,6 +20,10 @@ use std::time::Instant;
 impl FitKind for ExactRecipe {
     fn title(&self, _groups: &str) -> String {
         let energy = self.energy.map_or(String::new(), |energy| format!(" {}", energy.name()));
+        let shear = match self.shear {
+            ShearSprings::Cells => String::new(),
+            ShearSprings::Edges => format!(" {}", self.shear.name()),
+        };
         let volume = match self.volume {
             VolumeSprings::Points => String::new(),
             VolumeSprings::Cells | VolumeSprings::Patches => format!(" {}", self.volume.name()),
@@ -29,7 +33,7 @@ impl FitKind for ExactRecipe {
             Some(PositiveFit { across: false, .. }) => " k>=0",
             Some(PositiveFit { across: true, .. }) => " k>=0 across",
         };
-        format!("exact{energy}{volume}{positive}")
+        format!("exact{energy}{shear}{volume}{positive}")
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
@@ -47,7 +51,13 @@ impl FitKind for ExactRecipe {
         let fibres = fibres.transpose()?.unwrap_or_default();
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
-        for (index, block) in mesh.blocks.iter().enumerate() {
+        // The springs of domains belong to no cell.
+        let domains = match fit.shear {
+            ShearSprings::Cells => None,
+            ShearSprings::Edges => Some(edge_springs(mesh, material.clone(), &fit)?),
+        };
+        let of_cells = if domains.is_none() { &mesh.blocks[..] } else { &[] };
+        for (index, block) in of_cells.iter().enumerate() {
             let of_block = materials.block(index);
             let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
             cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, &fit, &mut watch)?);
@@ -56,9 +66,10 @@ impl FitKind for ExactRecipe {
         let mut seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let springs = Fitted::springs_of(&cells);
-        let mut network = Network::assemble(mesh, &cells);
+        let mut network = domains.unwrap_or_else(|| Network::assemble(mesh, &cells));
         let mut outcome = ExactOutcome {
             energy: fit.energy,
+            shear: fit.shear,
             volume: fit.volume,
             is_other: laws
                 .is_some_and(|laws| self.energy.is_some() && !laws.laws().all(|law| is_all_of(&fit.energy, law))),
@@ -87,7 +98,8 @@ impl FitKind for ExactRecipe {
     }
 
     fn cell_method(&self) -> Option<&dyn CellMethod> {
-        (self.volume != VolumeSprings::Patches && self.positive.is_none()).then_some(self)
+        let is_of_cells = self.shear == ShearSprings::Cells && self.volume != VolumeSprings::Patches;
+        (is_of_cells && self.positive.is_none()).then_some(self)
     }
 
     fn record(&self) -> KindRecord {
@@ -126,9 +138,9 @@ impl CellMethod for ExactRecipe {
 /// Poisson's ratio from which on linear cells are noticeably too stiff.
 const LOCKS: f64 = 0.4;
 
-/// The largest Poisson's ratio from 0.4 on of linear cells that integrate changes of volume like all others, and the volume springs
+/// The largest Poisson's ratio from 0.4 on of linear cells that integrate changes of volume like all others, and the keys of springs
 /// that do not lock there. Plane stress does not lock.
-fn locking(mesh: &Mesh, material: &MaterialMap) -> Option<(f64, VolumeSprings)> {
+fn locking(mesh: &Mesh, material: &MaterialMap) -> Option<(f64, &'static str)> {
     if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
         return None;
     }
@@ -137,7 +149,10 @@ fn locking(mesh: &Mesh, material: &MaterialMap) -> Option<(f64, VolumeSprings)> 
         let is_linear = element.nodes() == element.cell.corners().len() && element.tabulation.volumetric.is_empty();
         let ratios = (0..block.cells().len()).filter_map(|cell| Some(material.isotropic(index, cell)?.poisson()));
         let largest = ratios.fold(0.0, f64::max);
-        let remedy = if element.cell.is_simplex() { VolumeSprings::Patches } else { VolumeSprings::Cells };
+        let remedy = match element.cell.is_simplex() {
+            true => "shear = \"edges\" with volume = \"patches\"",
+            false => "volume = \"cells\"",
+        };
         (is_linear && largest >= LOCKS).then_some((largest, remedy))
     };
     mesh.blocks.iter().enumerate().filter_map(of_block).max_by(|a, b| a.0.total_cmp(&b.0))

@@ -1,7 +1,7 @@
 //! The body to which an exact network is equal.
 
 use super::positive::positive_note;
-use crate::fit::{ExactEnergy, VolumeSprings};
+use crate::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
 use crate::material::{CellMap, Hooke, Moduli};
 use crate::positive::PositiveOutcome;
 
@@ -14,6 +14,8 @@ const UNLOCKED: f64 = 2.0;
 pub struct ExactOutcome {
     /// The energy of the network.
     pub energy: ExactEnergy,
+    /// The domains over which its shear springs average the deformation.
+    pub shear: ShearSprings,
     /// The contents that its volume springs measure.
     pub volume: VolumeSprings,
     /// Whether the material has another law.
@@ -22,8 +24,8 @@ pub struct ExactOutcome {
     pub patches: usize,
     /// The difference of the nearest network without negative springs, if that was requested.
     pub positive: Option<PositiveOutcome>,
-    /// The largest Poisson's ratio of cells whose finite elements lock, and the volume springs that reduce it.
-    pub locking: Option<(f64, VolumeSprings)>,
+    /// The largest Poisson's ratio of cells whose finite elements lock, and the keys that reduce it.
+    pub locking: Option<(f64, &'static str)>,
 }
 
 impl ExactOutcome {
@@ -42,6 +44,11 @@ impl ExactOutcome {
         }
     }
 
+    /// The fit that has the same tangent at rest.
+    pub fn at_rest(&self) -> ExactFit {
+        ExactFit { energy: self.energy, shear: self.shear, volume: self.volume, large: false }
+    }
+
     /// Notes for the reader, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let other = self.is_other.then(|| {
@@ -53,9 +60,8 @@ impl ExactOutcome {
         let volume = match self.volume {
             VolumeSprings::Points => self.locking.map(|(poisson, remedy)| {
                 format!(
-                    "at nu = {poisson} linear cells lock: the finite elements are too stiff, and this network with them; volume = \"{}\" \
-                     reduces it, and `springfit converge` measures it",
-                    remedy.name()
+                    "at nu = {poisson} linear cells lock: the finite elements are too stiff, and this network with them; {remedy} \
+                     reduces it, and `springfit converge` measures it"
                 )
             }),
             VolumeSprings::Cells => Some(
@@ -67,6 +73,14 @@ impl ExactOutcome {
                 self.patches
             )),
         };
-        other.into_iter().chain(volume).chain(self.positive.as_ref().map(positive_note)).collect()
+        let shear = match self.shear {
+            ShearSprings::Cells => None,
+            ShearSprings::Edges => Some(
+                "shear springs on the domains of edges: differs from the finite elements of this mesh, which are stiffer; \
+                 `springfit converge` measures the errors of both"
+                    .into(),
+            ),
+        };
+        other.into_iter().chain(shear).chain(volume).chain(self.positive.as_ref().map(positive_note)).collect()
     }
 }

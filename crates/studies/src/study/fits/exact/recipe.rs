@@ -1,10 +1,10 @@
 //! An exact network, before the material is known.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::{ExactEnergy, ExactFit, VolumeSprings, fit_exact};
+use crate::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use crate::material::{Energy, EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::patch_springs;
+use crate::model::{edge_springs, patch_springs};
 use crate::positive::PositiveFit;
 
 /// The settings of an exact network, before the material is known.
@@ -12,6 +12,8 @@ use crate::positive::PositiveFit;
 pub struct ExactRecipe {
     /// The energy; if absent that of the material's law, or the stable neo-Hookean one if the material has no law.
     pub energy: Option<ExactEnergy>,
+    /// The domains over which shear springs average the deformation.
+    pub shear: ShearSprings,
     /// The contents that volume springs measure.
     pub volume: VolumeSprings,
     /// The settings of the nearest network without negative springs, if it is requested.
@@ -55,11 +57,11 @@ impl ExactRecipe {
             (None, Some(law)) => of_law(law)?,
             (None, None) => ExactEnergy::default(),
         };
-        Ok(ExactFit { energy, volume: self.volume, large: law.is_some() })
+        Ok(ExactFit { energy, shear: self.shear, volume: self.volume, large: law.is_some() })
     }
 
     /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
-    /// patches are constructed.
+    /// domains of edges and patches are constructed.
     pub fn serves(&self, laws: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> bool {
         let (Ok(fit), Ok(materials)) = (self.resolve_all(laws), material.materials()) else { return false };
         let block = |(index, block): (usize, &CellBlock)| {
@@ -68,6 +70,10 @@ impl ExactRecipe {
             fit_exact(&block.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()
         };
         let patches = fit.volume == VolumeSprings::Patches;
-        mesh.blocks.iter().enumerate().all(block) && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
+        let shear = match fit.shear {
+            ShearSprings::Cells => mesh.blocks.iter().enumerate().all(block),
+            ShearSprings::Edges => edge_springs(mesh, material.clone(), &fit).is_ok(),
+        };
+        shear && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
     }
 }

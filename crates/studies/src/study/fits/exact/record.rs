@@ -12,6 +12,8 @@ pub struct ExactRecord {
     pub objective: String,
     /// The energy. Null: that of the material's law, or the stable neo-Hookean one if there is no law.
     pub energy: Option<String>,
+    /// The domains over which shear springs average the deformation: `cells` or `edges`.
+    pub shear: String,
     /// The contents that volume springs measure: `points`, `cells` or `patches`.
     pub volume: String,
     /// The share of the second invariant, if the energy has one.
@@ -27,6 +29,7 @@ impl ExactRecord {
         ExactRecord {
             objective: "exact".into(),
             energy: recipe.energy.as_ref().map(ExactEnergy::name).map(String::from),
+            shear: recipe.shear.name().into(),
             volume: recipe.volume.name().into(),
             nonnegative: recipe.positive.is_some(),
             across: recipe.positive.is_some_and(|positive| positive.across),
