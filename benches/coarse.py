@@ -1,5 +1,5 @@
 """What a coarse network gains that is fitted to a fine body: median and largest error of thirty loads that no fit has seen, for each
-support, as geometric means over the seeds of the loads.
+support, as geometric means over the seeds of the loads; and the frequencies of networks whose masses are fitted to the first six.
 
 Usage: pip install gmsh; python benches/coarse.py [--springfit target/release/springfit] [--seeds 5] [--bodies cantilever,...]
 """
@@ -26,6 +26,7 @@ file = "coarse.msh"
 [material]
 young = "5 kPa"
 poisson = {poisson}
+density = 1000
 [reference]
 mesh = {{ file = "fine.msh" }}
 [[fit]]
@@ -35,12 +36,14 @@ start = "exact"
 volume = "patches"
 supports = [["left"], ["left", "right"]]
 validate_supports = [["bottom"]]
+masses = 6
 seed = {seed}
 [[fit]]
 name = "one support"
 objective = "whole"
 start = "exact"
 volume = "patches"
+masses = 6
 seed = {seed}
 [[fix]]
 group = "left"
@@ -102,7 +105,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             points = mesh(kind, coarse, 1, folder / "coarse.msh"), mesh(kind, fine, 2, folder / "fine.msh")
-            found = {}
+            found, vibrating = {}, {}
             for seed in range(1, options.seeds + 1):
                 (folder / "scene.toml").write_text(SCENE.format(poisson=poisson, seed=seed))
                 subprocess.run([springfit, "run", "scene.toml", "--out", "out", "-q"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
@@ -112,9 +115,16 @@ def main():
                         models = {model["model"]: model for model in held["models"]}
                         key = fit["name"], held["support"] + ("" if held["trained"] else ", not fitted")
                         found.setdefault(key, []).append([models[m][k] for m in ("finite elements", "fitted") for k in ("median", "worst")])
+                    for held in fit["whole"]["masses"]["supports"]:
+                        models = {model["model"]: model for model in held["models"]}
+                        key = fit["name"], held["support"] + ("" if held["trained"] else ", not fitted")
+                        vibrating.setdefault(key, []).append([models[m][k] for m in ("finite elements", "fitted masses") for k in ("first", "next")])
             for (fit, support), rows in found.items():
                 body, worst_body, own, worst = (100 * mean(column) for column in zip(*rows))
-                print(f"{name} | {points[0]} / {points[1]} | {fit} | {support} | {body:.2f} ({worst_body:.1f}) | {own:.2f} ({worst:.1f}) | {body / own:.1f}")
+                print(f"{name} | {points[0]} / {points[1]} | {fit} | {support} | {body:.2f} ({worst_body:.1f}) | {own:.2f} ({worst:.1f}) | {body / own:.1f}", flush=True)
+            for (fit, support), rows in vibrating.items():
+                first, following, own, next_own = (100 * mean(column) for column in zip(*rows))
+                print(f"{name} | {points[0]} / {points[1]} | {fit} | {support} | frequencies 1 to 6 / 7 to 12: {first:.1f} / {following:.1f} | {own:.1f} / {next_own:.1f} | {following / next_own:.1f}", flush=True)
 
 
 if __name__ == "__main__":

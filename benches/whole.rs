@@ -70,7 +70,7 @@ fn main() {
         // The first analyses the pattern.
         at();
         let solve = median(|| drop(at()));
-        let gradient = median(|| drop(at().objective(1e-3)));
+        let gradient = median(|| drop(at().objective(1e-3).unwrap()));
         drop(problem);
         let (dofs, loads) = (system.size(), trained.len());
         let wanted = Wanted { trained, validation, ..Wanted::default() };

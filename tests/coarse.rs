@@ -121,3 +121,70 @@ fn a_coarse_network_answers_like_a_finer_body() {
         );
     }
 }
+
+/// Frequencies after those that the masses were fitted to err at most a third as much as those of the finite elements of the mesh. Mass and centre are those of the finer body, worked out here from its size, and
+/// second moments its own or those of lumped masses.
+#[test]
+fn masses_give_the_frequencies_of_a_finer_body() {
+    let keys = "masses = 6\nvolume = \"patches\"";
+    let text = SCENE.replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
+    let text = text.replace("cells = [4, 1, 1]", "cells = [8, 2, 2]");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, text.replace("ELEMENT", "tet4").replace("KEYS", keys)).unwrap();
+    let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+    let found = outcome.fits[1].kind.whole().unwrap().masses.as_ref().unwrap();
+    assert!(found.supports.len() == 1);
+    for support in &found.supports {
+        let error = |model: &str| support.models.iter().find(|m| m.model == model).unwrap();
+        let (body, own) = (error("finite elements"), error("fitted masses"));
+        println!("{}: {:?}", support.support, support.models);
+        assert!(own.next < body.next / 3.0 && own.first < body.first / 3.0, "{}: {own:?} {body:?}", support.support);
+    }
+    let masses = outcome.fits[1].masses().unwrap();
+    assert!(masses.iter().all(|m| *m > 0.0));
+    let points = &outcome.mesh.points;
+    let sum = |of: &dyn Fn(&[f64]) -> f64| points.chunks_exact(3).zip(masses).map(|(x, m)| m * of(x)).sum::<f64>();
+    // A block of 4 × 1 × 1 m with 1000 kg/m³ has 4000 kg, and second moments m L²/12 about its centre.
+    let near = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-6 * 4000.0, "{found} {exact}");
+    near(sum(&|_| 1.0), 4000.0);
+    let lumped = outcome.masses.as_ref().unwrap();
+    let second = |masses: &[f64], k: usize, l: usize| {
+        let of = |x: &[f64]| (x[k] - [2.0, 0.5, 0.5][k]) * (x[l] - [2.0, 0.5, 0.5][l]);
+        points.chunks_exact(3).zip(masses).map(|(x, m)| m * of(x)).sum::<f64>()
+    };
+    for (k, side) in [4.0, 1.0, 1.0].into_iter().enumerate() {
+        near(sum(&|x| x[k] - side / 2.0), 0.0);
+        for l in 0..=k {
+            // m L²/12 about the middle of a block, or what lumped masses have.
+            let exact = if k == l { 4000.0 * side * side / 12.0 } else { 0.0 };
+            near(second(masses, k, l), if found.second_error < 1e-6 { exact } else { second(lumped, k, l) });
+        }
+    }
+    // The files of the network have them.
+    let file = springfit::report::NetworkFile::of(&outcome, &outcome.fits[1]);
+    assert_eq!(file.masses().unwrap(), masses);
+    assert_eq!(springfit::report::NetworkFile::of(&outcome, &outcome.fits[0]).masses(), outcome.masses.as_deref());
+}
+
+/// A material without density, and more frequencies than there are, are refused.
+#[test]
+fn masses_that_cannot_be_fitted_are_named() {
+    let text = |keys: &str, density: &str| {
+        let material = format!("poisson = 0.3\n{density}");
+        SCENE.replace("poisson = 0.3", &material).replace("ELEMENT", "hex8").replace("KEYS", keys)
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let of = |keys: &str, density: &str| {
+        std::fs::write(&path, text(keys, density)).unwrap();
+        Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {}))
+    };
+    let outcome = of("masses = 2", "density = 1000").unwrap();
+    let found = outcome.fits[1].kind.whole().unwrap().masses.as_ref().unwrap();
+    assert!((found.masses.iter().sum::<f64>() - 4000.0).abs() < 1e-6);
+    let error = of("masses = 2", "").unwrap_err().to_string();
+    assert!(error.contains("masses") && error.contains("density"), "{error}");
+    let error = of("masses = 100", "density = 1000").unwrap_err().to_string();
+    assert!(error.contains("masses") && error.contains("free degrees of freedom"), "{error}");
+}

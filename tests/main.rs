@@ -41,6 +41,7 @@ mod linear_theory;
 mod locking;
 mod material;
 mod matrix_errors;
+mod measurements;
 mod measures;
 mod mesh_files;
 mod messages;

@@ -3,11 +3,11 @@
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
-use springfit::material::{CellMap, Material};
+use springfit::material::{CellMap, Hooke, Material};
 use springfit::mesh::{CellIndex, Group, Mesh, vtk};
 use springfit::model::{Network, Support, finite_elements, masses};
 use springfit::report;
-use springfit::solve::{Newton, System, lowest_modes};
+use springfit::solve::{Equations, Newton, System, lowest_modes};
 use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
@@ -60,6 +60,14 @@ impl Body {
         let mut fits: Vec<CellFits> = self.mesh.blocks.iter().map(of_block).collect();
         raise_idle(&mut fits);
         fits
+    }
+
+    fn equations_of(&self, support: &Support) -> Equations {
+        Equations::factored(&finite_elements(&self.mesh, self.material.moduli()), support).unwrap().unwrap()
+    }
+
+    fn equations(&self) -> Equations {
+        self.equations_of(&self.support)
     }
 
     fn target(&self, load: NodalLoad) -> Target {
@@ -122,8 +130,9 @@ fn derivatives_are_those_of_differences() {
         let object = Object::new(&network, &body.mesh.points, unknowns, None).unwrap();
         let problem = Displacements::new(&object, targets.iter().collect(), Some(&frequencies)).unwrap();
         compare_with_differences(&problem);
-        let entries = finite_elements(&body.mesh, body.material.moduli());
-        compare_with_differences(&ResidualForces::new(&object, vec![&targets[0], &targets[2]], &entries).unwrap());
+        let equations: Vec<_> =
+            [&targets[0], &targets[2]].map(|t| (t.support.clone(), body.equations_of(&t.support))).into();
+        compare_with_differences(&ResidualForces::new(&object, vec![&targets[0], &targets[2]], &equations).unwrap());
     }
 }
 
@@ -287,7 +296,7 @@ fn intervals_of_moduli_hold_the_truth() {
             };
             let found = quietly(&object, &wanted, &settings);
             let problem = Displacements::new(&object, trained.iter().collect(), None).unwrap();
-            let known = Determination::of(&problem, &found.theta).unwrap();
+            let known = Determination::of(&problem, &found.theta, None).unwrap();
             for ((theta, truth), deviation) in found.theta.iter().zip(&truth).zip(&known.deviations) {
                 held += usize::from((theta - truth).abs() <= 1.96 * deviation.unwrap());
                 total += 1;
@@ -352,17 +361,17 @@ fn compare_with_differences(problem: &dyn LeastSquares) {
     let v = waves(m, 1.0);
     let w: Vec<Vec<f64>> = at.residuals.iter().map(|r| waves(r.len(), 0.7)).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let forward: f64 = at.forward(&v).iter().zip(&w).map(|(a, b)| dot(a, b)).sum();
-    let adjoint = dot(&v, &at.adjoint(&w));
+    let forward: f64 = at.forward(&v).unwrap().iter().zip(&w).map(|(a, b)| dot(a, b)).sum();
+    let adjoint = dot(&v, &at.adjoint(&w).unwrap());
     assert!((forward - adjoint).abs() < 1e-8 * forward.abs(), "{forward} {adjoint}");
     let rho = 0.1;
-    let (_, gradient) = at.objective(rho);
+    let (_, gradient) = at.objective(rho).unwrap();
     let largest = gradient.iter().fold(0.0f64, |a, g| a.max(g.abs()));
     for i in (0..m).step_by(m.div_ceil(20)) {
         let moved = |h: f64| {
             let mut theta = theta.clone();
             theta[i] += h;
-            problem.at(&theta).unwrap().unwrap().objective(rho).0
+            problem.at(&theta).unwrap().unwrap().objective(rho).unwrap().0
         };
         let slope = (moved(1e-4) - moved(-1e-4)) / 2e-4;
         assert!((slope - gradient[i]).abs() < 1e-6 * largest, "{i}: {slope} {}", gradient[i]);
@@ -379,8 +388,7 @@ fn what_a_network_did_is_found() {
     let factor = system.factorize().unwrap().unwrap();
     let mut trained = body.made();
     trained.iter_mut().for_each(|t| t.displacement = system.solve(&factor, &t.forces).0);
-    let wanted =
-        Wanted { trained, body: Some(finite_elements(&body.mesh, body.material.moduli())), ..Wanted::default() };
+    let wanted = Wanted { trained, body: vec![(body.support.clone(), body.equations())], ..Wanted::default() };
     let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
     for (method, residual, limit) in [
         (
@@ -407,17 +415,17 @@ fn the_residual_of_forces_has_one_minimum() {
     let body = Body::new(&load("tissue_tri"), "fixed");
     let network = Network::assemble(&body.mesh, &body.fits(PLAIN, false));
     let targets = body.made();
-    let entries = finite_elements(&body.mesh, body.material.moduli());
+    let equations = [(body.support.clone(), body.equations())];
     let least = |network: &Network| {
         let object = Object::new(network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();
         let method = DescentMethod::GaussNewton(GaussNewton { products: 400, accuracy: 0.01, decrease: 1e-9 });
         let residual = Residual::Forces;
         let (regularizations, range) = (vec![0.0], f64::INFINITY);
         let settings = WholeSettings { regularizations, iterations: 100, method, residual, range };
-        let wanted = Wanted { trained: targets.clone(), body: Some(entries.clone()), ..Wanted::default() };
+        let wanted = Wanted { trained: targets.clone(), body: equations.to_vec(), ..Wanted::default() };
         let found = quietly(&object, &wanted, &settings);
         let object = Object::new(&found.network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();
-        let balance = ResidualForces::new(&object, targets.iter().collect(), &entries).unwrap();
+        let balance = ResidualForces::new(&object, targets.iter().collect(), &equations).unwrap();
         balance.at(&vec![0.0; network.len()]).unwrap().unwrap().square()
     };
     let far = network.scaled(&waves(network.len(), 1.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
@@ -570,6 +578,99 @@ fn frequencies_are_fitted() {
     let worst = |i: usize| whole.frequencies[i].iter().fold(0.0f64, |a, e| a.max(e.abs()));
     assert_eq!(whole.frequencies[0].len(), 4);
     assert!(worst(1) < 0.2 * worst(0) && worst(1) < 0.05, "{} {}", worst(0), worst(1));
+}
+
+/// Two regions 1 : 4, from springs of a uniform body: the path finds what no single ρ of a scan beats by more than a tenth on loads that are
+/// not fitted.
+#[test]
+fn the_path_is_as_good_as_a_scan() {
+    let body = Body::new(&load("cube_hex"), "zmin");
+    let high = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64 > 0.01;
+    let own = |cell: &[usize]| {
+        let young = if high(cell) { 4.0 } else { 1.0 } * body.material.young();
+        Hooke::Isotropic(Material::new(young, body.material.poisson(), body.material.state()).unwrap().moduli())
+    };
+    let moduli = CellMap::of_blocks(vec![body.mesh.blocks[0].cells().map(own).collect()]);
+    let entries = finite_elements(&body.mesh, moduli);
+    let equations = Equations::factored(&entries, &body.support).unwrap().unwrap();
+    let moved = |load: NodalLoad| {
+        let u = equations.solve(&load.forces).unwrap().0;
+        Target::new(load.name, body.support.clone(), load.forces, u)
+    };
+    let made = |loads: Vec<NodalLoad>| loads.into_iter().map(moved).collect::<Vec<Target>>();
+    let trained = made(made_loads(&body.mesh, &body.support, 1.0));
+    let validation = Validation::Loads(made(random_loads(&body.mesh, &body.support, 1.0, 4, 5)));
+    let network = Network::assemble(&body.mesh, &body.fits(Objective::Frobenius(Weight::OffDiagonal), false));
+    let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
+    let wanted = Wanted { trained, validation, ..Wanted::default() };
+    let error = |regularizations: &[f64]| {
+        let settings = WholeSettings { regularizations: regularizations.to_vec(), ..WholeSettings::default() };
+        let found = quietly(&object, &wanted, &settings);
+        let mean = |errors: &[f64]| (errors.iter().map(|e| e.ln()).sum::<f64>() / errors.len() as f64).exp();
+        (mean(&found.validated[0].loads), mean(&found.validated[1].loads))
+    };
+    let (start, path) = error(&WholeSettings::REGULARIZATIONS);
+    let scan: Vec<f64> = WholeSettings::REGULARIZATIONS.iter().map(|rho| error(&[*rho]).1).collect();
+    println!("start {start:.4}, path {path:.4}, scan {scan:.4?}");
+    let best = scan.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(path < 1.1 * best && path < start / 4.0, "{start} {path} {scan:?}");
+}
+
+fn boxes_of_tetrahedra(sides: &[usize]) {
+    for side in sides {
+        let text = BRICK.replace("MEASURED", "").replace("KEYS", "start = [\"exact\", \"offdiag\"]\niterations = 3");
+        let cells = format!("element = \"tet4\", size = [1, 1, 1], cells = [{side}, {side}, {side}]");
+        let text = text.replace("element = \"hex8\", size = [1, 1, 2], cells = [3, 3, 6]", &cells);
+        let outcome = run(&written(&text).1, &mut |_| {}).unwrap();
+        let error = |fit: usize| ["tension", "shear"].map(|load| rms(&outcome.fits[fit].loads, load));
+        println!("{side}: exact {:.4?}, offdiag {:.1?} %", error(1), error(2));
+        assert!(error(1).iter().all(|e| *e < 0.005), "{side}: {:?}", error(1));
+        assert!(error(2).iter().any(|e| *e > 5.0), "{side}: {:?}", error(2));
+        assert!(
+            outcome.fits[2]
+                .kind
+                .whole()
+                .unwrap()
+                .notes()
+                .iter()
+                .any(|note| note.contains("start = \"exact\" has the capacity"))
+        );
+        assert!(!outcome.fits[1].kind.whole().unwrap().notes().iter().any(|note| note.contains("has the capacity")));
+    }
+}
+
+/// On regular boxes of tetrahedra springs with the rest lengths of the mesh have not the capacity, which is said with the start that has; that
+/// one has errors of rounding under loads that it has not seen.
+#[test]
+fn boxes_of_tetrahedra_need_the_exact_start() {
+    boxes_of_tetrahedra(&[5, 7]);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn larger_boxes_of_tetrahedra_need_the_exact_start() {
+    boxes_of_tetrahedra(&[9, 12, 16]);
+}
+
+/// Iterations with multigrid in place of factors lead to the same network, whatever the unknowns are.
+#[test]
+fn iterations_lead_to_the_same_network() {
+    let exact =
+        "start = \"exact\"\nunknowns = \"body-moduli\"\nloads = [\"tension\", \"torsion\"]\nregularization = 1e-3";
+    for keys in ["regularization = 1e-2\niterations = 3", exact] {
+        let of = |method: &str| {
+            let text =
+                BRICK.replace("KEYS", keys).replace("MEASURED", "") + &format!("[solver]\nmethod = \"{method}\"\n");
+            run(&written(&text).1, &mut |_| {}).unwrap()
+        };
+        let [factors, iterations] = ["cholesky", "multigrid"].map(of);
+        assert_eq!(iterations.fits[1].loads[0].solved_lem.as_ref().unwrap().method, "multigrid");
+        for load in ["tension", "shear", "torsion"] {
+            let (a, b) = (rms(&factors.fits[1].loads, load), rms(&iterations.fits[1].loads, load));
+            // Products with the Jacobian are accurate to 1e-5, so that steps differ a little.
+            assert!((a - b).abs() < 0.02 * rms(&factors.fits[0].loads, load), "{keys} {load}: {a} {b}");
+        }
+    }
 }
 
 /// Displacements from a file take the place of the finite elements': here those of a body half as stiff, some of them unknown.

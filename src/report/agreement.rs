@@ -36,7 +36,7 @@ pub fn agreements(outcome: &Outcome) -> Vec<Agreement> {
 fn agreement(recipe: &WholeRecipe, fits: &[&FitOutcome]) -> Option<Agreement> {
     let validated = match &recipe.validation {
         ValidationRecipe::Loads(loads) => &loads.names[..],
-        ValidationRecipe::LeaveOneOut | ValidationRecipe::None => &[],
+        ValidationRecipe::LeaveOneOut | ValidationRecipe::Discrepancy | ValidationRecipe::None => &[],
     };
     let difference = |l: usize| {
         let errors = fits.iter().map(|fit| fit.loads[l].error.map_or(f64::INFINITY, |e| e.rms));

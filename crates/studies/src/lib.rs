@@ -8,5 +8,5 @@ pub mod study;
 
 // The layers below, by the same names as everywhere.
 use springfit_bodies::{dynamics, mesh, model, positive, solve, whole};
-use springfit_foundation::{bound, error, file, named, quantity, range, scalar, symbolic, text};
+use springfit_foundation::{bound, error, file, memory, named, quantity, range, scalar, symbolic, text};
 use springfit_kernels::{element, fit, material, springs, stiffness};

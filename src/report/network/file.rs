@@ -49,9 +49,12 @@ impl<'a> NetworkFile<'a> {
         NetworkFile { mesh, network, study: None }
     }
 
-    /// The masses of the motion, or those of the density, `[points]`, kg.
+    /// The masses that were fitted, or those of the motion, or of the density, `[points]`, kg.
     pub fn masses(&self) -> Option<&'a [f64]> {
-        let outcome = self.study?.0;
+        let (outcome, fit) = self.study?;
+        if let Some(fitted) = fit.masses() {
+            return Some(fitted);
+        }
         outcome.motion.as_ref().map(|motion| &motion.masses[..]).or(outcome.masses.as_deref())
     }
 

@@ -134,7 +134,7 @@ impl Mesh {
     }
 
     /// The names of the groups to which each cell belongs, by block and cell.
-    pub(crate) fn regions(&self) -> Vec<Vec<Vec<&str>>> {
+    pub fn regions(&self) -> Vec<Vec<Vec<&str>>> {
         let mut regions: Vec<Vec<Vec<&str>>> = self.blocks.iter().map(|b| vec![Vec::new(); b.cells().len()]).collect();
         for (name, group) in &self.groups {
             group.cells.iter().for_each(|cell| regions[cell.block][cell.cell].push(name));

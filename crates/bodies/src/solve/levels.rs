@@ -86,6 +86,11 @@ impl Levels {
         &self.stiffness
     }
 
+    /// The number of degrees of freedom, free or held.
+    pub fn degrees(&self) -> usize {
+        self.prescribed.len()
+    }
+
     /// The number of free degrees of freedom.
     pub fn size(&self) -> usize {
         self.prescribed.iter().filter(|u| u.is_none()).count()
@@ -100,6 +105,14 @@ impl Levels {
         let found = self.found(&force, solver, share)?;
         displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
         Ok((displacement, self.told("multigrid", &found)))
+    }
+
+    /// The changes of the displacements for changes of the nodal forces.
+    ///
+    /// # Errors
+    /// As [`Levels::solve`].
+    pub fn respond(&self, f: &[f64], solver: &StaticSolver) -> Result<Vec<f64>> {
+        Ok(self.found(f, solver, &mut |_| ())?.displacement)
     }
 
     /// What is free, with all else zero.

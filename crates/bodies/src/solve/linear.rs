@@ -116,6 +116,11 @@ impl System {
         System { matrix, lost, reaction, prescribed: support.prescribed.clone(), pattern }
     }
 
+    /// The number of degrees of freedom, free or held.
+    pub fn degrees(&self) -> usize {
+        self.prescribed.len()
+    }
+
     /// The number of free degrees of freedom.
     pub fn size(&self) -> usize {
         self.pattern.free.len()

@@ -4,6 +4,7 @@
 //! Theory: pages *Stiffness and the reduced space* and *Precision* of the book.
 
 mod cholesky;
+mod equations;
 mod expectation;
 mod internal;
 mod levels;
@@ -13,6 +14,7 @@ mod modes;
 mod newton;
 mod stability;
 
+pub use equations::Equations;
 pub use expectation::{FactorCost, dense_rate, factor_cost};
 pub use levels::{Levels, Solved, compare_levels};
 pub use linear::{Factor, System};

@@ -75,7 +75,22 @@ impl Newton {
     /// # Errors
     /// The tangent does not fit into memory.
     pub fn solve(&self, model: &dyn Elastic, points: &[f64], support: &Support, forces: &[f64]) -> Result<Equilibrium> {
-        let mut statics = Statics::new(*self, Rest { model, points, support }, forces);
+        self.solve_with(model, points, support, forces, None)
+    }
+
+    /// The same with the [pattern](Newton::pattern) of the tangents, if it is known.
+    ///
+    /// # Errors
+    /// The tangent does not fit into memory.
+    pub fn solve_with(
+        &self,
+        model: &dyn Elastic,
+        points: &[f64],
+        support: &Support,
+        forces: &[f64],
+        pattern: Option<&System>,
+    ) -> Result<Equilibrium> {
+        let mut statics = Statics::new(*self, Rest { model, points, support }, forces, pattern);
         let mut found = Equilibrium {
             ending: Ending::Converged,
             displacement: vec![0.0; points.len()],
@@ -124,12 +139,37 @@ impl Newton {
         support: &Support,
         forces: &[f64],
         guess: &[f64],
+        pattern: Option<&System>,
     ) -> Result<Option<Vec<f64>>> {
-        let mut statics = Statics::new(*self, Rest { model, points, support }, forces);
+        let mut statics = Statics::new(*self, Rest { model, points, support }, forces, pattern);
         let mut u = guess.to_vec();
         let (_, balance) = statics.settle(1.0, &mut u)?;
         Ok((balance != ForceBalance::None).then_some(u))
     }
+
+    /// Equations whose pattern all steps of a model share that has this tangent; it is analysed when it is first needed, once for all of
+    /// its copies.
+    ///
+    /// # Errors
+    /// The tangent does not fit into memory.
+    pub fn pattern(tangent: &Entries, support: &Support) -> Result<System> {
+        System::new(&raised(tangent, support.prescribed.len(), 0.0), support)
+    }
+
+    /// The equations of a tangent in a known [pattern](Newton::pattern).
+    ///
+    /// # Errors
+    /// The tangent does not fit into memory.
+    pub fn equations(pattern: &System, tangent: &Entries, support: &Support) -> Result<System> {
+        pattern.renewed(&raised(tangent, support.prescribed.len(), 0.0), support)
+    }
+}
+
+/// A tangent with `shift` on its diagonal, in entries after its own.
+fn raised(tangent: &Entries, size: usize, shift: f64) -> Entries {
+    let mut raised = tangent.clone();
+    raised.extend((0..size).map(|i| Triplet::new(i, i, shift)));
+    raised
 }
 
 /// Whether the forces are in equilibrium.
@@ -156,12 +196,12 @@ struct Statics<'a> {
 }
 
 impl<'a> Statics<'a> {
-    fn new(newton: Newton, rest: Rest<'a>, forces: &'a [f64]) -> Statics<'a> {
+    fn new(newton: Newton, rest: Rest<'a>, forces: &'a [f64], pattern: Option<&System>) -> Statics<'a> {
         let mut tension = vec![0.0; forces.len()];
         if !rest.model.forces(rest.points, &mut tension) {
             tension.fill(0.0);
         }
-        Statics { newton, rest, tension, forces, known: None, shifted: 0 }
+        Statics { newton, rest, tension, forces, known: pattern.cloned(), shifted: 0 }
     }
 
     /// Newton's method at one load; returns the residuals, and whether the forces are in equilibrium. If the rounding
@@ -247,10 +287,8 @@ fn direction(
     let support = Support { prescribed: moves };
     let diagonal = tangent.iter().filter(|e| e.row == e.col).map(|e| e.val.abs()).fold(0.0, f64::max);
     let mut shift = 0.0;
-    let mut shifted = tangent.clone();
     loop {
-        shifted.truncate(tangent.len());
-        shifted.extend((0..rest.len()).map(|i| Triplet::new(i, i, shift * diagonal)));
+        let shifted = raised(tangent, rest.len(), shift * diagonal);
         let system = match known.take() {
             Some(known) => known.renewed(&shifted, &support)?,
             None => System::new(&shifted, &support)?,

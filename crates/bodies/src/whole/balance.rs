@@ -1,13 +1,13 @@
 //! The residual forces at the target displacements.
 
 use super::displacements::Displacements;
-use super::linearized::{LeastSquares, Linearized, Tangent};
+use super::linearized::{LeastSquares, Linearized, PRODUCT, Tangent};
 use super::object::Object;
 use super::parts::PartVectors;
 use super::target::Target;
 use crate::error::{Error, ErrorKind, Result};
-use crate::model::{Entries, displaced};
-use crate::solve::System;
+use crate::model::{Support, displaced};
+use crate::solve::Equations;
 use std::sync::Arc;
 
 /// The residuals `r_l = √w_l R⁻¹ (f_l − F(ū_l; θ))/‖ū_l‖`, with R the stiffness of the finite elements at rest. They
@@ -22,11 +22,15 @@ pub struct ResidualForces<'a> {
 }
 
 impl<'a> ResidualForces<'a> {
-    /// `body` is the stiffness of the finite elements.
+    /// `body` has the equations of the finite elements under each support.
     ///
     /// # Errors
-    /// It is not positive definite, a load moves nothing, or a displacement is not known at every point.
-    pub fn new(object: &'a Object<'a>, targets: Vec<&'a Target>, body: &Entries) -> Result<ResidualForces<'a>> {
+    /// They lack a support, a load moves nothing, or a displacement is not known at every point.
+    pub fn new(
+        object: &'a Object<'a>,
+        targets: Vec<&'a Target>,
+        body: &[(Support, Equations)],
+    ) -> Result<ResidualForces<'a>> {
         let displacements = Displacements::new(object, targets, None)?;
         let Displacements { targets, scales, groups, .. } = displacements;
         if let Some(target) = targets.iter().find(|target| target.weights.contains(&0.0)) {
@@ -35,16 +39,15 @@ impl<'a> ResidualForces<'a> {
         }
         let mut all = Vec::new();
         for group in groups {
-            let system = System::new(body, &targets[group[0]].support)?;
-            let singular = || Error::new("the finite elements do not stand").of_kind(ErrorKind::Infeasible);
-            let factor = system.cholesky()?.ok_or_else(singular)?;
-            let (system, factor) = (Arc::new(system), Arc::new(factor));
+            let missing = || Error::new("the finite elements do not stand").of_kind(ErrorKind::Infeasible);
+            let held = body.iter().find(|(support, _)| *support == targets[group[0]].support);
+            let equations = held.ok_or_else(missing)?.1.clone();
             let forces = |l: usize| match object.newton {
                 None => object.forces(&targets[l].displacement),
                 Some(_) => object.forces_at(&displaced(object.points, &targets[l].displacement)),
             };
             let loads = group.iter().map(|&l| (l, Arc::new(forces(l)))).collect();
-            all.push(Tangent { system, factor, loads });
+            all.push(Tangent { equations, loads });
         }
         Ok(ResidualForces { object, scales, targets, tangents: all })
     }
@@ -65,7 +68,7 @@ impl LeastSquares for ResidualForces<'_> {
                 rest
             };
             let forces: Vec<Vec<f64>> = tangent.loads.iter().map(rest).collect();
-            for ((l, _), mut r) in tangent.loads.iter().zip(tangent.system.respond_all(&tangent.factor, &forces)) {
+            for ((l, _), mut r) in tangent.loads.iter().zip(tangent.equations.respond_all(&forces, PRODUCT)?) {
                 r.iter_mut().zip(&self.scales[*l]).for_each(|(r, s)| *r *= s);
                 residuals[*l] = r;
             }

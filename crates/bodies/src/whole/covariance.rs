@@ -14,6 +14,11 @@ const UNSEEN: f64 = 1e-7;
 /// The share of an undetermined combination from which on an unknown belongs to it.
 const PART: f64 = 0.05;
 
+/// The factor that the 95 % interval of a weak combination of unknowns exceeds on either side.
+const WEAK: f64 = 2.0;
+/// Deviations on either side that hold 95 % of a normal distribution.
+pub const NINETY_FIVE: f64 = 1.96;
+
 /// What the residuals say of the unknowns.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -22,57 +27,72 @@ pub struct Determination {
     pub deviations: Vec<Option<f64>>,
     /// The standard deviation of a residual: the relative error of a displacement, with that of one load as its unit.
     pub residual: f64,
+    /// Combinations that the displacements hardly see, or not at all, each by its unknowns: those whose 95 % intervals reach beyond the
+    /// factor 2.
+    pub weak: Vec<Vec<usize>>,
 }
 
 impl Determination {
-    /// The deviations at θ, by linearisation: `s² (JᵀJ)⁻¹` with `s² = Σ r²/(n − m)` (Seber and Wild 2003, 2.1.2). They hold if
-    /// the differences between the displacements are independent errors of equal size within each load, such as the noise of a
-    /// measurement; errors of the mesh are not, and are not in them.
+    /// The deviations at θ, by linearisation: `s² (JᵀJ)⁻¹` with the standard deviation `noise` of a residual for s, or
+    /// `s² = Σ r²/(n − m)` where it is not known (Seber and Wild 2003, 2.1.2). They hold if the differences between the displacements are
+    /// independent errors of equal size within each load, such as the noise of a measurement; errors of the mesh are not, and are not in
+    /// them.
     ///
     /// # Errors
     /// The equations do not fit into memory, the network is unstable at θ, or there are more unknowns than
     /// [`MOST_ESTIMATED`] or than displacements.
-    pub fn of(problem: &Displacements, theta: &[f64]) -> Result<Determination> {
+    pub fn of(problem: &Displacements, theta: &[f64], noise: Option<f64>) -> Result<Determination> {
         let m = theta.len();
         if m > MOST_ESTIMATED || m != problem.unknowns() {
             return Err(Error::expected("unknowns", format!("at most {MOST_ESTIMATED}, those of the problem"), m));
         }
         let at = problem.at(theta)?.ok_or_else(|| Error::expected("network", "a stable one", "one that is not"))?;
-        let column = |p: usize| -> Vec<f64> {
+        let column = |p: usize| -> Result<Vec<f64>> {
             let unit: Vec<f64> = (0..m).map(|q| f64::from(u8::from(p == q))).collect();
-            at.forward(&unit).concat()
+            Ok(at.forward(&unit)?.concat())
         };
-        let columns: Vec<DVector<f64>> = (0..m).map(|p| DVector::from_vec(column(p))).collect();
+        let columns = (0..m).map(|p| Ok(DVector::from_vec(column(p)?))).collect::<Result<Vec<DVector<f64>>>>()?;
         let seen = problem.observations();
         if seen <= m {
             return Err(Error::expected("displacements", format!("more than {m} that are known"), seen));
         }
         let residual = (at.square() / (seen - m) as f64).sqrt();
+        let size = noise.unwrap_or(residual);
         let norms: Vec<f64> = columns.iter().map(|column| column.norm()).collect();
         let largest = norms.iter().copied().fold(0.0, f64::max);
+        let is_seen = |p: usize| norms[p] > UNSEEN * largest;
         // In units in which every unknown changes the residuals alike.
         let scaled = DMatrix::from_fn(m, m, |p, q| {
-            if norms[p] > UNSEEN * largest && norms[q] > UNSEEN * largest {
+            if is_seen(p) && is_seen(q) {
                 columns[p].dot(&columns[q]) / (norms[p] * norms[q])
             } else {
                 f64::from(u8::from(p == q))
             }
         });
         let eigen = scaled.symmetric_eigen();
+        let pairs = || eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
         let deviation = |p: usize| {
-            if !(norms[p] > UNSEEN * largest) {
+            if !is_seen(p) {
                 return None;
             }
             let mut variance = 0.0;
-            for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            for (value, vector) in pairs() {
                 if *value > UNSEEN * UNSEEN {
                     variance += vector[p] * vector[p] / value;
                 } else if vector[p].abs() > PART {
                     return None;
                 }
             }
-            Some(residual * variance.sqrt() / norms[p])
+            Some(size * variance.sqrt() / norms[p])
         };
-        Ok(Determination { deviations: (0..m).map(deviation).collect(), residual })
+        let mut weak: Vec<Vec<usize>> = (0..m).filter(|&p| !is_seen(p)).map(|p| vec![p]).collect();
+        for (value, vector) in pairs() {
+            let own: Vec<usize> = (0..m).filter(|&p| is_seen(p) && vector[p].abs() > PART).collect();
+            let width = |p: usize| NINETY_FIVE * size * vector[p].abs() / (value.sqrt() * norms[p]);
+            if own.iter().any(|&p| !(*value > UNSEEN * UNSEEN) || width(p) > WEAK.ln()) {
+                weak.push(own);
+            }
+        }
+        Ok(Determination { deviations: (0..m).map(deviation).collect(), residual, weak })
     }
 }

@@ -46,7 +46,13 @@ impl Objective<'_> {
                 return Err(error.into());
             }
         };
-        let (value, gradient) = linearized.objective(self.rho);
+        let (value, gradient) = match linearized.objective(self.rho) {
+            Ok(found) => found,
+            Err(error) => {
+                known.error = Some(error.clone());
+                return Err(error.into());
+            }
+        };
         known.last = Some((theta.to_vec(), value, gradient.clone()));
         if value < known.best.0 {
             known.best = (value, theta.to_vec());

@@ -3,9 +3,9 @@
 use super::linearized::{LeastSquares, Linearized, Tangent};
 use super::object::Object;
 use super::target::{Frequencies, Target};
-use crate::error::{Error, Result};
-use crate::model::{Elastic, Entries, Network, Support, displaced};
-use crate::solve::{Factor, System, lowest_modes};
+use crate::error::{Error, ErrorKind, Result};
+use crate::model::{BlockStiffness, Elastic, Network, Support, displaced};
+use crate::solve::{Equations, Newton, System};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -20,6 +20,8 @@ pub struct Displacements<'a> {
     pub(super) groups: Vec<Vec<usize>>,
     /// The equations of each group, whose pattern is reused.
     systems: Mutex<Vec<Option<Arc<System>>>>,
+    /// The last stiffness that was solved by iterations, whose pattern is reused.
+    blocks: Mutex<Option<BlockStiffness>>,
     /// The displacements from which the next search for an equilibrium starts.
     guesses: Mutex<Vec<Option<Vec<f64>>>>,
 }
@@ -71,7 +73,8 @@ impl<'a> Displacements<'a> {
         }
         // The last group is that of the frequencies.
         let systems = Mutex::new(vec![None; groups.len() + 1]);
-        Ok(Displacements { object, targets, frequencies, scales, groups, systems, guesses })
+        let blocks = Mutex::default();
+        Ok(Displacements { object, targets, frequencies, scales, groups, systems, blocks, guesses })
     }
 
     /// The number of displacements that are known and free to change.
@@ -125,36 +128,51 @@ impl<'a> Displacements<'a> {
         Ok(Some(own / both).filter(|alpha| *alpha > 0.0 && alpha.is_finite()))
     }
 
-    /// The stiffness with the springs at rest, factorised for each support; `None` if it is not positive definite.
-    fn factorize(
-        &self,
-        group: usize,
-        entries: &Entries,
-        support: &Support,
-    ) -> Result<Option<(Arc<System>, Arc<Factor>)>> {
-        let known = self.systems.lock().expect("nothing panics while it holds the systems")[group].take();
-        let system = Arc::new(match known {
-            Some(known) => known.renewed(entries, support)?,
-            None => System::new(entries, support)?,
-        });
-        self.systems.lock().expect("nothing panics while it holds the systems")[group] = Some(system.clone());
-        Ok(system.cholesky()?.map(|factor| (system, Arc::new(factor))))
+    /// The equations of each support at θ; `None` if the stiffness at rest is not positive definite.
+    fn equations(&self, theta: &[f64], supports: &[(usize, &Support)]) -> Result<Option<Vec<Equations>>> {
+        let object = self.object;
+        let Some(solver) = object.iterations else {
+            let entries = object.stiffness(theta);
+            let one = |(group, support): &(usize, &Support)| {
+                let lock = || self.systems.lock().expect("nothing panics while it holds the systems");
+                let known = lock()[*group].take();
+                let system = Arc::new(match known {
+                    Some(known) => known.renewed(&entries, support)?,
+                    None => System::new(&entries, support)?,
+                });
+                lock()[*group] = Some(system.clone());
+                Equations::of_system(system)
+            };
+            return supports.iter().map(one).collect();
+        };
+        let mut known = self.blocks.lock().expect("nothing panics while it holds the blocks");
+        let stiffness = BlockStiffness::of_network(&object.network(theta), object.points, known.as_ref());
+        *known = Some(stiffness.clone());
+        drop(known);
+        let one =
+            |(_, support): &(usize, &Support)| Equations::iterated(stiffness.clone(), object.points, support, solver);
+        supports.iter().map(one).collect()
     }
 
     /// The displacements of every load, and the tangents there.
-    fn small(&self, entries: &Entries) -> Result<Option<Moved>> {
+    fn small(&self, theta: &[f64]) -> Result<Option<Moved>> {
         let mut displacements = vec![Vec::new(); self.targets.len()];
         let mut tangents = Vec::new();
-        for (index, group) in self.groups.iter().enumerate() {
-            let support = &self.targets[group[0]].support;
-            let Some((system, factor)) = self.factorize(index, entries, support)? else { return Ok(None) };
+        let supports = self.groups.iter().enumerate().map(|(i, group)| (i, &self.targets[group[0]].support));
+        let Some(all) = self.equations(theta, &supports.collect::<Vec<_>>())? else { return Ok(None) };
+        for (group, equations) in self.groups.iter().zip(all) {
             let forces: Vec<Vec<f64>> = group.iter().map(|&l| self.targets[l].forces.clone()).collect();
+            let found = match equations.solve_all(&forces) {
+                // A motion without energy, that the iterations have met.
+                Err(error) if error.kind() == ErrorKind::Infeasible => return Ok(None),
+                found => found?,
+            };
             let mut loads = Vec::new();
-            for (&l, u) in group.iter().zip(system.solve_all(&factor, &forces)) {
+            for (&l, u) in group.iter().zip(found) {
                 loads.push((l, Arc::new(self.object.forces(&u))));
                 displacements[l] = u;
             }
-            tangents.push(Tangent { system, factor, loads });
+            tangents.push(Tangent { equations, loads });
         }
         Ok(Some((displacements, tangents)))
     }
@@ -164,15 +182,18 @@ impl<'a> Displacements<'a> {
         let newton = self.object.newton.expect("this is called at large displacements only");
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let points = self.object.points;
+        let Some(patterns) = self.patterns(network)? else { return Ok(None) };
         let one = |(l, target): (usize, &&Target)| -> Result<Option<(Vec<f64>, Tangent)>> {
+            let pattern =
+                &patterns[self.groups.iter().position(|group| group.contains(&l)).expect("each load has one")];
             let near = match &guesses[l] {
-                Some(guess) => newton.settle(network, points, &target.support, &target.forces, guess)?,
+                Some(guess) => newton.settle(network, points, &target.support, &target.forces, guess, Some(pattern))?,
                 None => None,
             };
             let u = match near {
                 Some(u) => u,
                 None => {
-                    let found = newton.solve(network, points, &target.support, &target.forces)?;
+                    let found = newton.solve_with(network, points, &target.support, &target.forces, Some(pattern))?;
                     if found.load < 1.0 {
                         return Ok(None);
                     }
@@ -181,10 +202,13 @@ impl<'a> Displacements<'a> {
             };
             let x = displaced(points, &u);
             let Some(response) = network.respond(&x) else { return Ok(None) };
-            let system = System::new(&response.tangent, &target.support)?;
-            let Some(factor) = system.cholesky()? else { return Ok(None) };
+            let Some(equations) =
+                Equations::of_system(Arc::new(Newton::equations(pattern, &response.tangent, &target.support)?))?
+            else {
+                return Ok(None);
+            };
             let forces = Arc::new(self.object.forces_at(&x));
-            Ok(Some((u, Tangent { system: Arc::new(system), factor: Arc::new(factor), loads: vec![(l, forces)] })))
+            Ok(Some((u, Tangent { equations, loads: vec![(l, forces)] })))
         };
         let found: Result<Vec<_>> = self.targets.par_iter().enumerate().map(one).collect();
         let Some(found) = found?.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
@@ -194,14 +218,26 @@ impl<'a> Displacements<'a> {
         Ok(Some((displacements, tangents)))
     }
 
+    /// Equations with the pattern of the tangents under each support, which are analysed once.
+    fn patterns(&self, network: &Network) -> Result<Option<Vec<Arc<System>>>> {
+        let Some(rest) = network.respond(self.object.points) else { return Ok(None) };
+        let mut systems = self.systems.lock().expect("nothing panics while it holds the systems");
+        let mut one = |(i, group): (usize, &Vec<usize>)| {
+            if let Some(known) = &systems[i] {
+                return Ok(known.clone());
+            }
+            let system = Newton::pattern(&rest.tangent, &self.targets[group[0]].support)?;
+            Ok(systems[i].insert(Arc::new(system)).clone())
+        };
+        self.groups.iter().enumerate().map(&mut one).collect::<Result<_>>().map(Some)
+    }
+
     /// The residuals of the frequencies and the derivative `∂/∂c_s = ½ √w φ_iᵀ K_s φ_i/ω_i²` of each.
-    fn vibrations(&self, entries: &Entries) -> Result<Option<Vibrating>> {
+    fn vibrations(&self, theta: &[f64]) -> Result<Option<Vibrating>> {
         let Some(wanted) = self.frequencies else { return Ok(Some((Vec::new(), Vec::new()))) };
         let (object, count) = (self.object, wanted.squares.len());
-        let Some((system, factor)) = self.factorize(self.groups.len(), entries, &wanted.support)? else {
-            return Ok(None);
-        };
-        let modes = lowest_modes(&system, &factor, &wanted.masses, object.dimension(), count)?;
+        let Some(equations) = self.equations(theta, &[(self.groups.len(), &wanted.support)])? else { return Ok(None) };
+        let modes = equations[0].lowest_modes(&wanted.masses, object.dimension(), count)?;
         let root = 0.5 * wanted.weight.sqrt();
         let residuals = modes.squares.iter().zip(&wanted.squares).map(|(a, b)| root * (a / b).ln()).collect();
         let row = |(square, shape): (&f64, &Vec<f64>)| {
@@ -218,15 +254,14 @@ impl LeastSquares for Displacements<'_> {
 
     fn at(&self, theta: &[f64]) -> Result<Option<Linearized<'_>>> {
         let small = self.object.newton.is_none();
-        let entries = if small || self.frequencies.is_some() { self.object.stiffness(theta) } else { Entries::new() };
-        let found = if small { self.small(&entries)? } else { self.large(&self.object.network(theta))? };
+        let found = if small { self.small(theta)? } else { self.large(&self.object.network(theta))? };
         let Some((displacements, tangents)) = found else { return Ok(None) };
         let residual = |(l, u): (usize, Vec<f64>)| {
             let lack = u.iter().zip(&self.targets[l].displacement).zip(&self.scales[l]);
             lack.map(|((u, wanted), s)| s * (u - wanted)).collect()
         };
         let mut residuals: Vec<Vec<f64>> = displacements.into_iter().enumerate().map(residual).collect();
-        let Some((lacks, rows)) = self.vibrations(&entries)? else { return Ok(None) };
+        let Some((lacks, rows)) = self.vibrations(theta)? else { return Ok(None) };
         residuals.extend((!rows.is_empty()).then_some(lacks));
         let (unknowns, scales) = (&self.object.unknowns, &self.scales[..]);
         Ok(Some(Linearized { residuals, theta: theta.to_vec(), unknowns, tangents, scales, rows }))

@@ -81,7 +81,11 @@ pub fn fit_whole(
     };
     let (Some(trained), Some(validated)) = (problem.errors(&start)?, judge.errors(&start)?) else { return Ok(found) };
     found.stands = true;
-    let first = Best { error: mean(&validated), theta: start.clone(), stage: None };
+    let error = match wanted.validation {
+        Validation::Discrepancy => Path { object, wanted, settings }.excess(&problem, &start)?,
+        Validation::None | Validation::Loads(_) | Validation::LeaveOneOut => mean(&validated),
+    };
+    let first = Best { error, theta: start.clone(), stage: None };
     let begin = || Snapshot { stage: 0, theta: start, best: first, curve: Vec::new(), left_out: Vec::new() };
     let mut snapshot = from.unwrap_or_else(begin);
     let (mut steps, mut cancelled) = (0, false);

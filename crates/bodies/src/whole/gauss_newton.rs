@@ -44,13 +44,13 @@ impl GaussNewton {
     ) -> Result<Descent> {
         let mut theta = theta.to_vec();
         let Some(mut now) = problem.at(&theta)? else { return Ok(Descent { theta, objective: Vec::new() }) };
-        let (mut value, mut gradient) = now.objective(rho);
+        let (mut value, mut gradient) = now.objective(rho)?;
         let mut objective = vec![value];
         let root = (theta.len().max(1) as f64).sqrt();
         let mut radius = RADIUS * root;
         for _ in 0..iterations {
             let (lowered, found) = loop {
-                let (step, promised) = self.step(&now, rho, &gradient, radius);
+                let (step, promised) = self.step(&now, rho, &gradient, radius)?;
                 // If the gradient is zero there is no direction to go.
                 if !(promised > 0.0) {
                     break (0.0, None);
@@ -76,7 +76,7 @@ impl GaussNewton {
             let Some((tried, next)) = found else { break };
             (theta, now) = (tried, next);
             let enough = lowered <= self.decrease * value;
-            (value, gradient) = now.objective(rho);
+            (value, gradient) = now.objective(rho)?;
             objective.push(value);
             if !visit(&theta, value) || enough {
                 break;
@@ -87,7 +87,7 @@ impl GaussNewton {
 
     /// A step towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d` with `‖d‖ ≤ radius`, and the predicted decrease (Steihaug
     /// 1983).
-    fn step(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> (Vec<f64>, f64) {
+    fn step(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> Result<(Vec<f64>, f64)> {
         let share = rho / gradient.len().max(1) as f64;
         let mut step = vec![0.0; gradient.len()];
         let mut residual: Vec<f64> = gradient.iter().map(|g| -0.5 * g).collect();
@@ -98,7 +98,7 @@ impl GaussNewton {
             if !(square > self.accuracy * self.accuracy * first) {
                 break;
             }
-            let moved = at.forward(&direction);
+            let moved = at.forward(&direction)?;
             let curvature = moved.iter().flatten().map(|r| r * r).sum::<f64>() + share * dot(&direction, &direction);
             let mut length = square / curvature;
             // The distance to the boundary of the trust region.
@@ -113,7 +113,7 @@ impl GaussNewton {
             if ends {
                 break;
             }
-            let back = at.adjoint(&moved);
+            let back = at.adjoint(&moved)?;
             for ((r, b), d) in residual.iter_mut().zip(&back).zip(&direction) {
                 *r -= length * (b + share * d);
             }
@@ -121,6 +121,6 @@ impl GaussNewton {
             direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + next / square * *d);
             square = next;
         }
-        (step, promised)
+        Ok((step, promised))
     }
 }

@@ -5,7 +5,7 @@
 use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::Result;
-use crate::solve::{Factor, System};
+use crate::solve::Equations;
 use std::sync::Arc;
 
 /// A sum of squares that is minimised.
@@ -39,11 +39,13 @@ pub struct Linearized<'a> {
 /// The loads that share a factorisation.
 #[derive(Debug, Clone)]
 pub(super) struct Tangent {
-    pub system: Arc<System>,
-    pub factor: Arc<Factor>,
+    pub equations: Equations,
     /// The index of each load, and its F_sl.
     pub loads: Vec<(usize, Arc<PartVectors>)>,
 }
+
+/// The relative error of products with the Jacobian where equations are solved by iterations: far below the accuracy of a step.
+pub(super) const PRODUCT: f64 = 1e-5;
 
 impl Linearized<'_> {
     /// The sum of squares `Σ ‖r_l‖²`.
@@ -52,7 +54,10 @@ impl Linearized<'_> {
     }
 
     /// The product `J v`.
-    pub fn forward(&self, v: &[f64]) -> Vec<Vec<f64>> {
+    ///
+    /// # Errors
+    /// Iterations stall.
+    pub fn forward(&self, v: &[f64]) -> Result<Vec<Vec<f64>>> {
         let change = self.unknowns.forward(&self.theta, v);
         let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
         for tangent in &self.tangents {
@@ -60,7 +65,7 @@ impl Linearized<'_> {
                 forces.sum(change.iter().map(|c| -c), self.scales[*load].len())
             };
             let forces: Vec<Vec<f64>> = tangent.loads.iter().map(force).collect();
-            let moves = tangent.system.respond_all(&tangent.factor, &forces);
+            let moves = tangent.equations.respond_all(&forces, PRODUCT)?;
             for ((load, _), mut u) in tangent.loads.iter().zip(moves) {
                 u.iter_mut().zip(&self.scales[*load]).for_each(|(u, s)| *u *= s);
                 all[*load] = u;
@@ -69,18 +74,21 @@ impl Linearized<'_> {
         if let Some(last) = all.last_mut().filter(|_| !self.rows.is_empty()) {
             *last = self.rows.iter().map(|row| row.iter().zip(&change).map(|(a, c)| a * c).sum()).collect();
         }
-        all
+        Ok(all)
     }
 
     /// The product `Jᵀ w`, by one adjoint solve per load.
-    pub fn adjoint(&self, w: &[Vec<f64>]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// Iterations stall.
+    pub fn adjoint(&self, w: &[Vec<f64>]) -> Result<Vec<f64>> {
         let mut total = vec![0.0; self.unknowns.springs()];
         for tangent in &self.tangents {
             let pull = |(load, _): &(usize, Arc<PartVectors>)| {
                 w[*load].iter().zip(&self.scales[*load]).map(|(w, s)| w * s).collect()
             };
             let pulls: Vec<Vec<f64>> = tangent.loads.iter().map(pull).collect();
-            let adjoints = tangent.system.respond_all(&tangent.factor, &pulls);
+            let adjoints = tangent.equations.respond_all(&pulls, PRODUCT)?;
             for ((_, forces), adjoint) in tangent.loads.iter().zip(&adjoints) {
                 total.iter_mut().zip(forces.along(adjoint)).for_each(|(t, along)| *t -= along);
             }
@@ -88,14 +96,17 @@ impl Linearized<'_> {
         for (row, w) in self.rows.iter().zip(w.last().into_iter().flatten()) {
             total.iter_mut().zip(row).for_each(|(t, a)| *t += a * w);
         }
-        self.unknowns.adjoint(&self.theta, &total)
+        Ok(self.unknowns.adjoint(&self.theta, &total))
     }
 
     /// The objective `Σ ‖r_l‖² + (ρ/m) ‖θ‖²` and its gradient.
-    pub fn objective(&self, rho: f64) -> (f64, Vec<f64>) {
+    ///
+    /// # Errors
+    /// Iterations stall.
+    pub fn objective(&self, rho: f64) -> Result<(f64, Vec<f64>)> {
         let share = rho / self.theta.len().max(1) as f64;
         let value = self.square() + share * self.theta.iter().map(|t| t * t).sum::<f64>();
-        let slope = self.adjoint(&self.residuals);
-        (value, slope.iter().zip(&self.theta).map(|(g, t)| 2.0 * (g + share * t)).collect())
+        let slope = self.adjoint(&self.residuals)?;
+        Ok((value, slope.iter().zip(&self.theta).map(|(g, t)| 2.0 * (g + share * t)).collect()))
     }
 }

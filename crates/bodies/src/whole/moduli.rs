@@ -25,6 +25,8 @@ pub enum ModuliSharing {
     Body,
     /// The cells that belong to the same physical groups; all patches.
     Region,
+    /// The same with one factor on both moduli, so that Poisson's ratio stays; all patches.
+    RegionYoung,
     /// Each cell has factors of its own, and so has each patch.
     Element,
 }
@@ -155,7 +157,10 @@ impl<'a> ModuliParts<'a> {
             (_, Part::Patch(_)) => (Part::Patch(0), Vec::new()),
             (ModuliSharing::Body, Part::Shear(..)) => (Part::Shear(0, 0), Vec::new()),
             (ModuliSharing::Body, Part::Volume(..)) => (Part::Volume(0, 0), Vec::new()),
-            (ModuliSharing::Region, Part::Shear(b, c)) => (Part::Shear(0, 0), regions[b][c].clone()),
+            (ModuliSharing::Region, Part::Shear(b, c))
+            | (ModuliSharing::RegionYoung, Part::Shear(b, c) | Part::Volume(b, c)) => {
+                (Part::Shear(0, 0), regions[b][c].clone())
+            }
             (ModuliSharing::Region, Part::Volume(b, c)) => (Part::Volume(0, 0), regions[b][c].clone()),
         };
         let (mut known, mut names): (BTreeMap<(Part, Vec<&str>), usize>, _) = (BTreeMap::new(), Vec::new());
@@ -166,6 +171,7 @@ impl<'a> ModuliParts<'a> {
                 (ModuliSharing::Element, Part::Volume(_, cell)) => format!("lambda of cell {}", cell + 1),
                 (ModuliSharing::Element, Part::Patch(patch)) => format!("lambda of patch {}", patch + 1),
                 (_, Part::Patch(_)) => "lambda of patches".into(),
+                (ModuliSharing::RegionYoung, Part::Shear(..) | Part::Volume(..)) => in_region("E", &label.1),
                 (_, Part::Shear(..)) => in_region("mu", &label.1),
                 (_, Part::Volume(..)) => in_region("lambda", &label.1),
             };
@@ -176,6 +182,22 @@ impl<'a> ModuliParts<'a> {
         });
         let unknowns = Unknowns::one_for_each(own.collect());
         (unknowns, names)
+    }
+
+    /// The factors on μ and λ of the cells that belong to the same groups, with these of the parts.
+    pub(super) fn region_factors(&self, factors: &[f64]) -> BTreeMap<Vec<String>, [f64; 2]> {
+        let regions = self.mesh.regions();
+        let mut found = BTreeMap::new();
+        for ((part, own), factor) in self.parts.iter().zip(&self.factors).zip(factors) {
+            let (block, cell, modulus) = match *part {
+                Part::Shear(block, cell) => (block, cell, 0),
+                Part::Volume(block, cell) => (block, cell, 1),
+                Part::Patch(_) => continue,
+            };
+            let groups = regions[block][cell].iter().map(|name| name.to_string()).collect();
+            found.entry(groups).or_insert([1.0; 2])[modulus] = own * factor;
+        }
+        found
     }
 
     /// The parts, multiplied by factors, `[parts]`.

@@ -7,8 +7,9 @@ use super::unknowns::Unknowns;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
 use crate::model::{Entries, Network};
-use crate::solve::Newton;
+use crate::solve::{Newton, StaticSolver};
 use crate::springs::{Force, distance};
+use std::collections::BTreeMap;
 
 /// A network whose constants are fitted.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub struct Object<'a> {
     pub(super) unknowns: Unknowns,
     /// How loads are applied at large displacements; `None` at small displacements.
     pub(super) newton: Option<Newton>,
+    /// How equations are solved by iterations; `None` stands for factors.
+    pub(super) iterations: Option<StaticSolver>,
 }
 
 /// The parts that the unknowns multiply, at θ = 0.
@@ -76,7 +79,7 @@ impl<'a> Object<'a> {
             return Err(Error::expected("force", "springs that do not pull at rest", "rest lengths of their own"));
         }
         let model = Model::Springs(SpringParts { network, gradients, pulls_at_rest });
-        Ok(Object { model, points, unknowns, newton })
+        Ok(Object { model, points, unknowns, newton, iterations: None })
     }
 
     /// An exact network at small displacements whose unknowns are moduli.
@@ -88,7 +91,13 @@ impl<'a> Object<'a> {
             return Err(Error::expected("unknowns", format!("those of {} parts", parts.len()), unknowns.springs()));
         }
         let points = &parts.mesh().points;
-        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton: None })
+        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton: None, iterations: None })
+    }
+
+    /// The object whose equations at small displacements are solved by iterations, in memory that grows like its springs.
+    #[must_use]
+    pub fn iterated(self, iterations: Option<StaticSolver>) -> Object<'a> {
+        Object { iterations, ..self }
     }
 
     /// The unknowns.
@@ -201,6 +210,15 @@ impl<'a> Object<'a> {
             found[unknown] = before * factor;
         }
         Some(found)
+    }
+
+    /// The factors on μ and λ of the cells that belong to the same groups, at θ: those of any of them; none if the unknowns are no
+    /// moduli.
+    pub fn region_factors(&self, theta: &[f64]) -> BTreeMap<Vec<String>, [f64; 2]> {
+        match &self.model {
+            Model::Springs(_) => BTreeMap::new(),
+            Model::Moduli(parts) => parts.region_factors(&self.unknowns.factors(theta)),
+        }
     }
 
     /// The ratio of the largest to the least constant of the length springs at θ, or of the largest to the least factor on a

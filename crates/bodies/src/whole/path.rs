@@ -129,8 +129,15 @@ impl Path<'_> {
             let Descent { theta, mut objective } = self.stage(problem, stage, &snapshot.theta, &mut visit)?;
             // JSON has no infinity.
             objective.retain(|value| value.is_finite());
-            let error = judge.errors(&theta)?.and_then(|errors| mean(&errors));
+            let error = match self.wanted.validation {
+                Validation::Discrepancy => self.excess(problem, &theta)?,
+                Validation::None | Validation::Loads(_) | Validation::LeaveOneOut => {
+                    judge.errors(&theta)?.and_then(|errors| mean(&errors))
+                }
+            };
             let better = match (error, snapshot.best.error) {
+                // The first stage within the noise stays the best.
+                (Some(_), Some(before)) if self.wanted.validation == Validation::Discrepancy => before > 0.0,
                 (Some(now), Some(before)) => now < before,
                 // Without validation each stage counts as better than the previous one.
                 _ => snapshot.best.error.is_none(),
@@ -161,6 +168,15 @@ impl Path<'_> {
         Ok(snapshot.best.clone())
     }
 
+    /// The logarithm of the residuals at θ relative to the noise: not above zero where they are no larger.
+    pub fn excess(&self, problem: &Displacements, theta: &[f64]) -> Result<Option<f64>> {
+        let missing = || Error::expected("noise", "the size of the noise for its discrepancy", "none");
+        let noise = self.wanted.noise.ok_or_else(missing)?;
+        let Some(errors) = problem.errors(theta)? else { return Ok(None) };
+        let square: f64 = errors.loads.iter().zip(&problem.targets).map(|(e, target)| target.weight * e * e).sum();
+        Ok(Some(0.5 * (square / (noise * noise * problem.observations() as f64)).ln()))
+    }
+
     fn stage(
         &self,
         problem: &Displacements,
@@ -176,9 +192,7 @@ impl Path<'_> {
             Residual::ForcesFirst => stage == 0 && theta.iter().all(|t| *t == 0.0),
         };
         if forces {
-            let missing = || Error::expected("residual", "the stiffness of the finite elements for it", "none");
-            let body = self.wanted.body.as_ref().ok_or_else(missing)?;
-            let balance = ResidualForces::new(self.object, problem.targets.clone(), body)?;
+            let balance = ResidualForces::new(self.object, problem.targets.clone(), &self.wanted.body)?;
             let found = self.descend(&balance, rho, &theta, visit)?;
             if self.settings.residual == Residual::Forces {
                 return Ok(found);

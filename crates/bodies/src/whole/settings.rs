@@ -4,7 +4,8 @@
 
 use super::gauss_newton::GaussNewton;
 use super::target::{Frequencies, Target};
-use crate::model::Entries;
+use crate::model::Support;
+use crate::solve::Equations;
 
 /// The method that minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +82,8 @@ pub enum Validation {
     Loads(Vec<Target>),
     /// The one with the least error on the loads of the fit, each left out once (Stone 1974).
     LeaveOneOut,
+    /// The largest with which the residuals of the fit are no larger than the noise (Morozov 1966).
+    Discrepancy,
 }
 
 impl Validation {
@@ -88,7 +91,7 @@ impl Validation {
     pub fn loads(&self) -> &[Target] {
         match self {
             Validation::Loads(loads) => loads,
-            Validation::None | Validation::LeaveOneOut => &[],
+            Validation::None | Validation::LeaveOneOut | Validation::Discrepancy => &[],
         }
     }
 }
@@ -103,6 +106,8 @@ pub struct Wanted {
     pub validation: Validation,
     /// The target frequencies, if there are any.
     pub frequencies: Option<Frequencies>,
-    /// The stiffness of the finite elements, for residual forces.
-    pub body: Option<Entries>,
+    /// The equations of the finite elements under each support, for residual forces.
+    pub body: Vec<(Support, Equations)>,
+    /// The standard deviation of a residual, where the noise of the displacements is known; required by [`Validation::Discrepancy`].
+    pub noise: Option<f64>,
 }

@@ -179,7 +179,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
     let support = load_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
-    let held = match body.held("loads") {
+    let held = match body.equations("loads", &support) {
         Err(error) if error.kind() == ErrorKind::Limit => return Err(error.in_file(scene.path())),
         held => held.is_ok(),
     };

@@ -50,11 +50,12 @@ pub use convergence::{
 pub use draft::{DraftMaterial, DraftSource, contents, draft};
 pub use extent::extent;
 pub use fits::{
-    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad, ForceRecipe,
-    FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError, NamedFit, PositiveRecord, PublishedOutcome,
-    PublishedOutcomeRecord, PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe,
-    SampledRecord, SceneFacts, Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, Task, TensionOutcome,
-    TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad,
+    FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
+    ModelFrequencies, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe,
+    Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord,
+    Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, Task, TensionOutcome, TensionRecord,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };
 pub use fitting::fit_mesh;
 pub use forecast::{ExpectedStage, Forecast};

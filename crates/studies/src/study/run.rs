@@ -73,7 +73,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     whole.newton = large.as_ref().map(|_| scene.newton());
     whole.fine = fine.as_ref().map(|fine| fine as &dyn Finer);
     whole.masses = masses.as_deref();
-    whole.solved = body.as_ref().and_then(|body| body.held_by(&support, &cases));
+    whole.solver = scene.solver();
+    whole.know(body.iter().flat_map(|body| body.held(&cases)));
     let held = held_points(&mesh, &support, &cases);
     let reference = Reference { large: large.as_ref(), whole: Some(&whole), held: &held };
     let mut fits = Vec::new();

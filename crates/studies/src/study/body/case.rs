@@ -12,8 +12,12 @@ pub struct Case {
     pub forces: Vec<f64>,
     /// Whether the load prescribes displacements; its work is then that of the forces that hold them.
     pub is_prescribed: bool,
-    /// Displacements that were measured under the load, `[points · dimension]`, m, if there are any.
+    /// Displacements that were measured under the load, or are those of a finer body, `[points · dimension]`, m, if there are any.
     pub measured: Option<Field>,
+    /// Whether these are from a file.
+    pub is_measured: bool,
+    /// The standard deviation of their noise, m.
+    pub noise: Option<f64>,
 }
 
 impl Case {

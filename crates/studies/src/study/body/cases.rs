@@ -64,7 +64,12 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
         let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;
         let is_prescribed = matches!(load.single(), Some((_, Action::Displacement(_))));
-        cases.push(Case { name: load.name.clone(), support, forces, is_prescribed, measured });
+        let (is_measured, noise) = (measured.is_some(), load.measured.as_ref().and_then(|entry| entry.sigma));
+        if let Some(sigma) = noise.filter(|sigma| !(*sigma > 0.0 && sigma.is_finite())) {
+            let expected = "a standard deviation above zero, m";
+            return Err(at(Error::expected("sigma", expected, sigma).under("measured")));
+        }
+        cases.push(Case { name: load.name.clone(), support, forces, is_prescribed, measured, is_measured, noise });
     }
     for (i, load) in scene.loads().iter().enumerate() {
         if let LoadKind::Sum(parts) = &load.kind {

@@ -9,12 +9,13 @@ use crate::model::{Network, check_body, finite_elements};
 use crate::solve::{Factor, Solved, Stability, Standing, System, compare_energies};
 use crate::study::metrics::{SOLVED, square};
 use crate::study::progress::{Event, Progress};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The finite elements under each support, factorised.
 #[derive(Default)]
 pub(super) struct Factored {
-    pub systems: Vec<(System, Factor)>,
+    pub systems: Vec<(Arc<System>, Arc<Factor>)>,
     /// Of each load, into these.
     pub system_of: Vec<usize>,
 }
@@ -44,7 +45,7 @@ impl Factored {
                 let system = System::new(&entries, &case.support)?;
                 let factor = definite(&system, mesh)?;
                 factored.system_of.push(factored.systems.len());
-                factored.systems.push((system, factor));
+                factored.systems.push((Arc::new(system), Arc::new(factor)));
                 setup.push(start.elapsed().as_secs_f64());
             } else {
                 factored.system_of.push(factored.system_of[first]);
@@ -88,7 +89,7 @@ impl Factored {
                 let system = System::new(&entries, &case.support)?;
                 let factor = system.factorize().map_err(|e| e.at_key("mesh"))?;
                 let seconds = start.elapsed().as_secs_f64();
-                let (body, body_factor) = &self.systems[index];
+                let (body, body_factor) = (&*self.systems[index].0, &*self.systems[index].1);
                 let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
                 let other = other.map(|body| definite(&body, mesh).map(|factor| (body, factor))).transpose()?;
                 let (body, body_factor) = other.as_ref().map_or((body, body_factor), |(body, factor)| (body, factor));

@@ -1,19 +1,20 @@
 //! A finer mesh of the body of a scene, whose finite elements the networks are compared with.
 
+use super::answer::{check_residual, not_definite};
 use super::case::Case;
 use super::cases::{held, load_cases};
-use super::linear::LinearBody;
 use crate::error::{Error, Result};
-use crate::material::MaterialMap;
-use crate::mesh::{Embedding, Field, Mesh};
-use crate::model::Support;
-use crate::solve::StaticSolver;
-use crate::study::fits::{Answers, Finer};
+use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
+use crate::memory;
+use crate::mesh::{CellBlock, Embedding, Field, Mesh};
+use crate::model::{Lumping, Moments, Support, lumped_masses};
+use crate::solve::{Equations, StaticSolver};
+use crate::study::fits::{Answers, Finer, RegionFactors};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 use crate::whole::NodalLoad;
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// A finer mesh of the same body.
 pub struct FineBody {
@@ -27,9 +28,18 @@ pub struct FineBody {
     support: Support,
     material: MaterialMap,
     solver: StaticSolver,
+    /// The loads of the scene on it.
+    cases: OnceLock<Vec<Case>>,
     /// The answers so far, by what was asked.
     known: Mutex<HashMap<String, Answers>>,
+    /// The equations under the supports of the last questions.
+    equations: Mutex<Vec<(Support, Equations)>>,
 }
+
+/// Bytes that are to be left when equations are kept for further questions under the same support.
+const ROOM: u64 = 4_000_000_000;
+/// Solutions for each frequency, about.
+const VIBRATING: usize = 8;
 
 impl FineBody {
     /// The finer body of the scene, if it has one.
@@ -57,36 +67,57 @@ impl FineBody {
             support,
             material,
             solver: scene.solver(),
+            cases: OnceLock::new(),
             known: Mutex::default(),
+            equations: Mutex::default(),
         }))
     }
 
     /// Replaces the forces of the cases by those that do the same work as on the finer mesh, and gives each the displacements
-    /// of the finer body at the points of the mesh of the scene.
+    /// of the finer body at the points of the mesh of the scene, unless it has measured ones of its own.
     ///
     /// # Errors
-    /// A load has measured displacements of its own, or the finer body has no solution under it.
+    /// The finer body has no solution under a load.
     pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
         let (_, own) = load_cases(scene, &self.mesh, &self.material)?;
-        if let Some(i) = cases.iter().position(|case| case.measured.is_some()) {
-            let problem = "does not go with [reference], whose finite elements give the displacements";
-            return Err(scene.at(&format!("load[{i}]"), Error::at("measured", problem)));
-        }
         let found = self.displacements(&own, progress).map_err(|e| e.placed(|e| scene.at("reference", e)))?;
         for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
             if !case.is_prescribed {
                 case.forces = self.embedding.restrict(&own.forces);
             }
-            let displacements = self.sampling.interpolate(&fine).into_iter().map(Some).collect();
-            case.measured = Some(Field { displacements });
+            if !case.is_measured {
+                let displacements = self.sampling.interpolate(&fine).into_iter().map(Some).collect();
+                case.measured = Some(Field { displacements });
+            }
         }
+        self.cases.get_or_init(|| own);
         Ok(())
     }
 
     fn displacements(&self, cases: &[Case], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
-        progress(Event::stage("finer body", 0, cases.len()));
-        let body = LinearBody::solve(&self.mesh, &self.material.moduli(), cases, self.solver, progress)?;
-        Ok(body.into_displacements())
+        let mut found = Vec::with_capacity(cases.len());
+        for (done, case) in cases.iter().enumerate() {
+            progress(Event::stage("finer body", done, cases.len()));
+            let (u, residual) = self.equations(&case.support, cases.len())?.solve(&case.forces)?;
+            check_residual(residual, case)?;
+            found.push(u);
+        }
+        Ok(found)
+    }
+
+    /// The equations under a support, for about `loads` loads.
+    fn equations(&self, support: &Support, loads: usize) -> Result<Equations> {
+        let mut known = self.equations.lock().expect("nothing panics while it holds the equations");
+        if let Some((_, equations)) = known.iter().find(|(own, _)| own == support) {
+            return Ok(equations.clone());
+        }
+        if memory::available().is_some_and(|left| left < ROOM) {
+            known.clear();
+        }
+        let found = Equations::of_body(&self.mesh, &self.material.moduli(), support, (self.solver, loads))?;
+        let equations = found.ok_or_else(|| not_definite(&self.mesh))?;
+        known.push((support.clone(), equations.clone()));
+        Ok(equations)
     }
 }
 
@@ -116,6 +147,8 @@ impl Finer for FineBody {
             forces: load.forces,
             is_prescribed: false,
             measured: None,
+            is_measured: false,
+            noise: None,
         };
         let cases: Vec<Case> = loads().into_iter().map(case).collect();
         let found = self.displacements(&cases, progress)?;
@@ -128,5 +161,62 @@ impl Finer for FineBody {
         let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
         known().insert(name, answers.clone());
         Ok(answers)
+    }
+
+    fn vibrations(&self, support: &Support, count: usize) -> Result<Vec<f64>> {
+        let density = self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
+        let masses = lumped_masses(&self.mesh, density, self.material.thicknesses(), Lumping::Hrz);
+        let equations = self.equations(support, VIBRATING * count)?;
+        Ok(equations.lowest_modes(&masses, self.mesh.dimension, count)?.squares)
+    }
+
+    fn moved(&self, loads: &[usize], factors: &RegionFactors, progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
+        let regions = self.mesh.regions();
+        let moduli = self.material.moduli();
+        let of_cell = |block: usize, cell: usize| -> Result<Hooke> {
+            let own: Vec<String> = regions[block][cell].iter().map(|name| name.to_string()).collect();
+            let [shear, volume] = factors.get(&own).ok_or_else(|| {
+                let found = if own.is_empty() { "cells in no group".into() } else { own.join(", ") };
+                let known = factors.keys().map(|groups| groups.join(", ")).collect::<Vec<_>>().join("; ");
+                Error::expected("mesh", format!("the regions of the mesh ({known})"), found)
+            })?;
+            let isotropic = moduli.at(block, cell).moduli();
+            let Moduli { lambda, mu } =
+                isotropic.ok_or_else(|| Error::expected("mesh", "an isotropic material", "another"))?;
+            Ok(Hooke::Isotropic(Moduli { lambda: volume * lambda, mu: shear * mu }))
+        };
+        let block =
+            |(index, block): (usize, &CellBlock)| (0..block.cells().len()).map(|cell| of_cell(index, cell)).collect();
+        let blocks = self.mesh.blocks.iter().enumerate().map(block).collect::<Result<Vec<Vec<Hooke>>>>()?;
+        let moduli = CellMap::of_blocks(blocks);
+        let cases = self.cases.get().map_or(&[][..], |cases| cases);
+        let mut known: Vec<(&Support, Equations)> = Vec::new();
+        let mut found = Vec::new();
+        for (done, &load) in loads.iter().enumerate() {
+            progress(Event::stage("finer body", done, loads.len()));
+            let case = &cases[load];
+            if !known.iter().any(|(support, _)| **support == case.support) {
+                let equations = Equations::of_body(&self.mesh, &moduli, &case.support, (self.solver, loads.len()))?;
+                known.push((&case.support, equations.ok_or_else(|| not_definite(&self.mesh))?));
+            }
+            let (_, equations) = known.iter().find(|(support, _)| **support == case.support).expect("it was added");
+            let (u, residual) = equations.solve(&case.forces)?;
+            check_residual(residual, case)?;
+            found.push(self.sampling.interpolate(&u));
+        }
+        Ok(found)
+    }
+
+    fn seconds_per_step(&self, support: &Support) -> Result<f64> {
+        self.equations(support, 1)?.seconds_per_step()
+    }
+
+    fn coarseness(&self, mesh: &Mesh) -> f64 {
+        (self.mesh.point_count() as f64 / mesh.point_count() as f64).powf(1.0 / mesh.cell_dimension() as f64)
+    }
+
+    fn moments(&self) -> Moments {
+        let density = self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
+        Moments::of_body(&self.mesh, density, self.material.thicknesses())
     }
 }

@@ -9,11 +9,12 @@ use crate::model::{BlockStiffness, Network};
 use crate::solve::{Levels, Solved, Stability, Standing, StaticSolver, compare_levels};
 use crate::study::metrics::{SOLVED, product};
 use crate::study::progress::{Event, Progress};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The levels of the finite elements under each support.
 pub(super) struct Iterated {
-    pub systems: Vec<Levels>,
+    pub systems: Vec<Arc<Levels>>,
     /// Of each load, into these.
     pub system_of: Vec<usize>,
 }
@@ -47,7 +48,7 @@ impl Iterated {
                 if levels.prove().map_err(|e| e.at_key("mesh"))?.is_some() {
                     return Err(not_definite(mesh));
                 }
-                iterated.systems.push(levels);
+                iterated.systems.push(Arc::new(levels));
                 iterated.system_of.push(iterated.systems.len() - 1);
                 setup.push(start.elapsed().as_secs_f64());
             } else {
@@ -99,7 +100,7 @@ impl Iterated {
                     Some(Ok(levels)) => Some(levels),
                     None => None,
                 };
-                let body = other.as_ref().unwrap_or(&self.systems[index]);
+                let body = other.as_ref().unwrap_or(&*self.systems[index]);
                 let found = compare_levels(levels.as_ref().map_err(|motion| &motion[..]), &stiffness, body)?;
                 systems.push((levels, found.standing, seconds));
                 first.get_or_insert(found);

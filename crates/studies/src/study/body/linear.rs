@@ -1,6 +1,6 @@
 //! The loads of a scene at small deformation: one linear system per model and support, solved by factors or by iterations.
 
-use super::answer::{BodyAnswer, NetworkAnswer};
+use super::answer::{BodyAnswer, NetworkAnswer, shared};
 use super::case::Case;
 use super::factored::Factored;
 use super::iterated::Iterated;
@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, Support};
-use crate::solve::{Factor, Stability, Standing, StaticMethod, StaticSolver, System};
+use crate::solve::{Equations, Stability, Standing, StaticMethod, StaticSolver};
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
 
@@ -88,13 +88,20 @@ impl LinearBody {
         self.answers.into_iter().map(|answer| answer.displacement).collect()
     }
 
-    /// The equations and factor of the loads with this support, if there are any.
-    pub fn held_by(&self, support: &Support, cases: &[Case]) -> Option<&(System, Factor)> {
-        let load = cases.iter().position(|case| case.support == *support)?;
-        match &self.systems {
-            Systems::Factored(factored) => Some(&factored.systems[factored.system_of[load]]),
-            Systems::Iterated(_) => None,
-        }
+    /// The equations of each support of the loads.
+    pub fn held<'a>(&'a self, cases: &'a [Case]) -> impl Iterator<Item = (Support, Equations)> + 'a {
+        shared(cases).into_iter().enumerate().filter(|(load, first)| load == first).map(|(load, _)| {
+            let equations = match &self.systems {
+                Systems::Factored(factored) => {
+                    let (system, factor) = &factored.systems[factored.system_of[load]];
+                    Equations::Factored(system.clone(), factor.clone())
+                }
+                Systems::Iterated(iterated) => {
+                    Equations::Iterated(iterated.systems[iterated.system_of[load]].clone(), self.solver)
+                }
+            };
+            (cases[load].support.clone(), equations)
+        })
     }
 
     /// Solves every load with the network. Its energies are compared with those of finite elements with the moduli

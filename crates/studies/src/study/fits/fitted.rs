@@ -38,7 +38,7 @@ pub enum FittedKind {
     /// Of a fit to the forces at sampled shapes.
     Sampled(SampledOutcome),
     /// Of a fit to the displacements of the whole object.
-    Whole(WholeOutcome),
+    Whole(Box<WholeOutcome>),
     /// Of a published formula.
     Published(PublishedOutcome),
     /// Of an exact network.

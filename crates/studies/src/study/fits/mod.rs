@@ -29,6 +29,7 @@ pub use sampled::{ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledReci
 pub use spread::SpreadRecord;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
 pub use whole::{
-    Answers, Finer, FittedLoad, FoundModulus, HeldOut, LoadSelection, ModelError, RESERVED, Sharing, Start,
-    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, ModelError,
+    ModelFrequencies, RESERVED, RegionFactors, Sharing, Start, SupportFrequencies, ValidationRecipe, WholeBody,
+    WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
 };

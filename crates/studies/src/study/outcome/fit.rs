@@ -49,6 +49,11 @@ pub struct FitOutcome {
 }
 
 impl FitOutcome {
+    /// The masses of the network, `[points]`, kg, if they were fitted.
+    pub fn masses(&self) -> Option<&[f64]> {
+        self.kind.whole()?.masses.as_ref().map(|found| &found.masses[..])
+    }
+
     /// One word for the state of the network.
     pub fn status(&self) -> &'static str {
         let mut followed = self.loads.iter().filter_map(|load| load.followed).peekable();

@@ -99,6 +99,10 @@ pub struct MeasuredEntry {
     pub scale: f64,
     /// The name of the array, if the file has several.
     pub array: Option<String>,
+    /// The standard deviation of the noise of each displacement, m.
+    #[serde(default, deserialize_with = "value::optional_length")]
+    #[schemars(schema_with = "value::quantity")]
+    pub sigma: Option<f64>,
 }
 
 fn one() -> f64 {

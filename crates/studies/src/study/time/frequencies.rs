@@ -16,7 +16,7 @@ use crate::study::scene::Scene;
 const SHIFT: f64 = 1e-4;
 
 /// The frequencies of the finite elements and of each network, with the `[[fix]]` support. Masses are row sums or, if
-/// these are not positive, those of the HRZ method, unless the motion of the scene says which.
+/// these are not positive, those of the HRZ method, unless the motion of the scene says which or they were fitted.
 ///
 /// # Errors
 /// There are fewer frequencies than requested. A model without frequencies is not an error.
@@ -44,10 +44,13 @@ pub fn natural_frequencies(
     }
     let total = outcome.fits.len() + 1;
     progress(Event::stage("frequencies", 0, total));
-    let vibrations = Vibrations { mesh, support, masses: &masses, rigid, count };
     // Rigid motions make the stiffness singular: levels alone do not find those after them.
     let iterates = rigid == 0 && scene.solver().iterates(mesh, 1);
-    let of = |name: &str, blocks: &dyn Fn() -> Result<BlockStiffness>, entries: &dyn Fn() -> Result<Entries>| {
+    let of = |name: &str,
+              masses: &[f64],
+              blocks: &dyn Fn() -> Result<BlockStiffness>,
+              entries: &dyn Fn() -> Result<Entries>| {
+        let vibrations = Vibrations { mesh, support, masses, rigid, count };
         let iterated = if iterates { vibrations.by_levels(blocks()?) } else { None };
         let found = match iterated {
             Some(found) => Ok(found),
@@ -59,14 +62,16 @@ pub fn natural_frequencies(
         check_body(mesh)?;
         Ok(finite_elements(mesh, material.moduli()))
     };
-    let mut all = vec![of("finite elements", &|| BlockStiffness::of_body(mesh, material.moduli(), 1, 1), &entries)?];
+    let body = || BlockStiffness::of_body(mesh, material.moduli(), 1, 1);
+    let mut all = vec![of("finite elements", &masses, &body, &entries)?];
     for (done, fit) in outcome.fits.iter().enumerate() {
         progress(Event::stage("frequencies", done + 1, total));
         let entries = || {
             fit.network.check_size()?;
             Ok(fit.network.stiffness(&mesh.points))
         };
-        all.push(of(&fit.fit.name, &|| Ok(BlockStiffness::of_network(&fit.network, &mesh.points, None)), &entries)?);
+        let blocks = || Ok(BlockStiffness::of_network(&fit.network, &mesh.points, None));
+        all.push(of(&fit.fit.name, fit.masses().unwrap_or(&masses), &blocks, &entries)?);
     }
     Ok(all)
 }

@@ -60,14 +60,14 @@ pub fn move_models(
         let (mut made, states) = match energy {
             Some(laws) => {
                 let body = RegionsBody { mesh, laws };
-                run.follow((name, None), &body, damping, options, true, progress)?
+                run.follow((name, None, &planned.masses), &body, damping, options, true, progress)?
             }
             None => {
                 options.linear = true;
                 check_body(mesh)?;
                 let stiffness = finite_elements(mesh, material.moduli());
                 let body = LinearElastic { points: &mesh.points, stiffness };
-                run.follow((name, None), &body, damping, options, true, progress)?
+                run.follow((name, None, &planned.masses), &body, damping, options, true, progress)?
             }
         };
         if planned.draws {
@@ -83,15 +83,17 @@ pub fn move_models(
     let turning = models.first().and_then(|body| body.deformation).is_some_and(turns);
     let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(norm).fold(0.0, f64::max);
     for (i, fit) in outcome.fits.iter().enumerate() {
-        let growth = growth(&fit.network, mesh, planned)?;
+        let masses = fit.masses().unwrap_or(&planned.masses);
+        let growth = growth(&fit.network, masses, mesh, planned)?;
         if growth.is_some() {
             progress(Event::Note(&indefinite(&fit.fit.name, &fit.network)));
         }
-        let damping = planned.damping(Some(&fit.network), mesh)?;
+        let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
         let options = planned.recipe.options;
         let model = fit.network.prepared();
-        let (mut made, states) = run.follow((&fit.fit.name, growth), &model, damping, options, keeps, progress)?;
+        let (mut made, states) =
+            run.follow((&fit.fit.name, growth, masses), &model, damping, options, keeps, progress)?;
         made.fit = Some(i);
         // None if the finite elements do not move, or an error is not finite.
         let errors = |states: &[Vec<f64>]| -> Vec<Option<f64>> {
@@ -105,9 +107,9 @@ pub fn move_models(
         made.records.iter_mut().zip(errors(&states)).for_each(|(record, error)| record.error = error);
         if turning && made.ending == MotionEnding::Complete {
             let linear = Options { linear: true, ..options };
-            let damping = planned.damping(Some(&fit.network), mesh)?;
+            let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
             let name = format!("{} without turning", fit.fit.name);
-            let (linear, states) = run.follow((&name, growth), &model, damping, linear, true, progress)?;
+            let (linear, states) = run.follow((&name, growth, masses), &model, damping, linear, true, progress)?;
             let complete = linear.ending == MotionEnding::Complete;
             let errors: Option<Vec<f64>> = errors(&states).into_iter().collect();
             made.linear_error = errors.and_then(|errors| mean_and_largest(&errors)).filter(|_| complete);
@@ -134,10 +136,10 @@ fn square(u: &[f64]) -> f64 {
 
 impl Planned {
     /// The damping of a network, or of the finite elements.
-    fn damping(&self, network: Option<&Network>, mesh: &Mesh) -> Result<Damping> {
+    fn damping(&self, network: Option<(&Network, &[f64])>, mesh: &Mesh) -> Result<Damping> {
         Ok(match (self.recipe.damping, network) {
-            (DampingRecipe::Ratio(ratio), Some(network)) => {
-                let dampers = Dampers::of_ratio(network, &mesh.points, &self.masses, &self.support, ratio)?;
+            (DampingRecipe::Ratio(ratio), Some((network, masses))) => {
+                let dampers = Dampers::of_ratio(network, &mesh.points, masses, &self.support, ratio)?;
                 Damping { dampers: Some(dampers), ..Damping::default() }
             }
             (DampingRecipe::Rayleigh([mass, stiffness]), _) => Damping { mass, stiffness, dampers: None },
@@ -155,7 +157,7 @@ impl Run<'_> {
     /// Moves one model from rest to the end; returns its displacements at the records if they are kept.
     fn follow(
         &self,
-        (name, growth): (&str, Option<f64>),
+        (name, growth, masses): (&str, Option<f64>, &[f64]),
         model: &dyn Elastic,
         damping: Damping,
         options: Options,
@@ -177,7 +179,7 @@ impl Run<'_> {
             states: Vec::new(),
         };
         let (support, drive) = (planned.support.clone(), planned.drive.clone());
-        let motion = Motion { support, drive, damping, ..Motion::free(model, &self.mesh.points, &planned.masses) };
+        let motion = Motion { support, drive, damping, ..Motion::free(model, &self.mesh.points, masses) };
         let mut simulation = match Simulation::new(motion, options) {
             Ok(simulation) => simulation,
             Err(e) if e.key() == Some("step") && options.integrator == Integrator::SymplecticEuler => {
@@ -252,10 +254,10 @@ fn indefinite(name: &str, network: &Network) -> String {
 /// The growth rate of the fastest motion that releases energy, 1/s, to a tenth; `None` if there is none.
 ///
 /// `K + σ M` is positive definite for `σ > −ω²` of the lowest mode.
-fn growth(network: &Network, mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
+fn growth(network: &Network, masses: &[f64], mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
     network.check_size()?;
     let stiffness = network.stiffness(&mesh.points);
-    let mut raised = Raised::new(stiffness, &planned.masses, &planned.support, mesh.dimension);
+    let mut raised = Raised::new(stiffness, masses, &planned.support, mesh.dimension);
     let largest = raised.largest;
     if !(largest > 0.0 && largest.is_finite()) {
         return Ok(None);

@@ -4,17 +4,18 @@ use super::finer::Finer;
 use super::found_moduli::found_moduli;
 use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
+use super::targets::Held;
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
-use crate::model::{Entries, Network, Support, check_body, finite_elements, unheld_bodies};
-use crate::solve::{Factor, Newton, System, lowest_modes};
+use crate::model::{BlockStiffness, Network, Support, unheld_bodies};
+use crate::solve::{Equations, Newton, StaticSolver};
 use crate::study::body::Case;
 use crate::study::checkpoint::{Controls, Fingerprint, Saved};
 use crate::study::progress::{Event, Progress};
 use crate::whole::{Frequencies, Snapshot, fit_whole};
-use std::sync::OnceLock;
+use std::sync::Mutex;
 
 /// The body to which the whole-object fits of a scene are fitted.
 pub struct WholeBody<'a> {
@@ -29,14 +30,17 @@ pub struct WholeBody<'a> {
     pub(in crate::study) newton: Option<Newton>,
     /// The masses, `[points]`, kg.
     pub masses: Option<&'a [f64]>,
-    /// The equations of the finite elements with the `[[fix]]` support, if loads were solved with it.
-    pub(in crate::study) solved: Option<&'a (System, Factor)>,
+    /// How linear equations are solved.
+    pub(in crate::study) solver: StaticSolver,
     /// The finer mesh of the body that gives the displacements, if there is one.
     pub(in crate::study) fine: Option<&'a dyn Finer>,
-    controls: &'a Controls,
-    entries: OnceLock<Entries>,
-    held: OnceLock<(System, Factor)>,
+    pub(super) controls: &'a Controls,
+    /// The equations of the finite elements under the supports that were needed so far.
+    known: Mutex<Vec<(Support, Equations)>>,
 }
+
+/// About the loads of a fit under a support, by which the way to solve equations is chosen.
+const LOADS: usize = 16;
 
 impl<'a> WholeBody<'a> {
     /// A body at small deformation, without loads of a scene.
@@ -47,56 +51,78 @@ impl<'a> WholeBody<'a> {
         controls: &'a Controls,
     ) -> WholeBody<'a> {
         let material = material.into();
-        let (cases, displacements, newton, masses, solved, fine, entries, held) = Default::default();
-        WholeBody {
-            mesh,
-            material,
-            support,
-            cases,
-            displacements,
-            newton,
-            masses,
-            solved,
-            fine,
-            controls,
-            entries,
-            held,
-        }
+        let (cases, displacements, newton, masses, solver, fine, known) = Default::default();
+        WholeBody { mesh, material, support, cases, displacements, newton, masses, solver, fine, controls, known }
     }
 
-    /// The stiffness of the finite elements at rest.
-    pub(super) fn entries(&self) -> &Entries {
-        self.entries.get_or_init(|| finite_elements(self.mesh, self.material.moduli()))
+    /// Tells it equations of the finite elements that are solved already.
+    pub(in crate::study) fn know(&self, solved: impl Iterator<Item = (Support, Equations)>) {
+        self.known.lock().expect("nothing panics while it holds the equations").extend(solved);
     }
 
-    /// The equations of the finite elements with the `[[fix]]` support; the key of errors is what requires them.
+    /// The equations of the finite elements under a support; the key of errors is what requires them.
     ///
     /// # Errors
-    /// A body can move as a rigid body, or some motion has no stiffness.
-    pub(in crate::study) fn held(&self, key: &str) -> Result<&(System, Factor)> {
-        if let Some(known) = self.solved.or(self.held.get()) {
-            return Ok(known);
+    /// A body can move as a rigid body, some motion has no stiffness, or the equations do not fit into memory.
+    pub(in crate::study) fn equations(&self, key: &str, support: &Support) -> Result<Equations> {
+        let known = || self.known.lock().expect("nothing panics while it holds the equations");
+        if let Some((_, equations)) = known().iter().find(|(own, _)| own == support) {
+            return Ok(equations.clone());
         }
-        let expected = "supports in [[fix]] that hold every body, whatever the loads hold";
-        if let Some(body) = unheld_bodies(self.mesh, self.support).first() {
+        let expected = match support == self.support {
+            true => "supports in [[fix]] that hold every body, whatever the loads hold",
+            false => "supports that hold every body",
+        };
+        if let Some(body) = unheld_bodies(self.mesh, support).first() {
             let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
             return Err(Error::expected(key, expected, found));
         }
-        check_body(self.mesh)?;
-        let system = System::new(self.entries(), self.support)?;
-        let factor = system.cholesky()?.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
-        Ok(self.held.get_or_init(|| (system, factor)))
+        let found = Equations::of_body(self.mesh, &self.material.moduli(), support, (self.solver, LOADS))?;
+        let equations = found.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
+        known().push((support.clone(), equations.clone()));
+        Ok(equations)
+    }
+
+    /// How equations of networks are solved: by iterations, or with factors.
+    pub(super) fn iterations(&self) -> Option<StaticSolver> {
+        self.solver.iterates(self.mesh, LOADS).then_some(self.solver)
+    }
+
+    /// The equations of a network under a support; `None` if it is not stable.
+    ///
+    /// # Errors
+    /// They do not fit into memory.
+    pub(super) fn equations_of(&self, network: &Network, support: &Support) -> Result<Option<Equations>> {
+        let points = &self.mesh.points;
+        if let Some(solver) = self.iterations() {
+            let stiffness = BlockStiffness::of_network(network, points, None);
+            return Equations::iterated(stiffness, points, support, solver);
+        }
+        network.check_size()?;
+        Equations::factored(&network.stiffness(points), support)
+    }
+
+    /// The `count` lowest frequencies of the body, as ω².
+    pub(super) fn squares(&self, key: &str, held: &Held, count: usize) -> Result<Vec<f64>> {
+        let found = match (self.fine, &held.fine) {
+            (Some(fine), Some(support)) => fine.vibrations(support, count),
+            _ => {
+                let masses = self.masses.unwrap_or_default();
+                let equations = self.equations(key, &held.support)?;
+                equations.lowest_modes(masses, self.mesh.dimension, count).map(|modes| modes.squares)
+            }
+        };
+        found.map_err(|e| Error::at(key, e.problem()).of_kind(e.kind()))
     }
 
     pub(super) fn frequencies(&self, count: usize) -> Result<Option<Frequencies>> {
         let Some(masses) = self.masses.filter(|_| count > 0) else { return Ok(None) };
-        let (system, factor) = self.held("frequencies")?;
-        let modes = lowest_modes(system, factor, masses, self.mesh.dimension, count)
-            .map_err(|e| Error::at("frequencies", e.problem()))?;
+        let held = self.supports("supports", &[])?.remove(0);
+        let squares = self.squares("frequencies", &held, count)?;
         // All frequencies together have the weight of one load.
         let weight = 1.0 / count as f64;
         let (support, masses) = (self.support.clone(), masses.to_vec());
-        Ok(Some(Frequencies { support, masses, squares: modes.squares, weight }))
+        Ok(Some(Frequencies { support, masses, squares, weight }))
     }
 
     /// Fits the constants of the network of `start`, which was assembled from its fits of the cells. Without `start`, fits the moduli
@@ -139,13 +165,25 @@ impl<'a> WholeBody<'a> {
             // An error about the checkpoint must not discard the result.
             progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
         }
-        let moduli = found_moduli(recipe, &object, &wanted, &found)?;
+        let (found, wanted, mesh) = match found.stands && self.is_corrected(recipe, &wanted) {
+            true => {
+                let corrected = self.corrected(recipe, (&object, &wanted), found, progress)?;
+                (corrected.found, corrected.wanted, corrected.deviations)
+            }
+            false => (found, wanted, Vec::new()),
+        };
+        let moduli = found_moduli(recipe, &object, &wanted, &found, &mesh)?;
         let held_out = if self.fine.is_some() || !recipe.supports.is_empty() {
             self.held_out(recipe, &object.network(&none), &found.network, progress)?
         } else {
             Vec::new()
         };
-        let outcome = WholeOutcome { moduli, held_out, ..WholeOutcome::of(recipe, &wanted, &found) };
+        let masses = if recipe.masses > 0 && found.stands && !found.cancelled {
+            Some(self.fit_masses(recipe, &found.network, progress)?)
+        } else {
+            None
+        };
+        let outcome = WholeOutcome { moduli, held_out, masses, ..WholeOutcome::of(recipe, &wanted, &found) };
         Ok((found.network, outcome))
     }
 }

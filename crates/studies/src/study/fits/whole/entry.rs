@@ -1,13 +1,13 @@
 //! The keys of a `[[fit]]` with the objective "whole".
 
-use super::recipe::{LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
+use super::recipe::{DISCREPANCY, LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective, VolumeSprings};
 use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
-use crate::whole::{DescentMethod, Residual, WholeSettings};
+use crate::whole::{DescentMethod, GaussNewton, ModuliSharing, Residual, WholeSettings};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
@@ -16,6 +16,8 @@ use std::fmt;
 
 /// The default seed of the random loads.
 const SEED: u64 = 2010;
+/// ρ where few unknowns are found from measured displacements: too small to move what they see, large enough to hold what they do not.
+const FEW: f64 = 1e-9;
 
 /// The keys. Those of sampled fits are allowed as well if the fit starts from one.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
@@ -40,6 +42,8 @@ pub struct WholeEntry {
     pub regularization: Option<f64>,
     pub range: Option<f64>,
     pub frequencies: Option<usize>,
+    /// The number of natural frequencies to which masses are fitted after the springs.
+    pub masses: Option<usize>,
     pub seed: Option<u64>,
     /// The groups that are held, for each support under which made loads are fitted.
     pub supports: Option<Vec<Vec<String>>>,
@@ -109,10 +113,20 @@ impl WholeEntry {
                 return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
             }
         }
+        let is_exact = matches!(start, Start::Exact(_));
+        let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
+        let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
+        // Few unknowns are found to the last digit.
+        let few = unknowns.moduli().is_some_and(|sharing| sharing != ModuliSharing::Element);
         let settings = WholeSettings::default();
+        let method = match few {
+            true => GaussNewton { products: 100, accuracy: 1e-6, decrease: 1e-9 },
+            false => GaussNewton::default(),
+        };
+        let method = DescentMethod::GaussNewton(method);
         let mut settings = WholeSettings {
             iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
-            method: choice("solver", self.solver.as_deref(), settings.method, DescentMethod::named)?,
+            method: choice("solver", self.solver.as_deref(), method, DescentMethod::named)?,
             residual: choice("residual", self.residual.as_deref(), settings.residual, Residual::named)?,
             ..settings
         };
@@ -122,6 +136,7 @@ impl WholeEntry {
         }
         check_count("iterations", settings.iterations as u64, 1, bound::ITERATIONS)?;
         check_count("frequencies", self.frequencies.unwrap_or(0) as u64, 0, bound::MODES)?;
+        check_count("masses", self.masses.unwrap_or(0) as u64, 0, bound::MODES / 2)?;
         if settings.residual == Residual::Forces && self.frequencies.is_some() {
             return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
         }
@@ -143,11 +158,17 @@ impl WholeEntry {
                 settings.regularizations.push(rho);
                 ValidationRecipe::None
             }
+            (None, None) if few && !loads.iter().any(|name| name == MADE) => {
+                settings.regularizations = vec![FEW];
+                ValidationRecipe::None
+            }
             (None, None) => ValidationRecipe::Loads(LoadSelection::new(vec![MADE.into()])),
             (Some(names), None) if names == [LEAVE_ONE_OUT] => ValidationRecipe::LeaveOneOut,
+            (Some(names), None) if names == [DISCREPANCY] => ValidationRecipe::Discrepancy,
             (Some(names), None) => {
                 if names.is_empty() {
-                    let expected = "names of loads of the scene, \"made\", or \"leave-one-out\" alone";
+                    let expected =
+                        "names of loads of the scene, \"made\", or \"leave-one-out\" or \"discrepancy\" alone";
                     return Err(Error::expected("validate", expected, "none"));
                 }
                 if let Some(name) = names.iter().find(|name| *name != MADE && loads.contains(name)) {
@@ -156,12 +177,9 @@ impl WholeEntry {
                 ValidationRecipe::Loads(LoadSelection::new(names))
             }
         };
-        let is_exact = matches!(start, Start::Exact(_));
-        let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
-        let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
         if unknowns.moduli().is_some() != is_exact {
             let found = format!("\"{}\" with the start \"{}\"", unknowns.name(), start.title());
-            let expected = "\"moduli\", \"region-moduli\" or \"body-moduli\" with the start \"exact\", and no others";
+            let expected = "\"moduli\", \"region-moduli\", \"region-young\" or \"body-moduli\" with the start \"exact\", and no others";
             return Err(Error::expected("unknowns", expected, found));
         }
         if self.volume.is_some() && !is_exact {
@@ -183,6 +201,7 @@ impl WholeEntry {
             validation,
             settings,
             frequencies: self.frequencies.unwrap_or(0),
+            masses: self.masses.unwrap_or(0),
             seed: self.seed.unwrap_or(SEED),
             supports,
             validation_supports,

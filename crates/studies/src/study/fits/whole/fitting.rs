@@ -57,7 +57,7 @@ impl FitKind for WholeRecipe {
         let own = (!matches!(self.start, Start::Exact(_))).then_some((&cells[..], &network));
         let (network, outcome) = body.fit((task.name, task.springs, task.reference.held), self, own, progress)?;
         let seconds = seconds + start.elapsed().as_secs_f64();
-        let (cells, kind) = (Vec::new(), FittedKind::Whole(outcome));
+        let (cells, kind) = (Vec::new(), FittedKind::Whole(Box::new(outcome)));
         Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind })
     }
 

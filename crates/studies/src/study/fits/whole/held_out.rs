@@ -5,8 +5,8 @@ use super::outcome::{HeldOut, ModelError};
 use super::recipe::WholeRecipe;
 use crate::error::Result;
 use crate::mesh::Mesh;
-use crate::model::{Entries, Network, Support, check_body};
-use crate::solve::System;
+use crate::model::{Network, Support};
+use crate::solve::Equations;
 use crate::study::progress::Progress;
 use crate::whole::{Target, varied_loads};
 
@@ -25,40 +25,36 @@ impl WholeBody<'_> {
         progress: &mut Progress,
     ) -> Result<Vec<HeldOut>> {
         let thickness = &self.material.thicknesses();
-        let mut supports: Vec<_> =
-            self.supports("supports", &recipe.supports)?.into_iter().map(|held| (held, true)).collect();
-        if !recipe.validation_supports.is_empty() {
-            let others = self.supports("validate_supports", &recipe.validation_supports)?;
-            supports.extend(others.into_iter().map(|held| (held, false)));
-        }
-        let points = &self.mesh.points;
-        check_body(self.mesh)?;
-        let models = [
-            ("finite elements", self.entries().clone()),
-            ("start", start.stiffness(points)),
-            ("fitted", fitted.stiffness(points)),
-        ];
+        let supports = self.all_supports(recipe)?;
         let mut all = Vec::new();
         for (held, is_trained) in supports {
             let seed = recipe.seed.wrapping_add(SEED);
             let make = |mesh: &Mesh, support: &Support| varied_loads(mesh, support, thickness, LOADS, seed);
             let targets = self.made("loads", &held, (&make, seed), progress)?;
-            let models =
-                models.iter().map(|(model, entries)| model_error(model, entries, &targets)).collect::<Result<_>>()?;
-            all.push(HeldOut { support: held.words(), is_trained, loads: targets.len(), models });
+            let models = [
+                ("finite elements", Some(self.equations("supports", &held.support)?)),
+                ("start", self.equations_of(start, &held.support)?),
+                ("fitted", self.equations_of(fitted, &held.support)?),
+            ];
+            let models = models.into_iter().map(|(model, equations)| model_error(model, equations, &targets));
+            let models = models.collect::<Result<_>>()?;
+            let seconds_fine = match (self.fine, &held.fine) {
+                (Some(fine), Some(support)) => Some(fine.seconds_per_step(support)?),
+                _ => None,
+            };
+            all.push(HeldOut { support: held.words(), is_trained, loads: targets.len(), models, seconds_fine });
         }
         Ok(all)
     }
 }
 
-fn model_error(model: &'static str, entries: &Entries, targets: &[Target]) -> Result<ModelError> {
-    let none = ModelError { model, median: None, worst: None, worst_load: None };
-    let Some(first) = targets.first() else { return Ok(none) };
-    let system = System::new(entries, &first.support)?;
-    let Some(factor) = system.cholesky()? else { return Ok(none) };
+fn model_error(model: &'static str, equations: Option<Equations>, targets: &[Target]) -> Result<ModelError> {
+    let mut none = ModelError { model, median: None, worst: None, worst_load: None, seconds_per_step: None };
+    let Some(equations) = equations else { return Ok(none) };
+    none.seconds_per_step = Some(equations.seconds_per_step()?);
     let square = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>();
     let forces: Vec<Vec<f64>> = targets.iter().map(|target| target.forces.clone()).collect();
-    let found = system.solve_all(&factor, &forces);
+    let found = equations.solve_all(&forces)?;
     let mut errors: Vec<(f64, &str)> = targets
         .iter()
         .zip(&found)
@@ -71,5 +67,6 @@ fn model_error(model: &'static str, entries: &Entries, targets: &[Target]) -> Re
     errors.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some((worst, load)) = errors.last() else { return Ok(none) };
     let (low, high) = (errors[(errors.len() - 1) / 2].0, errors[errors.len() / 2].0);
-    Ok(ModelError { model, median: Some((low + high) / 2.0), worst: Some(*worst), worst_load: Some((*load).into()) })
+    let (median, worst, worst_load) = (Some((low + high) / 2.0), Some(*worst), Some((*load).into()));
+    Ok(ModelError { median, worst, worst_load, ..none })
 }

@@ -3,10 +3,12 @@
 //! Theory: page *Whole-object fits* of the book.
 
 mod body;
+mod corrected;
 mod entry;
 mod finer;
 mod fitting;
 mod found_moduli;
+mod frequencies;
 mod held_out;
 mod objects;
 mod outcome;
@@ -16,7 +18,10 @@ mod targets;
 
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
-pub use finer::{Answers, Finer};
-pub use outcome::{FittedLoad, FoundModulus, HeldOut, ModelError, WholeOutcome};
+pub use finer::{Answers, Finer, RegionFactors};
+pub use outcome::{
+    FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, ModelError, ModelFrequencies, SupportFrequencies,
+    WholeOutcome,
+};
 pub use recipe::{LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeRecipe};
 pub use record::{WholeOutcomeRecord, WholeRecord};

@@ -16,11 +16,11 @@ impl WholeBody<'_> {
             Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
             Sharing::Region => Unknowns::per_region(self.mesh, self.material.region(), fits, network)?,
             Sharing::Element => Unknowns::per_element(self.mesh, fits, network)?,
-            Sharing::Spring | Sharing::Moduli | Sharing::RegionModuli | Sharing::BodyModuli => {
+            Sharing::Spring | Sharing::Moduli | Sharing::RegionModuli | Sharing::RegionYoung | Sharing::BodyModuli => {
                 Unknowns::per_spring(network)
             }
         };
-        Object::new(network, &self.mesh.points, unknowns, self.newton)
+        Ok(Object::new(network, &self.mesh.points, unknowns, self.newton)?.iterated(self.iterations()))
     }
 
     /// The moduli of the exact network. Those of cells or regions start from those of the body that fit best.
@@ -30,9 +30,14 @@ impl WholeBody<'_> {
         let of_body = parts.unknowns(ModuliSharing::Body);
         let sharing = recipe.unknowns.moduli().unwrap_or(ModuliSharing::Element);
         if sharing == ModuliSharing::Body {
-            return Object::of_moduli(parts, of_body);
+            return Ok(Object::of_moduli(parts, of_body)?.iterated(self.iterations()));
         }
-        let body = Object::of_moduli(parts.clone(), of_body.clone())?;
+        // Poisson's ratio is that of the material.
+        if sharing == ModuliSharing::RegionYoung {
+            let unknowns = parts.unknowns(sharing);
+            return Ok(Object::of_moduli(parts, unknowns)?.iterated(self.iterations()));
+        }
+        let body = Object::of_moduli(parts.clone(), of_body.clone())?.iterated(self.iterations());
         let wanted = Wanted { validation: Validation::None, ..wanted.clone() };
         let settings = WholeSettings { regularizations: vec![0.0], ..recipe.settings.clone() };
         let mut last = vec![0.0; of_body.count()];
@@ -42,7 +47,7 @@ impl WholeBody<'_> {
         })?;
         let parts = if found.stands { parts.scaled(&of_body.factors(&last)) } else { parts };
         let unknowns = parts.unknowns(sharing);
-        Object::of_moduli(parts, unknowns)
+        Ok(Object::of_moduli(parts, unknowns)?.iterated(self.iterations()))
     }
 
     /// The same springs with equal constants, as stiff as the body is.

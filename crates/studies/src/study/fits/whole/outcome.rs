@@ -1,7 +1,7 @@
 //! The loads of a whole-object fit, and its result.
 
 use super::recipe::{Start, WholeRecipe};
-use crate::whole::{Errors, Stage, Target, Wanted, WholeFit};
+use crate::whole::{Errors, MassStage, Stage, Target, Wanted, WholeFit};
 
 /// The loads of a whole-object fit, and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,10 +37,58 @@ pub struct WholeOutcome {
     pub cancelled: bool,
     /// Whether the fit started from the exact network.
     pub is_exact: bool,
-    /// The factors on the moduli of the body or of its regions, if these are the unknowns.
-    pub moduli: Vec<FoundModulus>,
+    /// The moduli of the body or of its regions, if these are the unknowns.
+    pub moduli: FoundModuli,
     /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
     pub held_out: Vec<HeldOut>,
+    /// The masses, if they were fitted.
+    pub masses: Option<FittedMasses>,
+}
+
+/// Masses that were fitted to the frequencies of the body, with its mass, centre and second moments.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FittedMasses {
+    /// The masses, `[points]`, kg.
+    pub masses: Vec<f64>,
+    /// The number of frequencies that were fitted under each support.
+    pub count: usize,
+    /// The regularization ρ that was chosen.
+    pub regularization: f64,
+    /// The largest error of the second moments on the diagonal, relative to those of the body: none, or that of lumped masses.
+    pub second_error: f64,
+    /// The largest factor by which a mass changed.
+    pub change: f64,
+    /// Their sum, kg.
+    pub total: f64,
+    /// The stages of its path.
+    pub curve: Vec<MassStage>,
+    /// The errors of frequencies under each support.
+    pub supports: Vec<SupportFrequencies>,
+}
+
+/// The errors of the frequencies of several models under a support.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct SupportFrequencies {
+    /// The groups that are held, in words.
+    pub support: String,
+    /// Whether the first of its frequencies were fitted; otherwise they chose ρ.
+    pub is_trained: bool,
+    /// The models.
+    pub models: Vec<ModelFrequencies>,
+}
+
+/// The root mean squares of the errors `ω_i/ω̄_i − 1` of a model.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ModelFrequencies {
+    /// The model.
+    pub model: &'static str,
+    /// Of as many first frequencies as were fitted.
+    pub first: f64,
+    /// Of as many after these, which no fit has seen.
+    pub next: f64,
 }
 
 /// The errors of several models under loads made from the mesh that were neither fitted nor chose ρ.
@@ -55,6 +103,8 @@ pub struct HeldOut {
     pub loads: usize,
     /// The models.
     pub models: Vec<ModelError>,
+    /// Seconds of the same step of the finer body, if there is one.
+    pub seconds_fine: Option<f64>,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` of a model over some loads.
@@ -69,6 +119,20 @@ pub struct ModelError {
     pub worst: Option<f64>,
     /// The load that has it.
     pub worst_load: Option<String>,
+    /// Seconds of a linear implicit step, which is one solution with a factor or levels that are there.
+    pub seconds_per_step: Option<f64>,
+}
+
+/// What displacements say of moduli.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct FoundModuli {
+    /// The moduli.
+    pub all: Vec<FoundModulus>,
+    /// The moduli that the displacements hardly see, or not at all: one alone, or several whose combination they do not see.
+    pub weak: Vec<String>,
+    /// How many times as large as the stated noise the residuals are, where it is stated.
+    pub misfit: Option<f64>,
 }
 
 /// The factor on a modulus.
@@ -81,10 +145,14 @@ pub struct FoundModulus {
     pub factor: f64,
     /// The ends of the 95 % interval of the factor; `None` if the displacements do not determine it.
     pub interval: Option<[f64; 2]>,
+    /// The standard deviation of its logarithm that the meshes cause, which is in the interval; `None` without a finer body.
+    pub mesh: Option<f64>,
 }
 
 /// A relative error under a load from which on a fit has not enough unknowns of the right kind.
 const CAPACITY: f64 = 0.2;
+/// Residuals of this multiple of the noise are more than noise.
+const MISFIT: f64 = 1.5;
 
 /// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,8 +190,9 @@ impl WholeOutcome {
             stands: found.stands,
             cancelled: found.cancelled,
             is_exact: matches!(recipe.start, Start::Exact(_)),
-            moduli: Vec::new(),
+            moduli: FoundModuli::default(),
             held_out: Vec::new(),
+            masses: None,
         }
     }
 
@@ -183,14 +252,7 @@ impl WholeOutcome {
             "fitted to {}, so that errors under them are not predictions{validated}: {done}{ended}",
             self.loads.join(", ")
         );
-        let moduli = self.moduli.iter().map(|modulus| match modulus.interval {
-            Some([low, high]) => format!("{} x {:.4} ({low:.4} to {high:.4})", modulus.name, modulus.factor),
-            None => format!("{} x {:.4} (not determined by these displacements)", modulus.name, modulus.factor),
-        });
-        let moduli: Vec<String> = moduli.collect();
-        let moduli = (!moduli.is_empty()).then(|| {
-            format!("moduli relative to the material, 95 % intervals without errors of the mesh: {}", moduli.join(", "))
-        });
+        let moduli = self.moduli.notes();
         let capacity = (self.largest_left() > CAPACITY && !self.is_exact).then(|| {
             format!(
                 "errors of up to {:.0} % are left: springs with the rest lengths of the mesh cannot do better here; start = \"exact\" has \
@@ -198,6 +260,61 @@ impl WholeOutcome {
                 100.0 * self.largest_left()
             )
         });
-        std::iter::once(fitted).chain(moduli).chain(held_out).chain(capacity).collect()
+        let masses = self.masses.iter().flat_map(FittedMasses::notes);
+        std::iter::once(fitted).chain(moduli).chain(held_out).chain(masses).chain(capacity).collect()
+    }
+}
+
+impl FittedMasses {
+    fn notes(&self) -> Vec<String> {
+        let (count, total, change) = (self.count, self.total, self.change);
+        let second = format!(
+            "mass and centre are those of the body, second moments up to {:.1} % off",
+            100.0 * self.second_error
+        );
+        let first = format!(
+            "masses fitted to the first {count} frequencies under each support, {total:.4e} kg in all, changed by factors up to \
+             {change:.1}, rho {:.0e}: {second}",
+            self.regularization
+        );
+        let support = |of: &SupportFrequencies| {
+            let seen = if of.is_trained { "" } else { ", a support that was not fitted" };
+            let model = |m: &ModelFrequencies| format!("{} {:.2} / {:.2}", m.model, 100.0 * m.first, 100.0 * m.next);
+            let models: Vec<String> = of.models.iter().map(model).collect();
+            let (support, last) = (&of.support, 2 * count);
+            format!(
+                "frequencies 1 to {count} / {} to {last} off by (rms, %), held at {support}{seen}: {}",
+                count + 1,
+                models.join(", ")
+            )
+        };
+        std::iter::once(first).chain(self.supports.iter().map(support)).collect()
+    }
+}
+
+impl FoundModuli {
+    fn notes(&self) -> Vec<String> {
+        let Some(first) = self.all.first() else { return Vec::new() };
+        let one = |modulus: &FoundModulus| match modulus.interval {
+            Some([low, high]) => format!("{} x {:.4} ({low:.4} to {high:.4})", modulus.name, modulus.factor),
+            None => format!("{} x {:.4} (not determined by these displacements)", modulus.name, modulus.factor),
+        };
+        let list: Vec<String> = self.all.iter().map(one).collect();
+        let mesh = if first.mesh.is_some() { "with" } else { "without" };
+        let found =
+            format!("moduli relative to the material, 95 % intervals {mesh} errors of the mesh: {}", list.join(", "));
+        let prior = match self.all.iter().any(|modulus| modulus.name.starts_with("lambda")) {
+            true => "; unknowns = \"region-young\" keeps Poisson's ratio",
+            false => "",
+        };
+        let weak = (!self.weak.is_empty()).then(|| {
+            let weak = self.weak.join("; or of ");
+            format!("the displacements hardly see {weak}: what is found of it is mostly where the fit started{prior}")
+        });
+        let misfit = self.misfit.map(|misfit| {
+            let told = if misfit > MISFIT { ": the model does not explain these displacements" } else { "" };
+            format!("residuals are {misfit:.2} times the stated noise{told}")
+        });
+        [Some(found), weak, misfit].into_iter().flatten().collect()
     }
 }

@@ -21,6 +21,8 @@ pub struct WholeRecipe {
     pub settings: WholeSettings,
     /// The number of natural frequencies of the finite elements that are fitted as well.
     pub frequencies: usize,
+    /// The number of natural frequencies to which the masses are fitted after the springs.
+    pub masses: usize,
     /// The seed of the random loads.
     pub seed: u64,
     /// The supports under which made loads are fitted, each by the names of the groups that are held; that of the scene if
@@ -59,6 +61,8 @@ pub enum Sharing {
     Moduli,
     /// The moduli of the cells of each region of the mesh have factors.
     RegionModuli,
+    /// Young's modulus of the cells of each region of the mesh has a factor; Poisson's ratio stays.
+    RegionYoung,
     /// The moduli of the body have factors.
     BodyModuli,
 }
@@ -79,6 +83,8 @@ pub enum ValidationRecipe {
     Loads(LoadSelection),
     /// By the error on each load of the fit when it is left out.
     LeaveOneOut,
+    /// By the noise of the displacements.
+    Discrepancy,
     /// Not at all: the last regularization is used.
     None,
 }
@@ -87,8 +93,10 @@ pub enum ValidationRecipe {
 pub const MADE: &str = "made";
 /// The name of the validation that leaves out one load at a time.
 pub const LEAVE_ONE_OUT: &str = "leave-one-out";
+/// The name of the validation by the noise of measured displacements.
+pub const DISCREPANCY: &str = "discrepancy";
 /// Names that no load of a scene may have.
-pub const RESERVED: [&str; 2] = [MADE, LEAVE_ONE_OUT];
+pub const RESERVED: [&str; 3] = [MADE, LEAVE_ONE_OUT, DISCREPANCY];
 
 impl Start {
     /// The name in reports.
@@ -110,6 +118,7 @@ crate::named!(Sharing {
     "element" => Element,
     "moduli" => Moduli,
     "region-moduli" => RegionModuli,
+    "region-young" => RegionYoung,
     "body-moduli" => BodyModuli,
 });
 
@@ -119,6 +128,7 @@ impl Sharing {
         match self {
             Sharing::Moduli => Some(ModuliSharing::Element),
             Sharing::RegionModuli => Some(ModuliSharing::Region),
+            Sharing::RegionYoung => Some(ModuliSharing::RegionYoung),
             Sharing::BodyModuli => Some(ModuliSharing::Body),
             Sharing::Spring | Sharing::Group | Sharing::Region | Sharing::Element => None,
         }
@@ -126,6 +136,11 @@ impl Sharing {
 }
 
 impl WholeRecipe {
+    /// Whether the unknowns are moduli of the body or of its regions.
+    pub fn is_of_few_moduli(&self) -> bool {
+        self.unknowns.moduli().is_some_and(|sharing| sharing != ModuliSharing::Element)
+    }
+
     /// Checks the settings that depend on the material.
     ///
     /// # Errors
@@ -144,6 +159,12 @@ impl WholeRecipe {
         }
         if self.frequencies > 0 && !density {
             return Err(Error::expected("frequencies", "a density in [material]", "none"));
+        }
+        if self.masses > 0 && !density {
+            return Err(Error::expected("masses", "a density in [material]", "none"));
+        }
+        if self.masses > 0 && law {
+            return Err(Error::expected("masses", "a material without a law", "one with a law"));
         }
         Ok(())
     }
@@ -184,6 +205,7 @@ impl ValidationRecipe {
             }
             ValidationRecipe::Loads(loads) => loads.words(),
             ValidationRecipe::LeaveOneOut => vec!["each of them left out in turn".into()],
+            ValidationRecipe::Discrepancy => vec!["the noise of the displacements".into()],
             ValidationRecipe::None => Vec::new(),
         }
     }

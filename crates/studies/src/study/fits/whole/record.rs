@@ -1,9 +1,11 @@
 //! The settings and errors of a whole-object fit in a report.
 
-use super::outcome::{FittedLoad, FoundModulus, HeldOut, ModelError, WholeOutcome};
+use super::outcome::{
+    FittedLoad, FittedMasses, FoundModulus, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome,
+};
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
-use crate::whole::Stage;
+use crate::whole::{MassStage, Stage};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +28,8 @@ pub struct WholeRecord {
     pub solver: String,
     /// The number of natural frequencies that are fitted.
     pub frequencies: usize,
+    /// The number of natural frequencies to which the masses are fitted after the springs.
+    pub masses: usize,
     /// The seed of the random loads.
     pub seed: u64,
     /// The groups that are held, for each support under which made loads are fitted; empty for that of the scene.
@@ -71,10 +75,91 @@ pub struct WholeOutcomeRecord {
     pub relative_errors_validated: Vec<FittedLoadRecord>,
     /// The factors on the moduli of the body or of its regions, if these are the unknowns.
     pub moduli: Vec<FoundModulusRecord>,
+    /// The moduli that the displacements hardly see, or not at all: one alone, or several whose combination they do not see.
+    pub hardly_seen: Vec<String>,
+    /// How many times as large as the stated noise the residuals are; null where it is not stated.
+    pub misfit: Option<f64>,
     /// The relative errors under loads that were neither fitted nor chose the regularization.
     pub held_out: Vec<HeldOutRecord>,
     /// The relative errors of the frequencies.
     pub relative_errors_of_frequencies: FrequencyErrorsRecord,
+    /// The masses, if they were fitted.
+    pub masses: Option<FittedMassesRecord>,
+}
+
+/// Masses that were fitted to frequencies. The masses themselves are in the file of the network.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FittedMassesRecord {
+    /// The number of frequencies that were fitted under each support.
+    pub frequencies: usize,
+    /// The regularization that was chosen.
+    pub regularization: f64,
+    /// The largest error of the second moments on the diagonal, relative to those of the body.
+    pub second_moment_error: f64,
+    /// The largest factor by which a mass changed.
+    pub largest_change: f64,
+    /// Their sum, kg.
+    pub total: f64,
+    /// ρ, and the root mean square errors of the frequencies that were fitted and that chose ρ.
+    pub curve: Vec<MassStageRecord>,
+    /// The errors of frequencies under each support.
+    pub supports: Vec<SupportFrequenciesRecord>,
+}
+
+/// A point of the curve of errors of frequencies against ρ.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MassStageRecord {
+    pub regularization: f64,
+    pub trained: f64,
+    /// Null where no frequencies choose.
+    pub validated: Option<f64>,
+}
+
+/// The errors of frequencies under a support.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SupportFrequenciesRecord {
+    /// The groups that are held.
+    pub support: String,
+    /// Whether the first frequencies were fitted; otherwise they chose the regularization.
+    pub trained: bool,
+    /// The finite elements of the mesh and the network with lumped masses, and the network with fitted ones.
+    pub models: Vec<ModelFrequenciesRecord>,
+}
+
+/// The root mean squares of the relative errors `ω_i/ω̄_i − 1` of a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ModelFrequenciesRecord {
+    pub model: String,
+    /// Of the first frequencies.
+    pub first: f64,
+    /// Of as many after these, which no fit has seen.
+    pub next: f64,
+}
+
+impl FittedMassesRecord {
+    fn of(found: &FittedMasses) -> FittedMassesRecord {
+        let model =
+            |m: &ModelFrequencies| ModelFrequenciesRecord { model: m.model.into(), first: m.first, next: m.next };
+        let support = |of: &SupportFrequencies| SupportFrequenciesRecord {
+            support: of.support.clone(),
+            trained: of.is_trained,
+            models: of.models.iter().map(model).collect(),
+        };
+        let stage = |stage: &MassStage| MassStageRecord {
+            regularization: stage.regularization,
+            trained: stage.trained,
+            validated: stage.validated,
+        };
+        FittedMassesRecord {
+            frequencies: found.count,
+            regularization: found.regularization,
+            second_moment_error: found.second_error,
+            largest_change: found.change,
+            total: found.total,
+            curve: found.curve.iter().map(stage).collect(),
+            supports: found.supports.iter().map(support).collect(),
+        }
+    }
 }
 
 /// The factor on a modulus.
@@ -86,11 +171,18 @@ pub struct FoundModulusRecord {
     pub factor: f64,
     /// The ends of the 95 % interval; null if the displacements do not determine it.
     pub interval: Option<[f64; 2]>,
+    /// The standard deviation of its logarithm that the meshes cause, which is in the interval; null without a finer body.
+    pub mesh_deviation: Option<f64>,
 }
 
 impl FoundModulusRecord {
     fn of(found: &FoundModulus) -> FoundModulusRecord {
-        FoundModulusRecord { modulus: found.name.clone(), factor: found.factor, interval: found.interval }
+        FoundModulusRecord {
+            modulus: found.name.clone(),
+            factor: found.factor,
+            interval: found.interval,
+            mesh_deviation: found.mesh,
+        }
     }
 }
 
@@ -105,6 +197,8 @@ pub struct HeldOutRecord {
     pub loads: usize,
     /// The finite elements of the mesh, the network at the start, and the fitted one.
     pub models: Vec<ModelErrorRecord>,
+    /// Seconds of the same step of the finer body; null without one.
+    pub seconds_per_step_fine: Option<f64>,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` of a model; null if it is not stable.
@@ -114,6 +208,8 @@ pub struct ModelErrorRecord {
     pub median: Option<f64>,
     pub worst: Option<f64>,
     pub worst_load: Option<String>,
+    /// Seconds of a linear implicit step, which is one solution with a factor or levels that are there.
+    pub seconds_per_step: Option<f64>,
 }
 
 impl HeldOutRecord {
@@ -123,12 +219,14 @@ impl HeldOutRecord {
             median: model.median,
             worst: model.worst,
             worst_load: model.worst_load.clone(),
+            seconds_per_step: model.seconds_per_step,
         };
         HeldOutRecord {
             support: held_out.support.clone(),
             trained: held_out.is_trained,
             loads: held_out.loads,
             models: held_out.models.iter().map(model).collect(),
+            seconds_per_step_fine: held_out.seconds_fine,
         }
     }
 }
@@ -186,6 +284,7 @@ impl WholeRecord {
             residual: recipe.settings.residual.name().into(),
             solver: recipe.settings.method.name().into(),
             frequencies: recipe.frequencies,
+            masses: recipe.masses,
             seed: recipe.seed,
             supports: recipe.supports.clone(),
             validate_supports: recipe.validation_supports.clone(),
@@ -224,9 +323,12 @@ impl WholeOutcomeRecord {
             stands: outcome.stands,
             relative_errors_fitted: outcome.fitted.iter().map(load).collect(),
             relative_errors_validated: outcome.judged.iter().map(load).collect(),
-            moduli: outcome.moduli.iter().map(FoundModulusRecord::of).collect(),
+            moduli: outcome.moduli.all.iter().map(FoundModulusRecord::of).collect(),
+            hardly_seen: outcome.moduli.weak.clone(),
+            misfit: outcome.moduli.misfit,
             held_out: outcome.held_out.iter().map(HeldOutRecord::of).collect(),
             relative_errors_of_frequencies: FrequencyErrorsRecord { before, after },
+            masses: outcome.masses.as_ref().map(FittedMassesRecord::of),
         }
     }
 }

@@ -5,9 +5,9 @@ use super::finer::Answers;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Support, check_body, unheld_bodies};
+use crate::model::{Support, unheld_bodies};
 use crate::named::unknown;
-use crate::solve::{Factor, System};
+use crate::solve::Equations;
 use crate::study::progress::Progress;
 use crate::whole::{NodalLoad, Residual, Target, Validation, Wanted, made_loads, random_loads, varied_loads};
 use std::sync::Arc;
@@ -25,9 +25,9 @@ pub(super) type Loads<'a> = dyn Fn(&Mesh, &Support) -> Vec<NodalLoad> + 'a;
 pub(super) struct Held {
     /// The groups that are held; empty for the `[[fix]]` of the scene.
     pub groups: Vec<String>,
-    support: Support,
+    pub support: Support,
     /// The same on the finer mesh.
-    fine: Option<Support>,
+    pub fine: Option<Support>,
 }
 
 impl Held {
@@ -41,9 +41,6 @@ impl WholeBody<'_> {
     /// The targets of a fit.
     pub(super) fn wanted(&self, recipe: &WholeRecipe, progress: &mut Progress) -> Result<Wanted> {
         recipe.check(self.newton.is_some(), self.masses.is_some())?;
-        if self.fine.is_some() && recipe.frequencies > 0 {
-            return Err(Error::at("frequencies", "does not go with [reference], whose body has others"));
-        }
         let thickness = &self.material.thicknesses();
         let is_varied = self.is_varied(recipe);
         let supports = self.supports("supports", &recipe.supports)?;
@@ -54,10 +51,11 @@ impl WholeBody<'_> {
             }
             loads
         };
-        let trained = self.targets("loads", &recipe.loads, &supports, (&make, recipe.seed), progress)?;
+        let mut trained = self.targets("loads", &recipe.loads, &supports, (&make, recipe.seed), progress)?;
         let validation = match &recipe.validation {
             ValidationRecipe::None => Validation::None,
             ValidationRecipe::LeaveOneOut => Validation::LeaveOneOut,
+            ValidationRecipe::Discrepancy => Validation::Discrepancy,
             ValidationRecipe::Loads(named) => {
                 let others = match &recipe.validation_supports[..] {
                     [] => supports,
@@ -70,9 +68,51 @@ impl WholeBody<'_> {
                 Validation::Loads(self.targets("validate", named, &others, (&make, recipe.seed), progress)?)
             }
         };
+        let noise = self.weigh(recipe, &mut trained)?;
         let frequencies = self.frequencies(recipe.frequencies)?;
-        let balances = recipe.settings.residual != Residual::Displacements;
-        Ok(Wanted { trained, validation, frequencies, body: balances.then(|| self.entries().clone()) })
+        let mut body: Vec<(Support, Equations)> = Vec::new();
+        if recipe.settings.residual != Residual::Displacements {
+            for target in &trained {
+                if !body.iter().any(|(support, _)| *support == target.support) {
+                    body.push((target.support.clone(), self.equations("residual", &target.support)?));
+                }
+            }
+        }
+        Ok(Wanted { trained, validation, frequencies, body, noise })
+    }
+
+    /// Weighs the loads by the noise of their displacements, if it is known for each; returns the deviation of the residuals.
+    ///
+    /// # Errors
+    /// It is known for some of them only, it is needed and not known, or it is larger than the displacements.
+    fn weigh(&self, recipe: &WholeRecipe, trained: &mut [Target]) -> Result<Option<f64>> {
+        let known =
+            |target: &Target| self.cases.iter().find(|case| case.name == target.name).and_then(|case| case.noise);
+        let sigmas: Vec<Option<f64>> = trained.iter().map(known).collect();
+        let needed = recipe.validation == ValidationRecipe::Discrepancy;
+        if let Some(without) = sigmas.iter().position(Option::is_none) {
+            if needed || sigmas.iter().any(Option::is_some) {
+                let expected = "a sigma in the measured displacements of every load that is fitted, or of none";
+                let key = if needed { "validate" } else { "loads" };
+                return Err(Error::expected(key, expected, format!("none for \"{}\"", trained[without].name)));
+            }
+            return Ok(None);
+        }
+        // ‖ū_l‖/σ_l.
+        let mut sizes = Vec::new();
+        for (target, sigma) in trained.iter().zip(sigmas.into_iter().flatten()) {
+            let seen = target.displacement.iter().zip(&target.weights).filter(|(_, weight)| **weight > 0.0);
+            let square: f64 = seen.clone().map(|(u, _)| u * u).sum();
+            let rms = (square / seen.count().max(1) as f64).sqrt();
+            if !(sigma < rms) {
+                let expected = format!("noise below the displacements under \"{}\", {rms:.3e} m (rms)", target.name);
+                return Err(Error::expected("sigma", expected, format!("{sigma:.3e} m")));
+            }
+            sizes.push(square.sqrt() / sigma);
+        }
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        trained.iter_mut().zip(&sizes).for_each(|(target, size)| target.weight = (size / largest).powi(2));
+        Ok(Some(1.0 / largest))
     }
 
     /// Whether made loads are more than one of each kind.
@@ -95,6 +135,16 @@ impl WholeBody<'_> {
             Ok(Held { groups: names.clone(), support: at(self.mesh)?, fine })
         };
         groups.iter().enumerate().map(held).collect()
+    }
+
+    /// The supports of the fit, and after them those of its validation; with whether loads under them are fitted.
+    pub(super) fn all_supports(&self, recipe: &WholeRecipe) -> Result<Vec<(Held, bool)>> {
+        let own = self.supports("supports", &recipe.supports)?.into_iter().map(|held| (held, true));
+        let others = match recipe.validation_supports.is_empty() {
+            true => Vec::new(),
+            false => self.supports("validate_supports", &recipe.validation_supports)?,
+        };
+        Ok(own.chain(others.into_iter().map(|held| (held, false))).collect())
     }
 
     fn targets(
@@ -144,13 +194,13 @@ impl WholeBody<'_> {
                 let name = format!("{key} {seed} {:?}", held.groups);
                 fine.answers(name, support, &|| make(fine.mesh(), support), progress)?
             }
-            _ if held.groups.is_empty() => Arc::new(solved(self.held(key)?, make(self.mesh, &held.support))),
             _ => {
-                check_body(self.mesh)?;
-                let system = System::new(self.entries(), &held.support)?;
-                let singular = || Error::expected(key, "supports without loose parts", "motions without stiffness");
-                let factor = system.cholesky()?.ok_or_else(singular)?;
-                Arc::new(solved(&(system, factor), make(self.mesh, &held.support)))
+                let equations = self.equations(key, &held.support)?;
+                let answer = |load: NodalLoad| {
+                    let u = equations.solve(&load.forces)?.0;
+                    Ok((load, u))
+                };
+                Arc::new(make(self.mesh, &held.support).into_iter().map(answer).collect::<Result<_>>()?)
             }
         };
         let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
@@ -159,15 +209,6 @@ impl WholeBody<'_> {
         };
         Ok(answers.iter().map(target).collect())
     }
-}
-
-/// The loads with the displacements under them.
-fn solved((system, factor): &(System, Factor), loads: Vec<NodalLoad>) -> Vec<(NodalLoad, Vec<f64>)> {
-    let answer = |load: NodalLoad| {
-        let u = system.solve(factor, &load.forces).0;
-        (load, u)
-    };
-    loads.into_iter().map(answer).collect()
 }
 
 /// The support that holds these groups of points.

@@ -1,0 +1,159 @@
+//! Equations that are solved for many forces: with a factor, or by iterations with levels.
+
+use super::levels::Levels;
+use super::linear::{Factor, System};
+use super::method::StaticSolver;
+use super::modes::{Modes, lowest_modes};
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::{CellMap, Hooke};
+use crate::mesh::Mesh;
+use crate::model::{BlockStiffness, Entries, Support, check_body, finite_elements};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The relative error of a step by iterations whose time is told: what a motion needs.
+const STEP: f64 = 1e-6;
+
+/// The equations of a model under a support, with what solves them. Copies share it.
+#[derive(Debug, Clone)]
+pub enum Equations {
+    /// With the factor of the matrix.
+    Factored(Arc<System>, Arc<Factor>),
+    /// By conjugate gradients with multigrid.
+    Iterated(Arc<Levels>, StaticSolver),
+}
+
+impl Equations {
+    /// With a Cholesky factor; `None` if the matrix is not positive definite.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn factored(entries: &Entries, support: &Support) -> Result<Option<Equations>> {
+        Equations::of_system(Arc::new(System::new(entries, support)?))
+    }
+
+    /// The same of equations whose pattern may be known.
+    ///
+    /// # Errors
+    /// The factor does not fit into memory.
+    pub fn of_system(system: Arc<System>) -> Result<Option<Equations>> {
+        Ok(system.cholesky()?.map(|factor| Equations::Factored(system, Arc::new(factor))))
+    }
+
+    /// By iterations; `None` if the stiffness is shown not to be positive definite. `points` are `[points × dimension]`, m.
+    ///
+    /// # Errors
+    /// The points do not group: kind `Limit`.
+    pub fn iterated(
+        stiffness: BlockStiffness,
+        points: &[f64],
+        support: &Support,
+        solver: StaticSolver,
+    ) -> Result<Option<Equations>> {
+        let levels = Levels::new(stiffness, points, support)?;
+        Ok(levels.ok().map(|levels| Equations::Iterated(Arc::new(levels), solver)))
+    }
+
+    /// Those of the finite elements, for about `loads` forces; `None` if some motion has no stiffness.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory, or are not those of a body.
+    pub fn of_body(
+        mesh: &Mesh,
+        moduli: &CellMap<Hooke>,
+        support: &Support,
+        (solver, loads): (StaticSolver, usize),
+    ) -> Result<Option<Equations>> {
+        if solver.iterates(mesh, loads) {
+            let found = BlockStiffness::of_body(mesh, moduli, 1, 1)
+                .and_then(|stiffness| Equations::iterated(stiffness, &mesh.points, support, solver));
+            match found {
+                Err(error) if solver.gives_way(&error) => {}
+                other => return other,
+            }
+        }
+        check_body(mesh)?;
+        Equations::factored(&finite_elements(mesh, moduli), support)
+    }
+
+    /// The displacements under the nodal forces f, `[points · dimension]`, N, and the relative residual; refined where there is a
+    /// factor, see [`System::solve`].
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn solve(&self, f: &[f64]) -> Result<(Vec<f64>, f64)> {
+        match self {
+            Equations::Factored(system, factor) => Ok(system.solve(factor, f)),
+            Equations::Iterated(levels, solver) => {
+                let (u, solved) = levels.solve(f, solver, &mut |_| ()).map_err(advise)?;
+                Ok((u, solved.residual))
+            }
+        }
+    }
+
+    /// The displacements under each of several nodal forces, without refinement.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn solve_all(&self, forces: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
+        match self {
+            Equations::Factored(system, factor) => Ok(system.solve_all(factor, forces)),
+            Equations::Iterated(..) => forces.iter().map(|f| Ok(self.solve(f)?.0)).collect(),
+        }
+    }
+
+    /// The changes of the displacements for changes of the nodal forces; iterations end at the relative error `tolerance`.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn respond_all(&self, forces: &[Vec<f64>], tolerance: f64) -> Result<Vec<Vec<f64>>> {
+        match self {
+            Equations::Factored(system, factor) => Ok(system.respond_all(factor, forces)),
+            Equations::Iterated(levels, solver) => {
+                let solver = StaticSolver { tolerance: solver.tolerance.max(tolerance), ..*solver };
+                forces.iter().map(|f| levels.respond(f, &solver).map_err(advise)).collect()
+            }
+        }
+    }
+
+    /// Seconds of a linear implicit step: one change of the displacements for a change of the forces; the least of three.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn seconds_per_step(&self) -> Result<f64> {
+        let size = match self {
+            Equations::Factored(system, _) => system.degrees(),
+            Equations::Iterated(levels, _) => levels.degrees(),
+        };
+        let forces = [(0..size).map(|i| (1.0 + i as f64).sin()).collect::<Vec<f64>>()];
+        let mut least = f64::INFINITY;
+        for _ in 0..3 {
+            let start = Instant::now();
+            self.respond_all(&forces, STEP)?;
+            least = least.min(start.elapsed().as_secs_f64());
+        }
+        Ok(least)
+    }
+
+    /// The `count` lowest natural vibrations, see [`lowest_modes`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn lowest_modes(&self, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+        match self {
+            Equations::Factored(system, factor) => lowest_modes(system, factor, masses, dimension, count),
+            Equations::Iterated(levels, _) => levels.lowest_modes(masses, dimension, count),
+        }
+    }
+}
+
+/// What helps where iterations stall.
+fn advise(error: Error) -> Error {
+    match error.kind() {
+        ErrorKind::Limit => {
+            Error::new(format!("{}; method = \"cholesky\" in [solver] does without iterations", error.problem()))
+                .of_kind(ErrorKind::Limit)
+        }
+        _ => error,
+    }
+}

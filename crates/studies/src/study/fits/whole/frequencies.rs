@@ -1,0 +1,83 @@
+//! The masses of a whole-object fit, and the natural frequencies that they give.
+
+use super::body::WholeBody;
+use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies};
+use super::recipe::WholeRecipe;
+use crate::error::{Error, Result};
+use crate::material::CellMap;
+use crate::model::{Lumping, Moments, Network, lumped_masses};
+use crate::solve::Equations;
+use crate::study::progress::{Event, Progress};
+use crate::whole::{Vibrations, fit_masses};
+
+impl WholeBody<'_> {
+    /// Fits the masses of a network to as many frequencies as the recipe says under each support of the fit; those of the validation
+    /// choose ρ. As many frequencies more are compared.
+    ///
+    /// # Errors
+    /// A model has fewer frequencies, or no masses at the points are those of the body.
+    pub(super) fn fit_masses(
+        &self,
+        recipe: &WholeRecipe,
+        network: &Network,
+        progress: &mut Progress,
+    ) -> Result<FittedMasses> {
+        let (mesh, count) = (self.mesh, recipe.masses);
+        let (density, d) = (self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0)), mesh.dimension);
+        let thickness = self.material.thicknesses();
+        let lumped = lumped_masses(mesh, density.clone(), thickness.clone(), Lumping::Hrz);
+        let moments = match self.fine {
+            Some(fine) => fine.moments(),
+            None => Moments::of_body(mesh, density, thickness),
+        };
+        let at = |e: Error| Error::at("masses", e.problem()).of_kind(e.kind());
+        let supports = self.all_supports(recipe)?;
+        let (mut of_supports, mut wanted, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        for (done, (held, is_trained)) in supports.iter().enumerate() {
+            progress(Event::stage("frequencies of the body", done, supports.len()));
+            let squares = self.squares("masses", held, 2 * count)?;
+            let equations = self.equations_of(network, &held.support)?;
+            let equations =
+                equations.ok_or_else(|| Error::expected("masses", "a network that is stable", "another"))?;
+            let vibrations =
+                Vibrations { support: held.support.clone(), equations, squares: squares[..count].to_vec() };
+            if *is_trained {
+                wanted.push(vibrations.clone())
+            } else {
+                others.push(vibrations.clone())
+            }
+            of_supports.push((held, *is_trained, squares, vibrations.equations));
+        }
+        let found = fit_masses(&mesh.points, d, &lumped, &moments, (&wanted, &others)).map_err(at)?;
+        let frequencies = |(held, is_trained, squares, equations): &(_, bool, Vec<f64>, Equations)| {
+            let held: &&super::targets::Held = held;
+            let body = self.equations("masses", &held.support)?;
+            let models = [
+                ("finite elements", &body, &lumped),
+                ("fitted", equations, &lumped),
+                ("fitted masses", equations, &found.masses),
+            ];
+            let model = |(model, equations, masses): (&'static str, &Equations, &Vec<f64>)| {
+                let modes = equations.lowest_modes(masses, d, squares.len()).map_err(at)?;
+                let errors: Vec<f64> = modes.squares.iter().zip(squares).map(|(a, b)| (a / b).sqrt() - 1.0).collect();
+                let rms = |errors: &[f64]| (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+                Ok(ModelFrequencies { model, first: rms(&errors[..count]), next: rms(&errors[count..]) })
+            };
+            let models = models.into_iter().map(model).collect::<Result<_>>()?;
+            Ok(SupportFrequencies { support: held.words(), is_trained: *is_trained, models })
+        };
+        let own = Moments::of_masses(&mesh.points, d, &found.masses);
+        let off = |k: usize| (own.second[k * d + k] / moments.second[k * d + k] - 1.0).abs();
+        let second_error = (0..d).map(off).filter(|off| off.is_finite()).fold(0.0, f64::max);
+        Ok(FittedMasses {
+            count,
+            regularization: found.regularization,
+            second_error,
+            change: found.change,
+            total: moments.mass,
+            curve: found.curve,
+            supports: of_supports.iter().map(frequencies).collect::<Result<_>>()?,
+            masses: found.masses,
+        })
+    }
+}

@@ -1,0 +1,276 @@
+//! Moduli of regions from measured displacements: with noise, on part of the points, and from a finer world than the network.
+
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
+use springfit::report;
+use springfit::study::{FoundModuli, Outcome, Scene, run};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::Path;
+
+/// A block of 1 × 1 × 2 m of hexahedra in the format of Abaqus, whose upper half is another region; `size` cells along its short sides.
+fn block(size: usize) -> String {
+    let n = size + 1;
+    let at = |i: usize, j: usize, k: usize| (k * n + j) * n + i + 1;
+    let mut text = String::from("*NODE\n");
+    for k in 0..=2 * size {
+        for (j, i) in (0..n).flat_map(|j| (0..n).map(move |i| (j, i))) {
+            let x = |i: usize| i as f64 / size as f64;
+            writeln!(text, "{}, {:?}, {:?}, {:?}", at(i, j, k), x(i), x(j), x(k)).unwrap();
+        }
+    }
+    for (name, layers, first) in [("lower", 0..size, 1), ("upper", size..2 * size, 1 + size.pow(3))] {
+        writeln!(text, "*ELEMENT, TYPE=C3D8, ELSET={name}").unwrap();
+        let cells = layers.flat_map(|k| (0..size).flat_map(move |j| (0..size).map(move |i| (i, j, k))));
+        for (number, (i, j, k)) in cells.enumerate() {
+            let face =
+                |k: usize| [at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k)].map(|p| p.to_string());
+            writeln!(text, "{}, {}, {}", first + number, face(k).join(", "), face(k + 1).join(", ")).unwrap();
+        }
+    }
+    text
+}
+
+/// Young's moduli of the lower and the upper half relative to that of the material of the scene.
+const TRUTH: [f64; 2] = [1.0, 4.0];
+
+const SCENE: &str = r#"
+[mesh]
+file = "MESH"
+
+[material]
+young   = 1e4
+poisson = 0.3
+REFERENCE
+[[fix]]
+where = "z < 1e-6"
+"#;
+
+/// Loads, with what is in place of MEASURED.
+const LOADS: [(&str, &str); 3] = [
+    ("pull", "where = \"z > 1.999\"\ntraction = [0, 0, 100]"),
+    ("shear", "where = \"z > 1.999\"\ntraction = [30, 0, 0]"),
+    ("squeeze", "where = \"x > 0.999\"\ntraction = [-100, 20, 0]"),
+];
+
+fn outcome(folder: &Path, name: &str, text: &str) -> springfit::error::Result<Outcome> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    run(&Scene::load(&path)?, &mut |_| {})
+}
+
+/// A world of `size` cells across, and its displacements under the loads.
+struct World {
+    folder: tempfile::TempDir,
+    points: Vec<f64>,
+    displacements: Vec<Vec<f64>>,
+}
+
+impl World {
+    fn new(size: usize) -> World {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("world.inp"), block(size)).unwrap();
+        let mut text = SCENE.replace("MESH", "world.inp").replace("REFERENCE", "");
+        text = text.replace("[material]", "[[material]]\ngroup = \"lower\"");
+        let upper = format!("[[material]]\ngroup = \"upper\"\nyoung = {:?}\npoisson = 0.3\n", 1e4 * TRUTH[1]);
+        text += &upper;
+        text += "[[fit]]\nobjective = \"exact\"\n";
+        LOADS.iter().for_each(|(name, load)| write!(text, "[[load]]\nname = \"{name}\"\n{load}\n").unwrap());
+        let outcome = outcome(folder.path(), "world.toml", &text).unwrap();
+        let displacements = outcome.loads.iter().map(|load| load.fem.clone()).collect();
+        World { folder, points: outcome.mesh.points.clone(), displacements }
+    }
+
+    /// Writes the displacements at the points that `keep` chooses of those of a mesh of `size` cells across, with noise of this share of
+    /// their root mean square; returns the deviations, m.
+    fn measure(&self, size: usize, (noise, seed): (f64, u64), keep: impl Fn(&[f64]) -> bool) -> Vec<f64> {
+        let mut random = StdRng::seed_from_u64(seed);
+        let mut sigmas = Vec::new();
+        for ((name, _), u) in LOADS.iter().zip(&self.displacements) {
+            let on = |x: &[f64]| x.iter().all(|x| (x * size as f64 - (x * size as f64).round()).abs() < 1e-6);
+            let rms = (u.iter().map(|u| u * u).sum::<f64>() / u.len() as f64).sqrt();
+            let mut text = String::from("x,y,z,ux,uy,uz\n");
+            for (x, u) in self.points.chunks_exact(3).zip(u.chunks_exact(3)).filter(|(x, _)| on(x) && keep(x)) {
+                let noisy = u.iter().map(|u| {
+                    // The sum of twelve uniform numbers is nearly normal.
+                    let normal = (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0;
+                    format!("{:?}", if x[2] > 1e-6 { u + noise * rms * normal } else { *u })
+                });
+                let noisy: Vec<String> = noisy.collect();
+                writeln!(text, "{:?},{:?},{:?},{}", x[0], x[1], x[2], noisy.join(",")).unwrap();
+            }
+            std::fs::write(self.folder.path().join(format!("{name}.csv")), text).unwrap();
+            sigmas.push(noise * rms);
+        }
+        sigmas
+    }
+
+    /// The moduli that a network of `size` cells across finds with these keys, and a finer mesh of `finer` cells across.
+    fn find(
+        &self,
+        size: usize,
+        finer: Option<usize>,
+        sigmas: Option<&[f64]>,
+        keys: &str,
+    ) -> springfit::error::Result<Outcome> {
+        let folder = self.folder.path();
+        std::fs::write(folder.join("own.inp"), block(size)).unwrap();
+        let reference = finer.map_or(String::new(), |finer| {
+            std::fs::write(folder.join("finer.inp"), block(finer)).unwrap();
+            "[reference]\nmesh = { file = \"finer.inp\" }".into()
+        });
+        let mut text = SCENE.replace("MESH", "own.inp").replace("REFERENCE", &reference);
+        text += "[[fit]]\nname = \"moduli\"\nobjective = \"whole\"\nstart = \"exact\"\nloads = [\"pull\", \"shear\", \"squeeze\"]\n";
+        text += keys;
+        for (i, (name, load)) in LOADS.iter().enumerate() {
+            let sigma = sigmas.map_or(String::new(), |sigmas| format!(", sigma = {:?}", sigmas[i]));
+            write!(text, "\n[[load]]\nname = \"{name}\"\n{load}\nmeasured = {{ file = \"{name}.csv\"{sigma} }}\n")
+                .unwrap();
+        }
+        outcome(folder, "own.toml", &text)
+    }
+}
+
+fn moduli(outcome: &Outcome) -> &FoundModuli {
+    &outcome.fits[0].kind.whole().unwrap().moduli
+}
+
+fn on_surface(x: &[f64]) -> bool {
+    x.iter().zip([1.0, 1.0, 2.0]).any(|(x, side)| *x < 1e-6 || *x > side - 1e-6)
+}
+
+/// Of how many of these seeds the 95 % intervals hold the truth, of each modulus; and the largest error of a modulus.
+fn coverage(world: &World, (size, finer): (usize, Option<usize>), noise: f64, surface: bool, seeds: u64) -> (f64, f64) {
+    let (mut held, mut all, mut worst) = (0, 0, 0.0f64);
+    for seed in 0..seeds {
+        let sigmas = world.measure(size, (noise, seed), |x| !surface || on_surface(x));
+        let found = world.find(
+            size,
+            finer,
+            Some(&sigmas).filter(|_| noise > 0.0).map(|s| &s[..]),
+            "unknowns = \"region-young\"",
+        );
+        let found = found.unwrap();
+        for modulus in &moduli(&found).all {
+            let truth = TRUTH[usize::from(modulus.name.contains("upper"))];
+            let [low, high] = modulus.interval.unwrap();
+            let error = (modulus.factor / truth - 1.0).abs();
+            // Without noise the interval is that of rounding.
+            held += usize::from((low <= truth && truth <= high) || error < 1e-6);
+            all += 1;
+            worst = worst.max(error);
+        }
+    }
+    let share = held as f64 / all as f64;
+    println!(
+        "{size} cells, finer {finer:?}, noise {noise}, surface {surface}: {:.0} %, moduli within {:.2} %",
+        100.0 * share,
+        100.0 * worst
+    );
+    (share, worst)
+}
+
+/// Two regions 1 : 4 on the mesh of the data.
+fn on_the_same_mesh(seeds: u64) {
+    let world = World::new(3);
+    for (noise, surface) in [(0.0, false), (0.0, true), (0.01, false), (0.01, true), (0.05, false), (0.05, true)] {
+        let seeds = if noise > 0.0 { seeds } else { 1 };
+        let (share, _) = coverage(&world, (3, None), noise, surface, seeds);
+        // Of 2 × 10 intervals of 95 %, fewer than 16 hold with a chance of 0.3 %.
+        assert!(share >= if seeds >= 100 { 0.9 } else { 0.8 }, "{noise} {surface}: {share}");
+    }
+}
+
+/// The same from a finer body, with a network of large cells: with the body as reference the moduli are within 3 %; with a mesh between
+/// both, the intervals have what that mesh lacks.
+fn on_a_coarse_network(seeds: u64) {
+    let world = World::new(8);
+    for (finer, noise, surface) in [(8, 0.0, false), (8, 0.01, false), (8, 0.01, true), (4, 0.01, false)] {
+        let seeds = if noise > 0.0 { seeds } else { 1 };
+        let (share, worst) = coverage(&world, (2, Some(finer)), noise, surface, seeds);
+        assert!(share >= if seeds >= 100 { 0.9 } else { 0.8 }, "{finer} {noise} {surface}: {share}");
+        assert!(worst < 0.03 || finer < 8, "{finer} {noise} {surface}: {worst}");
+    }
+}
+
+#[test]
+fn intervals_hold_the_truth_on_the_same_mesh() {
+    on_the_same_mesh(10);
+}
+
+#[test]
+fn intervals_hold_the_truth_on_a_coarse_network() {
+    on_a_coarse_network(4);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn intervals_hold_the_truth_in_a_hundred_cases() {
+    on_the_same_mesh(100);
+    on_a_coarse_network(100);
+}
+
+/// Without a finer mesh the discretisation makes a coarse network err by more than its interval tells, and the report says which errors are
+/// in it.
+#[test]
+fn a_finer_mesh_removes_the_error_of_the_network() {
+    let world = World::new(8);
+    world.measure(2, (0.0, 1), |_| true);
+    let alone = world.find(2, None, None, "unknowns = \"region-young\"").unwrap();
+    let corrected = world.find(2, Some(4), None, "unknowns = \"region-young\"").unwrap();
+    let worst = |outcome: &Outcome| {
+        let error = |m: &springfit::study::FoundModulus| m.factor / TRUTH[usize::from(m.name.contains("upper"))] - 1.0;
+        moduli(outcome).all.iter().map(|m| error(m).abs()).fold(0.0, f64::max)
+    };
+    println!("{:.4} alone, {:.4} with a finer mesh", worst(&alone), worst(&corrected));
+    assert!(worst(&alone) > 0.02 && worst(&corrected) < worst(&alone) / 3.0);
+    let says = |outcome: &Outcome, what: &str| report::notes(outcome).iter().any(|note| note.contains(what));
+    assert!(says(&alone, "95 % intervals without errors of the mesh"));
+    assert!(says(&corrected, "95 % intervals with errors of the mesh"));
+}
+
+/// One state of uniform shear does not see λ, and points of one region do not see the other's modulus well: both are named.
+#[test]
+fn what_displacements_do_not_see_is_named() {
+    let world = World::new(3);
+    let sigmas = world.measure(3, (0.05, 3), |x| x[2] > 1.999);
+    let found = world.find(3, None, Some(&sigmas), "unknowns = \"region-moduli\"").unwrap();
+    let weak: BTreeSet<&str> = moduli(&found).weak.iter().flat_map(|names| names.split(", ")).collect();
+    println!("{:?} {:?}", moduli(&found).all, weak);
+    assert!(weak.iter().any(|name| name.contains("lambda of upper")), "{weak:?}");
+    assert!(report::notes(&found).iter().any(|note| note.contains("the displacements hardly see")));
+    // With ν known, both are seen.
+    let found = world.find(3, None, Some(&sigmas), "unknowns = \"region-young\"").unwrap();
+    assert!(moduli(&found).weak.is_empty(), "{:?}", moduli(&found).weak);
+}
+
+/// Moduli of every cell from noisy displacements: the discrepancy principle stops where the residuals are the noise, before they fit it.
+#[test]
+fn the_noise_chooses_the_regularization() {
+    let world = World::new(3);
+    let sigmas = world.measure(3, (0.02, 9), |_| true);
+    let found = world.find(3, None, Some(&sigmas), "unknowns = \"moduli\"\nvalidate = \"discrepancy\"").unwrap();
+    let whole = found.fits[0].kind.whole().unwrap();
+    let rho = whole.regularization.unwrap();
+    // The curve has the residuals relative to the noise: above one before the stage that is chosen.
+    for stage in &whole.curve {
+        let ratio = stage.validated.unwrap();
+        assert_eq!(ratio <= 1.0, stage.regularization <= rho, "{rho} {:?}", whole.curve);
+    }
+    assert!(rho < 10.0 && whole.curve.last().unwrap().regularization < rho, "{rho}");
+}
+
+/// Noise that is larger than the data, noise of some loads only, and noise that is needed and not given.
+#[test]
+fn wrong_noise_is_named() {
+    let world = World::new(2);
+    world.measure(2, (0.0, 1), |_| true);
+    let error = |sigmas: Option<&[f64]>, keys: &str| world.find(2, None, sigmas, keys).unwrap_err().to_string();
+    let young = "unknowns = \"region-young\"";
+    let large = error(Some(&[1.0, 1e-3, 1e-3]), young);
+    assert!(large.contains("noise below the displacements under \"pull\"") && large.contains("1.000e0 m"), "{large}");
+    let negative = error(Some(&[-1.0, 1e-3, 1e-3]), young);
+    assert!(negative.contains("load[0].measured.sigma"), "{negative}");
+    let none = error(None, "unknowns = \"region-young\"\nvalidate = \"discrepancy\"");
+    assert!(none.contains("validate") && none.contains("none for \"pull\""), "{none}");
+}
