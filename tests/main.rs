@@ -73,6 +73,7 @@ mod schema;
 mod searches;
 mod settings;
 mod shapes;
+mod shards;
 mod small_loads;
 mod springs;
 mod stability;

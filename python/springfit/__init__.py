@@ -10,23 +10,32 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 """
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
+from .gradients import Gradient, SpringConstants
 from .material import Material
 from .mesh import Mesh
-from .network import Network, fit, stiffness
+from .network import Network, fit, sampled, stiffness, whole
 from .report import Report, run
+from .studies import compare, converge, stability
 from .sweep import sweep
 
 __all__ = [
     "Element",
+    "Gradient",
     "Material",
     "Mesh",
     "Network",
     "Report",
+    "SpringConstants",
     "SpringfitError",
     "__version__",
+    "compare",
+    "converge",
     "fit",
     "run",
+    "sampled",
     "shipped_elements",
+    "stability",
     "stiffness",
     "sweep",
+    "whole",
 ]

@@ -71,6 +71,8 @@ class Mesh:
     @property
     def numbers(self) -> NDArray[np.int64] | None: ...
     @property
+    def checksum(self) -> str: ...
+    @property
     def quality(self) -> dict[str, Any]: ...
 
 class Network:
@@ -97,10 +99,17 @@ class Network:
         self, forces: NDArray[np.float64], held: NDArray[np.bool_], prescribed: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], float, bool]: ...
     def write(self, path: str) -> None: ...
+    def export(self, to: str, folder: str, gravity: list[float] | None = None) -> tuple[list[Path], list[str], str]: ...
     def __len__(self) -> int: ...
 
 def shipped_elements() -> list[str]: ...
-def fit(mesh: Mesh, material: Any, keys: dict[str, Any], progress: Progress | None = None) -> Network: ...
+def fit(
+    mesh: Mesh,
+    material: Any,
+    keys: dict[str, Any],
+    held: NDArray[np.bool_] | None = None,
+    progress: Progress | None = None,
+) -> Network: ...
 def finite_elements(mesh: Mesh, material: Any) -> Triplets: ...
 def run(
     scene: Path | dict[str, Any],
@@ -128,3 +137,65 @@ class Studies:
 def study_line(
     text: str, path: Path, settings: dict[str, Any], values: str, progress: Progress | None = None
 ) -> str: ...
+
+class CellConstants:
+    def __new__(cls, element: Element, keys: dict[str, Any], plane: str | None = None) -> CellConstants: ...
+    @property
+    def pairs(self) -> NDArray[np.int64]: ...
+    @property
+    def springs(self) -> int: ...
+    def values(
+        self, points: NDArray[np.float64], cells: NDArray[np.int64], young: float, poisson: float, thickness: float
+    ) -> NDArray[np.float64]: ...
+    def gradient(
+        self,
+        points: NDArray[np.float64],
+        cells: NDArray[np.int64],
+        young: float,
+        poisson: float,
+        thickness: float,
+        weights: NDArray[np.float64],
+    ) -> tuple[NDArray[np.float64], float, float, float]: ...
+
+Given = tuple[Path | dict[str, Any], Path, dict[str, Any]]
+
+def compare_scene(given: Given, progress: Progress | None = None) -> str: ...
+def compare_element(
+    element: Element, poisson: float, plane: str | None, shapes: int, iterations: int, progress: Progress | None = None
+) -> str: ...
+def converge(
+    given: Given, levels: int | None = None, truth: Given | None = None, progress: Progress | None = None
+) -> str: ...
+def stability(element: Element | None = None, progress: Progress | None = None) -> str: ...
+def stability_of_scene(given: Given, progress: Progress | None = None) -> str: ...
+
+Blocks = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
+Load = tuple[str, NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64]]
+
+def distributed(
+    scene: Path | dict[str, Any], folder: Path, settings: dict[str, Any]
+) -> tuple[tuple[str, Path], str, list[str], Mesh, list[Load]]: ...
+
+class BodyShare:
+    def __new__(
+        cls,
+        text: str,
+        path: Path,
+        settings: dict[str, Any],
+        points: NDArray[np.float64],
+        blocks: Sequence[tuple[str, NDArray[np.int64]]],
+    ) -> BodyShare: ...
+    def stiffness(self) -> Blocks: ...
+    def fit(self, fit: int) -> tuple[Blocks, float, NetworkShare]: ...
+    def write(
+        self,
+        share: NetworkShare,
+        path: Path,
+        place: tuple[int, int],
+        run: tuple[str, int, int, str],
+        places: NDArray[np.int64],
+        numbers: NDArray[np.int64] | None,
+        is_inside: NDArray[np.bool_],
+    ) -> None: ...
+
+class NetworkShare: ...

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ def fit(
     objective: str = "exact",
     *,
     springs: "list[str] | None" = None,
+    fix: Any = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
     **keys: Any,
 ) -> "Network":
@@ -31,6 +33,7 @@ def fit(
         objective: "exact" (the default: the network is the finite element), "frobenius", "offdiag", "modal", "spectral",
             "divergence", "sampled", or a published method.
         springs: Names of spring groups; all that are not optional, if None.
+        fix: What is held in a fit to the whole object, as in :meth:`Network.solve`; such fits alone have it.
         progress: True shows a bar (by ``tqdm`` where it is installed); or a function of (stage, done, total).
         **keys: The other keys of a ``[[fit]]`` in a scene, such as ``nonnegative=True`` or ``volume="patches"``.
 
@@ -41,8 +44,59 @@ def fit(
         SpringfitError: A key or a value is wrong, or a cell cannot be fitted.
     """
     entry = {"objective": objective, "springs": springs, **keys}
+    if fix is not None and objective != "whole":
+        raise failure("fix", 'what is held with the objective "whole" alone', f'it with "{objective}"')
+    held = None if fix is None else held_flags(mesh, fix)
     with listener(progress) as told:
-        return Network(_core.fit(mesh._core, material, entry, told), mesh)
+        return Network(_core.fit(mesh._core, material, entry, held, told), mesh)
+
+
+def sampled(mesh: Mesh, material: Material, law: "str | os.PathLike", **keys: Any) -> "Network":
+    """Fits the springs of every cell to the forces of an energy at sampled shapes.
+
+    Args:
+        law: A shipped energy, such as "neo-hookean", or the path of a material file. An energy of your own is such a file: its expression
+            is differentiated, which a Python function cannot be.
+        **keys: The other keys of a ``[[fit]]`` with the objective "sampled", such as ``force="k1*s + k3*s^3"`` and
+            ``shapes={"count": 300, "stretch": 0.3}``; and the options of :func:`fit`.
+
+    Raises:
+        SpringfitError: A key or a value is wrong, or a cell cannot be fitted.
+    """
+    return fit(mesh, material, "sampled", law=os.fspath(law), **keys)
+
+
+def whole(mesh: Mesh, material: Material, fix: Any, **keys: Any) -> "Network":
+    """Fits the springs of all cells together to the displacements of the whole object.
+
+    Args:
+        fix: What is held: the name of a group, places of points, a flag for each point, or for each component (points, dimension).
+        **keys: The other keys of a ``[[fit]]`` with the objective "whole", such as ``unknowns="groups"``; and the options of :func:`fit`.
+
+    Raises:
+        SpringfitError: A key or a value is wrong, or nothing holds a piece of the mesh.
+    """
+    return fit(mesh, material, "whole", fix=fix, **keys)
+
+
+def held_flags(mesh: Mesh, fix: Any) -> np.ndarray:
+    """Which components ``fix`` holds, (points, dimension)."""
+    shape = mesh.points.shape
+    held = np.zeros(shape, dtype=bool)
+    if isinstance(fix, str):
+        groups = mesh.groups
+        if fix not in groups:
+            raise failure("fix", "a group of the mesh: " + ", ".join(groups), f'"{fix}"')
+        fix = groups[fix]
+    fix = np.asarray(fix)
+    if fix.dtype == bool and fix.shape in (shape, shape[:1]):
+        held[fix] = True
+    elif fix.ndim == 1 and np.issubdtype(fix.dtype, np.integer) and (fix.size == 0 or 0 <= fix.min() <= fix.max() < shape[0]):
+        held[fix] = True
+    else:
+        expected = f"a group's name, places of points below {shape[0]}, or flags of shape {shape[:1]} or {shape}"
+        raise failure("fix", expected, f"values of type {fix.dtype}, shape {fix.shape}")
+    return held
 
 
 def stiffness(mesh: Mesh, material: Material):
@@ -143,7 +197,7 @@ class Network:
             SpringfitError: A motion has no stiffness, or an array has a wrong shape.
         """
         shape = self.points.shape
-        held = self._held(fix, shape)
+        held = held_flags(self.mesh, fix)
         zero = np.zeros(shape)
         given = [zero if array is None else matrix(key, array, np.float64)
                  for key, array in (("forces", forces), ("displacement", displacement))]
@@ -158,26 +212,31 @@ class Network:
             warnings.warn(f"the solution leaves {left:.1e} of the forces: the network is nearly a mechanism", stacklevel=2)
         return u
 
-    def _held(self, fix: Any, shape: tuple) -> np.ndarray:
-        held = np.zeros(shape, dtype=bool)
-        if isinstance(fix, str):
-            groups = self.mesh.groups
-            if fix not in groups:
-                raise failure("fix", "a group of the mesh: " + ", ".join(groups), f'"{fix}"')
-            fix = groups[fix]
-        fix = np.asarray(fix)
-        if fix.dtype == bool and fix.shape in (shape, shape[:1]):
-            held[fix] = True
-        elif fix.ndim == 1 and np.issubdtype(fix.dtype, np.integer) and (fix.size == 0 or 0 <= fix.min() <= fix.max() < shape[0]):
-            held[fix] = True
-        else:
-            expected = f"a group's name, places of points below {shape[0]}, or flags of shape {shape[:1]} or {shape}"
-            raise failure("fix", expected, f"values of type {fix.dtype}, shape {fix.shape}")
-        return held
-
     def write(self, path: "str | os.PathLike") -> None:
-        """Writes the springs to a ``.vtu``, ``.json`` or ``.csv`` file; nothing is half written."""
+        """Writes the springs to a ``.json``, ``.npz``, ``.vtu`` or ``.csv`` file; nothing is half written."""
         self._core.write(os.fspath(path))
+
+    def export(self, to: str, folder: "str | os.PathLike", *, gravity: Any = None) -> "list[Path]":
+        """Writes the files and scripts of another program, as ``springfit export``.
+
+        Args:
+            to: The program: "mujoco", "newton", "lammps", "jolt", "sofa", "npz" or "vtu".
+            folder: Where they go; it is made.
+            gravity: m/s², shape (dimension,); 9.81 against the last axis if None.
+
+        Returns:
+            The files. What the program does not represent is told as a warning.
+
+        Raises:
+            SpringfitError: The program does not hold this network, and a fit that it holds is named.
+        """
+        gravity = None if gravity is None else [float(g) for g in np.asarray(gravity).ravel()]
+        files, left_out, _ = self._core.export(to, os.fspath(folder), gravity)
+        for words in left_out:
+            import warnings
+
+            warnings.warn(words, stacklevel=2)
+        return [Path(file) for file in files]
 
     def to_pyvista(self):
         """Lines with their constants and rest lengths, as ``pyvista.PolyData``."""

@@ -1,17 +1,18 @@
 //! `fit` and the finite elements of the same body.
 
 use crate::arrays::list;
-use crate::error::raised;
+use crate::error::{invalid, raised};
 use crate::mesh::Mesh;
 use crate::network::{Network, Triplets};
 use crate::progress::{self, apart};
 use crate::value::table;
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
-use springfit::material::{Material, Plane};
-use springfit::model;
-use springfit::study::{BodyConstants, FitEntry, Reference, fit_mesh, point_masses};
+use springfit::material::{Material, MaterialMap, Plane};
+use springfit::model::{self, Support};
+use springfit::study::{BodyConstants, Controls, FitEntry, Reference, WholeBody, fit_mesh, point_masses};
 
 /// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²).
 #[derive(FromPyObject)]
@@ -38,14 +39,16 @@ impl Constants {
 
 /// Fits the springs of every cell; `keys` are those of a `[[fit]]` of a scene.
 #[pyfunction]
-#[pyo3(signature = (mesh, material, keys, progress=None))]
+#[pyo3(signature = (mesh, material, keys, held=None, progress=None))]
 pub fn fit(
     py: Python,
     mesh: &Mesh,
     material: Constants,
     keys: &Bound<PyDict>,
+    held: Option<PyReadonlyArray2<bool>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Network> {
+    let support = held.map(|held| support(py, mesh, &held)).transpose()?;
     let entry: FitEntry = table(keys)?
         .try_into()
         .map_err(|error: toml::de::Error| raised(py, Error::new(error.message().to_string())))?;
@@ -54,10 +57,27 @@ pub fn fit(
         entry.check()?;
         let named = entry.fits(std::path::Path::new(""))?.remove(0);
         let material = constants.of(mesh)?;
-        let fit = fit_mesh(&mesh.0, material, &Reference::default(), &named, told)?;
+        let controls = Controls::default();
+        let map = MaterialMap::from(material);
+        let whole = match (named.recipe.whole(), &support) {
+            (Some(_), Some(support)) => Some(WholeBody::new(&mesh.0, &map, support, &controls)),
+            (Some(_), None) => return Err(Error::expected("fix", "what is held, for whole-object fits", "nothing")),
+            (None, _) => None,
+        };
+        let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
+        let fit = fit_mesh(&mesh.0, material, &reference, &named, told)?;
         let masses = density.map(|density| point_masses(&mesh.0, density, material)).transpose()?;
         Ok(Network::new(mesh.0.clone(), material, masses, fit))
     })
+}
+
+/// What is held at rest, `[points, dimension]`.
+pub fn support(py: Python, mesh: &Mesh, held: &PyReadonlyArray2<bool>) -> PyResult<Support> {
+    let shape = [mesh.0.point_count(), mesh.0.dimension];
+    if held.shape() != shape {
+        return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
+    }
+    Ok(Support { prescribed: held.as_array().iter().map(|held| held.then_some(0.0)).collect() })
 }
 
 /// The stiffness of the finite elements, in triplets of both triangles.

@@ -1,12 +1,15 @@
 //! The module `springfit._core`: what Python calls. Everything that needs no other program's types is in the Python files beside it.
 
 mod arrays;
+mod distributed;
 mod element;
 mod error;
 mod fit;
+mod gradient;
 mod mesh;
 mod network;
 mod progress;
+mod studies;
 mod study;
 mod sweep;
 mod value;
@@ -22,10 +25,19 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_class::<network::Network>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_class::<sweep::Studies>()?;
+    module.add_class::<distributed::BodyShare>()?;
+    module.add_class::<distributed::NetworkShare>()?;
+    module.add_class::<gradient::CellConstants>()?;
+    module.add_function(wrap_pyfunction!(distributed::distributed, module)?)?;
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::study_line, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::compare_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::compare_element, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::converge, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::stability, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::stability_of_scene, module)?)?;
     Ok(())
 }

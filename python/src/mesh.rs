@@ -119,6 +119,12 @@ impl Mesh {
         Some(list(py, numbering.nodes.iter().map(|&number| number as i64).collect()))
     }
 
+    /// CRC-32 of points and cells, as files of networks have it.
+    #[getter]
+    fn checksum(&self) -> String {
+        format!("{:08x}", self.0.checksum())
+    }
+
     #[getter]
     fn quality<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (quality, record) = (&self.0.quality, PyDict::new(py));

@@ -7,6 +7,8 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::SpringKind;
+use springfit::error::Error;
+use springfit::export::target_named;
 use springfit::fit::Spread;
 use springfit::material::Material;
 use springfit::mesh::Mesh;
@@ -16,6 +18,7 @@ use springfit::solve::System;
 use springfit::springs::Measure;
 use springfit::study::{FitOutcome, Outcome};
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -160,6 +163,36 @@ impl Network {
             let format = NetworkFormat::of(&path)?;
             springfit::check_file(&path)?;
             format.write(&path, &NetworkFile::of(&self.outcome, self.fit()))
+        });
+        written.map_err(|error| raised(py, error))
+    }
+
+    /// Writes the files and scripts of another program into `folder`; what they leave out, and what a user types there.
+    #[pyo3(signature = (to, folder, gravity=None))]
+    fn export(
+        &self,
+        py: Python,
+        to: &str,
+        folder: PathBuf,
+        gravity: Option<Vec<f64>>,
+    ) -> PyResult<(Vec<PathBuf>, Vec<String>, &'static str)> {
+        let written = apart(py, || {
+            let target = target_named(to).map_err(|e| e.at_key("to"))?;
+            let network = NetworkFile::of(&self.outcome, self.fit()).record();
+            let files = target.files(&network, gravity.as_deref()).map_err(|e| match e.key() {
+                Some("--gravity") => e.at_key("gravity"),
+                _ => e,
+            })?;
+            let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+            report::check_outputs(&folder, &names, &[])?;
+            fs::create_dir_all(&folder).map_err(|e| Error::io("the folder cannot be created", e).in_file(&folder))?;
+            let mut paths = Vec::new();
+            for (name, content) in &files {
+                let path = folder.join(name);
+                content.write(&path)?;
+                paths.push(path);
+            }
+            Ok((paths, (target.leaves_out)(&network), target.command))
         });
         written.map_err(|error| raised(py, error))
     }

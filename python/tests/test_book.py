@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("page", ["docs/src/start/python.md", "python/README.md"])
+@pytest.mark.parametrize("page", ["docs/src/start/python.md", "docs/src/theory/gradients.md", "python/README.md"])
 def test_the_examples_run_in_an_empty_folder(page, tmp_path):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     assert blocks
@@ -24,4 +24,5 @@ def test_the_examples_run_in_an_empty_folder(page, tmp_path):
         cwd=tmp_path, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, timeout=300,
     )
     assert run.returncode == 0, run.stderr
-    assert (tmp_path / "springs.json").exists()
+    for written in re.findall(r"""net\.write\("(.*?)"\)""", "".join(blocks)):
+        assert (tmp_path / written).exists()

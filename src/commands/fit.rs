@@ -6,16 +6,17 @@ use super::output::{OutputOptions, command};
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::{Error, Result};
-use springfit::material::{CellMap, MaterialMap};
+use springfit::element::SpringKind;
+use springfit::error::{Error, ErrorKind, Result};
+use springfit::material::{CellMap, Material, MaterialMap};
 use springfit::mesh::{Mesh, Selection, listed_endings};
-use springfit::model::Support;
+use springfit::model::{Support, is_exact, length_shares};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::report::{self, NetworkFile, NetworkFormat};
+use springfit::report::{self, NetworkFile, NetworkFormat, NetworkShard, Shard, ShardRun};
 use springfit::study::{
     BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Reference, WholeBody, assumed, fit_mesh,
-    point_masses,
+    fit_some, point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -106,6 +107,9 @@ pub struct Fit {
     density: Option<String>,
     #[command(flatten)]
     options: MeshOptions,
+    /// Fit the NUMBER-th of COUNT ranges of cells only, into a file that ends in .shard; springfit merge makes one network of all
+    #[arg(long, value_name = "NUMBER/COUNT", help_heading = "Fit")]
+    shard: Option<String>,
     /// Where the springs go: .json with all that is known of them, .npz, .csv or .vtu
     #[arg(short, long, help_heading = "Output")]
     output: PathBuf,
@@ -129,7 +133,15 @@ Published methods, for --objective:
 
 impl Fit {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let format = NetworkFormat::of(&self.output).map_err(|e| e.at_key("--output"))?;
+        let shard = self.shard.as_deref().map(Shard::parse).transpose()?;
+        let format = match shard {
+            Some(_) => None,
+            None => Some(NetworkFormat::of(&self.output).map_err(|e| e.at_key("--output"))?),
+        };
+        if shard.is_some() && self.output.extension().is_none_or(|ending| ending != "shard") {
+            let expected = "a file ending in .shard with --shard";
+            return Err(Error::expected("--output", expected, self.output.display()).of_kind(ErrorKind::Unsupported));
+        }
         let elements = self.options.elements().iter().chain(&self.law).map(PathBuf::from);
         let inputs: Vec<PathBuf> = [self.mesh.clone()].into_iter().chain(elements).collect();
         springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
@@ -173,6 +185,10 @@ impl Fit {
             self.format.print_plan(terminal, &forecast, || report::forecast_text(&title, &forecast, &[]))?;
             return Ok(ExitCode::SUCCESS);
         }
+        let Some(format) = format else {
+            let shard = shard.unwrap_or(Shard::WHOLE);
+            return self.fit_shard(terminal, shard, &mesh, material, &named);
+        };
         forecast.announcement().iter().for_each(|words| terminal.note(words));
         let controls = Arc::new(Controls::default());
         if whole {
@@ -192,6 +208,51 @@ impl Fit {
         if outcome.masses.is_some() && format.ending == "csv" {
             terminal.note("a CSV file has no masses and no places of points; .json and .npz have both");
         }
+        terminal.written(std::slice::from_ref(&self.output))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Fits one range of cells, and writes what it gives to the springs.
+    fn fit_shard(
+        &self,
+        terminal: &mut Terminal,
+        shard: Shard,
+        mesh: &Mesh,
+        material: Material,
+        named: &NamedFit,
+    ) -> Result<ExitCode> {
+        let cells = mesh.cell_count();
+        if shard.count > cells {
+            return Err(Error::expected("--shard", format!("at most {cells} shards, one for each cell"), shard.count));
+        }
+        let range = shard.range(cells);
+        let own = mesh.of_range(range.clone());
+        let fitted = fit_some(named, &own, &material.into(), &mut |event: Event| terminal.show(event));
+        let fitted = fitted.map_err(|e| e.placed(of_option))?;
+        let is_inside = mesh.is_inside(range.clone());
+        // Springs on lengths are there as shares.
+        let others: Vec<_> = fitted.network.others.iter().filter(|spring| spring.kind != SpringKind::Length).collect();
+        let record = NetworkShard {
+            shard,
+            run: ShardRun {
+                program: concat!("springfit ", env!("CARGO_PKG_VERSION")).into(),
+                mesh: format!("{:08x}", mesh.checksum()),
+                points: mesh.point_count(),
+                cells,
+                fit: format!("{:?} {:?} {material:?}", named.recipe, named.springs),
+                is_exact: is_exact(&fitted.cells),
+                is_numbered: mesh.numbering.is_some(),
+            },
+            points: &mesh.points,
+            dimension: mesh.dimension,
+            places: None,
+            numbers: mesh.numbering.as_ref().map(|numbering| &numbering.nodes[..]),
+            shares: &length_shares(&own, &fitted.cells, |point| is_inside[point]),
+            others: &others,
+        };
+        record.write(&self.output)?;
+        let cells = range.len();
+        terminal.print(&format!("{cells} cells of shard {} of {}\n", shard.number, shard.count))?;
         terminal.written(std::slice::from_ref(&self.output))?;
         Ok(ExitCode::SUCCESS)
     }

@@ -13,6 +13,7 @@ mod groups;
 mod interrupt;
 mod man;
 mod materials;
+mod merge;
 mod mesh_file;
 mod new;
 mod output;
@@ -56,6 +57,7 @@ commands! {
     New: new::New,
     Run: run::Run,
     Fit: Box<fit::Fit>,
+    Merge: merge::Merge,
     Check: check::Check,
     Export: export::Export,
     Derive: derive::Derive,

@@ -1,5 +1,6 @@
 //! Files of one line for each study, which grow while a sweep runs and which it goes on from.
 
+use super::shard::Shard;
 use super::study_record::StudyRecord;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{create_folder, files_in, read_text};
@@ -9,51 +10,12 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// One of several parts of a sweep that are run apart from each other, counted from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
-    /// The number of the part, from 1.
-    pub number: usize,
-    /// The number of parts.
-    pub count: usize,
-}
-
 /// The records of the studies that are done, in the folder of a sweep.
 pub struct StudyLines {
     file: File,
     path: PathBuf,
     /// By [`StudyRecord::mark`].
     records: HashMap<String, StudyRecord>,
-}
-
-impl Shard {
-    /// The whole sweep.
-    pub const WHOLE: Shard = Shard { number: 1, count: 1 };
-
-    /// `2/5` is the second of five.
-    ///
-    /// # Errors
-    /// The text is no such pair.
-    pub fn parse(text: &str) -> Result<Shard> {
-        let pair = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
-        match pair {
-            Some((number, count)) if (1..=count).contains(&number) => Ok(Shard { number, count }),
-            _ => Err(Error::expected("--shard", "NUMBER/COUNT such as 2/5, counted from 1", format!("\"{text}\""))),
-        }
-    }
-
-    /// Whether the study at a place, counted from 0, belongs to it.
-    pub fn has(self, place: usize) -> bool {
-        place % self.count == self.number - 1
-    }
-
-    /// A file's name with the shard, if there is more than one: `studies-2-of-5.jsonl`.
-    pub fn file_name(self, stem: &str, ending: &str) -> String {
-        match self.count {
-            1 => format!("{stem}.{ending}"),
-            count => format!("{stem}-{}-of-{count}.{ending}", self.number),
-        }
-    }
 }
 
 impl StudyLines {

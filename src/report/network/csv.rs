@@ -3,8 +3,8 @@
 use super::file::NetworkFile;
 use crate::element::SpringKind;
 use crate::mesh::Mesh;
-use crate::model::Network;
-use crate::springs::Law;
+use crate::model::{LengthSpring, MeasureSpring, Network};
+use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
 /// One spring per line: `kind,points,constant,rest,unit`. Points count from 0 among those of the mesh, which has no points without a cell.
@@ -24,36 +24,98 @@ use std::io::{self, Write};
 /// # Errors
 /// The writer fails.
 pub fn network_csv(mesh: &Mesh, network: &Network, to: &mut dyn Write) -> io::Result<()> {
+    let numbers = |points: &[usize]| mesh.numbering.as_ref().map(|own| points.iter().map(|&p| own.nodes[p]).collect());
+    let lengths = network.lengths.iter().map(|spring| SpringRow::of_length(spring, numbers(&spring.points)));
+    let others =
+        network.others.iter().map(|spring| SpringRow::of_other(spring, spring.points.clone(), numbers(&spring.points)));
     let lawful = network.others.iter().any(|spring| spring.law.is_some());
-    let row = |kind: SpringKind, points: &[usize], constant: f64, rest: f64, law: Option<(&Law, &[f64])>| {
-        let places: Vec<_> = points.iter().map(usize::to_string).collect();
-        let unit = kind.properties().unit.into();
-        let mut row = vec![kind.name().into(), places.join(" "), format!("{constant:e}"), format!("{rest:e}"), unit];
-        if lawful {
-            let parameters = law.map_or(String::new(), |(law, values)| {
-                let named = law.parameters.iter().zip(values).map(|(name, value)| format!("{name}={value:e}"));
-                named.collect::<Vec<_>>().join(" ")
-            });
-            row.extend([law.map_or(String::new(), |(law, _)| law.text.clone()), parameters]);
-        }
-        row.extend(mesh.numbering.as_ref().map(|numbering| {
-            let numbers: Vec<_> = points.iter().map(|&p| numbering.nodes[p].to_string()).collect();
-            numbers.join(" ")
-        }));
-        row
-    };
-    let lengths = network.lengths.iter().map(|s| row(SpringKind::Length, &s.points, s.constant, s.rest, None));
-    let others = network.others.iter().map(|s| {
-        let law = s.law.as_deref().map(|law| (law, &s.parameters[..]));
-        row(s.kind, &s.points, s.constant, s.rest, law)
-    });
-    let mut header = vec!["kind", "points", "constant", "rest", "unit"];
-    header.extend(lawful.then_some(["law", "parameters"]).iter().flatten());
-    header.extend(mesh.numbering.as_ref().map(|_| "nodes"));
-    let mut table = csv::Writer::from_writer(to);
-    table.write_record(&header)?;
-    lengths.chain(others).try_for_each(|row| table.write_record(row))?;
+    let mut table = SpringTable::new(to, lawful, mesh.numbering.is_some())?;
+    lengths.chain(others).try_for_each(|row| table.write(&row))?;
     table.flush()
+}
+
+/// The columns of one spring.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct SpringRow {
+    kind: String,
+    points: String,
+    constant: String,
+    rest: String,
+    unit: String,
+    law: String,
+    parameters: String,
+    nodes: String,
+}
+
+impl SpringRow {
+    /// The constant; NaN if it is no number.
+    pub fn constant(&self) -> f64 {
+        self.constant.parse().unwrap_or(f64::NAN)
+    }
+
+    pub fn of_length(spring: &LengthSpring, numbers: Option<Vec<u64>>) -> SpringRow {
+        let (kind, none) = (SpringKind::Length, String::new);
+        SpringRow::new(kind, &spring.points, [spring.constant, spring.rest], [none(), none()], numbers)
+    }
+
+    /// Of a spring on these points.
+    pub fn of_other(spring: &MeasureSpring, points: Vec<usize>, numbers: Option<Vec<u64>>) -> SpringRow {
+        let law = spring.law.as_deref().map(|law| {
+            let named = law.parameters.iter().zip(&spring.parameters).map(|(name, value)| format!("{name}={value:e}"));
+            [law.text.clone(), named.collect::<Vec<_>>().join(" ")]
+        });
+        SpringRow::new(spring.kind, &points, [spring.constant, spring.rest], law.unwrap_or_default(), numbers)
+    }
+
+    fn new(
+        kind: SpringKind,
+        points: &[usize],
+        [constant, rest]: [f64; 2],
+        [law, parameters]: [String; 2],
+        numbers: Option<Vec<u64>>,
+    ) -> SpringRow {
+        let joined = |numbers: Vec<String>| numbers.join(" ");
+        SpringRow {
+            kind: kind.name().into(),
+            points: joined(points.iter().map(usize::to_string).collect()),
+            constant: format!("{constant:e}"),
+            rest: format!("{rest:e}"),
+            unit: kind.properties().unit.into(),
+            law,
+            parameters,
+            nodes: joined(numbers.unwrap_or_default().iter().map(u64::to_string).collect()),
+        }
+    }
+}
+
+/// A table of springs that is being written.
+pub(super) struct SpringTable<'a> {
+    table: csv::Writer<&'a mut dyn Write>,
+    lawful: bool,
+    numbered: bool,
+}
+
+impl<'a> SpringTable<'a> {
+    /// With laws, and with the numbers of the points in the mesh file.
+    pub fn new(to: &'a mut dyn Write, lawful: bool, numbered: bool) -> io::Result<SpringTable<'a>> {
+        let mut table = csv::Writer::from_writer(to);
+        let mut header = vec!["kind", "points", "constant", "rest", "unit"];
+        header.extend(lawful.then_some(["law", "parameters"]).iter().flatten());
+        header.extend(numbered.then_some("nodes"));
+        table.write_record(&header)?;
+        Ok(SpringTable { table, lawful, numbered })
+    }
+
+    pub fn write(&mut self, row: &SpringRow) -> io::Result<()> {
+        let mut columns = vec![&row.kind, &row.points, &row.constant, &row.rest, &row.unit];
+        columns.extend(self.lawful.then_some([&row.law, &row.parameters]).iter().flatten());
+        columns.extend(self.numbered.then_some(&row.nodes));
+        Ok(self.table.write_record(columns)?)
+    }
+
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.table.flush()
+    }
 }
 
 /// One point per line, in the order in which springs name them: its place, its number in the mesh file, its coordinates (m), its mass

@@ -10,6 +10,7 @@ mod origins;
 mod parts;
 mod reader;
 mod record;
+mod shard;
 
 pub use csv::{network_csv, points_csv};
 pub use file::NetworkFile;
@@ -24,3 +25,4 @@ pub use record::{
     NodalLoadRecord, OriginRecord, ProvenanceRecord, ShareRecord, SpringRecord, TermRecord, TimedForceRecord,
     TimedPullRecord, network_schema,
 };
+pub use shard::{Merged, NetworkShard, ShardRun, merge_shards};

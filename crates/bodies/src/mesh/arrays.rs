@@ -7,6 +7,7 @@ use super::quality::Gate;
 use super::resolution::check_size;
 use crate::element::Element;
 use crate::error::{Error, Result};
+use crate::stiffness::each_cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -93,6 +94,29 @@ impl MeshArrays {
 }
 
 impl Mesh {
+    /// Some cells of a mesh that is proved as a whole elsewhere, without groups; every point belongs to a cell. Blocks are as those of
+    /// [`MeshArrays`].
+    ///
+    /// # Errors
+    /// A length or a place is wrong, or a cell has no volume.
+    pub fn of_proved_cells(
+        dimension: usize,
+        points: Vec<f64>,
+        blocks: Vec<(Arc<Element>, Vec<usize>)>,
+    ) -> Result<Mesh> {
+        let arrays = MeshArrays { dimension, points, blocks, groups: BTreeMap::new() };
+        arrays.check()?;
+        let mut mesh = Mesh::of_points(dimension, arrays.points);
+        for (element, connectivity) in arrays.blocks {
+            each_cell(&element.tabulation, &mesh.points, &connectivity, |_, _, _| ()).map_err(|(cell, fault)| {
+                let key = format!("{} cell {}", element.name, cell + 1);
+                Error::expected(key, "a cell with a volume", fault)
+            })?;
+            mesh.blocks.push(CellBlock { element, connectivity });
+        }
+        Ok(mesh)
+    }
+
     /// The points of each side that belongs to one cell alone.
     fn boundary(&self) -> Vec<Vec<usize>> {
         let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));

@@ -33,6 +33,7 @@ mod numpy;
 mod places;
 mod polytope;
 mod quality;
+mod range;
 mod reader;
 mod reading;
 mod refinement;

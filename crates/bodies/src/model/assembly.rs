@@ -1,13 +1,13 @@
 //! Assembles the network of a mesh from the springs of its cells; springs between the same two points are added.
 
-use super::network::{LengthSpring, MeasureSpring, Network};
-use super::steady::{is_steady, rest_length};
+use super::network::{MeasureSpring, Network};
+use super::shares::merge;
+use super::steady::is_steady;
 use crate::element::{SpringKind, Tabulation};
 use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::{Force, FunctionSpring, Law, Measure, distance};
 use crate::stiffness::gather;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -130,128 +130,4 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
 /// Whether a law has no force with these parameters.
 fn is_idle(law: &Law, parameters: &[f64]) -> bool {
     law.is_linear() && parameters.iter().all(|p| *p == 0.0)
-}
-
-/// The number of points whose springs one thread merges at a time.
-const CHUNK: usize = 2048;
-
-/// Adds the length springs between the same two points. For each point the cells around it are visited, and the springs
-/// to its higher neighbours are gathered in a short list, so that nothing is sorted or hashed as a whole. Sums without
-/// a rest length are returned separately.
-fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<MeasureSpring>) {
-    let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
-    let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
-    let is_exact = !fits.is_empty() && fits.iter().all(|fit| matches!(fit.force, Force::Exact { .. }));
-    let count = mesh.point_count();
-    let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
-    let part = |first: &usize| {
-        let (mut springs, mut others) = (Vec::new(), Vec::new());
-        let mut neighbours: Vec<Neighbour> = Vec::new();
-        for i in *first..(first + CHUNK).min(count) {
-            neighbours.clear();
-            for star in &stars {
-                star.gather(mesh, i, &mut neighbours);
-            }
-            neighbours.sort_unstable_by_key(|n| n.point);
-            for n in neighbours.iter().filter(|n| n.constant != 0.0 || n.slack != 0.0) {
-                if is_exact && n.constant.abs() <= ROUNDING * n.size {
-                    continue;
-                }
-                let length = distance(mesh.point(i), mesh.point(n.point));
-                if is_steady(n.constant, -n.slack, length) {
-                    let points = vec![i, n.point];
-                    let numbers = [n.constant, -n.slack];
-                    others.push(MeasureSpring::steady(SpringKind::Length, points, Measure::Length, length, numbers));
-                    continue;
-                }
-                let rest = if is_exact { 0.0 } else { rest_length(length, n.slack / n.constant) };
-                springs.push(LengthSpring { points: [i, n.point], constant: n.constant, rest });
-            }
-        }
-        (springs, others)
-    };
-    let parts: Vec<(Vec<LengthSpring>, Vec<MeasureSpring>)> = firsts.par_iter().map(part).collect();
-    let (springs, others): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
-    (springs.concat(), others.concat())
-}
-
-/// A constant of an exact network whose terms cancel to this share of their sizes is a rounding error: there is no
-/// spring.
-const ROUNDING: f64 = 1e-13;
-
-/// A spring from one point to another, as the sum so far.
-struct Neighbour {
-    point: usize,
-    constant: f64,
-    /// `Σ |k|`.
-    size: f64,
-    /// `Σ k (L₀ − ℓ)`, with ℓ the distance: zero for springs at their rest length.
-    slack: f64,
-}
-
-/// The cells of one block around each point.
-struct Star<'a> {
-    block: &'a CellBlock,
-    fit: &'a CellFits,
-    /// The index in `places` at which those of each point begin, `[points + 1]`.
-    starts: Vec<usize>,
-    /// Indices into the connectivity, grouped by their point.
-    places: Vec<usize>,
-    /// For each node of the cell its length springs: the spring, and the node at the other end.
-    springs: Vec<Vec<(usize, usize)>>,
-}
-
-impl<'a> Star<'a> {
-    fn new(mesh: &Mesh, block: &'a CellBlock, fit: &'a CellFits) -> Star<'a> {
-        let mut starts = vec![0; mesh.point_count() + 1];
-        block.connectivity.iter().for_each(|&point| starts[point + 1] += 1);
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut next = starts.clone();
-        let mut places = vec![0; block.connectivity.len()];
-        for (place, &point) in block.connectivity.iter().enumerate() {
-            places[next[point]] = place;
-            next[point] += 1;
-        }
-        let mut springs = vec![Vec::new(); block.element.nodes()];
-        for (s, &[a, b]) in fit.springs.pairs().iter().enumerate() {
-            springs[a].push((s, b));
-            springs[b].push((s, a));
-        }
-        Star { block, fit, starts, places, springs }
-    }
-
-    /// Adds the springs from point i to higher points; each point appears once in `neighbours`.
-    fn gather(&self, mesh: &Mesh, i: usize, neighbours: &mut Vec<Neighbour>) {
-        let (n, m) = (self.springs.len(), self.fit.springs.len());
-        for &place in &self.places[self.starts[i]..self.starts[i + 1]] {
-            let (cell, node) = (place / n, place % n);
-            let nodes = &self.block.connectivity[cell * n..(cell + 1) * n];
-            let constants = &self.fit.constants[cell * m..(cell + 1) * m];
-            for &(s, other) in &self.springs[node] {
-                let j = nodes[other];
-                if j > i {
-                    let slack = match self.fit.force {
-                        Force::FreeRest => {
-                            let length = distance(mesh.point(i), mesh.point(j));
-                            self.fit.parameters[cell * m + s] - constants[s] * length
-                        }
-                        _ => 0.0,
-                    };
-                    match neighbours.iter_mut().find(|n| n.point == j) {
-                        Some(n) => {
-                            n.constant += constants[s];
-                            n.size += constants[s].abs();
-                            n.slack += slack;
-                        }
-                        None => {
-                            let (constant, size) = (constants[s], constants[s].abs());
-                            neighbours.push(Neighbour { point: j, constant, size, slack });
-                        }
-                    }
-                }
-            }
-        }
-    }
 }

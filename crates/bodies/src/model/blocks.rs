@@ -69,6 +69,24 @@ impl BlockStiffness {
         }
     }
 
+    /// Where the blocks of each point begin, `[points + 1]`, the other point of each, ascending, and the d × d blocks themselves, row
+    /// after row, N/m.
+    pub fn parts(&self) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
+        fn parts<const D: usize>(matrix: &BlockMatrix<D, D>) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
+            let (pattern, mut starts) = (matrix.pattern(), vec![0]);
+            let mut columns = Vec::with_capacity(pattern.len());
+            for row in 0..pattern.rows() {
+                columns.extend(pattern.row(row));
+                starts.push(columns.len());
+            }
+            (starts, columns, matrix.values().as_flattened().as_flattened().to_vec())
+        }
+        match self {
+            BlockStiffness::Plane(matrix) => parts(matrix),
+            BlockStiffness::Space(matrix) => parts(matrix),
+        }
+    }
+
     /// `K u`, `[points · dimension]`.
     pub fn apply(&self, u: &[f64]) -> Vec<f64> {
         fn product<const D: usize>(matrix: &BlockMatrix<D, D>, u: &[f64]) -> Vec<f64> {

@@ -2,18 +2,20 @@
 //! choices).
 //!
 //! One source of each kernel serves `f64`, [`Lanes`] (one element per lane), `f32` and [`DoubleDouble`] for studies of
-//! rounding, exact rationals, and the rational functions of [`symbolic`](crate::symbolic).
+//! rounding, [`Dual`] numbers, which carry derivatives, exact rationals, and the rational functions of [`symbolic`](crate::symbolic).
 //!
 //! Theory: page *Precision* of the book.
 
 mod coordinates;
 mod double_double;
+mod dual;
 mod lanes;
 mod norm;
 mod sum;
 
 pub use coordinates::{Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
+pub use dual::Dual;
 pub use lanes::{Lanes, Packed, PackedWork, widest};
 pub use norm::{distance, norm, scaled_norm};
 pub use sum::Sum;
@@ -132,6 +134,12 @@ pub trait Real: Scalar<Constant = f64> {
 
     /// The nearest `f64`; that of the first lane.
     fn rounded(&self) -> f64;
+
+    /// Zero in place of a value that is only rounding. Derivatives stay: they are not zero where the value is.
+    #[inline(always)]
+    fn vanished(&self) -> Self {
+        self.zero()
+    }
 
     /// The lesser of the two numbers.
     #[inline(always)]

@@ -22,6 +22,7 @@ mod divergence;
 mod edge_cell;
 mod exact;
 mod extremes;
+mod gradient;
 mod input;
 mod jacobi;
 mod least_squares;
@@ -53,6 +54,7 @@ pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
 pub use exact::{
     DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, exact_constants_of_kind, fit_exact,
 };
+pub use gradient::{ConstantsGradient, GradientFit, constants_gradient};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use modulus::Modulus;

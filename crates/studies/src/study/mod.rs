@@ -15,6 +15,7 @@ mod checkpoint;
 mod choice;
 mod comparison;
 mod convergence;
+mod distributed;
 mod draft;
 mod extent;
 mod fits;
@@ -38,7 +39,7 @@ mod sweep;
 mod tensor;
 mod time;
 
-pub use body::LargeBody;
+pub use body::{Case, LargeBody};
 pub use body_material::{BodyConstants, assumed};
 pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
@@ -47,6 +48,7 @@ pub use convergence::{
     Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
     limit_of, most_unknowns, rates, refinements,
 };
+pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, contents, draft};
 pub use extent::extent;
 pub use fits::{

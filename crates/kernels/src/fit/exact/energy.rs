@@ -157,6 +157,14 @@ fn is_condensed(state: State, is_large: bool) -> bool {
     }
 }
 
+impl<C: Clone> Coefficients<C> {
+    /// Those without springs on areas.
+    pub fn plain(Moduli { lambda, mu }: Moduli<C>, zero: &C) -> Coefficients<C> {
+        let [lengths, tension, slope] = [mu.clone(), mu.clone(), mu];
+        Coefficients { lengths, areas: zero.clone(), tension, slope, lambda: lambda.clone(), law_lambda: lambda }
+    }
+}
+
 impl Coefficients {
     /// The coefficients for small deformations or, with `is_large`, for any deformation.
     ///
@@ -167,7 +175,7 @@ impl Coefficients {
         let (nu, t) = (material.poisson(), material.thickness());
         let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
         let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
-        let plain = Coefficients { lengths: mu, areas: 0.0, tension: mu, slope: mu, lambda, law_lambda: lambda };
+        let plain = Coefficients::plain(Moduli { lambda, mu }, &0.0);
         if !is_condensed(material.state(), is_large) {
             return Ok(match (energy, material.state()) {
                 (ExactEnergy::StableMooneyRivlin { share }, State::Solid) => Coefficients {

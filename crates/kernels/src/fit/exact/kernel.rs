@@ -141,7 +141,7 @@ impl ExactBatch<'_> {
 
     /// Fills in the geometry of the cells with nodes at `x`, and their constants and parameters without the springs on
     /// areas. `own` is memory for one number per node. False if a Jacobian is not safely positive.
-    fn solve<T: Real>(
+    pub fn solve<T: Real>(
         &self,
         coefficients: &Coefficients<T>,
         x: &[T],
@@ -313,7 +313,7 @@ fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: &T,
     for a in 0..n {
         for b in a + 1..n {
             let least = (own[a].clone() * &own[b]).scaled(&(ROUNDING * ROUNDING));
-            pairs[s] = (pairs[s].clone().squared() - &least).choose(&pairs[s], &zero);
+            pairs[s] = (pairs[s].clone().squared() - &least).choose(&pairs[s], &pairs[s].vanished());
             s += 1;
         }
     }

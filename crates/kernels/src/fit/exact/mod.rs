@@ -31,9 +31,10 @@ use super::input::check_cells;
 use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{BlockValues, Material};
+use crate::material::{BlockValues, Material, Moduli};
+use crate::scalar::Real;
 use crate::springs::{Force, Springs};
-use crate::stiffness::Placement;
+use crate::stiffness::{Geometry, Placement};
 use energy::{Coefficients, Form};
 use kernel::ExactBatch;
 use rayon::prelude::*;
@@ -50,6 +51,19 @@ pub struct ExactFit {
     /// Whether planes and rods without stress have the energy at any deformation, with the stretch across them. If only
     /// small deformations matter, their springs on content are simpler.
     pub large: bool,
+}
+
+impl ExactFit {
+    /// The springs of each cell of an element, if none are on areas: all pairs of nodes, the contents of quadrature points, and that of the
+    /// cell.
+    pub fn springs(&self, element: &Element) -> Springs {
+        Springs::exact(element, false, self.of_cells(element))
+    }
+
+    /// Whether each cell has a spring on its content. The only content of a line is its length.
+    fn of_cells(&self, element: &Element) -> bool {
+        element.dimension() > 1 && self.volume == VolumeSprings::Cells
+    }
 }
 
 /// The springs of every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × space]`, m. The material is that of all
@@ -98,9 +112,8 @@ pub fn fit_exact<'a>(
             Error::expected("volume", expected, format!("\"{}\"", fit.volume.name())).of_kind(ErrorKind::Unsupported)
         );
     }
-    // The only content of a line is its length.
     let volume = if element.dimension() == 1 { VolumeSprings::Points } else { fit.volume };
-    let springs = Springs::exact(element, some.areas > 0.0, volume == VolumeSprings::Cells);
+    let springs = Springs::exact(element, some.areas > 0.0, fit.of_cells(element));
     let shares = volume.shares(springs.points.is_empty());
     check_flat(element, points, connectivity)?;
     let force = Force::Exact { content: form.law.clone() };
@@ -132,6 +145,37 @@ pub fn fit_exact<'a>(
         progress(((round + 1) * ROUND).min(cells));
     }
     Ok(CellFits { constants, parameters, force, ..CellFits::new(springs) })
+}
+
+/// The constants of one element for small deformations, in numbers of the kind of `x`; nodes at `x`, `[nodes × dimension]`, m. `None` if a
+/// Jacobian is not safely positive, or there are springs on areas.
+pub(super) fn exact_constants<T: Real>(
+    element: &Element,
+    springs: &Springs,
+    x: &[T],
+    moduli: Moduli<T>,
+    fit: &ExactFit,
+) -> Option<Vec<T>> {
+    if !springs.areas.is_empty() {
+        return None;
+    }
+    let zero = x[0].zero();
+    let coefficients = Coefficients::plain(moduli, &zero);
+    let batch = ExactBatch {
+        element,
+        springs,
+        points: &[],
+        connectivity: &[],
+        coefficients: BlockValues::Each(&[]),
+        has_law: false,
+        shares: fit.volume.shares(springs.points.is_empty()),
+        constants: &mut [],
+        parameters: &mut [],
+    };
+    let (mut constants, mut own) = (vec![zero.clone(); springs.len()], vec![zero.clone(); element.nodes()]);
+    let mut parameters = vec![zero.clone(); springs.len() - springs.pairs.len()];
+    let mut geometry = Geometry::like(&zero, &element.tabulation);
+    batch.solve(&coefficients, x, &mut geometry, &mut constants, &mut parameters, &mut own).then_some(constants)
 }
 
 /// Heights above the mean plane, as a share of the size of a cell, that may be rounding errors of the coordinates.

@@ -7,8 +7,11 @@ use crate::study::outcome::Measured;
 
 /// A load case on a mesh: its support and nodal forces.
 pub struct Case {
+    /// The name of the load.
     pub name: String,
+    /// What is held or moved.
     pub support: Support,
+    /// `[points · dimension]`, N.
     pub forces: Vec<f64>,
     /// Whether the load prescribes displacements; its work is then that of the forces that hold them.
     pub is_prescribed: bool,

@@ -1,0 +1,5 @@
+"""Bodies on several machines, by PETSc over MPI: ``mpirun -n P python -m springfit.petsc SCENE``.
+
+The first rank reads the scene and shares out its cells. Each rank fits its cells and fills its rows of the matrices; the equations of
+the body and of each network are solved together. Requires petsc4py and mpi4py.
+"""

@@ -1,0 +1,106 @@
+//! Studies that compare objectives, refine meshes and try extreme cases; each returns the document that the command prints as JSON.
+
+use crate::element::Element;
+use crate::error::raised;
+use crate::progress;
+use crate::study::{keyless, settings_of, text_of};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use springfit::error::{Error, Result};
+use springfit::material::{Material, Plane};
+use springfit::report::Report;
+use springfit::study::{self, Event, Scene};
+use std::path::PathBuf;
+
+/// The path or the keys of a scene, the folder of its files, and its keys with other values.
+type Given<'py> = (Bound<'py, PyAny>, PathBuf, Bound<'py, PyDict>);
+
+fn scene(py: Python, (scene, folder, settings): &Given) -> PyResult<Scene> {
+    let (text, path) = text_of(py, scene, folder)?;
+    let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
+    scene.map_err(|error| raised(py, keyless(error)))
+}
+
+fn written(document: serde_json::Result<String>) -> Result<String> {
+    document.map_err(|e| Error::new(e.to_string()))
+}
+
+/// The plane state and the element of a study of one element.
+fn material(element: &Element, poisson: f64, plane: Option<&str>) -> Result<Material> {
+    let plane = match plane {
+        None => None,
+        Some("stress") => Some(Plane::Stress),
+        Some("strain") => Some(Plane::Strain),
+        Some(other) => return Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
+    };
+    Material::for_body(element.0.dimension(), 10e3, poisson, plane, None)
+}
+
+/// Objectives and solvers on a scene.
+#[pyfunction]
+#[pyo3(signature = (given, progress=None))]
+pub fn compare_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> PyResult<String> {
+    let scene = scene(py, &given)?;
+    progress::run(py, progress, |told| {
+        written(serde_json::to_string(&Report::of(&study::compare_scene(&scene, told)?)))
+    })
+}
+
+/// Objectives and solvers on random shapes of an element.
+#[pyfunction]
+#[pyo3(signature = (element, poisson, plane, shapes, iterations, progress=None))]
+pub fn compare_element(
+    py: Python,
+    element: PyRef<Element>,
+    poisson: f64,
+    plane: Option<&str>,
+    shapes: usize,
+    iterations: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    if iterations == 0 {
+        return Err(crate::error::invalid(py, "iterations", "a number above 0", 0));
+    }
+    let material = material(&element, poisson, plane).map_err(|error| raised(py, error))?;
+    let element = element.0.clone();
+    progress::run(py, progress, |told| {
+        written(serde_json::to_string(&study::compare_element(&element, material, shapes, iterations, told)?))
+    })
+}
+
+/// The errors of a scene on finer and finer meshes; `truth` is a scene whose finite elements are the reference.
+#[pyfunction]
+#[pyo3(signature = (given, levels=None, truth=None, progress=None))]
+pub fn converge(
+    py: Python,
+    given: Given,
+    levels: Option<usize>,
+    truth: Option<Given>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let own = scene(py, &given)?;
+    let truth = truth.map(|truth| scene(py, &truth)).transpose()?;
+    progress::run(py, progress, |told: &mut dyn FnMut(Event)| {
+        let found = match &truth {
+            None => study::converge(&own, levels, told),
+            Some(truth) => study::converge_to(&own, truth, levels, told),
+        };
+        written(serde_json::to_string(&found?))
+    })
+}
+
+/// Extreme cases of all shipped elements or of one.
+#[pyfunction]
+#[pyo3(signature = (element=None, progress=None))]
+pub fn stability(py: Python, element: Option<PyRef<Element>>, progress: Option<Py<PyAny>>) -> PyResult<String> {
+    let element = element.map(|element| springfit::element::Element::clone(&element.0));
+    progress::run(py, progress, |told| written(serde_json::to_string(&study::stability(element, told)?)))
+}
+
+/// A scene in other units and of other materials.
+#[pyfunction]
+#[pyo3(signature = (given, progress=None))]
+pub fn stability_of_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> PyResult<String> {
+    let scene = scene(py, &given)?;
+    progress::run(py, progress, |told| written(serde_json::to_string(&study::stability_of_scene(&scene, told)?)))
+}
