@@ -4,12 +4,12 @@
 use springfit::element::{Element, SHIPPED};
 use springfit::fit::{
     Balance, CellFits, ExactFit, Fit, Higher, MotionWeight, Objective, SampledFit, Sampling, VolumeSprings, Weight,
-    fit_cells, fit_exact, fit_sampled,
+    Weights, fit_cells, fit_exact, fit_sampled,
 };
 use springfit::material::{Energy, Hooke, Material, State, Stiffness};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::Network;
-use springfit::springs::Springs;
+use springfit::springs::{Force, Law, Springs};
 use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
@@ -113,7 +113,7 @@ fn exact(mesh: &Mesh) -> [(&'static str, f64); 3] {
 }
 
 fn main() {
-    // `cargo bench -- tet4` times that element alone.
+    // `cargo bench -- tet4` times that element alone, `sampled` the sampled fits, `network` the way to a whole network.
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     println!("on one core");
@@ -149,8 +149,13 @@ fn main() {
             println!("{:10} {name:28} {:14.0} {:16.0}", element.name, 1e9 * each, 1.0 / each);
         }
     }
-    sampled();
-    beside_numpy();
+    let part = |name: &str| chosen.is_empty() || chosen.iter().any(|c| c == name);
+    if part("sampled") {
+        sampled();
+    }
+    if part("network") {
+        beside_numpy();
+    }
 }
 
 /// Constants from the forces at a thousand deformed shapes, per element on one core.
@@ -163,14 +168,22 @@ fn sampled() {
         let energy = Energy::load("neo-hookean", material).expect("it is shipped");
         let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
         let springs = Springs::select(element, None).expect("no group is named");
-        let sampling = Sampling { shapes: 1000, held_out: 0, ..Sampling::default() };
-        let fit = SampledFit { sampling, ..SampledFit::default() };
-        let start = Instant::now();
-        let fit =
-            || fit_sampled(element, &springs, &mesh.points, connectivity, &energy, State::Solid, &fit, &mut |_| {});
-        one.install(fit).expect("the shapes are upright");
-        let each = start.elapsed().as_secs_f64() / mesh.cell_count() as f64;
-        println!("{name:10} {:28} {:14.0}", "sampled, 1000 shapes", 1e9 * each);
+        let law = |text: &str| Force::of_all(Law::parse(text).expect("it is a law"), springs.names().len());
+        let linear = Sampling { shapes: 1000, held_out: 0, ..Sampling::default() };
+        for (title, sampling, force) in [
+            ("sampled, 1000 shapes", linear, Force::Linear),
+            ("sampled, k*(exp(a*s) - 1)", Sampling::default(), law("k*(exp(a*s) - 1)")),
+            ("sampled, a*s/(1 + b*s^2)", Sampling::default(), law("a*s/(1 + b*s^2)")),
+        ] {
+            let fit = SampledFit { sampling, force, weights: Weights::Relative, ..SampledFit::default() };
+            let start = Instant::now();
+            let fit =
+                || fit_sampled(element, &springs, &mesh.points, connectivity, &energy, State::Solid, &fit, &mut |_| {});
+            let found = one.install(fit).expect("the shapes are upright");
+            let (cells, each) = (mesh.cell_count(), start.elapsed().as_secs_f64() / mesh.cell_count() as f64);
+            let (reached, error) = (cells - found.fits.unreached, found.trained.iter().sum::<f64>() / cells as f64);
+            println!("{name:10} {title:28} {:14.0} {reached:5} of {cells} cells, error {error:.4}", 1e9 * each);
+        }
     }
 }
 

@@ -44,7 +44,8 @@ const BASIC: [DeformationFamily; 4] = [
 const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s)^3 - 0.125)";
 
 /// For shapes that shrink to rest the forces become `R u` and `g_s g_sᵀ u`, and the fit that of the tangents with the weight
-/// `U = Σ u uᵀ` of the displacements sampled: `min Σ_q ‖(R − K) u_q‖²`. The difference falls with the size of the shapes.
+/// `U = Σ u uᵀ` of the displacements sampled: `min Σ_q ‖(R − K) u_q‖²`. The difference falls with the size of the shapes. The share
+/// of the forces that remains is that of the tangents, `1 − bᵀk/tr(R U R)`: springs at the lengths of a generic cell leave half.
 #[test]
 fn small_shapes_give_the_fit_of_the_tangent() {
     for name in ["tri3", "quad4", "tet4"] {
@@ -63,7 +64,8 @@ fn small_shapes_give_the_fit_of_the_tangent() {
             let sampling =
                 Sampling { shapes: 4096, held_out: 0, stretch, perturbation: size, seed: 3, ..Sampling::default() };
             let fit = SampledFit { sampling, ..SampledFit::default() };
-            sampled(&element, &springs, &x, "neo-hookean", &fit).fits.constants
+            let found = sampled(&element, &springs, &x, "neo-hookean", &fit);
+            (found.fits.constants, found.trained[0])
         };
         // The weight of evenly filled cubes: F − I and the nodes' moves, each with the variance of its size.
         let size = x.len();
@@ -83,8 +85,11 @@ fn small_shapes_give_the_fit_of_the_tangent() {
         let error =
             |k: &[f64]| k.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / expected.amax();
         // What 4096 shapes leave of evenness.
-        assert!(error(&at(1e-5)) < 0.01, "{name}: {}", error(&at(1e-5)));
-        let (small, smaller) = (at(1e-3), at(1e-5));
+        assert!(error(&at(1e-5).0) < 0.01, "{name}: {}", error(&at(1e-5).0));
+        let (small, (smaller, left)) = (at(1e-3).0, at(1e-5));
+        let of_tangent = (1.0 - rhs.dot(&expected) / (&r * &weight * &r).trace()).sqrt();
+        println!("{name}: {:.1} % of small forces remain, of the tangents {:.1} %", 100.0 * left, 100.0 * of_tangent);
+        assert!((left - of_tangent).abs() < 0.01, "{name}: {left} {of_tangent}");
         let change = small.iter().zip(&smaller).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / expected.amax();
         assert!(change < 5e-3 && change > 1e-9, "{name}: {change}");
     }
@@ -176,6 +181,58 @@ fn an_exponential_law_is_found_again() {
     let fit = SampledFit { bounds, ..fit };
     let found = fit_sampled(&element, &springs, &x, &[0, 1], &energy, material.state(), &fit, &mut |_| {}).unwrap();
     assert!((found.fits.parameters[1] - 2.0).abs() < 1e-12 && found.trained[0] > 1e-3, "{found:?}");
+}
+
+/// Generic cells, each node moved at random: at least 95 of 100 searches end at an optimum that no step improves.
+#[test]
+fn nonlinear_laws_converge_in_generic_cells() {
+    for (name, count) in [("tri3", 40), ("tet4", 40), ("hex8", 6)] {
+        let element = Arc::new(Element::load(name).unwrap());
+        let springs = Springs::select(&element, None).unwrap();
+        for text in ["k*(exp(a*s) - 1)", "a*s/(1 + b*s^2)"] {
+            let force = law(text, &springs);
+            let fit = SampledFit { force, weights: Weights::Relative, ..SampledFit::default() };
+            let start = std::time::Instant::now();
+            let cells = (1..=count).map(|seed| {
+                let x = distorted(&element, &mut Random(seed));
+                sampled(&element, &springs, &x, "neo-hookean", &fit)
+            });
+            let unreached = cells.map(|cell| cell.fits.unreached).sum::<usize>();
+            let each = start.elapsed().as_secs_f64() / count as f64;
+            println!("{name} {text}: {unreached} of {count} not converged, {:.2} ms each", 1e3 * each);
+            assert!(20 * unreached <= count as usize, "{name} {text}: {unreached} of {count}");
+        }
+    }
+}
+
+/// With one inner parameter, the least error of a fine grid of its values, each with k by linear least squares, is the
+/// error of the search, and the value lies between the neighbours of the best point of the grid.
+#[test]
+fn the_search_finds_the_optimum_of_a_grid() {
+    for name in ["tri3", "tet4", "hex8"] {
+        let element = Arc::new(Element::load(name).unwrap());
+        let springs = Springs::select(&element, None).unwrap();
+        let x = distorted(&element, &mut Random(7));
+        let source = Source::Families(vec![DeformationFamily::Uniaxial]);
+        let sampling = Sampling { source, stretch: [0.05, 0.6], ..Sampling::default() };
+        let force = law("k*(exp(a*s) - 1)", &springs);
+        let free = SampledFit { force, sampling, tied: true, starts: 6, ..SampledFit::default() };
+        let found = sampled(&element, &springs, &x, "ogden", &free);
+        assert_eq!(found.fits.unreached, 0, "{name}");
+        if springs.names().len() > 1 {
+            continue;
+        }
+        let at = |a: f64| {
+            let fit = SampledFit { bounds: vec![("a".into(), [a, a])], starts: 1, ..free.clone() };
+            sampled(&element, &springs, &x, "ogden", &fit).trained[0]
+        };
+        // An even number of points leaves out a = 0, where the law vanishes.
+        let grid: Vec<f64> = (0..80).map(|i| -10.0 + 20.0 * f64::from(i) / 79.0).collect();
+        let best = grid.iter().copied().min_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap();
+        let a = found.fits.parameters[1];
+        assert!(found.trained[0] <= at(best) * (1.0 + 1e-9), "{name}: {} {}", found.trained[0], at(best));
+        assert!((a - best).abs() <= 20.0 / 79.0 || a.abs() > 10.0, "{name}: {a} {best}");
+    }
 }
 
 /// A law that is linear in its parameters has the same optimum by steps within bounds that do not bind.

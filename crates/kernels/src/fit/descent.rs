@@ -179,8 +179,8 @@ pub fn search(
             run.map_err(failed)?.state.take_best_param()
         }
     };
-    // If an optimiser finds nothing better, its start is returned.
-    let best = best.filter(|best| raw.cost_of(best) <= raw.cost_of(&start));
-    let kappa = raw.kappa(&best.unwrap_or(start));
+    let best = best.ok_or("it has no best point")?;
+    // A search that finds nothing better ends at its start.
+    let kappa = raw.kappa(if raw.cost_of(&best) <= raw.cost_of(&start) { &best } else { &start });
     Ok(reduced.unknowns.iter().map(|&unknown| kappa[unknown] * reduced.scales[unknown]).collect())
 }

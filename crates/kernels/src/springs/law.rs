@@ -34,6 +34,8 @@ pub struct Law {
     slope_in_strain: Program,
     slope_in_measure: Program,
     by_parameter: Vec<Program>,
+    /// `∂²T/∂p_i∂p_j` for j ≤ i, row by row.
+    by_parameters: Vec<Program>,
     outer: Vec<bool>,
     linear: bool,
 }
@@ -61,8 +63,11 @@ impl Law {
         for (i, slope) in by_parameter.iter().enumerate() {
             outer[i] = !slope.uses(first + i) && (0..i).all(|j| !outer[j] || !slope.uses(first + j));
         }
+        let by_parameters =
+            by_parameter.iter().enumerate().flat_map(|(i, slope)| (0..=i).map(move |j| slope.derivative(first + j)));
         let mut law = Law {
             text,
+            by_parameters: by_parameters.map(|e| Program::of(&e)).collect(),
             slope_in_strain: Program::of(&force.derivative(0)),
             slope_in_measure: Program::of(&force.derivative(1)),
             linear: outer.iter().all(|outer| *outer),
@@ -103,6 +108,26 @@ impl Law {
         all.push(std::array::from_fn(|i| (at[0][i] - at[1][i]) / at[1][i]));
         all.extend_from_slice(at);
         self.force.evaluate_each(all, values)
+    }
+
+    /// T, its derivatives in the parameters p, and its second derivatives in `p_i` and `p_j`, j ≤ i, row by row, at N
+    /// measures of one spring; `results` has a row for each. `room` is working memory.
+    pub(crate) fn respond_each<const N: usize>(
+        &self,
+        c: &[f64; N],
+        rest: f64,
+        parameters: &[f64],
+        room: &mut LawRoom<N>,
+        results: &mut [[f64; N]],
+    ) {
+        let LawRoom { at, values } = room;
+        at.clear();
+        at.extend([c.map(|c| (c - rest) / rest), *c, [rest; N]]);
+        at.extend(parameters.iter().map(|&p| [p; N]));
+        let programs = std::iter::once(&self.force).chain(&self.by_parameter).chain(&self.by_parameters);
+        for (result, program) in results.iter_mut().zip(programs) {
+            *result = program.evaluate_each(at, values);
+        }
     }
 
     /// The slope `dT/dc = (∂T/∂s)/c₀ + ∂T/∂c`.

@@ -31,8 +31,6 @@ const HELD: usize = 1 << 15;
 const FEW: usize = 8;
 /// A strain that is nearly zero.
 const SLIGHT: f64 = 1e-3;
-/// The largest number of values of the samples that a cell may store: 64 megabytes.
-const MOST_HELD: usize = 1 << 23;
 /// The rest measures of springs that have their own, relative to the measure at rest. A nonnegative sum of two springs,
 /// one with each of these, is a spring with a rest measure in between.
 pub const REST_RANGE: [f64; 2] = [0.5, 2.0];
@@ -49,8 +47,6 @@ pub struct SampledCell<'a> {
     widest: usize,
     /// The `‖f‖²` of a strain below which forces count as those of no deformation.
     least_square: f64,
-    /// The samples of the fit, if it uses them repeatedly.
-    held: Vec<Sample>,
     geometry: &'a Geometry,
     energy: &'a Energy,
     state: State,
@@ -118,7 +114,6 @@ impl<'a> SampledCell<'a> {
             groups: &springs.groups,
             widest,
             least_square: (SLIGHT * energy.young() * state.thickness() * geometry.content() / shapes.extent).powi(2),
-            held: Vec::new(),
             springs: springs.measures(element).into_iter().map(with_rest).collect(),
             geometry,
             energy,
@@ -146,6 +141,11 @@ impl<'a> SampledCell<'a> {
     /// The measure of spring s at rest.
     pub fn rest(&self, s: usize) -> f64 {
         self.springs[s].rest
+    }
+
+    /// The places of the unknowns of spring s.
+    pub fn places(&self, s: usize) -> Range<usize> {
+        self.unknowns[s].clone()
     }
 
     /// The unknowns of spring s.
@@ -178,14 +178,8 @@ impl<'a> SampledCell<'a> {
             let mut sums = Sums::of(self.count);
             let (mut sample, mut rows, mut lacking) = (Sample::default(), Vec::new(), Vec::new());
             for i in first..(first + BLOCK).min(total) {
-                let sample = match self.held.get(i).filter(|_| part == Part::Trained) {
-                    Some(held) => held,
-                    None => {
-                        self.sample(part, i, &mut sample)?;
-                        &sample
-                    }
-                };
-                self.equations(sample, unknowns, &mut rows, &mut lacking);
+                self.sample(part, i, &mut sample)?;
+                self.equations(&sample, unknowns, &mut rows, &mut lacking);
                 sums.size += sample.weight * inner(&sample.force, &sample.force);
                 if rows.len() > HELD {
                     sums.add(&mut rows, &mut lacking);
@@ -203,20 +197,6 @@ impl<'a> SampledCell<'a> {
             }
         }
         Ok(sums)
-    }
-
-    /// Stores the samples of the fit for later sums, as far as there is memory.
-    ///
-    /// # Errors
-    /// Those of [`SampledCell::sample`].
-    pub fn hold(&mut self) -> Result<()> {
-        let room = MOST_HELD / ((self.len() + 1) * (self.seen() + 1));
-        for i in 0..self.fit.sampling.shapes.min(room) {
-            let mut sample = Sample::default();
-            self.sample(Part::Trained, i, &mut sample)?;
-            self.held.push(sample);
-        }
-        Ok(())
     }
 
     /// Shape `i`, with less of its deformation if it would invert the cell.
@@ -253,7 +233,7 @@ impl<'a> SampledCell<'a> {
     }
 
     /// The number of values of a weighted force.
-    fn seen(&self) -> usize {
+    pub fn seen(&self) -> usize {
         let d = self.shapes.dimension;
         self.shapes.rest.len() + if self.affine.is_empty() { 0 } else { d * d }
     }
@@ -342,7 +322,7 @@ impl<'a> SampledCell<'a> {
 }
 
 impl Sums {
-    fn of(count: usize) -> Sums {
+    pub fn of(count: usize) -> Sums {
         Sums { normal: Normal::new(vec![0.0; count * count], vec![0.0; count]), square: 0.0, size: 0.0 }
     }
 
@@ -364,7 +344,7 @@ impl Sums {
         lacking.clear();
     }
 
-    fn merge(&mut self, other: &Sums) {
+    pub fn merge(&mut self, other: &Sums) {
         let add = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
         add(&mut self.normal.gram, &other.normal.gram);
         add(&mut self.normal.rhs, &other.normal.rhs);

@@ -1,34 +1,34 @@
-//! Laws that are not linear in their parameters: Levenberg's damped Gauss–Newton steps within bounds, from several
-//! starts.
+//! Laws that are not linear in their parameters, or whose parameters are bounded: the search from several starts.
 //!
-//! The method works on normal equations that are summed shape by shape, because there may be more shapes than memory.
-//! The known crates for least squares store all residuals.
+//! All starts search on some of the shapes, and the best of them is finished on all.
 //!
 //! Theory: page *Sampled fits* of the book.
 
+use super::block::Drawn;
 use super::cell::{SampledCell, Sums};
-use super::shapes::{Numbers, Part};
+use super::newton::{Descent, End};
+use super::shapes::Numbers;
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::constrained::solve_nonnegative;
-use crate::fit::normal::Normal;
 
-/// The largest number of steps from one start.
-const STEPS: usize = 200;
-/// The iteration has converged when no single unknown can lower the sum of squares by more than this share.
+/// The iteration has converged when a step cannot lower the sum of squares by more than this share.
 const PROMISE: f64 = 1e-12;
-/// The damping beyond which no step is expected to help.
-const STIFFEST: f64 = 1e12;
+/// The same share for the starts, which search on some of the shapes.
+const ROUGH_PROMISE: f64 = 1e-8;
 /// Starts whose errors differ by less than this share of the best error have found the same optimum.
 const SAME: f64 = 1e-3;
 /// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one.
 const STARTS: [f64; 2] = [0.1, 10.0];
+/// The least number of shapes on which starts search, and the least number of their equations for each unknown.
+const FEW: [usize; 2] = [64, 8];
+/// A prime by which the few shapes are spread over all.
+const STRIDE: usize = 1_000_003;
 
 /// The best of several starts.
 pub struct Search {
     pub unknowns: Vec<f64>,
     /// The sums at these unknowns.
     pub sums: Sums,
-    /// Whether the best start converged within the allowed steps.
+    /// Whether the search converged within the allowed steps.
     pub converged: bool,
     /// The share of the starts that ended at the same error.
     pub agreeing: f64,
@@ -37,23 +37,66 @@ pub struct Search {
 /// Minimises from `starts` points within `bounds` of each unknown.
 pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<Search> {
     let outer = cell.each_parameter(|law, i| law.outer()[i]);
-    let mut found: Vec<(Vec<f64>, Sums, bool)> = Vec::new();
+    let all_within = |range: [f64; 2]| (0..outer.len()).all(|i| !outer[i] || bounds[i] == range);
+    let nonnegative = all_within([0.0, f64::INFINITY]);
+    // Outer parameters with other bounds are left to the steps.
+    let eliminated = match nonnegative || all_within([f64::NEG_INFINITY, f64::INFINITY]) {
+        true => outer.clone(),
+        false => vec![false; outer.len()],
+    };
+    let descent = Descent { bounds, eliminated: &eliminated, nonnegative };
+    let total = cell.fit.sampling.shapes;
+    let all = Drawn::new(cell, (0..total).collect())?;
+    let few = FEW[0].max((FEW[1] * cell.count()).div_ceil(cell.seen()));
+    let few = match starts > 1 && 2 * few < total {
+        true => Some(Drawn::new(cell, (0..few).map(|i| i * STRIDE % total).collect())?),
+        false => None,
+    };
+    let mut found: Vec<End> = Vec::new();
     for start in 0..starts.max(1) {
-        let first = outer_solved(cell, &outer, start_of(cell, &outer, start, bounds), bounds)?;
-        found.push(descend(cell, first, bounds)?);
+        let mut first = start_of(cell, &outer, start, bounds);
+        if eliminated != outer {
+            let positive = (0..outer.len()).any(|i| outer[i] && bounds[i][0] >= 0.0);
+            descent.eliminate(few.as_ref().unwrap_or(&all), &mut first, &outer, positive)?;
+            first.iter_mut().zip(bounds).for_each(|(p, b)| *p = p.clamp(b[0], b[1]));
+        }
+        found.push(match &few {
+            Some(few) => descent.run(few, first, ROUGH_PROMISE)?,
+            None => descent.run(&all, first, PROMISE)?,
+        });
     }
+    let starts = found.len() as f64;
     // The law may have no value at a start.
-    found.retain(|(_, sums, _)| sums.square.is_finite());
-    if found.is_empty() {
-        let expected = "a law with finite values at the sampled shapes";
-        return Err(Error::expected("force", expected, "no start with them").of_kind(ErrorKind::Infeasible));
+    found.retain(|end| end.sums.sums.square.is_finite());
+    found.sort_by(|a, b| a.sums.sums.square.total_cmp(&b.sums.sums.square));
+    let Some(best) = found.first() else { return Err(without_values()) };
+    let limit = (best.sums.sums.square.sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.sums.sums.size;
+    let agreeing = found.iter().filter(|end| end.sums.sums.square <= limit).count() as f64 / starts;
+    if few.is_some() {
+        found = finished(&descent, &all, found)?;
     }
-    let least = found.iter().map(|(_, sums, _)| sums.square).fold(f64::INFINITY, f64::min);
-    let limit = (least.sqrt() * (1.0 + SAME)).powi(2) + PROMISE * found[0].1.size;
-    let agreeing = found.iter().filter(|(_, sums, _)| sums.square <= limit).count() as f64 / found.len() as f64;
-    let best = found.into_iter().min_by(|a, b| a.1.square.total_cmp(&b.1.square));
-    let (unknowns, sums, converged) = best.expect("there is at least one start");
-    Ok(Search { unknowns, sums, converged, agreeing })
+    let best = found.into_iter().find(|end| end.sums.sums.square.is_finite()).ok_or_else(without_values)?;
+    Ok(Search { unknowns: best.unknowns, sums: best.sums.sums, converged: best.converged, agreeing })
+}
+
+/// The ends on all shapes, the least error first. Rough ends after the first that converges are left out.
+fn finished(descent: &Descent, all: &Drawn, found: Vec<End>) -> Result<Vec<End>> {
+    let mut ends: Vec<End> = Vec::new();
+    for rough in found {
+        let end = descent.run(all, rough.unknowns, PROMISE)?;
+        let converged = end.converged;
+        ends.push(end);
+        if converged {
+            break;
+        }
+    }
+    ends.sort_by(|a, b| a.sums.sums.square.total_cmp(&b.sums.sums.square));
+    Ok(ends)
+}
+
+fn without_values() -> Error {
+    let expected = "a law with finite values at the sampled shapes";
+    Error::expected("force", expected, "no start with them").of_kind(ErrorKind::Infeasible)
 }
 
 /// Inner parameters as the start prescribes, the same for all springs; outer ones are zero, or as near to it as their
@@ -73,89 +116,4 @@ fn start_of(cell: &SampledCell, outer: &[bool], start: usize, bounds: &[[f64; 2]
         value.clamp(lower, upper)
     };
     bounds.iter().enumerate().map(value).collect()
-}
-
-/// The outer parameters of least squares for given inner ones.
-fn outer_solved(cell: &SampledCell, outer: &[bool], mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<Vec<f64>> {
-    let outer: Vec<usize> = (0..unknowns.len()).filter(|&i| outer[i]).collect();
-    if outer.is_empty() {
-        return Ok(unknowns);
-    }
-    let sums = cell.sums(Part::Trained, &unknowns)?;
-    let normal = sums.normal.restricted(&outer);
-    let bounded = outer.iter().any(|&i| bounds[i][0] >= 0.0);
-    let (step, _) = if bounded { solve_nonnegative(&normal) } else { normal.solve() };
-    for (&i, step) in outer.iter().zip(step) {
-        unknowns[i] = (unknowns[i] + step).clamp(bounds[i][0], bounds[i][1]);
-    }
-    Ok(unknowns)
-}
-
-fn descend(cell: &SampledCell, mut unknowns: Vec<f64>, bounds: &[[f64; 2]]) -> Result<(Vec<f64>, Sums, bool)> {
-    let mut sums = cell.sums(Part::Trained, &unknowns)?;
-    let mut damping = 1e-3;
-    for _ in 0..STEPS {
-        let slopes = (0..unknowns.len()).filter(|&i| !is_pushed(&sums.normal, &unknowns, bounds, i));
-        let promise = slopes.map(|i| sums.normal.rhs[i].powi(2) / sums.normal.entry(i, i).max(f64::MIN_POSITIVE));
-        if !sums.square.is_finite() {
-            return Ok((unknowns, sums, false));
-        }
-        if promise.fold(0.0, f64::max) <= PROMISE * sums.square.max(PROMISE * sums.size) {
-            return Ok((unknowns, sums, true));
-        }
-        let (step, promise) = damped(&sums.normal, &unknowns, bounds, damping);
-        let tried: Vec<f64> =
-            unknowns.iter().zip(&step).zip(bounds).map(|((p, d), b)| (p + d).clamp(b[0], b[1])).collect();
-        // A law may have no value far from the start.
-        let after = cell.sums(Part::Trained, &tried)?;
-        let gain = (sums.square - after.square) / promise;
-        if gain > 1e-4 {
-            (unknowns, sums) = (tried, after);
-            damping *= if gain > 0.75 { 0.1 } else { 1.0 };
-        } else {
-            damping *= 10.0;
-            if damping > STIFFEST {
-                return Ok((unknowns, sums, false));
-            }
-        }
-    }
-    Ok((unknowns, sums, false))
-}
-
-/// Whether an unknown is at a bound and would cross it: the right-hand side points downhill.
-fn is_pushed(normal: &Normal, unknowns: &[f64], bounds: &[[f64; 2]], i: usize) -> bool {
-    let [lower, upper] = bounds[i];
-    (unknowns[i] <= lower && normal.rhs[i] < 0.0) || (unknowns[i] >= upper && normal.rhs[i] > 0.0)
-}
-
-/// The step `(M + μ diag M) d = b`. Unknowns that would cross a bound go to it, and the others follow. Also the
-/// decrease of the sum of squares that the step predicts.
-fn damped(normal: &Normal, unknowns: &[f64], bounds: &[[f64; 2]], damping: f64) -> (Vec<f64>, f64) {
-    let count = unknowns.len();
-    let mut step = vec![0.0; count];
-    let mut free: Vec<usize> =
-        (0..count).filter(|&i| !is_pushed(normal, unknowns, bounds, i) && normal.entry(i, i) > 0.0).collect();
-    loop {
-        let mut equations = normal.restricted(&free);
-        let fixed =
-            |i: usize| (0..count).filter(|j| !free.contains(j)).map(|j| normal.entry(i, j) * step[j]).sum::<f64>();
-        for (place, &i) in free.iter().enumerate() {
-            equations.gram[place * free.len() + place] *= 1.0 + damping;
-            equations.rhs[place] -= fixed(i);
-        }
-        let (found, _) = equations.solve();
-        free.iter().zip(found).for_each(|(&i, d)| step[i] = d);
-        let crosses = |i: usize| {
-            let end = unknowns[i] + step[i];
-            if end < bounds[i][0] { Some(bounds[i][0]) } else { (end > bounds[i][1]).then_some(bounds[i][1]) }
-        };
-        let crossing: Vec<(usize, f64)> = free.iter().filter_map(|&i| Some((i, crosses(i)?))).collect();
-        if crossing.is_empty() {
-            break;
-        }
-        crossing.iter().for_each(|&(i, bound)| step[i] = bound - unknowns[i]);
-        free.retain(|i| crossing.iter().all(|(crossed, _)| crossed != i));
-    }
-    let fall = normal.fall(&step);
-    (step, fall)
 }

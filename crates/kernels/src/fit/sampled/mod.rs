@@ -8,8 +8,10 @@
 //!
 //! Theory: page *Sampled fits* of the book.
 
+mod block;
 mod cell;
 mod inner;
+mod newton;
 mod settings;
 mod shapes;
 
@@ -235,7 +237,7 @@ impl SampledCell<'_> {
     fn direct(&self) -> Result<(Vec<f64>, CellFit)> {
         let bounded = self.fit.nonnegative || self.fit.force == Force::FreeRest;
         let in_norm = if self.fit.norm == Norm::Two { None } else { self.in_norm(bounded)? };
-        let converged = self.fit.norm == Norm::Two || in_norm.is_some();
+        let in_its_norm = self.fit.norm == Norm::Two || in_norm.is_some();
         let sums = self.sums(Part::Trained, &vec![0.0; self.count()])?;
         let (unknowns, rank) = match in_norm {
             Some(unknowns) => (unknowns, Rank::Full),
@@ -243,6 +245,7 @@ impl SampledCell<'_> {
             None => sums.normal.solve(),
         };
         let trained = sums.error(&unknowns);
+        let converged = in_its_norm && rank != Rank::Unsolved;
         Ok((unknowns, CellFit { rank, converged, trained, ..CellFit::default() }))
     }
 
@@ -271,7 +274,6 @@ impl SampledCell<'_> {
         });
         // Laws that are linear in their parameters have one optimum.
         let starts = if self.fit.is_direct() { 1 } else { self.fit.starts };
-        self.hold()?;
         let found = inner::search(self, starts, &bounds)?;
         let trained = found.sums.error(&vec![0.0; self.count()]);
         let agreeing = Some(found.agreeing);
