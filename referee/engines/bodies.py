@@ -24,7 +24,7 @@ equilibrium = module(here.parents[1] / "exports" / "equilibrium.py", "equilibriu
 SCENES = ["bar", "block"]
 POISSON = [0.3, 0.45]
 YOUNG = 1e4  # Pa, as in the scenes
-NETWORKS = ["exact", "classical"]
+NETWORKS = ["exact", "classical", "length"]
 
 
 @dataclass

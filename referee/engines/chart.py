@@ -10,7 +10,7 @@ def svg(record):
     groups = {}
     for row in record["rows"]:
         groups.setdefault(f"{row['engine']} {row['solver']}, {row['model'].replace(' nu ', ' ν ')}, ν = {row['poisson']}", {})[row["load"]] = row
-    groups = {name: rows for name, rows in groups.items() if "classical" not in name}
+    groups = {name: rows for name, rows in groups.items() if "classical" not in name and "length" not in name}
     width, zero = LEFT + 2 * 20 * SCALE + MOST * SCALE + RIGHT, LEFT + 20 * SCALE
     height = 60 + len(groups) * (4 * HEIGHT + 10)
     parts = [

@@ -1,6 +1,6 @@
 """The modulus that a simulator shows, against the modulus in its input. Standard bodies at rest in it, beside finite elements.
 
-    python referee/engines/run.py --engine mujoco --engine newton [--springfit PROGRAM] [--out FOLDER]
+    python referee/engines/run.py --engine mujoco --engine newton [--solver NAME] [--springfit PROGRAM] [--out FOLDER]
 
 A bar under tension, torsion and bending and a block in shear, of tetrahedra, are put into the simulator (requirements.txt) as springs by
 `springfit export` and as its own finite elements. At rest the tip and the energy are compared with our finite elements of the same
@@ -19,7 +19,7 @@ import bodies
 import chart
 import table
 
-ENGINES = ["mujoco", "newton"]
+ENGINES = ["mujoco", "newton", "lammps"]
 # An engine whose energy of tension is nearer than this to finite elements is not repaired, percent.
 RIGHT = 0.5
 
@@ -27,17 +27,17 @@ RIGHT = 0.5
 class Referee:
     """The rows of one engine."""
 
-    def __init__(self, name, springfit, prepared, folder, keep):
+    def __init__(self, name, only, springfit, prepared, folder, keep):
         self.name, self.engine = name, importlib.import_module(f"with_{name}")
         self.springfit, self.prepared, self.folder, self.keep = springfit, prepared, folder, keep
-        self.rows, self.maps = [], []
+        self.only, self.rows, self.maps = only, [], []
 
     def script(self, scene, poisson, network):
         out = self.folder / f"{self.name}-{scene}-{poisson}-{network}"
         if not out.exists():
             file = self.prepared[scene, poisson].networks[network]
             bodies.run(self.springfit, "export", file, "--to", self.name, "--gravity", "0 0 0", "--out", out)
-        return bodies.module(out / "run.py", out.name)
+        return self.engine.load(out)
 
     def measure(self, solver, model, network, poisson, told=None):
         """A row for each load. `told` are E and nu of the engine's own elements."""
@@ -78,7 +78,10 @@ class Referee:
     def run(self):
         for poisson in bodies.POISSON:
             for solver, networks in self.engine.solvers.items():
-                self.own_elements(solver, poisson)
+                if self.only and solver not in self.only:
+                    continue
+                if solver in self.engine.own_elements:
+                    self.own_elements(solver, poisson)
                 for network in networks:
                     self.measure(solver, f"{network} springs", network, poisson)
 
@@ -101,6 +104,7 @@ class Referee:
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--engine", action="append", choices=ENGINES, help="may be repeated; default all")
+    arguments.add_argument("--solver", action="append", help="only this solver of an engine; may be repeated")
     arguments.add_argument("--springfit", default="springfit", help="the program")
     arguments.add_argument("--out", type=Path, default=Path("out/engines"))
     given = arguments.parse_args()
@@ -129,7 +133,7 @@ def main():
         }
         for name in given.engine or ENGINES:
             try:
-                referees.append(Referee(name, given.springfit, prepared, folder, keep))
+                referees.append(Referee(name, given.solver, given.springfit, prepared, folder, keep))
             except ImportError as error:
                 missing.append(f"{name}: {error}")
                 continue
