@@ -85,8 +85,11 @@ class Equations:
         self._solver.setFromOptions()
         self.indefinite = False
 
-    def _create(self, kind: str, levels: "PETSc.Mat") -> "PETSc.KSP":
+    def _create(self, kind: str, levels: "PETSc.Mat", preconditioner: "PETSc.PC | None" = None) -> "PETSc.KSP":
         solver = PETSc.KSP().create(self._matrix.getComm())
+        if preconditioner is not None:
+            # Before the operators, which it holds.
+            solver.setPC(preconditioner)
         solver.setOperators(self._matrix, levels)
         solver.setType(kind)
         if kind == "cg":
@@ -133,8 +136,7 @@ class Equations:
             step.set(0.0)
             if self._body is not None:
                 # An equilibrium that is not stable, with the levels of the finite elements.
-                self._solver = self._create("minres", self._body._matrix)
-                self._solver.setPC(self._body._solver.getPC())
+                self._solver = self._create("minres", self._body._matrix, self._body._solver.getPC())
         if self._body is not None:
             self._solver.solve(residual, step)
         return self._solver.getIterationNumber()
