@@ -185,9 +185,9 @@ fn keys(value: &Value, path: &str, found: &mut BTreeMap<String, Names>) {
 const POSITIVE: &str = "[mesh]\nfile = \"scenes/meshes/cube_tet.msh\"\nscale = 0.01\n[material]\nyoung = 1\npoisson = 0.3\n[[fit]]\nobjective = \
                         \"exact\"\nnonnegative = true\n[[fit]]\nobjective = \"frobenius\"\nrest = \"free\"\n[[fix]]\ngroup = \"fixed\"\n";
 
-/// With errors of a whole-object fit under other loads, and moduli.
-const COARSE: &str = "[mesh]\nbox = { element = \"hex8\", size = [2, 1, 1], cells = [2, 1, 1] }\n[material]\nyoung = 1\npoisson = 0.3\n\
-                      [reference]\nrefine = 1\n[[fit]]\nobjective = \"whole\"\nstart = \"exact\"\nunknowns = \"body-moduli\"\n[[fix]]\n\
+/// With errors of a whole-object fit under other loads, moduli, and masses.
+const COARSE: &str = "[mesh]\nbox = { element = \"hex8\", size = [2, 1, 1], cells = [2, 1, 1] }\n[material]\nyoung = 1\npoisson = 0.3\ndensity = 1\n\
+                      [reference]\nrefine = 1\n[[fit]]\nobjective = \"whole\"\nstart = \"exact\"\nunknowns = \"body-moduli\"\nmasses = 2\n[[fix]]\n\
                       group = \"xmin\"\n";
 
 #[test]

@@ -4,7 +4,6 @@ use super::finer::Finer;
 use super::found_moduli::found_moduli;
 use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
-use super::targets::Held;
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
 use crate::material::MaterialMap;
@@ -14,7 +13,7 @@ use crate::solve::{Equations, Newton, StaticSolver};
 use crate::study::body::Case;
 use crate::study::checkpoint::{Controls, Fingerprint, Saved};
 use crate::study::progress::{Event, Progress};
-use crate::whole::{Frequencies, Snapshot, fit_whole};
+use crate::whole::{Snapshot, fit_whole};
 use std::sync::Mutex;
 
 /// The body to which the whole-object fits of a scene are fitted.
@@ -100,29 +99,6 @@ impl<'a> WholeBody<'a> {
         }
         network.check_size()?;
         Equations::factored(&network.stiffness(points), support)
-    }
-
-    /// The `count` lowest frequencies of the body, as ω².
-    pub(super) fn squares(&self, key: &str, held: &Held, count: usize) -> Result<Vec<f64>> {
-        let found = match (self.fine, &held.fine) {
-            (Some(fine), Some(support)) => fine.vibrations(support, count),
-            _ => {
-                let masses = self.masses.unwrap_or_default();
-                let equations = self.equations(key, &held.support)?;
-                equations.lowest_modes(masses, self.mesh.dimension, count).map(|modes| modes.squares)
-            }
-        };
-        found.map_err(|e| Error::at(key, e.problem()).of_kind(e.kind()))
-    }
-
-    pub(super) fn frequencies(&self, count: usize) -> Result<Option<Frequencies>> {
-        let Some(masses) = self.masses.filter(|_| count > 0) else { return Ok(None) };
-        let held = self.supports("supports", &[])?.remove(0);
-        let squares = self.squares("frequencies", &held, count)?;
-        // All frequencies together have the weight of one load.
-        let weight = 1.0 / count as f64;
-        let (support, masses) = (self.support.clone(), masses.to_vec());
-        Ok(Some(Frequencies { support, masses, squares, weight }))
     }
 
     /// Fits the constants of the network of `start`, which was assembled from its fits of the cells. Without `start`, fits the moduli

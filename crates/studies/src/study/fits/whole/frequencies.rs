@@ -3,14 +3,38 @@
 use super::body::WholeBody;
 use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies};
 use super::recipe::WholeRecipe;
+use super::targets::Held;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
 use crate::model::{Lumping, Moments, Network, lumped_masses};
 use crate::solve::Equations;
 use crate::study::progress::{Event, Progress};
-use crate::whole::{Vibrations, fit_masses};
+use crate::whole::{Frequencies, Vibrations, fit_masses};
 
 impl WholeBody<'_> {
+    /// The `count` lowest frequencies of the body, as ω².
+    pub(super) fn squares(&self, key: &str, held: &Held, count: usize) -> Result<Vec<f64>> {
+        let found = match (self.fine, &held.fine) {
+            (Some(fine), Some(support)) => fine.vibrations(support, count),
+            _ => {
+                let masses = self.masses.unwrap_or_default();
+                let equations = self.equations(key, &held.support)?;
+                equations.lowest_modes(masses, self.mesh.dimension, count).map(|modes| modes.squares)
+            }
+        };
+        found.map_err(|e| Error::at(key, e.problem()).of_kind(e.kind()))
+    }
+
+    pub(super) fn frequencies(&self, count: usize) -> Result<Option<Frequencies>> {
+        let Some(masses) = self.masses.filter(|_| count > 0) else { return Ok(None) };
+        let held = self.supports("supports", &[])?.remove(0);
+        let squares = self.squares("frequencies", &held, count)?;
+        // All frequencies together have the weight of one load.
+        let weight = 1.0 / count as f64;
+        let (support, masses) = (self.support.clone(), masses.to_vec());
+        Ok(Some(Frequencies { support, masses, squares, weight }))
+    }
+
     /// Fits the masses of a network to as many frequencies as the recipe says under each support of the fit; those of the validation
     /// choose ρ. As many frequencies more are compared.
     ///
@@ -50,7 +74,7 @@ impl WholeBody<'_> {
         }
         let found = fit_masses(&mesh.points, d, &lumped, &moments, (&wanted, &others)).map_err(at)?;
         let frequencies = |(held, is_trained, squares, equations): &(_, bool, Vec<f64>, Equations)| {
-            let held: &&super::targets::Held = held;
+            let held: &&Held = held;
             let body = self.equations("masses", &held.support)?;
             let models = [
                 ("finite elements", &body, &lumped),
