@@ -1,10 +1,11 @@
 """Puts networks into the programs that they are exported to, and compares where they rest with the networks' own equilibria.
 
     springfit run exports/cube.toml
-    python exports/prove.py out/cube [--springfit PROGRAM] [--table FILE]
+    python exports/prove.py out/cube [--springfit PROGRAM] [--blender PYTHON] [--table FILE]
 
-Each export is written by `springfit export` and run as it is, in this Python (exports/requirements.txt) or in Node (npm). The
-equilibrium is that of equilibrium.py. A program that is not installed is named and counted as not run.
+Each export is written by `springfit export` and run as it is, in this Python (exports/requirements.txt), in one that has bpy
+(exports/blender.txt), which needs an older NumPy, or in Node (npm). The equilibrium is that of equilibrium.py. A program that is not
+installed is named and counted as not run. The forces of PhysTwin, which needs a graphics card, are computed from its arrays here.
 """
 import argparse
 import importlib.metadata
@@ -32,6 +33,10 @@ CASES = [
     ("lammps", "classical", 1e-5),
     ("jolt", "classical", 5.0),
     ("jolt", "classical-and-volume", 10.0),
+    ("blender", "exact", 0.1),
+    ("blender", "exact-k-0", 0.1),
+    ("blender", "classical", 0.1),
+    ("blender", "classical-and-volume", 0.1),
 ]
 # What programs do not hold, and a word of the line that says so.
 REFUSED = [
@@ -40,8 +45,12 @@ REFUSED = [
     ("jolt", "exact-k-0", "do not pull at rest"),
     ("mujoco", "exact-k-0", "balance"),
     ("sofa", "exact", "between two points"),
+    ("phystwin", "exact", "between two points"),
+    ("phystwin", "classical", "--gravity"),
 ]
 JOLT = "1.1.0"
+# Forces that are computed in 32 bits, of the largest force, percent.
+FORCES = 1e-3
 
 
 def run(words, folder=None):
@@ -51,9 +60,62 @@ def run(words, folder=None):
     return made
 
 
-def rest_of_script(folder, material=()):
-    run([sys.executable, "run.py", "--rest", "rest.npy", *material], folder)
+def rest_of_script(folder, material=(), python=sys.executable):
+    run([python, "run.py", "--rest", "rest.npy", *material], folder)
     return np.load(folder / "rest.npy")
+
+
+# What the saved file of Blender has, read by Blender.
+ATTRIBUTES = """
+import json, sys, bpy
+bpy.ops.wm.open_mainfile(filepath="network.blend")
+mesh = bpy.data.objects["springs"].data
+found = {name: [item.value for item in mesh.attributes[name].data] for name in ["constant", "rest", "damping", "mass", "fixed"]}
+found["edges"] = [list(edge.vertices) for edge in mesh.edges]
+found["surface"] = [list(face.vertices) for face in bpy.data.objects["surface"].data.polygons]
+json.dump(found, open("found.json", "w"))
+"""
+
+
+def check_attributes(folder, net, python):
+    """That each edge and each vertex in Blender has the numbers of its spring and its point, in 32 bits."""
+    run([python, "-c", ATTRIBUTES], folder)
+    found = json.loads((folder / "found.json").read_text())
+    (ends, k, rest), _ = equilibrium.simplices(net)
+    held = {support["point"] for support in net["held"]}
+    damping = [s["damper"] for s in net["springs"] if net["measures"][s["measure"]]["kind"] == "length"]
+    assert found["edges"] == ends.tolist() and found["surface"] == net["surface"], "edges or triangles are others"
+    assert found["fixed"] == [p in held for p in range(len(net["points"]))], "fixed points are others"
+    for name, values in [("constant", k), ("rest", rest), ("damping", damping), ("mass", net["masses"])]:
+        assert np.array_equal(np.float32(found[name]), np.float32(values)), f"{name} differs"
+
+
+def forces_of_phystwin(folder, net):
+    """The largest distance of the forces that PhysTwin's formula has from those of the network, at random places, in percent.
+
+    On the first end of a spring it is `exp(Y) (l/L - 1) d + c (v . d) d` (Jiang et al., PhysTwin, 2025), in 32 bits.
+    """
+    arrays = {name: values for name, values in np.load(folder / "phystwin.npz").items()}
+    order, free = arrays["points"], int(arrays["num_object_points"])
+    points = np.array(net["points"])
+    extent = np.ptp(points, axis=0).max()
+    x = points + np.random.default_rng(1).normal(scale=0.02 * extent, size=points.shape)
+    assert np.allclose(arrays["init_vertices"], points[order] + arrays["shift"]), "the points are others"
+    placed = np.float32(x[order] + arrays["shift"])
+    i, j = arrays["init_springs"].T
+    along = placed[j] - placed[i]
+    length = np.linalg.norm(along, axis=1)
+    stiffness = np.exp(np.float32(arrays["spring_Y"]))
+    assert np.all(stiffness > arrays["spring_Y_min"]) and np.all(stiffness <= arrays["spring_Y_max"]), "stiffnesses are cut"
+    pull = (stiffness * (length / np.float32(arrays["init_rest_lengths"]) - 1) / length)[:, None] * along
+    found = np.zeros_like(placed)
+    np.add.at(found, i, pull)
+    np.add.at(found, j, -pull)
+    expected = -equilibrium.forces_and_tangent(net, x)[0][order]
+    held = {support["point"] for support in net["held"]}
+    assert {int(p) for p in order[free:]} == held, "the controllers are others"
+    assert np.allclose(arrays["init_masses"], np.array(net["masses"])[order], rtol=1e-12), "the masses are others"
+    return 100 * np.abs(found - expected)[:free].max() / np.abs(expected).max()
 
 
 def rest_of_node(folder):
@@ -72,8 +134,13 @@ def rest_of_lammps(folder):
     return np.loadtxt(folder / "positions.txt", skiprows=9)[:, 1:]
 
 
-def version(target):
+def version(target, python):
     """The version of a program, or None."""
+    if target == "blender":
+        try:
+            return run([python, "-c", "import bpy; print(bpy.app.version_string)"]).stdout.split()[-1]
+        except (OSError, RuntimeError):
+            return None
     if target == "jolt":
         try:
             run(["npm", "--version"])
@@ -88,13 +155,15 @@ def version(target):
 
 def steps(target, net):
     longest = net["largest_step"]
-    return {"mujoco": "2 ms", "newton": f"{0.5e3 * longest:.2f} ms", "jolt": "1/60 s, 50 substeps", "lammps": "minimiser"}[target]
+    half = f"{0.5e3 * longest:.2f} ms"
+    return {"mujoco": "2 ms", "newton": half, "jolt": "1/60 s, 50 substeps", "lammps": "minimiser", "blender": half}[target]
 
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("networks", type=Path)
     arguments.add_argument("--springfit", default="springfit")
+    arguments.add_argument("--blender", default=sys.executable, help="a Python that has bpy")
     arguments.add_argument("--table", type=Path, help="write the table to this file as well")
     given = arguments.parse_args()
     rows = ["| program | version | network | springs | step | error, % | bound, % | s |", "|---|---|---|---|---|---|---|---|"]
@@ -102,7 +171,7 @@ def main():
     nets = {path.stem: equilibrium.read(path) for path in given.networks.glob("*.json") if path.stem != "report"}
     rests = {name: equilibrium.rest_under_gravity(net, net["gravity"]) for name, net in nets.items() if net["gravity"]}
     for target, name, bound in CASES:
-        known = version(target)
+        known = version(target, given.blender)
         if known is None:
             missing.append(f"{target} with {name}")
             continue
@@ -112,8 +181,12 @@ def main():
             run([given.springfit, "export", given.networks / f"{name}.json", "--to", target, "--out", folder])
             start = time.perf_counter()
             try:
-                found = {"lammps": rest_of_lammps, "jolt": rest_of_node}.get(target, rest_of_script)(folder)
-            except RuntimeError as error:
+                if target == "blender":
+                    found = rest_of_script(folder, python=given.blender)
+                    check_attributes(folder, net, given.blender)
+                else:
+                    found = {"lammps": rest_of_lammps, "jolt": rest_of_node}.get(target, rest_of_script)(folder)
+            except (RuntimeError, AssertionError) as error:
                 failed.append(f"{target} with {name}: {error}")
                 continue
             seconds = time.perf_counter() - start
@@ -127,13 +200,21 @@ def main():
         print(rows[-1], flush=True)
         if not error <= bound:
             failed.append(f"{target} with {name}: {error:.2g} % is more than {bound:g} %")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        words = ["--to", "phystwin", "--gravity", "0 0 -9.8", "--out", folder]
+        run([given.springfit, "export", given.networks / "classical.json", *words])
+        error = forces_of_phystwin(folder, nets["classical"])
+        print(f"forces by PhysTwin's formula from its arrays differ by at most {error:.2g} % of the largest")
+        if not error <= FORCES:
+            failed.append(f"phystwin with classical: {error:.2g} % is more than {FORCES:g} %")
     beside = ["| body | largest displacement, um |", "|---|---|"]
     net, points = nets["exact"], np.array(nets["exact"]["points"])
     material = [net["provenance"]["material"][key] for key in ["young", "poisson"]]
     largest = lambda x: f"{1e6 * np.linalg.norm(x - points, axis=1).max():.3f}"
     beside.append(f"| the exact network, which is the finite element | {largest(rests['exact'])} |")
     for target in ["mujoco", "newton"]:
-        if version(target) is None:
+        if version(target, given.blender) is None:
             continue
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)

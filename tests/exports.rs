@@ -1,7 +1,7 @@
 //! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
 
 use springfit::error::ErrorKind;
-use springfit::export::{Content, TARGETS, target_named};
+use springfit::export::{Content, TARGETS, Target, target_named};
 use springfit::report::{NetworkFile, NetworkRecord};
 use springfit::study::{Outcome, Scene, run};
 use std::collections::BTreeMap;
@@ -61,9 +61,9 @@ fn each_program_takes_the_fits_that_it_holds_and_names_one_for_the_others() {
             let held = match (target.name, name.as_str()) {
                 ("vtu", _) => true,
                 (_, "patches") => false,
-                ("lammps" | "sofa", "exact") => false,
+                ("lammps" | "sofa" | "phystwin", "exact") => false,
                 ("jolt", "exact") => false,
-                ("jolt", "free") => !negative,
+                ("jolt" | "phystwin", "free") => !negative,
                 _ => true,
             };
             match target.files(network, None) {
@@ -157,6 +157,35 @@ fn sofa_has_held_points_as_negative_masses() {
             line[1..],
             [spring.points[0] as f64 + 1.0, spring.points[1] as f64 + 1.0, spring.constant, 0.0, spring.rest]
         );
+    }
+}
+
+#[test]
+fn damping_that_a_program_lacks_is_named() {
+    let damped = |damping: &str| {
+        let motion =
+            format!("\n[motion]\nduration = 0.01\nstep = 1e-4\nfinite_elements = false\ndamping = {{ {damping} }}\n");
+        networks(&format!("{SCENE}{motion}")).remove("exact").unwrap()
+    };
+    let (rayleigh, ratio) = (damped("rayleigh = [2, 1e-4]"), damped("ratio = 0.05"));
+    let words = |target: &Target, network: &NetworkRecord| target.left_out(network).join("; ");
+    for target in &TARGETS {
+        assert!(words(target, &rayleigh).contains("stiffness, 1e-4 s, is left out"), "{}", target.name);
+        let lacks_mass = ["newton", "jolt", "sofa"].contains(&target.name);
+        assert_eq!(words(target, &rayleigh).contains("mass, 2e0 1/s, is left out"), lacks_mass, "{}", target.name);
+        let lacks_contents = ["newton", "blender", "npz"].contains(&target.name);
+        assert_eq!(words(target, &ratio).contains("dampers of springs on contents"), lacks_contents, "{}", target.name);
+    }
+}
+
+#[test]
+fn phystwin_has_the_gravity_of_its_own_and_no_other() {
+    let network = &networks(SCENE)["classical"];
+    let files = |gravity: &[f64]| target_named("phystwin").unwrap().files(network, Some(gravity));
+    assert!(files(&[0.0, 0.0, -9.8]).is_ok() && files(&[0.0, 0.0, 9.8]).is_ok());
+    for gravity in [[0.0, 0.0, -1.0], [0.0, -9.8, 0.0], [0.0; 3]] {
+        let text = files(&gravity).err().unwrap().to_string();
+        assert!(text.contains("--gravity: expected 9.8 m/s² along z"), "{text}");
     }
 }
 

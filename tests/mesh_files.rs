@@ -6,7 +6,8 @@ use springfit::mesh::{Field, Format, Mesh, MeshSource, SourceBlock, gmsh, vtk};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const GMSH_BARS: [&str; 4] = ["bar_41_ascii.msh", "bar_41_binary.msh", "bar_22_ascii.msh", "bar_22_binary.msh"];
+const GMSH_BARS: [&str; 5] =
+    ["bar_41_ascii.msh", "bar_41_binary.msh", "bar_40_ascii.msh", "bar_22_ascii.msh", "bar_22_binary.msh"];
 /// Written by meshio and VTK.
 const VTK_BARS: [&str; 22] = [
     "bar_ascii.vtu",
@@ -100,6 +101,21 @@ fn every_format_gives_the_same_bar() {
         assert_eq!(mesh.format, Format::Gmsh);
         assert!(agree(&mesh.points, &reference.points), "{file}");
         assert_eq!(sorted_cells(&mesh), cells, "{file}");
+    }
+    // Version 1 has the numbers of groups without their names.
+    let mut first = MeshSource::read(&folder().join("bar_1_ascii.msh")).unwrap();
+    assert!(agree(&first.points, &reference.points));
+    for (number, name) in [("2:1", "fixed"), ("2:2", "load"), ("3:3", "body"), ("3:7", "soft part")] {
+        let groups = first.blocks.iter_mut().flat_map(|block| &mut block.groups);
+        groups.filter(|group| *group == number).for_each(|group| *group = name.into());
+    }
+    assert_eq!(sorted_cells(&first), cells);
+    let hexahedra = sorted_cells(&MeshSource::read(&folder().join("hex20.msh")).unwrap());
+    for file in ["hex20_v1.msh", "hex20_v40.msh"] {
+        let mut mesh = MeshSource::read(&folder().join(file)).unwrap();
+        let groups = mesh.blocks.iter_mut().flat_map(|block| &mut block.groups);
+        groups.filter(|group| *group == "3:1").for_each(|group| *group = "body".into());
+        assert_eq!(sorted_cells(&mesh), hexahedra, "{file}");
     }
     let vtk_cells = sorted_cells(&MeshSource::read(&folder().join(VTK_BARS[0])).unwrap());
     for file in VTK_BARS {
@@ -281,9 +297,24 @@ fn gmsh_errors_say_what_was_expected_and_found() {
     assert_eq!(with_elements(""), "the file ends before $Elements");
     assert_eq!(gmsh_error(""), "the file ends before $MeshFormat");
     assert_eq!(gmsh_error("solid a\n"), "line 1: expected a section such as $MeshFormat, found \"solid\"");
-    let version = "line 2: $MeshFormat: expected version 4.1 or 2.2, found \"4\"; \
+    let version = "line 2: $MeshFormat: expected version 4.1, 4.0 or 2.2, found \"3\"; \
                    what converts it: gmsh old.msh -save -format msh41 -o new.msh";
-    assert_eq!(gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n"), version);
+    assert_eq!(gmsh_error("$MeshFormat\n3 0 8\n$EndMeshFormat\n"), version);
+    let binary = gmsh_error("$MeshFormat\n4 1 8\n");
+    assert!(
+        binary.contains("expected a file of version 4.0 in text, found a binary one; what converts it"),
+        "{binary}"
+    );
+    let parametric = gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n1 1\n1 1 1 1\n1 0 0 0 0.5\n$EndNodes\n");
+    assert!(parametric.contains("$Nodes: expected nodes of version 4.0 without parameters, found 1"), "{parametric}");
+    let wrong = gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n1 2\n1 1 0 1\n1 0 0 0\n$EndNodes\n");
+    assert!(wrong.contains("expected 2 nodes, found 1"), "{wrong}");
+    const FIRST: &str = "$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n";
+    let first = |elements: &str| gmsh_error(&format!("{FIRST}$ELM\n1\n{elements}\n$ENDELM\n"));
+    assert_eq!(first("1 2 5 1 4 1 2 3"), "line 9: $ELM: expected 3 nodes of element 1 with type 2, found 4");
+    assert_eq!(first("1 2 5 1 3 1 2 4"), "line 9: $ELM: element 1 names node 4, which $Nodes lacks");
+    assert_eq!(gmsh_error("$ELM\n"), "line 1: $ELM: expected $NOD before it");
+    assert_eq!(gmsh_error(&format!("{FIRST}{FIRST}")), "line 7: $NOD: stands in the file a second time");
     let parts = gmsh_error(&format!("{FORMAT}$PartitionedEntities\n"));
     assert_eq!(parts, "line 4: $PartitionedEntities: partitioned meshes are not supported");
 }

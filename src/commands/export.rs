@@ -68,7 +68,7 @@ impl Export {
         if has_loads {
             terminal.note("the loads of the scene are not exported: supports and gravity are");
         }
-        (target.leaves_out)(&network).iter().for_each(|words| terminal.note(words));
+        target.left_out(&network).iter().for_each(|words| terminal.note(words));
         if !target.command.is_empty() {
             terminal.print(&format!("run it: cd {} && {}\n", folder.display(), target.command))?;
         }

@@ -1,7 +1,7 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
 use super::job::{Holds, Job, Tension};
-use super::target::{Content, NamedFile, Target, dampers};
+use super::target::{Content, NamedFile, Target, dampers, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub const TARGET: Target = Target {
     name: "jolt",
     title: "a Node script for Jolt: edge and volume constraints of a soft body",
     command: "npm install jolt-physics@1.1.0 && node run.mjs",
-    leaves_out: dampers,
+    leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
     write,
 };
 

@@ -4,12 +4,14 @@
 //!
 //! Page of the book: *Networks in other programs*.
 
+mod blender;
 mod job;
 mod jolt;
 mod lammps;
 mod mujoco;
 mod newton;
 mod npz;
+mod phystwin;
 mod sofa;
 mod target;
 mod vtu;
@@ -21,8 +23,17 @@ use crate::error::Result;
 use crate::unknown;
 
 /// A new target is a row here.
-pub const TARGETS: [Target; 7] =
-    [mujoco::TARGET, newton::TARGET, lammps::TARGET, jolt::TARGET, sofa::TARGET, npz::TARGET, vtu::TARGET];
+pub const TARGETS: [Target; 9] = [
+    mujoco::TARGET,
+    newton::TARGET,
+    lammps::TARGET,
+    jolt::TARGET,
+    sofa::TARGET,
+    blender::TARGET,
+    phystwin::TARGET,
+    npz::TARGET,
+    vtu::TARGET,
+];
 
 /// The target of this name.
 ///

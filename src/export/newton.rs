@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, content_dampers, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -14,7 +14,7 @@ pub const TARGET: Target = Target {
     name: "newton",
     title: "a Python script for Newton (Warp): springs with dampers, and volume springs",
     command: "python run.py",
-    leaves_out: nothing,
+    leaves_out: |network| [content_dampers(network), mass_damping(network)].concat(),
     write,
 };
 

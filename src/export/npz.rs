@@ -1,13 +1,18 @@
 //! Arrays of NumPy.
 
 use super::job::Job;
-use super::target::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, content_dampers};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
 
 /// What this program holds, and how a network is written for it.
-pub const TARGET: Target =
-    Target { name: "npz", title: "arrays of NumPy, for scripts of your own", command: "", leaves_out: nothing, write };
+pub const TARGET: Target = Target {
+    name: "npz",
+    title: "arrays of NumPy, for scripts of your own",
+    command: "",
+    leaves_out: content_dampers,
+    write,
+};
 
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let mut network = network.clone();

@@ -1,7 +1,7 @@
 //! SOFA: a mass-spring file of the format Xsp 3.0.
 
 use super::job::{Holds, Job, Tension};
-use super::target::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Target, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use std::collections::HashSet;
@@ -15,7 +15,7 @@ pub const TARGET: Target = Target {
     name: "sofa",
     title: "a file of the format Xsp for SOFA: masses and springs with dampers",
     command: "",
-    leaves_out: nothing,
+    leaves_out: mass_damping,
     write,
 };
 

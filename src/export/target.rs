@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::file::write_whole;
 use crate::mesh::vtk::{self, Grid};
-use crate::report::NetworkRecord;
+use crate::report::{MeasureKind, NetworkRecord, SpringRecord};
 use std::path::Path;
 
 /// A file by its name.
@@ -39,8 +39,8 @@ pub struct Target {
     pub title: &'static str,
     /// What a user types in the folder; empty of files that are read by hand.
     pub command: &'static str,
-    /// The springs that are left out, for the line that says so.
-    pub leaves_out: fn(&NetworkRecord) -> Vec<String>,
+    /// The damping that this program leaves out and others hold, in lines of words.
+    pub(super) leaves_out: fn(&NetworkRecord) -> Vec<String>,
     pub(super) write: Writer,
 }
 
@@ -53,6 +53,13 @@ impl Target {
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
         (self.write)(network, gravity)
     }
+
+    /// The damping that is left out, in lines of words. No program has Rayleigh's damping by the stiffness at rest.
+    pub fn left_out(&self, network: &NetworkRecord) -> Vec<String> {
+        let beta = network.damping.stiffness;
+        let of_stiffness = (beta > 0.0).then(|| format!("Rayleigh's damping by stiffness, {beta:e} s, is left out"));
+        (self.leaves_out)(network).into_iter().chain(of_stiffness).collect()
+    }
 }
 
 pub(super) fn nothing(_: &NetworkRecord) -> Vec<String> {
@@ -61,6 +68,21 @@ pub(super) fn nothing(_: &NetworkRecord) -> Vec<String> {
 
 /// That dampers are left out, if there are some.
 pub(super) fn dampers(network: &NetworkRecord) -> Vec<String> {
-    let count = network.springs.iter().filter(|spring| spring.damper != 0.0).count();
-    (count > 0).then(|| format!("{count} dampers of springs are left out")).into_iter().collect()
+    left_out(network, "springs", |_| true)
+}
+
+/// That dampers of springs on contents are left out, if there are some.
+pub(super) fn content_dampers(network: &NetworkRecord) -> Vec<String> {
+    left_out(network, "springs on contents", |spring| network.measures[spring.measure].kind == MeasureKind::Content)
+}
+
+/// That Rayleigh's damping by mass is left out, if there is some.
+pub(super) fn mass_damping(network: &NetworkRecord) -> Vec<String> {
+    let alpha = network.damping.mass;
+    (alpha > 0.0).then(|| format!("Rayleigh's damping by mass, {alpha:e} 1/s, is left out")).into_iter().collect()
+}
+
+fn left_out(network: &NetworkRecord, of: &str, is_meant: impl Fn(&SpringRecord) -> bool) -> Vec<String> {
+    let count = network.springs.iter().filter(|spring| spring.damper != 0.0 && is_meant(spring)).count();
+    (count > 0).then(|| format!("{count} dampers of {of} are left out")).into_iter().collect()
 }

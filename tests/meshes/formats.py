@@ -39,6 +39,20 @@ for name in ["hex20", "wedge15", "tet10", "tri6", "quad8", "pyramid13", "curve3"
     if name not in ["pyramid13", "curve3"]:  # Gmsh writes no such cards
         by_gmsh(f"{name}.msh", f"{name}.bdf")
 
+# Old versions of Gmsh's own format, which it writes as text alone.
+for source, target, version in [
+    ("bar_41_ascii", "bar_1_ascii", 1),
+    ("bar_41_ascii", "bar_40_ascii", 4),
+    ("hex20", "hex20_v1", 1),
+    ("hex20", "hex20_v40", 4),
+]:
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Verbosity", 0)
+    gmsh.open(str(here / f"{source}.msh"))
+    gmsh.option.setNumber("Mesh.MshFileVersion", version)
+    gmsh.write(str(here / f"{target}.msh"))
+    gmsh.finalize()
+
 hexahedra = meshio.read(here / "hex20.vtu")
 hexahedra.point_data, hexahedra.cell_data = {}, {}
 meshio.write(here / "hex20_meshio.bdf", hexahedra)

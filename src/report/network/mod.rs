@@ -16,7 +16,7 @@ pub use csv::{network_csv, points_csv};
 pub use file::NetworkFile;
 pub use format::{NETWORK_FORMATS, NetworkFormat};
 pub use json::network_json;
-pub use npz::network_npz;
+pub use npz::{ArrayFile, network_npz};
 pub use parts::{ContentPart, LengthPart, Parts};
 pub use reader::read_network;
 pub use record::{

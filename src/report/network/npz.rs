@@ -36,7 +36,7 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -
     let fixed = network.held.iter().filter(|given| given.displacement.iter().all(Option::is_some));
     let simplices = network.cells.iter().flat_map(|block| &block.points).filter(|points| points.len() == d + 1);
     let corners = d + 1;
-    let mut file = Arrays { file: ZipWriter::new(Cursor::new(Vec::new())) };
+    let mut file = ArrayFile::default();
     file.real("points", &[network.points.len(), 3], network.points.iter().flat_map(|x| spatial(x)))?;
     let masses = network.masses.iter().flatten();
     file.real("masses", &[masses.clone().count()], masses.copied())?;
@@ -57,20 +57,43 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -
     file.real("gravity", &[3], spatial(gravity))?;
     file.real("damping", &[], [network.damping.mass])?;
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
-    to.write_all(&file.file.finish()?.into_inner())
+    to.write_all(&file.finish()?)
 }
 
-struct Arrays {
+/// A file of arrays of NumPy that is being made.
+pub struct ArrayFile {
     file: ZipWriter<Cursor<Vec<u8>>>,
 }
 
-impl Arrays {
-    fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
+impl Default for ArrayFile {
+    fn default() -> ArrayFile {
+        ArrayFile { file: ZipWriter::new(Cursor::new(Vec::new())) }
+    }
+}
+
+impl ArrayFile {
+    /// Adds an array of 64-bit reals.
+    ///
+    /// # Errors
+    /// The file is too large.
+    pub fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
         self.array(name, "<f8", shape, values.into_iter().flat_map(f64::to_le_bytes).collect())
     }
 
-    fn whole(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = usize>) -> io::Result<()> {
+    /// Adds an array of 32-bit whole numbers.
+    ///
+    /// # Errors
+    /// The file is too large.
+    pub fn whole(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = usize>) -> io::Result<()> {
         self.array(name, "<i4", shape, values.into_iter().flat_map(|value| (value as i32).to_le_bytes()).collect())
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// The file is too large.
+    pub fn finish(self) -> io::Result<Vec<u8>> {
+        Ok(self.file.finish()?.into_inner())
     }
 
     /// One file of version 1.0 of the format: a header that is a Python dictionary, padded to 64 bytes, and the numbers.

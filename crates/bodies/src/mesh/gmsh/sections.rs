@@ -1,7 +1,7 @@
 //! The sections of an MSH file.
 
 use super::nodes::Nodes;
-use super::{types, v22, v41};
+use super::{types, v22, v40, v41};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grouping::Gather;
 use crate::mesh::numbering::NumberOrigin;
@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 /// A physical group without a name is called `dimension:tag`.
 ///
 /// # Errors
-/// The file is not an MSH file of version 4.1 or 2.2; it is damaged, cut short or partitioned; or it has an element
+/// The file is not an MSH file of version 4.1, 4.0, 2.2 or 1; it is binary of version 4.0, damaged, cut short or partitioned; or it has an element
 /// type that Gmsh does not document.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut reader = Reader::new(bytes);
@@ -36,7 +36,9 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
 }
 
 enum Version {
+    V1,
     V22,
+    V40,
     V41,
 }
 
@@ -61,10 +63,20 @@ impl File {
         match (name, &self.version) {
             ("MeshFormat", None) => self.version = Some(format(reader)?),
             ("PhysicalNames", Some(_)) => self.names = physical_names(reader)?,
-            ("Entities", Some(Version::V41)) => self.entities = v41::entities(reader)?,
+            ("Entities", Some(Version::V40)) => self.entities = v41::entities(reader, 6)?,
+            ("Entities", Some(Version::V41)) => self.entities = v41::entities(reader, 3)?,
+            // Files of version 1 begin with their nodes.
+            ("NOD", None) => {
+                self.version = Some(Version::V1);
+                self.nodes = Some(v22::nodes(reader, false)?);
+            }
+            ("ELM", Some(Version::V1)) if self.cells.is_none() => {
+                self.cells = Some(Cells::OfGroups(v22::elements(reader, self.known_nodes(reader)?, true)?));
+            }
             ("Nodes", Some(version)) if self.nodes.is_none() => {
                 self.nodes = Some(match version {
-                    Version::V22 => v22::nodes(reader, false)?,
+                    Version::V1 | Version::V22 => v22::nodes(reader, false)?,
+                    Version::V40 => v40::nodes(reader)?,
                     Version::V41 => v41::nodes(reader)?,
                 });
             }
@@ -72,9 +84,10 @@ impl File {
                 self.nodes = Some(v22::nodes(reader, true)?);
             }
             ("Elements", Some(version)) if self.cells.is_none() => {
-                let nodes = self.nodes.as_ref().ok_or_else(|| reader.fault("expected $Nodes before it".into()))?;
+                let nodes = self.known_nodes(reader)?;
                 self.cells = Some(match version {
-                    Version::V22 => Cells::OfGroups(v22::elements(reader, nodes)?),
+                    Version::V1 | Version::V22 => Cells::OfGroups(v22::elements(reader, nodes, false)?),
+                    Version::V40 => Cells::OfEntities(v40::elements(reader, nodes)?),
                     Version::V41 => Cells::OfEntities(v41::elements(reader, nodes)?),
                 });
             }
@@ -84,23 +97,27 @@ impl File {
             ("PhysicalNames" | "Entities" | "Nodes" | "ParametricNodes" | "Elements", None) => {
                 return Err(reader.fault("expected $MeshFormat before it".into()));
             }
-            // Files of version 1 begin with their nodes.
-            ("NOD", None) => {
-                let error = reader.fault("expected version 4.1 or 2.2, found 1".into());
-                return Err(error.of_kind(ErrorKind::Unsupported).followed_by(CONVERTS));
-            }
+            ("NOD" | "ELM", Some(Version::V1)) => return Err(reader.fault("stands in the file a second time".into())),
+            ("ELM", None) => return Err(reader.fault("expected $NOD before it".into())),
             ("PartitionedEntities", _) => {
                 let error = reader.fault("partitioned meshes are not supported".into());
                 return Err(error.of_kind(ErrorKind::Unsupported));
             }
             _ => return skip(reader, name),
         }
-        let end = format!("$End{name}");
+        let end = match name {
+            "NOD" | "ELM" => format!("$END{name}"),
+            _ => format!("$End{name}"),
+        };
         if reader.peek() != end.as_bytes() {
             return Err(reader.unexpected(&end));
         }
         reader.word();
         Ok(())
+    }
+
+    fn known_nodes(&self, reader: &Reader) -> Result<&Nodes> {
+        self.nodes.as_ref().ok_or_else(|| reader.fault("expected $Nodes before it".into()))
     }
 
     fn into_source(self) -> Result<MeshSource> {
@@ -135,6 +152,7 @@ impl File {
 fn format(reader: &mut Reader) -> Result<Version> {
     let version = match reader.peek() {
         b"4.1" => Version::V41,
+        b"4.0" | b"4" => Version::V40,
         b"2.2" | b"2.1" | b"2.0" | b"2" => Version::V22,
         _ => return Err(unknown_version(reader)),
     };
@@ -143,6 +161,10 @@ fn format(reader: &mut Reader) -> Result<Version> {
     let size: u32 = reader.text_number()?;
     match binary {
         0 => return Ok(version),
+        1 if matches!(version, Version::V40) => {
+            let error = reader.expected("a file of version 4.0 in text", "a binary one");
+            return Err(error.of_kind(ErrorKind::Unsupported).followed_by(v40::CONVERTS));
+        }
         1 => {}
         other => return Err(reader.expected("file type 0 or 1", &other.to_string())),
     }
@@ -160,14 +182,11 @@ fn format(reader: &mut Reader) -> Result<Version> {
     Ok(version)
 }
 
-/// What turns other versions into one that is read.
-const CONVERTS: &str = "; what converts it: gmsh old.msh -save -format msh41 -o new.msh";
-
 /// A file that ends here, or has no number here, has no version at all.
 fn unknown_version(reader: &mut Reader) -> Error {
     let is_number = reader.peek().first().is_some_and(u8::is_ascii_digit);
-    let error = reader.unexpected("version 4.1 or 2.2");
-    if is_number { error.of_kind(ErrorKind::Unsupported).followed_by(CONVERTS) } else { error }
+    let error = reader.unexpected("version 4.1, 4.0 or 2.2");
+    if is_number { error.of_kind(ErrorKind::Unsupported).followed_by(v40::CONVERTS) } else { error }
 }
 
 /// Reads the names of the physical groups, which are text in binary files too.

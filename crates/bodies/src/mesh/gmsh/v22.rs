@@ -1,4 +1,4 @@
-//! The sections with a layout of MSH 2.2.
+//! The sections with a layout of MSH 2.2, and of MSH 1, whose elements state their number of nodes.
 
 use super::nodes::Nodes;
 use super::types::shape;
@@ -35,7 +35,8 @@ pub(super) fn nodes(reader: &mut Reader, parametric: bool) -> Result<Nodes> {
     Nodes::new(tags, points)
 }
 
-pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>> {
+/// Reads the elements; `counted` if each has two tags and states its number of nodes, as in MSH 1.
+pub(super) fn elements(reader: &mut Reader, nodes: &Nodes, counted: bool) -> Result<Gather<Key>> {
     let total: u64 = reader.text_number()?;
     reader.start_data()?;
     reader.announce("elements", total);
@@ -45,8 +46,8 @@ pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>
             let element: u64 = reader.number()?;
             let cell_type = reader.number()?;
             let (_, node_count) = shape(reader, cell_type)?;
-            let tags: u64 = reader.number()?;
-            cells.read(reader, nodes, Header { element, cell_type, tags, node_count })?;
+            let tags: u64 = if counted { 2 } else { reader.number()? };
+            cells.read(reader, nodes, Header { element, cell_type, tags, node_count, counted })?;
         }
     } else {
         let mut found = 0;
@@ -61,7 +62,8 @@ pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>
             }
             for _ in 0..count {
                 let element = u64::from(reader.number::<u32>()?);
-                cells.read(reader, nodes, Header { element, cell_type, tags: tags.into(), node_count })?;
+                let tags = tags.into();
+                cells.read(reader, nodes, Header { element, cell_type, tags, node_count, counted })?;
             }
         }
     }
@@ -75,6 +77,7 @@ struct Header {
     cell_type: u32,
     tags: u64,
     node_count: usize,
+    counted: bool,
 }
 
 /// The cells that have been read so far.
@@ -94,7 +97,7 @@ impl Cells {
     }
 
     fn read(&mut self, reader: &mut Reader, nodes: &Nodes, header: Header) -> Result<()> {
-        let Header { element, cell_type, tags, node_count } = header;
+        let Header { element, cell_type, tags, node_count, counted } = header;
         let (mut physical, mut entity) = (0, 0);
         for i in 0..tags {
             let tag: i32 = reader.number()?;
@@ -103,6 +106,13 @@ impl Cells {
                 0 => physical = tag.unsigned_abs(),
                 1 => entity = tag,
                 _ => {}
+            }
+        }
+        if counted {
+            let found: u64 = reader.number()?;
+            if found != node_count as u64 {
+                let expected = format!("{node_count} nodes of element {element} with type {cell_type}");
+                return Err(reader.expected(&expected, &found.to_string()));
             }
         }
         self.next.clear();

@@ -13,7 +13,8 @@ pub(super) type Entities = HashMap<(i32, i32), Vec<u32>>;
 /// Cell type, and dimension and tag of the entity.
 pub(super) type Key = (u32, i32, i32);
 
-pub(super) fn entities(reader: &mut Reader) -> Result<Entities> {
+/// Reads the entities; a point has so many `place` numbers, and other entities have boxes of six.
+pub(super) fn entities(reader: &mut Reader, place: usize) -> Result<Entities> {
     reader.start_data()?;
     let mut counts = [0_u64; 4];
     for count in &mut counts {
@@ -25,7 +26,7 @@ pub(super) fn entities(reader: &mut Reader) -> Result<Entities> {
     for (dimension, count) in (0_i32..).zip(counts) {
         for _ in 0..count {
             let tag = reader.number::<i32>()?;
-            for _ in 0..if dimension == 0 { 3 } else { 6 } {
+            for _ in 0..if dimension == 0 { place } else { 6 } {
                 reader.number::<f64>()?;
             }
             let mut physical = Vec::new();

@@ -1,0 +1,28 @@
+//! Blender: meshes with the springs as edges and their numbers as attributes, and the motion as shape keys.
+
+use super::job::{Holds, Job, Tension};
+use super::npz::arrays;
+use super::target::{Content, NamedFile, Target, content_dampers};
+use crate::error::Result;
+use crate::report::NetworkRecord;
+
+/// The script moves the network itself, so that it holds what the arrays hold.
+const HOLDS: Holds =
+    Holds { volumes: true, negative: true, tension: Tension::Any, partial: true, plane: true, off_edges: true };
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target = Target {
+    name: "blender",
+    title: "a Python script for Blender: springs as edges with attributes, the motion as shape keys",
+    command: "python run.py",
+    leaves_out: content_dampers,
+    write,
+};
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let job = Job::new(network, gravity, "Blender", &HOLDS)?;
+    Ok(vec![
+        ("network.npz", Content::Bytes(arrays(&job))),
+        ("run.py", Content::Bytes(include_bytes!("../../exports/blender.py").to_vec())),
+    ])
+}
