@@ -68,6 +68,7 @@ mod regions;
 mod report;
 mod rest;
 mod sampled;
+mod sampled_search;
 mod sampling;
 mod schema;
 mod searches;

@@ -111,12 +111,13 @@ impl Law {
     }
 
     /// T, its derivatives in the parameters p, and its second derivatives in `p_i` and `p_j`, j ≤ i, row by row, at N
-    /// measures of one spring; `results` has a row for each. `room` is working memory.
+    /// measures of one spring; `results` has a row for each, and those that are not `wanted` are left as they are.
+    /// `room` is working memory.
     pub(crate) fn respond_each<const N: usize>(
         &self,
         c: &[f64; N],
-        rest: f64,
-        parameters: &[f64],
+        (rest, parameters): (f64, &[f64]),
+        wanted: &[bool],
         room: &mut LawRoom<N>,
         results: &mut [[f64; N]],
     ) {
@@ -125,7 +126,7 @@ impl Law {
         at.extend([c.map(|c| (c - rest) / rest), *c, [rest; N]]);
         at.extend(parameters.iter().map(|&p| [p; N]));
         let programs = std::iter::once(&self.force).chain(&self.by_parameter).chain(&self.by_parameters);
-        for (result, program) in results.iter_mut().zip(programs) {
+        for ((result, program), _) in results.iter_mut().zip(programs).zip(wanted).filter(|(_, wanted)| **wanted) {
             *result = program.evaluate_each(at, values);
         }
     }

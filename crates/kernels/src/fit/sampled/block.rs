@@ -70,7 +70,8 @@ impl<'a, 'c> Drawn<'a, 'c> {
         Ok(Drawn { cell, indices, held })
     }
 
-    /// The sums at `unknowns`; only the derivatives in the unknowns of `chosen` are computed, the others are zero.
+    /// The sums at `unknowns`; only the derivatives in the unknowns of `chosen` are computed, the others are zero. If
+    /// some unknowns of a spring are chosen and others are not, those that are must vanish, and its force with them.
     ///
     /// # Errors
     /// Those of [`SampledCell::sample`].
@@ -139,21 +140,28 @@ impl Block {
     }
 
     fn add(&self, cell: &SampledCell, unknowns: &[f64], chosen: &[bool], curved: &mut Curved) {
-        let laws: Vec<Vec<f64>> = (0..self.springs.len()).map(|s| self.law(cell, s, unknowns)).collect();
+        let laws: Vec<Vec<f64>> = (0..self.springs.len()).map(|s| self.law(cell, s, unknowns, chosen)).collect();
         curved.sums.size += self.size;
         widest(Add { block: self, cell, laws: &laws, chosen, curved });
     }
 
     /// What the law of spring s gives at the shapes: T, its derivatives in its parameters, and the second derivatives,
-    /// `[values × shapes]`.
-    fn law(&self, cell: &SampledCell, s: usize, unknowns: &[f64]) -> Vec<f64> {
+    /// `[values × shapes]`. If only some of its parameters are chosen, only the derivatives in these; the others are
+    /// zero.
+    fn law(&self, cell: &SampledCell, s: usize, unknowns: &[f64], chosen: &[bool]) -> Vec<f64> {
         let (own, rest) = (cell.of_spring(s, unknowns), cell.rest(s));
         let values = 1 + own.len() + own.len() * (own.len() + 1) / 2;
         let mut all = vec![0.0; values * self.shapes];
         let Some(law) = cell.law(s) else { return all };
+        let chosen = &chosen[cell.places(s)];
+        let whole = chosen.iter().all(|chosen| *chosen);
+        let mut wanted: Vec<bool> =
+            (0..values).map(|i| whole || (1..=own.len()).contains(&i) && chosen[i - 1]).collect();
+        // A law without chosen parameters pulls whatever these are.
+        wanted[0] |= chosen.iter().all(|chosen| !chosen);
         let (mut room, mut results) = (LawRoom::default(), vec![[0.0; SIDE]; values]);
         for (i, c) in self.springs[s].measures.as_chunks::<SIDE>().0.iter().enumerate() {
-            law.respond_each(c, rest, own, &mut room, &mut results);
+            law.respond_each(c, (rest, own), &wanted, &mut room, &mut results);
             for (row, result) in all.chunks_exact_mut(self.shapes).zip(&results) {
                 row[i * SIDE..(i + 1) * SIDE].copy_from_slice(result);
             }

@@ -1,6 +1,6 @@
 //! Laws that are not linear in their parameters, or whose parameters are bounded: the search from several starts.
 //!
-//! All starts search on some of the shapes, and the best of them is finished on all.
+//! The first start searches on all shapes, the others on some; those that end apart from each other are finished on all.
 //!
 //! Theory: page *Sampled fits* of the book.
 
@@ -16,6 +16,8 @@ const PROMISE: f64 = 1e-12;
 const ROUGH_PROMISE: f64 = 1e-8;
 /// Starts whose errors differ by less than this share of the best error have found the same optimum.
 const SAME: f64 = 1e-3;
+/// Starts whose sums of squares differ by less than this share are finished together.
+const EQUAL: f64 = 1e-6;
 /// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one.
 const STARTS: [f64; 2] = [0.1, 10.0];
 /// The least number of shapes on which starts search, and the least number of their equations for each unknown.
@@ -61,37 +63,43 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
             first.iter_mut().zip(bounds).for_each(|(p, b)| *p = p.clamp(b[0], b[1]));
         }
         found.push(match &few {
-            Some(few) => descent.run(few, first, ROUGH_PROMISE)?,
-            None => descent.run(&all, first, PROMISE)?,
+            // The first start searches on all shapes, so that more starts are never worse than one.
+            Some(few) if start > 0 => descent.run(few, first, ROUGH_PROMISE)?,
+            Some(_) | None => descent.run(&all, first, PROMISE)?,
         });
     }
+    // The law may have no value at a start, or lose its values on the way.
+    let is_sound = |end: &End| {
+        let (constants, parameters) = cell.written(&end.unknowns);
+        end.is_finite() && constants.iter().chain(&parameters).all(|value| value.is_finite())
+    };
     let starts = found.len() as f64;
-    // The law may have no value at a start.
-    found.retain(|end| end.sums.sums.square.is_finite());
-    found.sort_by(|a, b| a.sums.sums.square.total_cmp(&b.sums.sums.square));
-    let Some(best) = found.first() else { return Err(without_values()) };
-    let limit = (best.sums.sums.square.sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.sums.sums.size;
-    let agreeing = found.iter().filter(|end| end.sums.sums.square <= limit).count() as f64 / starts;
-    if few.is_some() {
-        found = finished(&descent, &all, found)?;
+    let rest = found.split_off(1);
+    let mut ends: Vec<(End, f64)> = found.into_iter().filter(is_sound).map(|end| (end, 1.0)).collect();
+    for (end, count) in distinct(rest.into_iter().filter(is_sound)) {
+        let end = if few.is_some() { descent.run(&all, end.unknowns, PROMISE)? } else { end };
+        ends.extend(is_sound(&end).then_some((end, count)));
     }
-    let best = found.into_iter().find(|end| end.sums.sums.square.is_finite()).ok_or_else(without_values)?;
+    let square = |(end, _): &(End, f64)| end.sums.sums.square;
+    let best = ends.iter().min_by(|a, b| square(a).total_cmp(&square(b))).ok_or_else(without_values)?;
+    let limit = (square(best).sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.0.sums.sums.size;
+    let agreeing = ends.iter().filter(|end| square(end) <= limit).map(|(_, count)| count).sum::<f64>() / starts;
+    let (best, _) = ends.into_iter().min_by(|a, b| square(a).total_cmp(&square(b))).ok_or_else(without_values)?;
     Ok(Search { unknowns: best.unknowns, sums: best.sums.sums, converged: best.converged, agreeing })
 }
 
-/// The ends on all shapes, the least error first. Rough ends after the first that converges are left out.
-fn finished(descent: &Descent, all: &Drawn, found: Vec<End>) -> Result<Vec<End>> {
-    let mut ends: Vec<End> = Vec::new();
-    for rough in found {
-        let end = descent.run(all, rough.unknowns, PROMISE)?;
-        let converged = end.converged;
-        ends.push(end);
-        if converged {
-            break;
+/// The ends that differ in their error, with the number of those that each stands for.
+fn distinct(found: impl Iterator<Item = End>) -> Vec<(End, f64)> {
+    let mut ends: Vec<(End, f64)> = Vec::new();
+    for end in found {
+        let square = end.sums.sums.square;
+        let same = |other: &End| (other.sums.sums.square - square).abs() <= EQUAL * square;
+        match ends.iter_mut().find(|(other, _)| same(other)) {
+            Some((_, count)) => *count += 1.0,
+            None => ends.push((end, 1.0)),
         }
     }
-    ends.sort_by(|a, b| a.sums.sums.square.total_cmp(&b.sums.sums.square));
-    Ok(ends)
+    ends
 }
 
 fn without_values() -> Error {

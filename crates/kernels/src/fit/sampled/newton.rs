@@ -39,6 +39,15 @@ pub struct End {
     pub converged: bool,
 }
 
+impl End {
+    /// Whether the sums have values.
+    pub fn is_finite(&self) -> bool {
+        let Curved { sums, bends } = &self.sums;
+        let values = sums.normal.gram.iter().chain(&sums.normal.rhs).chain(bends);
+        values.chain([&sums.square]).all(|value| value.is_finite())
+    }
+}
+
 impl Descent<'_> {
     /// Minimises from `unknowns`. It has converged when a step cannot lower the sum of squares by more than the share
     /// `promise`.
@@ -50,7 +59,7 @@ impl Descent<'_> {
         let mut damping = 1e-3;
         for _ in 0..STEPS {
             let sums = &end.sums.sums;
-            if !(sums.square.is_finite() && sums.normal.gram.iter().chain(&sums.normal.rhs).all(|x| x.is_finite())) {
+            if !end.is_finite() {
                 return Ok(end);
             }
             let (step, promise) = loop {
@@ -69,7 +78,7 @@ impl Descent<'_> {
             // A law may have no value far from the start.
             let after = self.at(shapes, tried)?;
             let gain = (sums.square - after.sums.sums.square) / promise;
-            if gain > 1e-4 {
+            if gain > 1e-4 && after.is_finite() {
                 end = after;
                 damping *= if gain > 0.75 { 0.1 } else { 1.0 };
                 damping = if damping < SLIGHTEST { 0.0 } else { damping };
