@@ -116,6 +116,11 @@ impl Drive {
         Ok(())
     }
 
+    /// Whether the forces are the same at all times.
+    pub(super) fn is_steady(&self) -> bool {
+        self.forces.is_empty()
+    }
+
     /// The forces `f(t)`, in N; `masses` are those of the degrees of freedom, in kg.
     pub(super) fn forces_at(&self, t: f64, masses: &[f64], forces: &mut [f64]) {
         match self.gravity.len() {

@@ -60,6 +60,9 @@ pub(super) struct Ledger {
     kinetic: f64,
 }
 
+/// The number of degrees of freedom whose work is added before it goes to the running sums, which are compensated.
+const BLOCK: usize = 32;
+
 /// The forces of a state, `[points · dimension]`, N.
 pub(super) struct Forces<'a> {
     pub external: &'a [f64],
@@ -83,21 +86,42 @@ impl Ledger {
 
     /// Adds a step with the displacement `way`, at whose end the forces are these and the held degrees of freedom have
     /// this kinetic energy.
-    pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64) {
+    pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64, is_damped: bool) {
         self.work.add(kinetic - self.kinetic);
         self.kinetic = kinetic;
-        for (dof, way) in way.iter().enumerate() {
-            let now = acting(forces, held, dof);
-            self.work.add(way * (self.acting[dof] + now) / 2.0);
-            self.dissipated.add(way * (self.viscous[dof] + forces.viscous[dof]) / 2.0);
-            self.acting[dof] = now;
+        for first in (0..way.len()).step_by(BLOCK) {
+            // Four sums of each block at a time, because the terms of one sum wait for each other.
+            let (mut work, mut dissipated) = ([0.0; 4], [0.0; 4]);
+            for dof in first..way.len().min(first + BLOCK) {
+                let now = acting(forces, held, dof);
+                work[dof % 4] += way[dof] * (self.acting[dof] + now) / 2.0;
+                self.acting[dof] = now;
+            }
+            if is_damped {
+                for dof in first..way.len().min(first + BLOCK) {
+                    dissipated[dof % 4] += way[dof] * (self.viscous[dof] + forces.viscous[dof]) / 2.0;
+                    self.viscous[dof] = forces.viscous[dof];
+                }
+            }
+            self.work.add(work.iter().sum());
+            self.dissipated.add(dissipated.iter().sum());
         }
-        self.viscous.copy_from_slice(forces.viscous);
     }
 }
 
 fn acting(forces: &Forces, held: &[bool], dof: usize) -> f64 {
     if held[dof] { forces.elastic[dof] + forces.viscous[dof] } else { forces.external[dof] }
+}
+
+/// `½ vᵀ M v` of all degrees of freedom and of the held ones, J.
+pub(super) fn kinetic(mass: &[f64], held: &[bool], v: &[f64]) -> (f64, f64) {
+    let (mut all, mut still) = ([0.0; 4], [0.0; 4]);
+    for (dof, ((m, v), held)) in mass.iter().zip(v).zip(held).enumerate() {
+        let energy = m * v * v / 2.0;
+        all[dof % 4] += energy;
+        still[dof % 4] += if *held { energy } else { 0.0 };
+    }
+    (all.iter().sum(), still.iter().sum())
 }
 
 /// `Σ m v` of points with `d` coordinates; `mass` is given by degree of freedom.

@@ -21,6 +21,7 @@ mod rest;
 mod settle;
 mod simulation;
 mod solver;
+mod state;
 
 pub use damping::{Dampers, Damping};
 pub use drive::{Curve, Drive};
@@ -29,5 +30,6 @@ pub use ledger::{Account, EnergyBalance};
 pub use limit::largest_square;
 pub use motion::{Motion, Options};
 pub use settle::{Step, StepOutcome};
-pub use simulation::{MotionState, Simulation};
+pub use simulation::Simulation;
 pub use solver::{LEAST_TOLERANCE, LinearSolver};
+pub use state::MotionState;

@@ -49,8 +49,11 @@ impl<'a> Resistance<'a> {
     /// Turns the dampers along the gradients at the displacements u. In a linear model they stay as at rest, unless
     /// `anyway` is set.
     pub fn direct(&mut self, u: &[f64], anyway: bool) {
+        if !self.has_dampers() || !anyway && self.linear {
+            return;
+        }
         self.place(u);
-        if let Some(dampers) = self.damping.dampers.as_ref().filter(|_| anyway || !self.linear) {
+        if let Some(dampers) = &self.damping.dampers {
             dampers.gradients(&self.x, &mut self.gradients);
             dampers.entries(&self.gradients, &mut self.damper_entries);
         }
@@ -58,6 +61,11 @@ impl<'a> Resistance<'a> {
 
     pub fn has_dampers(&self) -> bool {
         self.damping.dampers.is_some()
+    }
+
+    /// Whether anything opposes velocities.
+    pub fn is_damped(&self) -> bool {
+        self.damping.mass > 0.0 || self.damping.stiffness > 0.0 || self.has_dampers()
     }
 
     fn place(&mut self, u: &[f64]) {
@@ -70,7 +78,7 @@ impl<'a> Resistance<'a> {
             return self.rest.refill(u, force).is_finite();
         }
         self.place(u);
-        self.model.forces(&self.x, force) && force.iter().sum::<f64>().is_finite()
+        self.model.forces(&self.x, force) && force.iter().fold(true, |sound, f| sound & f.is_finite())
     }
 
     /// The same with the energy, J, and the values of the entries of the tangent, or of a nearby positive semidefinite

@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::drive::Curve;
 use super::equations::Equations;
 use super::integrator::{Integrator, Past};
 use super::ledger::{self, Account, EnergyBalance, Forces, Ledger};
@@ -10,20 +11,10 @@ use super::motion::{Motion, Options};
 use super::resistance::Resistance;
 use super::settle::{Step, StepOutcome, Target, Trial};
 use super::solver::LinearSolver;
+use super::state::MotionState;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::displaced;
 use crate::solve::generator;
-
-/// Displacements and velocities of a model at one time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MotionState {
-    /// The time, s.
-    pub time: f64,
-    /// The displacements from the positions at rest, `[points · dimension]`, m.
-    pub displacement: Vec<f64>,
-    /// The velocities, `[points · dimension]`, m/s.
-    pub velocity: Vec<f64>,
-}
 
 /// The motion of a model from time zero.
 #[derive(Debug)]
@@ -47,6 +38,8 @@ pub struct Simulation<'a> {
     /// Whether the forces in `trial` are those of the state.
     is_current: bool,
     viscous: Vec<f64>,
+    /// 1/m of the degrees of freedom that are not held, zero of the others, 1/kg.
+    inverse: Vec<f64>,
     ledger: Option<Ledger>,
 }
 
@@ -70,7 +63,9 @@ impl<'a> Simulation<'a> {
         trial.tangent.copy_from_slice(&resistance.rest.values);
         let zero = || vec![0.0; dofs];
         let [z, y, delta, velocity, external] = std::array::from_fn(|_| zero());
+        let inverse = resistance.mass.iter().zip(&resistance.held).map(|(m, held)| if *held { 0.0 } else { 1.0 / m });
         let mut simulation = Simulation {
+            inverse: inverse.collect(),
             resistance,
             equations,
             factored: [f64::NAN; 2],
@@ -158,6 +153,19 @@ impl<'a> Simulation<'a> {
         self.is_current
     }
 
+    /// The same after an explicit step; what does not change is kept.
+    fn refresh_changed(&mut self) -> bool {
+        if !self.motion.drive.is_steady() {
+            self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
+        }
+        if self.resistance.is_damped() {
+            self.resistance.direct(&self.state.displacement, false);
+            self.resistance.viscous(&self.state.velocity, &mut self.viscous);
+        }
+        self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
+        self.is_current
+    }
+
     fn forces_now(&self) -> Forces<'_> {
         Forces { external: &self.target.external, elastic: &self.trial.force, viscous: &self.viscous }
     }
@@ -215,6 +223,9 @@ impl<'a> Simulation<'a> {
 
     /// Advances by one step.
     pub fn step(&mut self) -> Step {
+        if self.equations.is_none() {
+            return self.leap();
+        }
         let h = self.options.step;
         let time = (self.steps + 1) as f64 * h;
         self.target.delta.fill(0.0);
@@ -225,12 +236,9 @@ impl<'a> Simulation<'a> {
         }
         for (dof, curve) in &self.motion.drive.displacements {
             self.target.delta[*dof] = curve.at(time) - self.state.displacement[*dof];
-            self.target.velocity[*dof] = (curve.at(time + h / 2.0) - curve.at(time - h / 2.0)) / h;
+            self.target.velocity[*dof] = rate(curve, time, h);
         }
-        let step = match self.equations {
-            None => self.leap(),
-            Some(_) => self.settle(time),
-        };
+        let step = self.settle(time);
         if step.outcome == StepOutcome::NoResponse {
             self.refresh();
             return step;
@@ -245,23 +253,41 @@ impl<'a> Simulation<'a> {
             self.state.displacement[*dof] = curve.at(time);
         }
         self.state.time = time;
-        if self.equations.is_none() && !self.refresh() {
-            return self.step_back(step);
-        }
         self.book();
         step
     }
 
-    /// The velocities and displacements of symplectic Euler.
+    /// A step of symplectic Euler, `v ← v + h M⁻¹ (f − C v − F)`, `u ← u + h v`, in one pass over the degrees of freedom.
     fn leap(&mut self) -> Step {
         let h = self.options.step;
-        let Target { delta, velocity, external, .. } = &mut self.target;
-        for (dof, _) in self.resistance.held.iter().enumerate().filter(|(_, held)| !**held) {
-            let rest = external[dof] - self.trial.force[dof] - self.viscous[dof];
-            velocity[dof] = self.state.velocity[dof] + h * rest / self.resistance.mass[dof];
-            delta[dof] = h * velocity[dof];
+        let time = (self.steps + 1) as f64 * h;
+        let driven = &self.motion.drive.displacements;
+        for ((dof, _), start) in driven.iter().zip(&mut self.target.delta) {
+            *start = self.state.displacement[*dof];
         }
-        Step { outcome: StepOutcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
+        let loads = self.target.external.iter().zip(&self.trial.force).zip(&self.viscous).zip(&self.inverse);
+        let state = self.state.displacement.iter_mut().zip(&self.state.velocity);
+        let changes = self.way.iter_mut().zip(&mut self.before);
+        for (((u, v), (way, next)), (((f, elastic), viscous), inverse)) in state.zip(changes).zip(loads) {
+            *next = v + h * inverse * (f - elastic - viscous);
+            *way = h * *next;
+            *u += *way;
+        }
+        std::mem::swap(&mut self.before, &mut self.state.velocity);
+        for ((dof, curve), start) in driven.iter().zip(&self.target.delta) {
+            // A driven point is on its curve to the last bit.
+            self.state.displacement[*dof] = curve.at(time);
+            self.state.velocity[*dof] = rate(curve, time, h);
+            self.way[*dof] = curve.at(time) - start;
+        }
+        (self.steps, self.state.time) = (self.steps + 1, time);
+        let step =
+            Step { outcome: StepOutcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
+        if !self.refresh_changed() {
+            return self.step_back(step);
+        }
+        self.book();
+        step
     }
 
     /// Restores the state before an explicit step.
@@ -323,22 +349,20 @@ impl<'a> Simulation<'a> {
         if !self.is_current {
             self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
         }
-        self.resistance.viscous(&self.state.velocity, &mut self.viscous);
+        if self.equations.is_some() {
+            self.resistance.viscous(&self.state.velocity, &mut self.viscous);
+        }
         let (kinetic, held) = self.kinetic();
-        ledger.add(&self.way, &self.forces_now(), &self.resistance.held, held);
+        let is_damped = self.resistance.is_damped();
+        ledger.add(&self.way, &self.forces_now(), &self.resistance.held, held, is_damped);
         ledger.largest = ledger.largest.max(kinetic).max(ledger.work.value().abs()).max(ledger.dissipated.value());
         self.ledger = Some(ledger);
     }
 
     /// The kinetic energy of all degrees of freedom and of the held ones, J.
     fn kinetic(&self) -> (f64, f64) {
-        let (mut all, mut held) = (0.0, 0.0);
-        for (dof, v) in self.state.velocity.iter().enumerate() {
-            let energy = self.resistance.mass[dof] * v * v / 2.0;
-            all += energy;
-            held += if self.resistance.held[dof] { energy } else { 0.0 };
-        }
-        (all, held)
+        let Resistance { mass, held, .. } = &self.resistance;
+        ledger::kinetic(mass, held, &self.state.velocity)
     }
 
     /// Energy and momentum of the current state.
@@ -365,4 +389,9 @@ impl<'a> Simulation<'a> {
             balance: self.ledger.as_mut().map(sums),
         }
     }
+}
+
+/// The velocity of a driven degree of freedom at the end of the step h, m/s.
+fn rate(curve: &Curve, time: f64, h: f64) -> f64 {
+    (curve.at(time + h / 2.0) - curve.at(time - h / 2.0)) / h
 }

@@ -1,21 +1,23 @@
 //! A network prepared for many evaluations of its forces, as a simulation requires: its points are in an order that
 //! keeps neighbours together, and its springs are sorted by kind.
 
+mod contents;
 mod edges;
 mod laws;
 mod simplices;
+mod tangents;
 
 use super::network::Network;
 use super::numbering::places;
 use super::{Elastic, Response};
 use crate::scalar::{Coordinates, CoordinatesWork, with_coordinates};
+use contents::{Contents, ContentsRoom};
 use edges::{Bars, Edges};
 use simplices::{Simplices, Tensions};
 use std::sync::{Mutex, PoisonError};
 
-/// The network with faster loops and the same results up to rounding. Springs on lengths, on the contents of lines,
-/// triangles and tetrahedra in a space of their dimension, and on patches of these are evaluated in a fraction of the
-/// time. It owns the memory that an evaluation needs, so that threads wait for each other.
+/// The network with faster loops and the same results up to rounding. Springs on lengths, on contents of cells and of their
+/// quadrature points, on fibres, and on patches of simplices are evaluated in a fraction of the time. It owns the memory that an evaluation needs, so that threads wait for each other.
 #[derive(Debug)]
 pub struct PreparedNetwork<'a> {
     network: &'a Network,
@@ -24,6 +26,7 @@ pub struct PreparedNetwork<'a> {
     edges: Edges,
     bars: Bars,
     simplices: Simplices,
+    contents: Contents,
     /// The indices of the other springs that are evaluated without preparation.
     rest: Vec<usize>,
     room: Mutex<Room>,
@@ -35,6 +38,7 @@ struct Room {
     x: Vec<[f64; 4]>,
     force: Vec<[f64; 4]>,
     tensions: Tensions,
+    contents: ContentsRoom,
 }
 
 impl Network {
@@ -46,11 +50,12 @@ impl Network {
 
 impl<'a> PreparedNetwork<'a> {
     fn new(network: &'a Network) -> PreparedNetwork<'a> {
-        let (mut cells, mut lengths, mut rest) = (Vec::new(), Vec::new(), Vec::new());
+        let [mut cells, mut lengths, mut contents, mut rest] = [const { Vec::new() }; 4];
         for (s, spring) in network.others.iter().enumerate() {
             let kind = match spring {
                 spring if Simplices::have(spring, network.dimension) => &mut cells,
                 spring if Bars::has(spring) => &mut lengths,
+                spring if Contents::have(spring) => &mut contents,
                 _ => &mut rest,
             };
             kind.push(s);
@@ -64,6 +69,7 @@ impl<'a> PreparedNetwork<'a> {
             edges: Edges::new(network, &place, order.len()),
             bars: Bars::new(network, &lengths, &place),
             simplices: Simplices::new(network, &cells, &place),
+            contents: Contents::new(network, &contents, &place),
             order,
             rest,
             room: Mutex::default(),
@@ -137,7 +143,7 @@ impl<const D: usize> CoordinatesWork for Pull<'_, D> {
     #[inline(always)]
     fn run<C: Coordinates>(self, zero: C) -> bool {
         let Pull { model, room, x, force } = self;
-        let Room { x: rows, force: sums, tensions } = room;
+        let Room { x: rows, force: sums, tensions, contents } = room;
         let others = &model.network.others;
         rows.resize(model.order.len(), [0.0; 4]);
         sums.resize(model.order.len(), [0.0; 4]);
@@ -145,6 +151,7 @@ impl<const D: usize> CoordinatesWork for Pull<'_, D> {
         model.edges.pull(zero, rows, sums);
         let mut sound = model.bars.pull(zero, others, rows, sums);
         sound &= model.simplices.pull::<C, D>(zero, others, rows, tensions, sums);
+        sound &= model.contents.pull(D, others, rows, contents, sums);
         unpack::<D>(&model.order, sums, force);
         sound
     }

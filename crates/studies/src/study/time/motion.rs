@@ -203,9 +203,7 @@ impl Run<'_> {
                     StepOutcome::Stalled => (made.steps, made.unsolved) = (made.steps + 1, made.unsolved + 1),
                     StepOutcome::Converged | StepOutcome::Linearized => made.steps += 1,
                 }
-                let state = simulation.state();
-                let near = state.displacement.iter().all(|u| u.abs() <= AWAY * extent);
-                if !(near && state.velocity.iter().all(|v| v.is_finite())) {
+                if !simulation.state().is_within(AWAY * extent) {
                     made.ending = MotionEnding::RanAway;
                 }
             }

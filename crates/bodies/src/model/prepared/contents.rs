@@ -1,0 +1,346 @@
+//! Springs on the content of cells by their quadrature, and of single points of it: hexahedra and other cells whose content is no
+//! single determinant, membranes and fibres. Cells with the same table are evaluated side by side, one per lane.
+//!
+//! With the tangents `t_l = Σ_a x_a ∂N_a/∂ξ_l`, completed by the remaining axes in a cell that fills its space, the content per
+//! weight is `c = t_1 · (t_2 × t_3)`, and `∂c/∂t_1 = t_2 × t_3`, and cyclically; that of a curve is `‖t_1‖`, that of a surface
+//! `‖t_1 × t_2‖`. The force of a node is `Σ_l T ∂c/∂t_l ∂N_a/∂ξ_l`.
+
+use super::laws::{Lawful, Laws, LawsRoom};
+use super::tangents::{content, slopes};
+use crate::element::Tabulation;
+use crate::model::network::{MeasureSpring, Network};
+use crate::scalar::{Packed, PackedWork, widest};
+use crate::springs::Measure;
+use std::collections::HashMap;
+
+/// The cells of one table.
+#[derive(Debug)]
+struct Cells {
+    nodes: usize,
+    dimension: usize,
+    points: usize,
+    /// `∂N_a/∂ξ_l`, `[points × nodes × dimension]`.
+    gradients: Vec<f64>,
+    /// The rows of the nodes, `[cells × nodes]`.
+    rows: Vec<u32>,
+    /// The number of points of the tables before.
+    first: usize,
+}
+
+/// A spring on the whole content of a cell, `Σ_q w_q c_q`.
+#[derive(Debug)]
+struct Whole {
+    table: usize,
+    cell: usize,
+    weights: Vec<f64>,
+    /// Its index among the other springs of the network.
+    spring: usize,
+}
+
+/// The cells of a network that are measured by quadrature, each once per table.
+#[derive(Debug, Default)]
+pub struct Contents {
+    tables: Vec<Cells>,
+    /// Linear springs pull with `slope · c − pull` along `∇c`, `[points of all cells]`.
+    slopes: Vec<f64>,
+    pulls: Vec<f64>,
+    wholes: Vec<Whole>,
+    laws: Laws,
+}
+
+/// What is computed before the forces, in memory that is kept.
+#[derive(Debug, Default)]
+pub struct ContentsRoom {
+    /// c of every point, and what pulls along its gradient, `[points of all cells]`.
+    contents: Vec<f64>,
+    tensions: Vec<f64>,
+    laws: LawsRoom,
+}
+
+impl Contents {
+    /// Whether a spring is measured by quadrature.
+    pub fn have(spring: &MeasureSpring) -> bool {
+        match &spring.measure {
+            Measure::Content(_) | Measure::PointContent(..) | Measure::Span(_) => true,
+            Measure::Length | Measure::Patch(_) | Measure::Function(_) => false,
+        }
+    }
+
+    pub fn new(network: &Network, springs: &[usize], place: &[usize]) -> Contents {
+        let mut tables = Tables::default();
+        let mut found = Vec::new();
+        for &s in springs {
+            let spring = &network.others[s];
+            let (table, point) = match &spring.measure {
+                Measure::Content(element) => (&element.tabulation, None),
+                Measure::PointContent(element, q) => (&element.tabulation, Some(*q)),
+                Measure::Span(table) => (&**table, Some(0)),
+                Measure::Length | Measure::Patch(_) | Measure::Function(_) => continue,
+            };
+            let at = tables.cell(table, spring.points.iter().map(|&p| place[p] as u32).collect());
+            found.push((s, table, point, at));
+        }
+        let mut all = Contents { tables: tables.cells, ..Contents::default() };
+        let mut count = 0;
+        for cells in &mut all.tables {
+            cells.first = count;
+            count += cells.rows.len() / cells.nodes * cells.points;
+        }
+        (all.slopes, all.pulls) = (vec![0.0; count], vec![0.0; count]);
+        let mut lawful = Vec::new();
+        for (s, table, point, (index, cell)) in found {
+            let (spring, cells) = (&network.others[s], &all.tables[index]);
+            let Some(q) = point else {
+                let weights = table.weights[..table.points()].to_vec();
+                all.wholes.push(Whole { table: index, cell, weights, spring: s });
+                continue;
+            };
+            let (at, scale) = (cells.first + cell * cells.points + q, table.point_weight(q));
+            if spring.law.is_some() {
+                lawful.push(Lawful { cell: at, scale, spring: s });
+            } else {
+                all.slopes[at] += spring.constant * scale * scale;
+                all.pulls[at] += spring.constant * scale * spring.rest;
+            }
+        }
+        lawful.sort_by_key(|lawful| lawful.cell);
+        all.laws = Laws::new(network, &lawful);
+        all
+    }
+
+    /// Adds the forces in the order that [`unpack`](super::unpack) reads; false if a spring has none.
+    pub fn pull(
+        &self,
+        space: usize,
+        others: &[MeasureSpring],
+        x: &[[f64; 4]],
+        room: &mut ContentsRoom,
+        force: &mut [[f64; 4]],
+    ) -> bool {
+        if self.tables.is_empty() {
+            return true;
+        }
+        let ContentsRoom { contents, tensions, laws } = room;
+        contents.resize(self.slopes.len(), 0.0);
+        for cells in &self.tables {
+            cells.visit(space, Measures { cells, x, contents });
+        }
+        tensions.clear();
+        let terms = contents.iter().zip(&self.slopes).zip(&self.pulls);
+        tensions.extend(terms.map(|((c, slope), pull)| slope * c - pull));
+        let mut sound = self.laws.pull(|at| contents[at], laws, tensions);
+        for Whole { table, cell, weights, spring } in &self.wholes {
+            let cells = &self.tables[*table];
+            let first = cells.first + cell * cells.points;
+            let content: f64 = weights.iter().zip(&contents[first..]).map(|(w, c)| w * c).sum();
+            let tension = others[*spring].tension(content);
+            weights.iter().zip(&mut tensions[first..]).for_each(|(w, t)| *t += w * tension);
+        }
+        sound &= tensions.iter().sum::<f64>().is_finite() || tensions.iter().all(|t| t.is_finite());
+        for cells in &self.tables {
+            cells.visit(space, Pulls { cells, x, tensions, force });
+        }
+        sound
+    }
+}
+
+/// Collects cells by their table and nodes.
+#[derive(Default)]
+struct Tables {
+    cells: Vec<Cells>,
+    /// Tables by the bits of their gradients: cells of one shape have equal ones, and each fibre its own.
+    by_value: HashMap<Vec<u64>, usize>,
+    by_place: HashMap<*const Tabulation, usize>,
+    known: HashMap<(usize, Vec<u32>), usize>,
+}
+
+impl Tables {
+    /// The table and the cell of it.
+    fn cell(&mut self, table: &Tabulation, rows: Vec<u32>) -> (usize, usize) {
+        let index = match self.by_place.get(&std::ptr::from_ref(table)) {
+            Some(index) => *index,
+            None => self.table(table),
+        };
+        let cells = &mut self.cells[index];
+        let next = cells.rows.len() / cells.nodes;
+        let cell = *self.known.entry((index, rows)).or_insert_with_key(|(_, rows)| {
+            cells.rows.extend(rows);
+            next
+        });
+        (index, cell)
+    }
+
+    fn table(&mut self, table: &Tabulation) -> usize {
+        let shape = [table.nodes, table.dimension, table.points()].map(|n| n as u64);
+        let key: Vec<u64> = shape.into_iter().chain(table.gradients.iter().map(|g| g.to_bits())).collect();
+        let next = self.cells.len();
+        let index = *self.by_value.entry(key).or_insert(next);
+        if index == next {
+            let Tabulation { nodes, dimension, .. } = *table;
+            let (points, gradients) = (table.points(), table.gradients.clone());
+            self.cells.push(Cells { nodes, dimension, points, gradients, rows: Vec::new(), first: 0 });
+        }
+        self.by_place.insert(table, index);
+        index
+    }
+}
+
+/// What is done with a batch of cells whose nodes are at `x`, `[nodes]`.
+trait Visit {
+    fn batch<T: Packed, const D: usize, const S: usize>(
+        &mut self,
+        zero: T,
+        x: &mut [[T; 3]],
+        first: usize,
+        count: usize,
+    );
+}
+
+impl Cells {
+    /// Visits all cells, as many at a time as there are lanes.
+    fn visit<V: Visit>(&self, space: usize, visit: V) {
+        match (self.dimension, space) {
+            (1, 1) => widest(Batches::<V, 1, 1>(visit, self)),
+            (1, 2) => widest(Batches::<V, 1, 2>(visit, self)),
+            (1, _) => widest(Batches::<V, 1, 3>(visit, self)),
+            (2, 2) => widest(Batches::<V, 2, 2>(visit, self)),
+            (2, _) => widest(Batches::<V, 2, 3>(visit, self)),
+            _ => widest(Batches::<V, 3, 3>(visit, self)),
+        }
+    }
+
+    /// The nodes of cell number `first + lane`; lanes beyond the last cell repeat the first.
+    #[inline(always)]
+    fn gather<T: Packed>(&self, x: &[[f64; 4]], nodes: &mut [[T; 3]], first: usize, count: usize) {
+        for lane in 0..T::COUNT {
+            let cell = first + if lane < count { lane } else { 0 };
+            let rows = &self.rows[cell * self.nodes..(cell + 1) * self.nodes];
+            for (node, row) in nodes.iter_mut().zip(rows) {
+                let x = &x[*row as usize];
+                for k in 0..3 {
+                    node[k].as_mut_slice()[lane] = x[k];
+                }
+            }
+        }
+    }
+
+    /// `t_l` at point q, completed by axes.
+    #[inline(always)]
+    fn tangents<T: Packed, const D: usize, const S: usize>(&self, zero: T, q: usize, x: &[[T; 3]]) -> [[T; 3]; 3] {
+        let size = self.nodes * D;
+        let (table, _) = self.gradients[q * size..(q + 1) * size].as_chunks::<D>();
+        let mut t: [[T; 3]; 3] = zero.repeated_rows();
+        for (x, dn) in x.iter().zip(table) {
+            for l in 0..D {
+                let dn = zero.constant(&dn[l]);
+                for k in 0..S {
+                    t[l][k] = t[l][k].clone().plus_product(&dn, &x[k]);
+                }
+            }
+        }
+        if D == S {
+            for l in D..3 {
+                t[l][l] = zero.one();
+            }
+        }
+        t
+    }
+}
+
+struct Batches<'a, V, const D: usize, const S: usize>(V, &'a Cells);
+
+impl<V: Visit, const D: usize, const S: usize> PackedWork for Batches<'_, V, D, S> {
+    type Output = ();
+
+    fn run<T: Packed>(self, zero: T) {
+        let Batches(mut visit, cells) = self;
+        let all = cells.rows.len() / cells.nodes;
+        let mut nodes: Vec<[T; 3]> = vec![zero.repeated(); cells.nodes];
+        zero.vectorize(|| {
+            for first in (0..all).step_by(T::COUNT) {
+                visit.batch::<T, D, S>(zero.clone(), &mut nodes, first, T::COUNT.min(all - first));
+            }
+        });
+    }
+}
+
+/// Writes c of every point.
+struct Measures<'a> {
+    cells: &'a Cells,
+    x: &'a [[f64; 4]],
+    contents: &'a mut [f64],
+}
+
+impl Visit for Measures<'_> {
+    #[inline(always)]
+    fn batch<T: Packed, const D: usize, const S: usize>(
+        &mut self,
+        zero: T,
+        x: &mut [[T; 3]],
+        first: usize,
+        count: usize,
+    ) {
+        let cells = self.cells;
+        cells.gather(self.x, x, first, count);
+        for q in 0..cells.points {
+            let c = content::<T, D, S>(&zero, &cells.tangents::<T, D, S>(zero.clone(), q, x));
+            for lane in 0..count {
+                self.contents[cells.first + (first + lane) * cells.points + q] = c.as_slice()[lane];
+            }
+        }
+    }
+}
+
+/// Adds `T ∇c` of every point.
+struct Pulls<'a> {
+    cells: &'a Cells,
+    x: &'a [[f64; 4]],
+    tensions: &'a [f64],
+    force: &'a mut [[f64; 4]],
+}
+
+impl Visit for Pulls<'_> {
+    #[inline(always)]
+    fn batch<T: Packed, const D: usize, const S: usize>(
+        &mut self,
+        zero: T,
+        x: &mut [[T; 3]],
+        first: usize,
+        count: usize,
+    ) {
+        let cells = self.cells;
+        cells.gather(self.x, x, first, count);
+        let mut forces: Vec<[T; 3]> = vec![zero.repeated(); cells.nodes];
+        for q in 0..cells.points {
+            let mut tension = zero.clone();
+            for lane in 0..count {
+                tension.as_mut_slice()[lane] = self.tensions[cells.first + (first + lane) * cells.points + q];
+            }
+            let mut g = slopes::<T, D, S>(&zero, &cells.tangents::<T, D, S>(zero.clone(), q, x));
+            for l in 0..D {
+                for k in 0..S {
+                    g[l][k] = g[l][k].clone() * &tension;
+                }
+            }
+            let size = cells.nodes * D;
+            let (table, _) = cells.gradients[q * size..(q + 1) * size].as_chunks::<D>();
+            for (force, dn) in forces.iter_mut().zip(table) {
+                for l in 0..D {
+                    let dn = zero.constant(&dn[l]);
+                    for k in 0..S {
+                        force[k] = force[k].clone().plus_product(&dn, &g[l][k]);
+                    }
+                }
+            }
+        }
+        for lane in 0..count {
+            let rows = &cells.rows[(first + lane) * cells.nodes..(first + lane + 1) * cells.nodes];
+            for (own, row) in forces.iter().zip(rows) {
+                let at = &mut self.force[*row as usize];
+                for k in 0..S {
+                    at[(k + 1) % 3] += own[k].as_slice()[lane];
+                }
+            }
+        }
+    }
+}
