@@ -36,7 +36,7 @@ body = [0, 0, 1.0]
 [[load]]
 group = "zmax"
 displacement = ["free", "free", 0.01]
-measured = { file = "measured.csv", scale = 1.0 }
+measured = { file = "measured.csv", scale = 1.0, sigma = 0.001 }
 [[load]]
 sum = ["load 1", "load 3"]
 [solver]
@@ -263,10 +263,12 @@ box = { element = "tet4", size = [2, 1, 1], cells = [2, 1, 1] }
 [material]
 young = 10e3
 poisson = 0.3
+density = 1000.0
 [reference]
 refine = 1
 [[fit]]
 objective = "whole"
+masses = 1
 start = "exact"
 volume = "patches"
 supports = [["xmin"]]

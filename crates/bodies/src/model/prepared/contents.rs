@@ -91,7 +91,10 @@ impl Contents {
         for (s, table, point, (index, cell)) in found {
             let (spring, cells) = (&network.others[s], &all.tables[index]);
             let Some(q) = point else {
-                let weights = table.weights[..table.points()].to_vec();
+                let weights = match table.points() {
+                    1 => vec![table.point_weight(0)],
+                    _ => table.weights.clone(),
+                };
                 all.wholes.push(Whole { table: index, cell, weights, spring: s });
                 continue;
             };
