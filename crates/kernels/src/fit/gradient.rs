@@ -42,8 +42,8 @@ pub struct ConstantsGradient {
 
 /// The gradient of `Σ_cs w_cs k_cs` with the weights w, `[cells × springs]`.
 ///
-/// `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m. The springs of an exact network are
-/// [`Springs::exact`].
+/// `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m. The springs of an exact network are those
+/// of [`fit_exact`](super::fit_exact).
 ///
 /// # Errors
 /// An array has a wrong length or a number is not finite; the fit has bounds or no closed form, or the cells do not fill their space (kind
