@@ -192,7 +192,7 @@ impl Network {
                 content.write(&path)?;
                 paths.push(path);
             }
-            Ok((paths, (target.leaves_out)(&network), target.command))
+            Ok((paths, target.left_out(&network), target.command))
         });
         written.map_err(|error| raised(py, error))
     }
