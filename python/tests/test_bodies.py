@@ -83,7 +83,7 @@ def test_networks_that_cannot_be_scored_are_named(tmp_path):
         "without stiffness": {"springs": springs[:100]},
         "law": {"springs": [{**springs[0], "law": "k*c"}]},
         "not in balance": {"springs": [{**spring, "rest": 0.9 * spring["rest"]} for spring in springs]},
-        "points of the body are missing": {"points": [[2 * c for c in point] for point in network["points"]]},
+        "expected every point of the body": {"points": [[2 * c for c in point] for point in network["points"]]},
         "springs[0].points": {"springs": [{**springs[0], "points": [0, 147]}]},
         "'measures'": {"measures": None},
     }
