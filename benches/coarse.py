@@ -6,10 +6,10 @@ Usage: pip install gmsh; python benches/coarse.py [--springfit target/release/sp
 
 import argparse
 import json
-import math
 import subprocess
 import tempfile
 from pathlib import Path
+from statistics import geometric_mean
 
 import gmsh
 
@@ -88,10 +88,6 @@ def mesh(kind, size, order, path):
     return points
 
 
-def mean(values):
-    return math.exp(sum(math.log(value) for value in values) / len(values))
-
-
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--springfit", default="target/release/springfit")
@@ -120,10 +116,10 @@ def main():
                         key = fit["name"], held["support"] + ("" if held["trained"] else ", not fitted")
                         vibrating.setdefault(key, []).append([models[m][k] for m in ("finite elements", "fitted masses") for k in ("first", "next")])
             for (fit, support), rows in found.items():
-                body, worst_body, own, worst = (100 * mean(column) for column in zip(*rows))
+                body, worst_body, own, worst = (100 * geometric_mean(column) for column in zip(*rows))
                 print(f"{name} | {points[0]} / {points[1]} | {fit} | {support} | {body:.2f} ({worst_body:.1f}) | {own:.2f} ({worst:.1f}) | {body / own:.1f}", flush=True)
             for (fit, support), rows in vibrating.items():
-                first, following, own, next_own = (100 * mean(column) for column in zip(*rows))
+                first, following, own, next_own = (100 * geometric_mean(column) for column in zip(*rows))
                 print(f"{name} | {points[0]} / {points[1]} | {fit} | {support} | frequencies 1 to 6 / 7 to 12: {first:.1f} / {following:.1f} | {own:.1f} / {next_own:.1f} | {following / next_own:.1f}", flush=True)
 
 

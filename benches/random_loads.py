@@ -6,10 +6,10 @@ Usage: python benches/random_loads.py [--springfit target/release/springfit] [--
 
 import argparse
 import json
-import math
 import subprocess
 import tempfile
 from pathlib import Path
+from statistics import geometric_mean
 
 ROOT = Path(__file__).resolve().parent.parent
 # What a scene has for a body, and the group that is held.
@@ -37,10 +37,6 @@ group = "{held}"
 """
 
 
-def mean(values):
-    return math.exp(sum(math.log(value) for value in values) / len(values))
-
-
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--springfit", default="target/release/springfit")
@@ -59,10 +55,10 @@ def main():
                 report = json.loads(Path(folder, "out/report.json").read_text())
             models = {model["model"]: model for model in report["fits"][0]["whole"]["held_out"][0]["models"]}
             rows.append([models[model][error] for model in ("start", "fitted") for error in ("median", "worst")])
-        start, worst_start, own, worst = (100 * mean(column) for column in zip(*rows))
+        start, worst_start, own, worst = (100 * geometric_mean(column) for column in zip(*rows))
         gains.append(start / own)
         print(f"{name} | {start:.2f} ({worst_start:.1f}) | {own:.2f} ({worst:.1f}) | {start / own:.1f}", flush=True)
-    print(f"geometric mean of the gains: {mean(gains):.1f}")
+    print(f"geometric mean of the gains: {geometric_mean(gains):.1f}")
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 //! materials, and errors against the limit of refinement beside those of the finite elements of the same mesh.
 
 use crate::shapes::Random;
+use crate::shapes::statics::{compliance, membrane};
 use nalgebra::{DMatrix, DVector};
 use springfit::element::Element;
 use springfit::error::ErrorKind;
@@ -237,14 +238,6 @@ fn forces_and_tangents_are_derivatives() {
     }
 }
 
-fn compliance(entries: &Entries, support: &Support, load: &[f64]) -> f64 {
-    let system = System::new(entries, support).unwrap();
-    let factor = system.cholesky().unwrap().unwrap();
-    let (u, residual) = system.solve(&factor, load);
-    assert!(residual < 1e-6, "{residual:e}");
-    u.iter().zip(load).map(|(u, f)| u * f).sum()
-}
-
 fn held(mesh: &Mesh) -> (Support, Vec<bool>) {
     let d = mesh.dimension;
     let held: Vec<bool> = (0..mesh.point_count()).map(|p| mesh.point(p)[0] == 0.0).collect();
@@ -311,16 +304,6 @@ fn a_cantilever_of_tetrahedra_is_right_to_two_percent() {
         println!("nu = {nu}: finite elements {bodies:.3}, patches {patches:.3}, edges {edges:.3}");
         assert!(bodies < -0.18 && patches < -0.1 && edges.abs() < 0.02, "{nu}: {bodies} {patches} {edges}");
     }
-}
-
-fn membrane(element: &str, n: usize) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let mut mesh = BoxMesh { element, size: vec![1.0; 2], cells: vec![n, n], origin: vec![0.0; 2] }.build().unwrap();
-    for x in mesh.points.chunks_exact_mut(2) {
-        let (s, t) = (x[0], x[1]);
-        (x[0], x[1]) = (48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s));
-    }
-    mesh
 }
 
 /// Cook's membrane in plane strain, E = 1, a unit force upwards on its end: 18.53 at ν = 0.4999. With shear springs on edges,

@@ -1,5 +1,6 @@
 //! Near the incompressible: volume springs on cells and patches answer where finite elements lock.
 
+use crate::shapes::statics::{compliance, membrane};
 use nalgebra::DMatrix;
 use springfit::element::Element;
 use springfit::fit::{ExactFit, VolumeSprings, fit_exact};
@@ -38,16 +39,6 @@ fn stiffness(mesh: &Mesh, material: Material, volume: VolumeSprings, held: &[boo
         network.others.extend(patch_springs(mesh, material, &fit, held).unwrap());
     }
     network.stiffness(&mesh.points)
-}
-
-/// A unit force along the last axis but one, spread over the points of the end as a constant traction is, and their mean
-/// displacement along it, weighted alike: the compliance.
-fn compliance(entries: &Entries, support: &Support, load: &[f64]) -> f64 {
-    let system = System::new(entries, support).unwrap();
-    let factor = system.cholesky().unwrap().unwrap();
-    let (u, residual) = system.solve(&factor, load);
-    assert!(residual < 1e-6, "{residual:e}");
-    u.iter().zip(load).map(|(u, f)| u * f).sum()
 }
 
 /// A unit traction force along `axis` on the side where `test` holds, of triangles or of edges.
@@ -104,14 +95,6 @@ fn a_cantilever_bends_near_the_incompressible() {
 /// over the error of triangles; this is the worse one, 9.9 and 3.3 % by an independent program, the other has 2.5 and 0.8 %.
 #[test]
 fn cooks_membrane_deforms_near_the_incompressible() {
-    let membrane = |element: &str, n: usize| {
-        let mut mesh = grid(element, &[n, n], &[1.0, 1.0]);
-        for x in mesh.points.chunks_exact_mut(2) {
-            let (s, t) = (x[0], x[1]);
-            (x[0], x[1]) = (48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s));
-        }
-        mesh
-    };
     for (element, n, volume, allowed) in [
         ("tri3", 16, VolumeSprings::Patches, 0.11),
         ("tri3", 32, VolumeSprings::Patches, 0.04),

@@ -225,7 +225,7 @@ class Network:
             gravity: m/s², shape (dimension,); 9.81 against the last axis if None.
 
         Returns:
-            The files. What the program does not represent is told as a warning.
+            The files. A warning names what the program does not represent.
 
         Raises:
             SpringfitError: The program does not hold this network, and a fit that it holds is named.

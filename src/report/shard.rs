@@ -33,7 +33,7 @@ impl Shard {
         place % self.count == self.number - 1
     }
 
-    /// Its range of so many cells; ranges differ by one cell at most.
+    /// The range of cells of this shard, of `cells` in all. The lengths of two ranges differ by at most one.
     pub fn range(self, cells: usize) -> Range<usize> {
         let start = |number: usize| (cells as u128 * number as u128 / self.count as u128) as usize;
         start(self.number - 1)..start(self.number)

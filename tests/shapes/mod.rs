@@ -1,5 +1,7 @@
 //! Random shapes and materials of every shipped element.
 
+pub mod statics;
+
 use nalgebra::{DMatrix, DVector};
 use springfit::element::{Element, SHIPPED};
 use springfit::material::{Material, Plane};

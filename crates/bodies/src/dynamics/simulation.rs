@@ -147,17 +147,16 @@ impl<'a> Simulation<'a> {
     /// Computes loads, elastic and damping forces of the state; false if the model has none.
     fn refresh(&mut self) -> bool {
         self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
-        self.resistance.direct(&self.state.displacement, false);
-        self.resistance.viscous(&self.state.velocity, &mut self.viscous);
-        self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
-        self.is_current
+        self.resist()
     }
 
-    /// The same after an explicit step; what does not change is kept.
+    /// The same after an explicit step; loads that do not change are kept.
     fn refresh_changed(&mut self) -> bool {
-        if !self.motion.drive.is_steady() {
-            self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
-        }
+        if self.motion.drive.is_steady() { self.resist() } else { self.refresh() }
+    }
+
+    /// Computes elastic and damping forces of the state; false if the model has none. Without damping they stay zero.
+    fn resist(&mut self) -> bool {
         if self.resistance.is_damped() {
             self.resistance.direct(&self.state.displacement, false);
             self.resistance.viscous(&self.state.velocity, &mut self.viscous);

@@ -144,8 +144,7 @@ impl Mesh {
 
     /// The points of one cell, in the node order of its element.
     pub(crate) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
-        let n = self.blocks[block].element.nodes();
-        &self.blocks[block].connectivity[cell * n..(cell + 1) * n]
+        self.blocks[block].cell(cell)
     }
 
     pub(crate) fn cell_indices(&self) -> impl Iterator<Item = CellIndex> {

@@ -7,19 +7,17 @@
 //! Theory: page *Exact networks and patches* of the book.
 
 use super::network::{LengthSpring, MeasureSpring, Network};
-use super::simplices::{Simplices, linear_simplices};
+use super::shares::{LengthShare, SharedSpring};
+use super::simplices::linear_simplices;
 use super::system::each_cell;
 use crate::element::{SpringKind, Tabulation};
 use crate::error::Result;
 use crate::fit::{DomainSprings, ExactDomains, ExactFit};
 use crate::material::{CellMap, MaterialMap};
-use crate::mesh::Mesh;
+use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Measure;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// A constant whose terms cancel to this share of their sizes is a rounding error: there is no spring.
-const ROUNDING: f64 = 1e-13;
 
 /// The springs of the domains of all edges: with `F = Σ_c s_c F_c/Σ_c s_c`, s_c the shares of the volumes of the cells at
 /// the edge, they have the energy `Σ_c s_c W(F)`. With `volume = "patches"` they lack the part of λ, which
@@ -30,13 +28,8 @@ const ROUNDING: f64 = 1e-13;
 /// of their own dimension; or the network has no such form (kind `Unsupported`).
 pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFit) -> Result<Network> {
     let material = material.into();
-    let Simplices { block, element } = linear_simplices(mesh, "shear", "\"cells\": edges", fit.shear.name())?;
-    let materials = material.materials()?;
-    let all = match materials {
-        CellMap::Uniform(of_all) => std::slice::from_ref(of_all),
-        CellMap::Each(blocks) => &blocks[0],
-    };
-    let domains = ExactDomains::new(fit, all)?;
+    let (block, domains) = parts(mesh, &material, fit)?;
+    let (materials, element) = (material.materials()?, &block.element);
     let (d, n) = (mesh.dimension, element.nodes());
     let (mut gradients, mut volumes) = (Vec::with_capacity(block.connectivity.len() * d), Vec::new());
     each_cell(mesh, |_, _, geometry| {
@@ -50,8 +43,8 @@ pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFi
         let edge = |&[a, b]: &[usize; 2]| ([nodes[a].min(nodes[b]), nodes[a].max(nodes[b])], region, cell);
         pairs.iter().map(edge).collect::<Vec<_>>()
     };
-    let mut parts: Vec<([usize; 2], usize, usize)> = block.cells().enumerate().flat_map(at_edges).collect();
-    parts.par_sort_unstable();
+    let mut shares: Vec<([usize; 2], usize, usize)> = block.cells().enumerate().flat_map(at_edges).collect();
+    shares.par_sort_unstable();
     let domain = |parts: &[([usize; 2], usize, usize)]| {
         let mut nodes: Vec<usize> = parts.iter().flat_map(|part| block.cell(part.2)).copied().collect();
         nodes.sort_unstable();
@@ -74,11 +67,26 @@ pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFi
         let springs = domains.springs(&table, &shares.collect::<Vec<_>>());
         Domain { nodes, table: Arc::new(table), springs }
     };
-    let groups: Vec<&[([usize; 2], usize, usize)]> = parts.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
+    let groups: Vec<&[([usize; 2], usize, usize)]> = shares.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
     let found: Vec<Domain> = groups.par_iter().map(|parts| domain(parts)).collect();
     let lengths = merged(found.iter().flat_map(Domain::pairs).collect());
     let others = found.into_iter().flat_map(|domain| domain.others(d, &domains)).collect();
     Ok(Network { dimension: d, lengths, others })
+}
+
+/// Whether a body has [`edge_springs`]; no spring is computed.
+pub fn has_edge_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit) -> bool {
+    parts(mesh, material, fit).is_ok()
+}
+
+/// The cells of the mesh, and what their domains have in common.
+fn parts<'a>(mesh: &'a Mesh, material: &MaterialMap, fit: &ExactFit) -> Result<(&'a CellBlock, ExactDomains)> {
+    let block = linear_simplices(mesh, "shear", "\"cells\": edges", fit.shear.name())?;
+    let all = match material.materials()? {
+        CellMap::Uniform(of_all) => std::slice::from_ref(of_all),
+        CellMap::Each(blocks) => &blocks[0],
+    };
+    Ok((block, ExactDomains::new(fit, all)?))
 }
 
 /// A table with one point, whose reference coordinates are the positions at rest.
@@ -99,9 +107,19 @@ fn merged(mut springs: Vec<([usize; 2], f64)>) -> Vec<LengthSpring> {
     // The order of equal springs is kept, so that their sum has the same bits in each run.
     springs.par_sort_by_key(|spring| spring.0);
     let sum = |springs: &[([usize; 2], f64)]| {
-        let (constant, size) = springs.iter().fold((0.0, 0.0), |(sum, size), (_, k)| (sum + k, size + k.abs()));
-        let spring = LengthSpring { points: springs[0].0, constant, rest: 0.0 };
-        (constant.abs() > ROUNDING * size).then_some(spring)
+        let share = |&(points, constant): &([usize; 2], f64)| LengthShare {
+            points,
+            constant,
+            size: constant.abs(),
+            slack: 0.0,
+        };
+        let mut sum = share(&springs[0]);
+        springs[1..].iter().for_each(|spring| sum.add(&share(spring)));
+        match sum.spring(0.0, true) {
+            SharedSpring::Length(spring) => Some(spring),
+            // Without slack nothing pulls steadily.
+            SharedSpring::None | SharedSpring::Steady(_) => None,
+        }
     };
     springs.chunk_by(|a, b| a.0 == b.0).filter_map(sum).collect()
 }

@@ -34,7 +34,7 @@ mod tension;
 
 pub use blocks::BlockStiffness;
 pub use deformation::Deformation;
-pub use domains::edge_springs;
+pub use domains::{edge_springs, has_edge_springs};
 pub use elastic::{Body, Elastic, RegionsBody};
 pub use fibres::{fibre_springs, fibre_springs_of_regions};
 pub use linear::LinearElastic;

@@ -8,7 +8,7 @@
 //! Theory: page *Exact networks and patches* of the book.
 
 use super::network::MeasureSpring;
-use super::simplices::{Simplices, linear_simplices};
+use super::simplices::linear_simplices;
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit};
@@ -35,7 +35,8 @@ pub fn patch_springs(
 ) -> Result<Vec<MeasureSpring>> {
     let material = material.into();
     let others = "\"points\" or \"cells\": patches";
-    let Simplices { block, element } = linear_simplices(mesh, "volume", others, "patches")?;
+    let block = linear_simplices(mesh, "volume", others, "patches")?;
+    let element = &block.element;
     let d = mesh.dimension;
     if fit.large && matches!(material.state(), State::PlaneStress { .. }) {
         let expected = format!("{others} are for bodies that lock");

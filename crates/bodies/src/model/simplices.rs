@@ -1,22 +1,14 @@
 //! Meshes of linear triangles or tetrahedra, the only ones that springs on several cells are made for.
 
-use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{CellBlock, Mesh};
-use std::sync::Arc;
-
-/// The only block of such a mesh.
-pub struct Simplices<'a> {
-    pub block: &'a CellBlock,
-    pub element: &'a Arc<Element>,
-}
 
 /// The cells of a mesh of linear simplices in a space of their own dimension, for the key with this value; `others` says
 /// what serves other meshes, and what does not.
 ///
 /// # Errors
 /// The mesh has other cells, or cells of several kinds; the kind is `Unsupported`.
-pub fn linear_simplices<'a>(mesh: &'a Mesh, key: &str, others: &str, value: &str) -> Result<Simplices<'a>> {
+pub fn linear_simplices<'a>(mesh: &'a Mesh, key: &str, others: &str, value: &str) -> Result<&'a CellBlock> {
     let unsupported = |found: String| {
         let expected = format!("{others} are for meshes of linear triangles or linear tetrahedra in their own space");
         let found = format!("\"{value}\" with {found}");
@@ -31,5 +23,5 @@ pub fn linear_simplices<'a>(mesh: &'a Mesh, key: &str, others: &str, value: &str
     if !is_simplex || mesh.cell_dimension() != d || d < 2 {
         return unsupported(element.name.clone());
     }
-    Ok(Simplices { block, element })
+    Ok(block)
 }

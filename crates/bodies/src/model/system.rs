@@ -13,9 +13,8 @@ use nalgebra::DMatrix;
 /// Calls `visit(cell, nodes, geometry)` for every cell of the mesh.
 pub(super) fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], &Geometry)) {
     for (index, block) in mesh.blocks.iter().enumerate() {
-        let n = block.element.nodes();
         let visit = |cell, _: &[f64], geometry: &Geometry| {
-            visit(CellIndex { block: index, cell }, &block.connectivity[cell * n..(cell + 1) * n], geometry);
+            visit(CellIndex { block: index, cell }, block.cell(cell), geometry);
         };
         stiffness::each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, visit)
             .expect("a mesh holds only cells with a volume");

@@ -43,7 +43,7 @@ impl Edges {
             }
             let pairs = (n * (n - 1) / 2) as f64;
             let visit = |cell: usize, _: &[f64], geometry: &crate::stiffness::Geometry| {
-                let nodes = &block.connectivity[cell * n..(cell + 1) * n];
+                let nodes = block.cell(cell);
                 let volume = geometry.content().abs();
                 for a in 0..n {
                     let others = (a + 1..n).filter(|b| nodes[*b] != nodes[a]);

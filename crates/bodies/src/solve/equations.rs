@@ -11,7 +11,7 @@ use crate::model::{BlockStiffness, Entries, Support, check_body, finite_elements
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The relative error of a step by iterations whose time is told: what a motion needs.
+/// The relative error at which the iterations of a timed step end. A motion needs no smaller one.
 const STEP: f64 = 1e-6;
 
 /// The equations of a model under a support, with what solves them. Copies share it.

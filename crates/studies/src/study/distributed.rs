@@ -119,7 +119,7 @@ impl BodyShare {
     /// cells are those of the body of [`distributed_body`].
     ///
     /// # Errors
-    /// An element is unknown, a node is none of the points, or a cell has no volume; or the stiffness does not fit into memory.
+    /// An element is unknown, the index of a node is not that of a point, or a cell has no volume; or the stiffness does not fit into memory.
     pub fn new(
         scene: Scene,
         dimension: usize,

@@ -1,8 +1,7 @@
 //! The sections with a layout of MSH 4.0 in text: a node and its tag stand together, and the tag of an entity before its dimension.
 
 use super::nodes::Nodes;
-use super::types::shape;
-use super::v41::Key;
+use super::v41::{Key, cells};
 use crate::error::{ErrorKind, Result};
 use crate::mesh::grouping::Gather;
 use crate::mesh::reader::Reader;
@@ -39,31 +38,8 @@ pub(super) fn nodes(reader: &mut Reader) -> Result<Nodes> {
 pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>> {
     let blocks: u64 = reader.number()?;
     let total: u64 = reader.number()?;
-    reader.announce("elements", total);
-    let mut cells = Gather::new();
-    let mut found = 0_u64;
-    for _ in 0..blocks {
+    cells(reader, nodes, [blocks, total], |reader| {
         let entity: i32 = reader.number()?;
-        let dimension: i32 = reader.number()?;
-        let cell_type: u32 = reader.number()?;
-        let (of_type, node_count) = shape(reader, cell_type)?;
-        if usize::try_from(dimension) != Ok(of_type) {
-            let expected = format!("dimension {of_type} for element type {cell_type}");
-            return Err(reader.expected(&expected, &dimension.to_string()));
-        }
-        let list = cells.list(&(cell_type, dimension, entity));
-        for _ in 0..reader.number::<u64>()? {
-            let element: u64 = reader.number()?;
-            for _ in 0..node_count {
-                let tag: u64 = reader.number()?;
-                list.push(nodes.of_element(reader, element, tag)?);
-            }
-            reader.count_one();
-            found += 1;
-        }
-    }
-    if found != total {
-        return Err(reader.expected(&format!("{total} elements"), &found.to_string()));
-    }
-    Ok(cells)
+        Ok([reader.number()?, entity])
+    })
 }

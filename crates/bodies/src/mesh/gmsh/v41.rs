@@ -91,12 +91,21 @@ pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>
     let total: u64 = reader.number()?;
     reader.number::<u64>()?;
     reader.number::<u64>()?;
+    cells(reader, nodes, [blocks, total], |reader| Ok([reader.number()?, reader.number()?]))
+}
+
+/// The cells of so many blocks, and so many in all; `entity` reads the dimension and the tag of the entity of a block.
+pub(super) fn cells(
+    reader: &mut Reader,
+    nodes: &Nodes,
+    [blocks, total]: [u64; 2],
+    entity: impl Fn(&mut Reader) -> Result<[i32; 2]>,
+) -> Result<Gather<Key>> {
     reader.announce("elements", total);
     let mut cells = Gather::new();
     let mut found = 0_u64;
     for _ in 0..blocks {
-        let dimension: i32 = reader.number()?;
-        let entity: i32 = reader.number()?;
+        let [dimension, entity] = entity(reader)?;
         let cell_type: u32 = reader.number()?;
         let (of_type, node_count) = shape(reader, cell_type)?;
         if usize::try_from(dimension) != Ok(of_type) {

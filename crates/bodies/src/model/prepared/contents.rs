@@ -188,12 +188,13 @@ impl Tables {
     }
 }
 
-/// What is done with a batch of cells whose nodes are at `x`, `[nodes]`.
+/// What is done with a batch of cells.
 trait Visit {
+    /// `room` is memory for the positions of the nodes and the forces on them, `[nodes]` each.
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
         zero: T,
-        x: &mut [[T; 3]],
+        room: [&mut [[T; 3]]; 2],
         first: usize,
         count: usize,
     );
@@ -227,13 +228,18 @@ impl Cells {
         }
     }
 
+    /// `∂N_a/∂ξ_l` at point q, `[nodes][D]`.
+    #[inline(always)]
+    fn gradients_at<const D: usize>(&self, q: usize) -> &[[f64; D]] {
+        let size = self.nodes * D;
+        self.gradients[q * size..(q + 1) * size].as_chunks().0
+    }
+
     /// `t_l` at point q, completed by axes.
     #[inline(always)]
     fn tangents<T: Packed, const D: usize, const S: usize>(&self, zero: T, q: usize, x: &[[T; 3]]) -> [[T; 3]; 3] {
-        let size = self.nodes * D;
-        let (table, _) = self.gradients[q * size..(q + 1) * size].as_chunks::<D>();
         let mut t: [[T; 3]; 3] = zero.repeated_rows();
-        for (x, dn) in x.iter().zip(table) {
+        for (x, dn) in x.iter().zip(self.gradients_at::<D>(q)) {
             for l in 0..D {
                 let dn = zero.constant(&dn[l]);
                 for k in 0..S {
@@ -259,9 +265,10 @@ impl<V: Visit, const D: usize, const S: usize> PackedWork for Batches<'_, V, D, 
         let Batches(mut visit, cells) = self;
         let all = cells.rows.len() / cells.nodes;
         let mut nodes: Vec<[T; 3]> = vec![zero.repeated(); cells.nodes];
+        let mut forces = nodes.clone();
         zero.vectorize(|| {
             for first in (0..all).step_by(T::COUNT) {
-                visit.batch::<T, D, S>(zero.clone(), &mut nodes, first, T::COUNT.min(all - first));
+                visit.batch::<T, D, S>(zero.clone(), [&mut nodes, &mut forces], first, T::COUNT.min(all - first));
             }
         });
     }
@@ -279,7 +286,7 @@ impl Visit for Measures<'_> {
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
         zero: T,
-        x: &mut [[T; 3]],
+        [x, _]: [&mut [[T; 3]]; 2],
         first: usize,
         count: usize,
     ) {
@@ -307,13 +314,13 @@ impl Visit for Pulls<'_> {
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
         zero: T,
-        x: &mut [[T; 3]],
+        [x, forces]: [&mut [[T; 3]]; 2],
         first: usize,
         count: usize,
     ) {
         let cells = self.cells;
         cells.gather(self.x, x, first, count);
-        let mut forces: Vec<[T; 3]> = vec![zero.repeated(); cells.nodes];
+        forces.fill(zero.repeated());
         for q in 0..cells.points {
             let mut tension = zero.clone();
             for lane in 0..count {
@@ -325,9 +332,7 @@ impl Visit for Pulls<'_> {
                     g[l][k] = g[l][k].clone() * &tension;
                 }
             }
-            let size = cells.nodes * D;
-            let (table, _) = cells.gradients[q * size..(q + 1) * size].as_chunks::<D>();
-            for (force, dn) in forces.iter_mut().zip(table) {
+            for (force, dn) in forces.iter_mut().zip(cells.gradients_at::<D>(q)) {
                 for l in 0..D {
                     let dn = zero.constant(&dn[l]);
                     for k in 0..S {

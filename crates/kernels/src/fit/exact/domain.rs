@@ -9,9 +9,10 @@
 use super::ExactFit;
 use super::energy::{Coefficients, Form};
 use super::kernel::{content_spring, edges};
-use super::volume::{Shares, VolumeSprings};
+use super::shear::ShearSprings;
+use super::volume::Shares;
 use crate::element::Tabulation;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::springs::Law;
 use crate::stiffness::Geometry;
@@ -53,10 +54,7 @@ impl ExactDomains {
         let Some(first) = materials.first() else {
             return Err(Error::expected("material", "that of at least one cell", "none"));
         };
-        if fit.volume == VolumeSprings::Cells {
-            let expected = "\"points\" or \"patches\" with shear = \"edges\": springs on cells lock";
-            return Err(Error::expected("volume", expected, "\"cells\"").of_kind(ErrorKind::Unsupported));
-        }
+        ShearSprings::Edges.check(fit.volume)?;
         let form = Form::of(fit.energy, first.state(), fit.large)?;
         let coefficients = materials.iter().map(|material| Coefficients::of(fit.energy, *material, fit.large));
         Ok(ExactDomains { coefficients: coefficients.collect::<Result<_>>()?, form, shares: fit.volume.shares(false) })

@@ -5,7 +5,7 @@ use super::published::PublishedOutcome;
 use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
-use crate::fit::{CellFits, ShearSprings, VolumeSprings};
+use crate::fit::{CellFits, ShearSprings};
 use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
@@ -88,8 +88,7 @@ impl FittedKind {
     /// Whether the springs of each cell are its whole stiffness. Springs on patches and on the domains of edges belong to
     /// several cells.
     pub fn is_of_cells(&self) -> bool {
-        let of_cells = |of: &ExactOutcome| of.shear == ShearSprings::Cells && of.volume != VolumeSprings::Patches;
-        self.exact().is_none_or(of_cells)
+        self.exact().is_none_or(|outcome| outcome.shear.is_of_cells(outcome.volume))
     }
 
     /// The moduli of the finite elements with whose energies those of the network are compared.

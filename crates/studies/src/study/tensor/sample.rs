@@ -62,8 +62,7 @@ impl<'a> Stars<'a> {
     /// The points of a cell.
     pub(super) fn points(&self, cell: usize) -> &[usize] {
         let (block, cell) = self.place(cell);
-        let CellBlock { element, connectivity } = &self.mesh.blocks[block];
-        &connectivity[cell * element.nodes()..(cell + 1) * element.nodes()]
+        self.mesh.blocks[block].cell(cell)
     }
 
     /// The block of a cell, and its index there.
@@ -114,9 +113,7 @@ impl<'a> Stars<'a> {
         let mut own = vec![Vec::new(); self.mesh.blocks.len()];
         cells.iter().map(|&cell| self.place(cell)).for_each(|(block, cell)| own[block].push(cell));
         let block = |(block, cells): (&CellBlock, &Vec<usize>)| {
-            let n = block.element.nodes();
-            let nodes = |&cell: &usize| &block.connectivity[cell * n..(cell + 1) * n];
-            let connectivity = cells.iter().flat_map(nodes).map(|point| places[point]).collect();
+            let connectivity = cells.iter().flat_map(|cell| block.cell(*cell)).map(|point| places[point]).collect();
             CellBlock { element: block.element.clone(), connectivity }
         };
         let mesh = Mesh {

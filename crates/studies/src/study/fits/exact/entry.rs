@@ -40,10 +40,7 @@ impl ExactEntry {
         let volume = self.volume.as_deref().map(|name| VolumeSprings::named(name).map_err(|e| e.at_key("volume")));
         let shear = self.shear.as_deref().map(|name| ShearSprings::named(name).map_err(|e| e.at_key("shear")));
         let (shear, volume) = (shear.transpose()?.unwrap_or_default(), volume.transpose()?.unwrap_or_default());
-        if shear == ShearSprings::Edges && volume == VolumeSprings::Cells {
-            let expected = "\"points\" or \"patches\" with shear = \"edges\": springs on cells lock";
-            return Err(Error::expected("volume", expected, "\"cells\"").of_kind(ErrorKind::Unsupported));
-        }
+        shear.check(volume)?;
         if shear == ShearSprings::Edges && self.nonnegative {
             let expected = "false with shear = \"edges\": the nearest network is sought for springs of single cells";
             return Err(Error::expected("nonnegative", expected, true).of_kind(ErrorKind::Unsupported));

@@ -98,8 +98,7 @@ impl FitKind for ExactRecipe {
     }
 
     fn cell_method(&self) -> Option<&dyn CellMethod> {
-        let is_of_cells = self.shear == ShearSprings::Cells && self.volume != VolumeSprings::Patches;
-        (is_of_cells && self.positive.is_none()).then_some(self)
+        (self.shear.is_of_cells(self.volume) && self.positive.is_none()).then_some(self)
     }
 
     fn record(&self) -> KindRecord {

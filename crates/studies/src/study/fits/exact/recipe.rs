@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use crate::material::{Energy, EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::{edge_springs, patch_springs};
+use crate::model::{has_edge_springs, patch_springs};
 use crate::positive::PositiveFit;
 
 /// The settings of an exact network, before the material is known.
@@ -61,7 +61,7 @@ impl ExactRecipe {
     }
 
     /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
-    /// domains of edges and patches are constructed.
+    /// patches are constructed.
     pub fn serves(&self, laws: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> bool {
         let (Ok(fit), Ok(materials)) = (self.resolve_all(laws), material.materials()) else { return false };
         let block = |(index, block): (usize, &CellBlock)| {
@@ -72,7 +72,7 @@ impl ExactRecipe {
         let patches = fit.volume == VolumeSprings::Patches;
         let shear = match fit.shear {
             ShearSprings::Cells => mesh.blocks.iter().enumerate().all(block),
-            ShearSprings::Edges => edge_springs(mesh, material.clone(), &fit).is_ok(),
+            ShearSprings::Edges => has_edge_springs(mesh, material, &fit),
         };
         shear && (!patches || patch_springs(mesh, material, &fit, &[]).is_ok())
     }

@@ -70,7 +70,6 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
     recipe.force.check_groups(&known)?;
     task.each_block(progress, |index, block, springs, progress| {
         let fit = recipe.resolve(&block.element, springs, &states)?;
-        let n = block.element.nodes();
         let mut regions = Vec::new();
         let mut by_law: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for cell in 0..block.cells().len() {
@@ -85,8 +84,7 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
                 // A block without cells has an empty fit.
                 None => (large.laws.first(), material.state()),
             };
-            let nodes = |&cell: &usize| &block.connectivity[cell * n..(cell + 1) * n];
-            let connectivity: Vec<usize> = cells.iter().flat_map(nodes).copied().collect();
+            let connectivity: Vec<usize> = cells.iter().flat_map(|cell| block.cell(*cell)).copied().collect();
             let (element, points) = (&block.element, &mesh.points);
             let found = fit_sampled(element, springs, points, &connectivity, energy, state, &fit, progress)?;
             regions.push((cells, found));
