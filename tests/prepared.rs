@@ -1,11 +1,14 @@
 //! A prepared network pulls as the network does: on every element, with all kinds of springs, wherever its points are.
 
 use crate::shapes::{Random, distorted, elements, materials};
+use rayon::prelude::*;
 use springfit::element::{Element, SpringKind};
-use springfit::fit::{CellFits, ExactEnergy, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
+use springfit::fit::{
+    CellFits, ExactEnergy, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells, fit_exact,
+};
 use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, patch_springs};
+use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, edge_springs, patch_springs};
 use springfit::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 use springfit::springs::{Law, Measure, Patch, Springs};
 use springfit::stiffness::Geometry;
@@ -365,4 +368,60 @@ fn evaluations_do_not_depend_on_those_before() {
         all.filter(|(i, _)| i % 2 == 0).map(|(_, force)| force).collect()
     });
     assert!(from_threads.iter().all(|force| *force == first));
+}
+
+/// Networks of 20 000 springs and more are evaluated in parts: on rest lengths, of exact networks with patches, and on the domains of edges.
+#[test]
+fn parts_of_large_networks_give_the_same_bits_on_any_number_of_threads() {
+    let material = Material::new(1e4, 0.4, State::Solid).unwrap();
+    let mut random = Random(5);
+    let boxed = |element: &str, cells: usize, random: &mut Random| {
+        let element = Arc::new(Element::load(element).unwrap());
+        let spec = BoxMesh { element, size: vec![1.0; 3], cells: vec![cells; 3], origin: vec![0.0; 3] };
+        let mut mesh = spec.build().unwrap();
+        mesh.points.iter_mut().for_each(|x| *x += 0.1 / cells as f64 * random.next());
+        mesh
+    };
+    let (tetrahedra, hexahedra) = (boxed("tet4", 14, &mut random), boxed("hex8", 12, &mut random));
+    let with_patches = |shear: ShearSprings| {
+        let fit = ExactFit { volume: VolumeSprings::Patches, shear, large: true, ..ExactFit::default() };
+        let mut network = match shear {
+            ShearSprings::Cells => Network::assemble(&tetrahedra, &[exact(&tetrahedra, material, fit).unwrap()]),
+            ShearSprings::Edges => edge_springs(&tetrahedra, material, &fit).unwrap(),
+        };
+        network.others.extend(patch_springs(&tetrahedra, material, &fit, &[]).unwrap());
+        network
+    };
+    for (name, mesh, network) in [
+        ("classical", &tetrahedra, classical(&tetrahedra, material)),
+        ("patches", &tetrahedra, with_patches(ShearSprings::Cells)),
+        ("domains of edges", &tetrahedra, with_patches(ShearSprings::Edges)),
+        (
+            "hexahedra",
+            &hexahedra,
+            Network::assemble(&hexahedra, &[exact(&hexahedra, material, ExactFit::default()).unwrap()]),
+        ),
+    ] {
+        assert!(network.len() > 20_000, "{name}: {}", network.len());
+        check(&network, &mesh.points, &mut random, name);
+        let x: Vec<f64> = mesh.points.iter().map(|x| 1.05 * x + 0.01 * random.next()).collect();
+        let forces = [1, 2, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut force = vec![0.0; x.len()];
+            assert!(pool.install(|| network.prepared().forces(&x, &mut force)));
+            force.iter().map(|f| f.to_bits()).collect::<Vec<_>>()
+        });
+        assert!(forces.iter().all(|other| *other == forces[0]), "{name}");
+        // Evaluations of one network on threads that also evaluate its parts.
+        let prepared = network.prepared();
+        let all: Vec<Vec<u64>> = (0..8)
+            .into_par_iter()
+            .map(|_| {
+                let mut force = vec![0.0; x.len()];
+                assert!(prepared.forces(&x, &mut force));
+                force.iter().map(|f| f.to_bits()).collect()
+            })
+            .collect();
+        assert!(all.iter().all(|other| *other == forces[0]), "{name}");
+    }
 }

@@ -1,5 +1,5 @@
 //! Springs on the content of cells by their quadrature, and of single points of it: hexahedra and other cells whose content is no
-//! single determinant, membranes and fibres. Cells with the same table are evaluated side by side, one per lane.
+//! single determinant, membranes and fibres. Cells are evaluated side by side, one per lane.
 //!
 //! With the tangents `t_l = Σ_a x_a ∂N_a/∂ξ_l`, completed by the remaining axes in a cell that fills its space, the content per
 //! weight is `c = t_1 · (t_2 × t_3)`, and `∂c/∂t_1 = t_2 × t_3`, and cyclically; that of a curve is `‖t_1‖`, that of a surface
@@ -13,18 +13,54 @@ use crate::scalar::{Packed, PackedWork, widest};
 use crate::springs::Measure;
 use std::collections::HashMap;
 
-/// The cells of one table.
+/// Cells with as many nodes and points.
 #[derive(Debug)]
 struct Cells {
     nodes: usize,
     dimension: usize,
     points: usize,
-    /// `∂N_a/∂ξ_l`, `[points × nodes × dimension]`.
-    gradients: Vec<f64>,
+    gradients: Gradients,
     /// The rows of the nodes, `[cells × nodes]`.
     rows: Vec<u32>,
     /// The number of points of the tables before.
     first: usize,
+}
+
+/// `∂N_a/∂ξ_l`, `[points × nodes × dimension]`.
+#[derive(Debug)]
+enum Gradients {
+    /// Of all cells.
+    Shared(Vec<f64>),
+    /// Of each cell its own, `[cells / LANES][points × nodes × dimension][LANES]`.
+    Own(Vec<f64>),
+}
+
+/// The most lanes of any vector; the others are divisors of it. Tables of fewer cells would leave lanes empty.
+const LANES: usize = 8;
+
+impl Gradients {
+    /// The number at that place of the table, for the cells from `first`, a multiple of the lanes.
+    #[inline(always)]
+    fn at<T: Packed>(&self, zero: &T, first: usize, [place, size]: [usize; 2]) -> T {
+        match self {
+            Gradients::Shared(table) => zero.constant(&table[place]),
+            Gradients::Own(tables) => {
+                let begin = (first / LANES * size + place) * LANES + first % LANES;
+                let mut lanes = zero.clone();
+                lanes.as_mut_slice().copy_from_slice(&tables[begin..begin + T::COUNT]);
+                lanes
+            }
+        }
+    }
+
+    /// Appends the table of cell number `cell`, the last one so far.
+    fn push(&mut self, cell: usize, table: &[f64]) {
+        if let Gradients::Own(tables) = self {
+            let first = cell / LANES * table.len() * LANES;
+            tables.resize(first + table.len() * LANES, 0.0);
+            table.iter().enumerate().for_each(|(i, g)| tables[first + i * LANES + cell % LANES] = *g);
+        }
+    }
 }
 
 /// A spring on the whole content of a cell, `Σ_q w_q c_q`.
@@ -37,7 +73,7 @@ struct Whole {
     spring: usize,
 }
 
-/// The cells of a network that are measured by quadrature, each once per table.
+/// The cells of a network that are measured by quadrature, each once per table of gradients.
 #[derive(Debug, Default)]
 pub struct Contents {
     tables: Vec<Cells>,
@@ -80,7 +116,8 @@ impl Contents {
             let at = tables.cell(table, spring.points.iter().map(|&p| place[p] as u32).collect());
             found.push((s, table, point, at));
         }
-        let mut all = Contents { tables: tables.cells, ..Contents::default() };
+        let (tables, homes) = merged(tables.cells);
+        let mut all = Contents { tables, ..Contents::default() };
         let mut count = 0;
         for cells in &mut all.tables {
             cells.first = count;
@@ -89,6 +126,7 @@ impl Contents {
         (all.slopes, all.pulls) = (vec![0.0; count], vec![0.0; count]);
         let mut lawful = Vec::new();
         for (s, table, point, (index, cell)) in found {
+            let [index, cell] = [homes[index][0], homes[index][1] + cell];
             let (spring, cells) = (&network.others[s], &all.tables[index]);
             let Some(q) = point else {
                 let weights = match table.points() {
@@ -111,7 +149,7 @@ impl Contents {
         all
     }
 
-    /// Adds the forces in the order that [`unpack`](super::unpack) reads; false if a spring has none.
+    /// Adds the forces of the rows, as (z, x, y); false if a spring has none.
     pub fn pull(
         &self,
         space: usize,
@@ -147,10 +185,36 @@ impl Contents {
     }
 }
 
+/// The cells of tables that would leave lanes empty, with others of the same shape; and where each table is now: its index, and the
+/// number of its first cell.
+fn merged(tables: Vec<(Vec<f64>, Cells)>) -> (Vec<Cells>, Vec<[usize; 2]>) {
+    let (mut all, mut homes, mut of_shape) = (Vec::<Cells>::new(), Vec::new(), HashMap::new());
+    for (gradients, cells) in tables {
+        let count = cells.rows.len() / cells.nodes;
+        if count >= LANES {
+            homes.push([all.len(), 0]);
+            all.push(Cells { gradients: Gradients::Shared(gradients), ..cells });
+            continue;
+        }
+        let shape = [cells.nodes, cells.dimension, cells.points];
+        let home = *of_shape.entry(shape).or_insert(all.len());
+        if home == all.len() {
+            all.push(Cells { rows: Vec::new(), ..cells });
+        }
+        let own = &mut all[home];
+        let first = own.rows.len() / own.nodes;
+        homes.push([home, first]);
+        own.rows.extend(cells.rows);
+        (first..first + count).for_each(|cell| own.gradients.push(cell, &gradients));
+    }
+    (all, homes)
+}
+
 /// Collects cells by their table and nodes.
 #[derive(Default)]
 struct Tables {
-    cells: Vec<Cells>,
+    /// Each table of gradients with its cells.
+    cells: Vec<(Vec<f64>, Cells)>,
     /// Tables by the bits of their gradients: cells of one shape have equal ones, and each fibre its own.
     by_value: HashMap<Vec<u64>, usize>,
     by_place: HashMap<*const Tabulation, usize>,
@@ -164,7 +228,7 @@ impl Tables {
             Some(index) => *index,
             None => self.table(table),
         };
-        let cells = &mut self.cells[index];
+        let (_, cells) = &mut self.cells[index];
         let next = cells.rows.len() / cells.nodes;
         let cell = *self.known.entry((index, rows)).or_insert_with_key(|(_, rows)| {
             cells.rows.extend(rows);
@@ -180,8 +244,9 @@ impl Tables {
         let index = *self.by_value.entry(key).or_insert(next);
         if index == next {
             let Tabulation { nodes, dimension, .. } = *table;
-            let (points, gradients) = (table.points(), table.gradients.clone());
-            self.cells.push(Cells { nodes, dimension, points, gradients, rows: Vec::new(), first: 0 });
+            let (points, gradients, rows) = (table.points(), Gradients::Own(Vec::new()), Vec::new());
+            let cells = Cells { nodes, dimension, points, gradients, rows, first: 0 };
+            self.cells.push((table.gradients.clone(), cells));
         }
         self.by_place.insert(table, index);
         index
@@ -228,20 +293,25 @@ impl Cells {
         }
     }
 
-    /// `∂N_a/∂ξ_l` at point q, `[nodes][D]`.
+    /// `∂N_a/∂ξ_l` at point q of the cells from `first`.
     #[inline(always)]
-    fn gradients_at<const D: usize>(&self, q: usize) -> &[[f64; D]] {
-        let size = self.nodes * D;
-        self.gradients[q * size..(q + 1) * size].as_chunks().0
+    fn gradient<T: Packed, const D: usize>(&self, zero: &T, first: usize, [q, a, l]: [usize; 3]) -> T {
+        self.gradients.at(zero, first, [(q * self.nodes + a) * D + l, self.points * self.nodes * D])
     }
 
-    /// `t_l` at point q, completed by axes.
+    /// `t_l` at point q of the cells from `first`, completed by axes.
     #[inline(always)]
-    fn tangents<T: Packed, const D: usize, const S: usize>(&self, zero: T, q: usize, x: &[[T; 3]]) -> [[T; 3]; 3] {
+    fn tangents<T: Packed, const D: usize, const S: usize>(
+        &self,
+        zero: T,
+        first: usize,
+        q: usize,
+        x: &[[T; 3]],
+    ) -> [[T; 3]; 3] {
         let mut t: [[T; 3]; 3] = zero.repeated_rows();
-        for (x, dn) in x.iter().zip(self.gradients_at::<D>(q)) {
+        for (a, x) in x.iter().enumerate() {
             for l in 0..D {
-                let dn = zero.constant(&dn[l]);
+                let dn = self.gradient::<T, D>(&zero, first, [q, a, l]);
                 for k in 0..S {
                     t[l][k] = t[l][k].clone().plus_product(&dn, &x[k]);
                 }
@@ -293,7 +363,7 @@ impl Visit for Measures<'_> {
         let cells = self.cells;
         cells.gather(self.x, x, first, count);
         for q in 0..cells.points {
-            let c = content::<T, D, S>(&zero, &cells.tangents::<T, D, S>(zero.clone(), q, x));
+            let c = content::<T, D, S>(&zero, &cells.tangents::<T, D, S>(zero.clone(), first, q, x));
             for lane in 0..count {
                 self.contents[cells.first + (first + lane) * cells.points + q] = c.as_slice()[lane];
             }
@@ -326,15 +396,15 @@ impl Visit for Pulls<'_> {
             for lane in 0..count {
                 tension.as_mut_slice()[lane] = self.tensions[cells.first + (first + lane) * cells.points + q];
             }
-            let mut g = slopes::<T, D, S>(&zero, &cells.tangents::<T, D, S>(zero.clone(), q, x));
+            let mut g = slopes::<T, D, S>(&zero, &cells.tangents::<T, D, S>(zero.clone(), first, q, x));
             for l in 0..D {
                 for k in 0..S {
                     g[l][k] = g[l][k].clone() * &tension;
                 }
             }
-            for (force, dn) in forces.iter_mut().zip(cells.gradients_at::<D>(q)) {
+            for (a, force) in forces.iter_mut().enumerate() {
                 for l in 0..D {
-                    let dn = zero.constant(&dn[l]);
+                    let dn = cells.gradient::<T, D>(&zero, first, [q, a, l]);
                     for k in 0..S {
                         force[k] = force[k].clone().plus_product(&dn, &g[l][k]);
                     }

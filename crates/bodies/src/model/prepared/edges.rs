@@ -1,6 +1,6 @@
 //! Springs between two points; those with rest length zero are separate because they need no square root.
 
-use crate::model::network::{MeasureSpring, Network};
+use crate::model::network::{LengthSpring, MeasureSpring};
 use crate::scalar::Coordinates;
 use crate::springs::Measure;
 
@@ -15,8 +15,8 @@ pub struct Edges {
 }
 
 impl Edges {
-    pub fn new(network: &Network, place: &[usize], rows: usize) -> Edges {
-        let springs = || network.lengths.iter().filter(|s| s.rest == 0.0);
+    pub fn new(lengths: &[&LengthSpring], place: &[usize], rows: usize) -> Edges {
+        let springs = || lengths.iter().filter(|s| s.rest == 0.0);
         let mut starts = vec![0; rows + 1];
         springs().flat_map(|s| s.points).for_each(|p| starts[place[p] + 1] += 1);
         (0..rows).for_each(|i| starts[i + 1] += starts[i]);
@@ -33,7 +33,7 @@ impl Edges {
         Edges { starts, columns, constants }
     }
 
-    /// Writes the forces in the order that [`unpack`](super::unpack) reads.
+    /// Writes the forces of the rows, as (z, x, y).
     #[inline(always)]
     pub fn pull<C: Coordinates>(&self, zero: C, x: &[[f64; 4]], force: &mut [[f64; 4]]) {
         for (i, force) in force.iter_mut().enumerate() {
@@ -61,15 +61,15 @@ const BLOCK: usize = 32;
 
 impl Bars {
     /// `lawful` are the indices of the springs with a law on a length among the other springs of the network.
-    pub fn new(network: &Network, lawful: &[usize], place: &[usize]) -> Bars {
+    pub fn new(lengths: &[&LengthSpring], others: &[MeasureSpring], lawful: &[usize], place: &[usize]) -> Bars {
         let rows = |points: &[usize]| [place[points[0]] as u32, place[points[1]] as u32];
-        let mut springs: Vec<_> = network.lengths.iter().filter(|s| s.rest != 0.0).collect();
+        let mut springs: Vec<_> = lengths.iter().filter(|s| s.rest != 0.0).collect();
         springs.sort_by_key(|s| s.points.map(|p| place[p]).into_iter().min());
         Bars {
             points: springs.iter().map(|s| rows(&s.points)).collect(),
             constants: springs.iter().map(|s| s.constant).collect(),
             rests: springs.iter().map(|s| s.rest).collect(),
-            lawful: lawful.iter().map(|&s| (rows(&network.others[s].points), s)).collect(),
+            lawful: lawful.iter().map(|&s| (rows(&others[s].points), s)).collect(),
         }
     }
 

@@ -106,7 +106,7 @@ impl Simplices {
         }
     }
 
-    /// Adds the forces in the order that [`unpack`](super::unpack) reads; false if a spring has none.
+    /// Adds the forces of the rows, as (z, x, y); false if a spring has none.
     #[inline(always)]
     pub fn pull<C: Coordinates, const D: usize>(
         &self,
