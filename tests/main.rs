@@ -19,6 +19,7 @@ mod domains;
 mod door;
 mod dynamics;
 mod elements;
+mod elimination;
 mod energies;
 mod errors;
 mod exact;

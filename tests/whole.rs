@@ -63,7 +63,14 @@ impl Body {
     }
 
     fn equations_of(&self, support: &Support) -> Equations {
-        Equations::factored(&finite_elements(&self.mesh, self.material.moduli()), support).unwrap().unwrap()
+        Equations::factored(
+            &finite_elements(&self.mesh, self.material.moduli()),
+            support,
+            &self.mesh.points,
+            self.mesh.dimension,
+        )
+        .unwrap()
+        .unwrap()
     }
 
     fn equations(&self) -> Equations {
@@ -592,7 +599,8 @@ fn the_path_is_as_good_as_a_scan() {
     };
     let moduli = CellMap::of_blocks(vec![body.mesh.blocks[0].cells().map(own).collect()]);
     let entries = finite_elements(&body.mesh, moduli);
-    let equations = Equations::factored(&entries, &body.support).unwrap().unwrap();
+    let equations =
+        Equations::factored(&entries, &body.support, &body.mesh.points, body.mesh.dimension).unwrap().unwrap();
     let moved = |load: NodalLoad| {
         let u = equations.solve(&load.forces).unwrap().0;
         Target::new(load.name, body.support.clone(), load.forces, u)

@@ -146,7 +146,8 @@ impl Network {
             return Err(invalid(py, "fix", "supports that hold every piece of the mesh", "one that can move as it is"));
         }
         let solved = apart(py, || {
-            let system = System::new(&self.network().stiffness(&self.mesh.points), &support)?;
+            let system = System::new(&self.network().stiffness(&self.mesh.points), &support)?
+                .placed(&self.mesh.points, self.mesh.dimension);
             let factor = system.factorize()?;
             Ok(factor.map(|factor| (system.solve(&factor, &forces), factor.is_positive_definite())))
         });

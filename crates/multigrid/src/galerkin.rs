@@ -86,6 +86,9 @@ pub(crate) fn galerkin<const R: usize, const C: usize>(
         };
         fill_rows(&own_starts, &mut own_values, || Marks::new(count), fill);
         let before = columns.len();
+        // Doubling would take twice the memory.
+        columns.reserve_exact(own_columns.len());
+        values.reserve_exact(own_values.len());
         starts.extend(own_starts[1..].iter().map(|start| before + start));
         columns.extend(own_columns);
         values.extend(own_values);
@@ -142,7 +145,8 @@ fn mirrored<const N: usize>(upper: &Pattern, values: &[Block<N, N>]) -> BlockMat
     let rows = upper.rows();
     let (below_starts, below) = upper.transposed();
     let mut starts = vec![0];
-    let (mut columns, mut all) = (Vec::new(), Vec::new());
+    let count = 2 * values.len() - (0..rows).filter(|row| upper.row(*row).first() == Some(&(*row as u32))).count();
+    let (mut columns, mut all) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for row in 0..rows {
         for &[column, at] in &below[below_starts[row]..below_starts[row + 1]] {
             if (column as usize) < row {

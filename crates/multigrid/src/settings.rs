@@ -17,7 +17,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { threshold: 0.08, degree: 2, ratio: 12.0, dense: 900 }
+        Settings { threshold: 0.05, degree: 2, ratio: 12.0, dense: 900 }
     }
 }
 

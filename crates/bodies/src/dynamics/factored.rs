@@ -3,6 +3,7 @@
 use super::equations::{End, Equations, Solved};
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory;
+use crate::solve::elimination_order;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::prelude::MatMut;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -49,41 +50,45 @@ impl std::fmt::Debug for Room {
 }
 
 impl Factored {
-    /// For entries at these positions of the lower triangle; the diagonal is always included.
+    /// For entries at these positions of the lower triangle, of points that are at `points` at rest; the diagonal is always
+    /// included.
     ///
     /// # Errors
     /// The factor does not fit into memory.
-    pub fn new(places: &[(usize, usize)], held: &[bool]) -> Result<Factored> {
+    pub fn new(places: &[(usize, usize)], held: &[bool], points: &[f64], dimension: usize) -> Result<Factored> {
         let large = || Error::new(format!("{FACTOR} does not fit into memory: {ADVICE}")).of_kind(ErrorKind::Limit);
         let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
-        let analyse = |order: &[usize], ordering| -> Result<_> {
-            let n = order.len();
+        let n = free.len();
+        // The places in an order of the free degrees of freedom, and the pairs of the lower triangle.
+        let lower = |order: &[usize]| {
             let mut place = vec![usize::MAX; held.len()];
             order.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
-            let lower = |&(row, column): &(usize, usize)| {
+            let pair = |&(row, column): &(usize, usize)| {
                 let (a, b) = (place[row], place[column]);
                 (a != usize::MAX && b != usize::MAX).then(|| Pair::new(a.max(b), a.min(b)))
             };
             let diagonal = (0..n).map(|i| Pair::new(i, i));
-            let pairs: Vec<Pair<usize, usize>> = places.iter().filter_map(lower).chain(diagonal).collect();
-            let (pattern, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &pairs).map_err(|_| large())?;
-            // The analysis without a permutation reads the upper triangle, whichever triangle it is told to read.
-            let turned: Vec<Pair<usize, usize>> = pairs.iter().map(|pair| Pair::new(pair.col, pair.row)).collect();
-            let (upper, _) = SymbolicSparseColMat::try_new_from_indices(n, n, &turned).map_err(|_| large())?;
-            let supernodal_flop_ratio_threshold = SupernodalThreshold(SUPERNODAL);
-            let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold, ..Default::default() };
-            let symbolic =
-                factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|_| large())?;
-            Ok((place, pattern, symbolic))
+            let pairs: Vec<Pair<usize, usize>> = places.iter().filter_map(pair).chain(diagonal).collect();
+            (place, pairs)
         };
-        // Once for the order that keeps the factor sparse, and once with the rows in this order, so that no step
-        // permutes.
-        let (_, _, first) = analyse(&free, SymmetricOrdering::Amd)?;
-        let order: Vec<usize> = match first.perm() {
-            Some(perm) => perm.arrays().0.iter().map(|&i| free[i]).collect(),
-            None => free,
+        let turned = |pairs: &[Pair<usize, usize>]| -> Vec<Pair<usize, usize>> {
+            pairs.iter().map(|pair| Pair::new(pair.col, pair.row)).collect()
         };
-        let (place, pattern, symbolic) = analyse(&order, SymmetricOrdering::Identity)?;
+        let pattern_of = |pairs: &[Pair<usize, usize>]| {
+            SymbolicSparseColMat::try_new_from_indices(n, n, pairs).map(|(pattern, _)| pattern).map_err(|_| large())
+        };
+        // The rows are stored in the order that keeps the factor sparse, so that no step permutes.
+        let (_, mut pairs) = lower(&free);
+        pairs.extend(turned(&pairs));
+        let order = elimination_order(pattern_of(&pairs)?.as_ref(), &free, points, dimension).map_err(|_| large())?;
+        let (place, pairs) = lower(&order);
+        let pattern = pattern_of(&pairs)?;
+        // The analysis without a permutation reads the upper triangle, whichever triangle it is told to read.
+        let upper = pattern_of(&turned(&pairs))?;
+        let supernodal_flop_ratio_threshold = SupernodalThreshold(SUPERNODAL);
+        let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold, ..Default::default() };
+        let symbolic = factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, SymmetricOrdering::Identity, params)
+            .map_err(|_| large())?;
         let (starts, rows) = (pattern.col_ptr(), pattern.row_idx());
         let slot = |row: usize, column: usize| match (place[row], place[column]) {
             (usize::MAX, _) | (_, usize::MAX) => rows.len(),

@@ -4,6 +4,7 @@ use super::damping::Damping;
 use super::equations::Equations;
 use super::motion::Motion;
 use super::rest::Rest;
+use super::solver::LinearSolver;
 use crate::error::Result;
 use crate::model::Elastic;
 
@@ -111,6 +112,14 @@ impl<'a> Resistance<'a> {
         if let Some(dampers) = dampers {
             dampers.add_forces(&self.gradients, v, forces);
         }
+    }
+
+    /// The equations of implicit steps.
+    ///
+    /// # Errors
+    /// They do not fit into memory.
+    pub fn equations(&self, motion: &Motion, solver: LinearSolver) -> Result<Box<dyn Equations>> {
+        solver.equations(&self.places(), &self.held, motion.points, motion.dimension())
     }
 
     /// The positions of the entries of K and then of those of the dampers.

@@ -56,8 +56,7 @@ impl<'a> Simulation<'a> {
         let resistance = Resistance::new(&motion, options.linear)?;
         let dofs = motion.points.len();
         let is_implicit = options.integrator != Integrator::SymplecticEuler;
-        let build = || options.solver.equations(&resistance.places(), &resistance.held, motion.dimension());
-        let equations = if is_implicit { Some(build()?) } else { None };
+        let equations = if is_implicit { Some(resistance.equations(&motion, options.solver)?) } else { None };
         let free = equations.as_ref().map_or(0, |equations| equations.order().len());
         let mut trial = Trial::new(dofs, free, resistance.rest.values.len());
         trial.tangent.copy_from_slice(&resistance.rest.values);
@@ -183,8 +182,7 @@ impl<'a> Simulation<'a> {
             return Ok(is_definite);
         }
         let resistance = &self.resistance;
-        let mut proof =
-            LinearSolver::Factor.equations(&resistance.places(), &resistance.held, self.motion.dimension())?;
+        let mut proof = resistance.equations(&self.motion, LinearSolver::Factor)?;
         resistance.assemble(coefficients, &resistance.rest.values, proof.as_mut());
         match proof.prepare() {
             true if !is_prepared => {

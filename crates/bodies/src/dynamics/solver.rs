@@ -45,16 +45,17 @@ impl LinearSolver {
         }
     }
 
-    /// The equations for entries at these positions of the lower triangle, of points with `dimension` coordinates; the
-    /// diagonal is always included.
+    /// The equations for entries at these positions of the lower triangle, of points that are at `points` at rest,
+    /// `[points × dimension]`, m; the diagonal is always included.
     pub(super) fn equations(
         self,
         places: &[(usize, usize)],
         held: &[bool],
+        points: &[f64],
         dimension: usize,
     ) -> Result<Box<dyn Equations>> {
         Ok(match self {
-            LinearSolver::Factor => Box::new(Factored::new(places, held)?),
+            LinearSolver::Factor => Box::new(Factored::new(places, held, points, dimension)?),
             LinearSolver::ConjugateGradients { tolerance } => match dimension {
                 1 => Box::new(Gradients::<1>::new(places, held, tolerance)?),
                 2 => Box::new(Gradients::<2>::new(places, held, tolerance)?),

@@ -82,7 +82,8 @@ impl<'a> RestForces<'a> {
         if left > FOUND {
             let squares: Vec<f64> = constants.iter().map(|k| k * k).collect();
             let tension_squares: Vec<f64> = tensions.iter().map(|t| t * t).collect();
-            let system = System::new(&self.normal(&squares, &tension_squares), &Support::free(self.mesh))?;
+            let system = System::new(&self.normal(&squares, &tension_squares), &Support::free(self.mesh))?
+                .placed(&self.mesh.points, d);
             let factor = system.cholesky()?.ok_or_else(|| unbalanced("equations of the balance that are singular"))?;
             for _ in 0..ROUNDS {
                 let mut lambda = forces.clone();

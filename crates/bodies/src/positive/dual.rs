@@ -144,7 +144,7 @@ impl<'a> Point<'a> {
         let hessian = self.hessian(&compliances);
         let system = match pattern.take() {
             Some(pattern) => pattern.renewed(&hessian, &support)?,
-            None => System::new(&hessian, &support)?,
+            None => System::new(&hessian, &support)?.placed(&programme.points, programme.dimension),
         };
         let factor = system.cholesky()?;
         *pattern = Some(system);

@@ -81,7 +81,7 @@ impl Programme<'_> {
         let scales: Vec<f64> = (0..edges.len()).map(|edge| self.scale(edge)).collect();
         let volume: f64 = edges.volumes.iter().sum();
         let square = edges.lengths.iter().map(|l| l * l).sum::<f64>() / edges.len() as f64;
-        let mut programme = Quadratic::new(mesh.points.len());
+        let mut programme = Quadratic::new(&mesh.points, d);
         for (edge, scale) in scales.iter().enumerate() {
             // The weights sum to about one: with larger ones the proof that there is no solution is not found.
             let weight = edges.volumes[edge] / volume * square / (edges.lengths[edge] * edges.lengths[edge]);

@@ -16,6 +16,10 @@ pub(super) struct Quadratic {
     pub lower: Vec<f64>,
     /// The number of rows of A.
     pub rows: usize,
+    /// Where the points are whose balance of forces the rows are, `[points × dimension]`, m.
+    pub points: Vec<f64>,
+    /// The number of rows of each point.
+    pub dimension: usize,
     /// The columns of A: the rows and values of column i are those from `starts[i]` to `starts[i + 1]`.
     pub starts: Vec<usize>,
     pub places: Vec<usize>,
@@ -32,9 +36,10 @@ pub(super) struct Minimum {
 }
 
 impl Quadratic {
-    /// Of `rows` equations, with no variables yet.
-    pub fn new(rows: usize) -> Quadratic {
-        Quadratic { rows, starts: vec![0], ..Quadratic::default() }
+    /// Of the balance of the forces at some points, `[points × dimension]`, m, with no variables yet.
+    pub fn new(points: &[f64], dimension: usize) -> Quadratic {
+        let (rows, points) = (points.len(), points.to_vec());
+        Quadratic { rows, points, dimension, starts: vec![0], ..Quadratic::default() }
     }
 
     /// Adds a variable with its column of A.

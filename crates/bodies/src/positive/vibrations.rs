@@ -40,7 +40,7 @@ impl Vibrations {
         }
         let size = extent(mesh);
         let shift = modulus / (size * size);
-        let system = System::new(&raised(stiffness, &masses, d, shift), &support)?;
+        let system = System::new(&raised(stiffness, &masses, d, shift), &support)?.placed(&mesh.points, d);
         let rigid: usize = unheld.iter().map(|body| body.motions).sum();
         let Some(factor) = system.cholesky()? else { return Ok(Vibrations { masses, ..Vibrations::default() }) };
         let modes = lowest_modes(&system, &factor, &masses, d, (rigid + count).min(system.size()))?;
@@ -61,7 +61,8 @@ impl Vibrations {
     pub fn are_stable(&self, mesh: &Mesh, stiffness: &Entries) -> Result<bool> {
         let Some(least) = self.least else { return Ok(true) };
         let raised = raised(stiffness, &self.masses, mesh.dimension, UNSTABLE * least);
-        Ok(System::new(&raised, &Support::free(mesh))?.cholesky()?.is_some())
+        let system = System::new(&raised, &Support::free(mesh))?.placed(&mesh.points, mesh.dimension);
+        Ok(system.cholesky()?.is_some())
     }
 }
 

@@ -1,12 +1,16 @@
 //! Cholesky factorisation of a sparse matrix, with checks of the memory that it needs.
 
+use super::ordering::{Graph, Places};
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory;
 use crate::model::ADVICE;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
+use faer::perm::Perm;
 use faer::prelude::MatMut;
-use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky};
+use faer::sparse::linalg::cholesky::{
+    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Side, get_global_parallelism};
 use std::sync::Arc;
@@ -23,14 +27,36 @@ pub struct Cholesky {
 }
 
 impl Analysis {
-    /// Analyses a pattern.
+    /// Analyses a pattern with both triangles. Of the orders by minimum degree and by nested dissection, which needs the places of the
+    /// unknowns, that with fewer operations is taken.
     ///
     /// # Errors
     /// It does not fit into memory.
-    pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Analysis> {
-        factorize_symbolic_cholesky(pattern, Side::Lower, Default::default(), Default::default())
-            .map(|symbolic| Analysis(Arc::new(symbolic)))
-            .map_err(|cause| out_of_memory("the analysis of the stiffness", cause))
+    pub fn new(pattern: SymbolicSparseColMatRef<'_, usize>, places: Option<&Places>) -> Result<Analysis> {
+        let full = |cause| out_of_memory("the analysis of the stiffness", cause);
+        let analyse = |pattern, order: Option<&[usize]>| match order {
+            None => ordered(pattern, SymmetricOrdering::Amd),
+            Some(order) => {
+                let mut position = vec![0; order.len()];
+                order.iter().enumerate().for_each(|(i, &unknown)| position[unknown] = i);
+                let order = Perm::new_checked(order.into(), position.into(), order.len());
+                ordered(pattern, SymmetricOrdering::Custom(order.as_ref()))
+            }
+        };
+        let graph = places.map(|places| (Graph::of(pattern), places));
+        let dissected = graph.and_then(|(graph, places)| Some((graph.dissection(places)?, graph)));
+        let Some((dissection, graph)) = dissected else { return analyse(pattern, None).map_err(full) };
+        // Compared on the nodes: an analysis of them takes a ninth of the memory and time in space.
+        let by_degree = analyse(graph.pattern(), None).map_err(full)?;
+        let by_dissection = analyse(graph.pattern(), Some(&dissection)).map_err(full)?;
+        let order = if by_dissection.cost().1 <= by_degree.cost().1 { dissection } else { by_degree.order() };
+        analyse(pattern, Some(&graph.unknowns(&order))).map_err(full)
+    }
+
+    /// What is eliminated first, second and so on.
+    fn order(&self) -> Vec<usize> {
+        let natural = || (0..self.0.nrows()).collect();
+        self.0.perm().map_or_else(natural, |order| order.arrays().0.to_vec())
     }
 
     /// The bytes of a factor, including those that are needed to compute it.
@@ -94,6 +120,28 @@ impl Cholesky {
         let factor = LltRef::new(symbolic, &self.values);
         factor.solve_in_place_with_conj(Conj::No, x, par, MemStack::new(&mut room));
     }
+}
+
+/// The degrees of freedom in the order in which a factor of a pattern of the `free` ones, both triangles, stays sparse.
+///
+/// # Errors
+/// The analysis does not fit into memory.
+pub(crate) fn elimination_order(
+    pattern: SymbolicSparseColMatRef<'_, usize>,
+    free: &[usize],
+    points: &[f64],
+    dimension: usize,
+) -> Result<Vec<usize>> {
+    let analysis = Analysis::new(pattern, Some(&Places::of(free, points, dimension)))?;
+    Ok(analysis.order().into_iter().map(|i| free[i]).collect())
+}
+
+fn ordered(
+    pattern: SymbolicSparseColMatRef<'_, usize>,
+    order: SymmetricOrdering<'_, usize>,
+) -> std::result::Result<Analysis, FaerError> {
+    let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, Default::default())?;
+    Ok(Analysis(Arc::new(symbolic)))
 }
 
 /// The error for a failed allocation that the estimates before did not predict.

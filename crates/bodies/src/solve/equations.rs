@@ -24,12 +24,17 @@ pub enum Equations {
 }
 
 impl Equations {
-    /// With a Cholesky factor; `None` if the matrix is not positive definite.
+    /// With a Cholesky factor; `None` if the matrix is not positive definite. `points` are `[points × dimension]`, m.
     ///
     /// # Errors
     /// The equations do not fit into memory.
-    pub fn factored(entries: &Entries, support: &Support) -> Result<Option<Equations>> {
-        Equations::of_system(Arc::new(System::new(entries, support)?))
+    pub fn factored(
+        entries: &Entries,
+        support: &Support,
+        points: &[f64],
+        dimension: usize,
+    ) -> Result<Option<Equations>> {
+        Equations::of_system(Arc::new(System::new(entries, support)?.placed(points, dimension)))
     }
 
     /// The same of equations whose pattern may be known.
@@ -73,7 +78,7 @@ impl Equations {
             }
         }
         check_body(mesh)?;
-        Equations::factored(&finite_elements(mesh, moduli), support)
+        Equations::factored(&finite_elements(mesh, moduli), support, &mesh.points, mesh.dimension)
     }
 
     /// The displacements under the nodal forces f, `[points · dimension]`, N, and the relative residual; refined where there is a

@@ -1,6 +1,7 @@
 //! What a Cholesky factor of a body will cost, before anything is assembled.
 
 use super::cholesky::Analysis;
+use super::ordering::Places;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use faer::sparse::{Pair, SymbolicSparseColMat};
@@ -31,7 +32,8 @@ pub fn factor_cost(mesh: &Mesh) -> Result<FactorCost> {
     }
     let pattern = SymbolicSparseColMat::try_new_from_indices(count, count, &places);
     let (pattern, _) = pattern.map_err(|_| Error::new("the pattern of the stiffness does not fit into memory"))?;
-    let (entries, operations) = Analysis::new(pattern.as_ref())?.cost();
+    let places = Places { coordinates: mesh.points.clone(), dimension: mesh.dimension };
+    let (entries, operations) = Analysis::new(pattern.as_ref(), Some(&places))?.cost();
     let d = mesh.dimension as f64;
     Ok(FactorCost { entries: d.powi(2) * entries, operations: d.powi(3) * operations })
 }

@@ -3,6 +3,7 @@
 //! Theory: page *Precision* of the book.
 
 use super::cholesky::{Analysis, Cholesky, out_of_memory};
+use super::ordering::Places;
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::model::{ADVICE, Entries, Support};
@@ -44,6 +45,8 @@ struct Pattern {
     symbolic: SymbolicSparseColMat<usize>,
     /// The index in the matrix to which each entry is added.
     slots: Vec<usize>,
+    /// Where the free degrees of freedom are, if it is known.
+    places: OnceLock<Places>,
     /// The analysis, made when it is first needed.
     cholesky: OnceLock<Result<Analysis>>,
 }
@@ -82,8 +85,17 @@ impl System {
             starts[*col] + rows[starts[*col]..starts[*col + 1]].partition_point(|other| other < row)
         };
         let slots = places.iter().map(slot).collect();
-        let cholesky = OnceLock::new();
-        Ok(System::of(Arc::new(Pattern { free, place, symbolic, slots, cholesky }), entries, support))
+        let (places, cholesky) = Default::default();
+        Ok(System::of(Arc::new(Pattern { free, place, symbolic, slots, places, cholesky }), entries, support))
+    }
+
+    /// The same equations, of points at these places, `[points × dimension]`, m. A large factor in space then has less than half of the
+    /// entries. Places of another number of degrees of freedom are not used.
+    pub fn placed(self, points: &[f64], dimension: usize) -> System {
+        if dimension > 0 && points.len() == self.degrees() && points.len().is_multiple_of(dimension) {
+            self.pattern.places.get_or_init(|| Places::of(self.free(), points, dimension));
+        }
+        self
     }
 
     /// The equations with other values at the same positions in the same order, and other prescribed displacements of
@@ -158,7 +170,7 @@ impl System {
     }
 
     fn analysis(&self) -> Result<&Analysis> {
-        let analyse = || Analysis::new(self.matrix.symbolic());
+        let analyse = || Analysis::new(self.matrix.symbolic(), self.pattern.places.get());
         self.pattern.cholesky.get_or_init(analyse).as_ref().map_err(Clone::clone)
     }
 

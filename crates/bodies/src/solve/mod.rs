@@ -12,8 +12,10 @@ mod linear;
 mod method;
 mod modes;
 mod newton;
+mod ordering;
 mod stability;
 
+pub(crate) use cholesky::elimination_order;
 pub use equations::Equations;
 pub use expectation::{FactorCost, dense_rate, factor_cost};
 pub use levels::{Levels, Solved, compare_levels};

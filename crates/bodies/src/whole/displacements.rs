@@ -138,7 +138,7 @@ impl<'a> Displacements<'a> {
                 let known = lock()[*group].take();
                 let system = Arc::new(match known {
                     Some(known) => known.renewed(&entries, support)?,
-                    None => System::new(&entries, support)?,
+                    None => System::new(&entries, support)?.placed(object.points, object.dimension()),
                 });
                 lock()[*group] = Some(system.clone());
                 Equations::of_system(system)
@@ -226,7 +226,8 @@ impl<'a> Displacements<'a> {
             if let Some(known) = &systems[i] {
                 return Ok(known.clone());
             }
-            let system = Newton::pattern(&rest.tangent, &self.targets[group[0]].support)?;
+            let system = Newton::pattern(&rest.tangent, &self.targets[group[0]].support)?
+                .placed(self.object.points, self.object.dimension());
             Ok(systems[i].insert(Arc::new(system)).clone())
         };
         self.groups.iter().enumerate().map(&mut one).collect::<Result<_>>().map(Some)

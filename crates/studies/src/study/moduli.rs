@@ -110,7 +110,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
             let u = strain * DVector::from_column_slice(mesh.point(p));
             (0..d).for_each(|k| support.prescribed[p * d + k] = Some(u[k]));
         }
-        let system = System::new(entries, &support)?;
+        let system = System::new(entries, &support)?.placed(&mesh.points, d);
         let Some(factor) = system.factorize()? else { return Ok(None) };
         let (u, left) = system.solve(&factor, &vec![0.0; mesh.points.len()]);
         if !(left <= SOLVED) {

@@ -42,7 +42,7 @@ impl Factored {
             progress(Event::stage("finite elements", i, cases.len()));
             if first == i {
                 let start = Instant::now();
-                let system = System::new(&entries, &case.support)?;
+                let system = System::new(&entries, &case.support)?.placed(&mesh.points, mesh.dimension);
                 let factor = definite(&system, mesh)?;
                 factored.system_of.push(factored.systems.len());
                 factored.systems.push((Arc::new(system), Arc::new(factor)));
@@ -86,7 +86,7 @@ impl Factored {
             let index = self.system_of[i];
             if index == systems.len() {
                 let start = Instant::now();
-                let system = System::new(&entries, &case.support)?;
+                let system = System::new(&entries, &case.support)?.placed(&mesh.points, mesh.dimension);
                 let factor = system.factorize().map_err(|e| e.at_key("mesh"))?;
                 let seconds = start.elapsed().as_secs_f64();
                 let (body, body_factor) = (&*self.systems[index].0, &*self.systems[index].1);

@@ -6,7 +6,7 @@ use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Elastic, RegionsBody, check_body, displaced};
-use crate::solve::{Ending, Equilibrium, Newton};
+use crate::solve::{Ending, Equilibrium, Newton, System};
 use crate::study::metrics::product;
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
@@ -60,7 +60,8 @@ impl LargeBody {
             progress(Event::stage("finite elements", done, cases.len()));
             let start = Instant::now();
             let model = RegionsBody { mesh, laws: &body.laws };
-            let found = newton.solve(&model, &mesh.points, &case.support, &case.forces)?;
+            let pattern = pattern(&model, mesh, case)?;
+            let found = newton.solve_with(&model, &mesh.points, &case.support, &case.forces, pattern.as_ref())?;
             body.seconds.push(start.elapsed().as_secs_f64());
             body.followed.push(Followed::of(&found, &model));
             body.works.push(work(case, &model, &mesh.points, &found.displacement));
@@ -103,7 +104,8 @@ impl LargeBody {
         for (i, case) in cases.iter().enumerate() {
             let start = Instant::now();
             let model: &dyn Elastic = network;
-            let found = self.newton.solve(model, &mesh.points, &case.support, &case.forces)?;
+            let pattern = pattern(model, mesh, case)?;
+            let found = self.newton.solve_with(model, &mesh.points, &case.support, &case.forces, pattern.as_ref())?;
             let seconds_lem = start.elapsed().as_secs_f64();
             let followed = Followed::of(&found, &RegionsBody { mesh, laws: &self.laws });
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
@@ -126,6 +128,12 @@ impl LargeBody {
         }
         Ok(loads)
     }
+}
+
+/// The equations of all steps of a load, without values; `None` if the model has no tangent at rest.
+fn pattern(model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Option<System>> {
+    let Some(rest) = model.respond(&mesh.points) else { return Ok(None) };
+    Ok(Some(Newton::pattern(&rest.tangent, &case.support)?.placed(&mesh.points, mesh.dimension)))
 }
 
 fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f64> {

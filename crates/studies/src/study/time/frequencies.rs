@@ -98,12 +98,12 @@ impl Vibrations<'_> {
     /// The frequencies, Hz.
     fn of(&self, stiffness: &Entries) -> Result<Vec<f64>> {
         let d = self.mesh.dimension;
-        let system = System::new(stiffness, self.support)?;
+        let system = System::new(stiffness, self.support)?.placed(&self.mesh.points, d);
         if let Some(factor) = system.cholesky()?.filter(|_| self.rigid == 0) {
             return Ok(lowest_modes(&system, &factor, self.masses, d, self.count)?.frequencies());
         }
         // (K + σ M) φ = (ω² + σ) M φ.
-        let mut raised = Raised::new(stiffness.clone(), self.masses, self.support, d);
+        let mut raised = Raised::new(stiffness.clone(), self.masses, self.support, self.mesh);
         let largest = raised.largest;
         let releases = || Error::new("some motion releases energy: it does not vibrate");
         raised.by(RELEASE * largest)?.cholesky()?.ok_or_else(releases)?;

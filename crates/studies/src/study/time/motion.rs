@@ -255,7 +255,7 @@ fn indefinite(name: &str, network: &Network) -> String {
 fn growth(network: &Network, masses: &[f64], mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
     network.check_size()?;
     let stiffness = network.stiffness(&mesh.points);
-    let mut raised = Raised::new(stiffness, masses, &planned.support, mesh.dimension);
+    let mut raised = Raised::new(stiffness, masses, &planned.support, mesh);
     let largest = raised.largest;
     if !(largest > 0.0 && largest.is_finite()) {
         return Ok(None);

@@ -2,6 +2,7 @@
 
 use crate::dynamics::largest_square;
 use crate::error::Result;
+use crate::mesh::Mesh;
 use crate::model::{Entries, Support};
 use crate::solve::System;
 use faer::sparse::Triplet;
@@ -17,6 +18,7 @@ pub struct Raised<'a> {
     /// The masses of the degrees of freedom, kg.
     masses: Vec<f64>,
     support: &'a Support,
+    mesh: &'a Mesh,
     system: Option<System>,
     /// An upper bound of the largest ω², rad²/s².
     pub largest: f64,
@@ -24,13 +26,13 @@ pub struct Raised<'a> {
 
 impl<'a> Raised<'a> {
     /// The equations of this K; `masses` are `[points]`, kg.
-    pub fn new(mut entries: Entries, masses: &[f64], support: &'a Support, dimension: usize) -> Raised<'a> {
-        let masses: Vec<f64> = masses.iter().flat_map(|m| std::iter::repeat_n(*m, dimension)).collect();
+    pub fn new(mut entries: Entries, masses: &[f64], support: &'a Support, mesh: &'a Mesh) -> Raised<'a> {
+        let masses: Vec<f64> = masses.iter().flat_map(|m| std::iter::repeat_n(*m, mesh.dimension)).collect();
         let held: Vec<bool> = (0..masses.len()).map(|dof| support.is_fixed(dof)).collect();
         let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
         let springs = entries.len();
         entries.extend((0..masses.len()).map(|dof| Triplet::new(dof, dof, 0.0)));
-        Raised { entries, springs, masses, support, system: None, largest }
+        Raised { entries, springs, masses, support, mesh, system: None, largest }
     }
 
     /// The equations with this σ, rad²/s².
@@ -41,7 +43,11 @@ impl<'a> Raised<'a> {
         self.entries[self.springs..].iter_mut().zip(&self.masses).for_each(|(entry, m)| entry.val = shift * m);
         match &self.system {
             Some(system) => system.renewed(&self.entries, self.support),
-            None => self.system.insert(System::new(&self.entries, self.support)?).renewed(&self.entries, self.support),
+            None => {
+                let system = System::new(&self.entries, self.support)?;
+                let system = self.system.insert(system.placed(&self.mesh.points, self.mesh.dimension));
+                system.renewed(&self.entries, self.support)
+            }
         }
     }
 }

@@ -98,7 +98,7 @@ impl<'a> WholeBody<'a> {
             return Equations::iterated(stiffness, points, support, solver);
         }
         network.check_size()?;
-        Equations::factored(&network.stiffness(points), support)
+        Equations::factored(&network.stiffness(points), support, points, self.mesh.dimension)
     }
 
     /// Fits the constants of the network of `start`, which was assembled from its fits of the cells. Without `start`, fits the moduli
