@@ -4,21 +4,20 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
 use springfit::error::{Error, Result};
-use springfit::generate::{Program, Recipe, language, language_of};
+use springfit::generate::{LANGUAGES, Program, Recipe, language, language_of};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Write code that computes the springs of a cell at run time, for programs that cut, remesh or adapt
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = after_help())]
 pub struct Generate {
     /// A shipped element's name, or an element file
     element: String,
     /// exact, offdiag, frobenius, modal, or a published method: those with direct solutions
     #[arg(long, default_value = "exact")]
     objective: String,
-    /// c, cuda, rust, python, wgsl, glsl or latex [default: by the ending of the file, otherwise c]
-    #[arg(long)]
+    #[arg(long, help = language_help())]
     language: Option<String>,
     /// Where volumes are measured: points or cells [default: points] (exact only)
     #[arg(long)]
@@ -44,9 +43,19 @@ Examples:
 The file needs no other. Its functions give the moduli from Young's modulus and Poisson's ratio,
 the spring constants from the positions of the nodes and the moduli, and the energy and the
 forces of the network. WGSL and GLSL have single precision.
-Endings: .h .c .hpp .cpp .cc .cuh .cu .rs .py .wgsl .glsl .comp .tex
 Published methods: van-gelder, van-gelder-simple, lloyd, lloyd-preserving, baudet,
 baudet-corrected, delingette-quadratic, delingette-biquadratic";
+
+fn after_help() -> String {
+    let endings: Vec<String> =
+        LANGUAGES.iter().flat_map(|language| language.endings).map(|ending| format!(".{ending}")).collect();
+    format!("{EXAMPLES}\nEndings: {}", endings.join(" "))
+}
+
+fn language_help() -> String {
+    let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
+    format!("One of {} [default: by the ending of the file, otherwise c]", names.join(", "))
+}
 
 impl Generate {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {

@@ -70,7 +70,8 @@ impl Program {
             let most = language.most_work;
             let expected = format!("one with room for {work} numbers in a function of {}", self.prefix);
             let error = Error::expected("language", expected, format!("\"{}\", with room for {most}", language.name));
-            let way = "; \"c\", \"rust\" and \"python\" have room, and \"exact\" and \"offdiag\" need little";
+            let room = language::languages_for(work).join(", ");
+            let way = format!("; {room} have room, and \"exact\" and \"offdiag\" need little");
             return Err(error.of_kind(ErrorKind::Limit).followed_by(way));
         }
         Ok(language::print(language, &self.prefix, &self.heading, &self.functions))

@@ -8,7 +8,7 @@ mod refusals;
 mod text;
 
 use case::{Case, every};
-use programs::{Outcome, Tool, c, python, rust, single};
+use programs::{Outcome, Tool, c, javascript, python, rust, single};
 
 /// The relative difference that rounding leaves. Where the condition of the normal equations is so large that it makes more of
 /// the rounding errors of the two sides, that is allowed.
@@ -71,6 +71,13 @@ fn rust_has_the_numbers_of_the_library() {
 fn python_has_the_numbers_of_the_library() {
     let cases = every(|case| case.springs.len() < 100);
     let Some(found) = python(&cases) else { return println!("not run: there is no python3") };
+    compare(&cases, &found, ROUNDING);
+}
+
+#[test]
+fn javascript_has_the_numbers_of_the_library() {
+    let cases = every(|case| case.springs.len() < 100);
+    let Some(found) = javascript(&cases) else { return println!("not run: there is no node") };
     compare(&cases, &found, ROUNDING);
 }
 

@@ -214,6 +214,33 @@ pub fn python(cases: &[Case]) -> Option<Vec<Outcome>> {
     Some(read(cases, &run(folder.path(), "python3", &["main.py"])?))
 }
 
+/// JavaScript; none without Node.
+pub fn javascript(cases: &[Case]) -> Option<Vec<Outcome>> {
+    let folder = TempDir::new().unwrap();
+    let mut main = String::from("const [NAN, INFINITY] = [NaN, Infinity];\n");
+    for (i, case) in cases.iter().enumerate() {
+        let prefix = case.prefix();
+        fs::write(folder.path().join(format!("case_{i}.mjs")), case.text("javascript").unwrap()).unwrap();
+        writeln!(main, "import * as case_{i} from \"./case_{i}.mjs\";").unwrap();
+        for Sample { x, deformed, moduli: [lambda, mu], .. } in &case.samples {
+            writeln!(
+                main,
+                "{{ const y = [{}];\nconst [constants, rests] = case_{i}.{prefix}_constants([{}], {}, {});\n\
+                 const energy = case_{i}.{prefix}_energy(y, constants, rests);\n\
+                 const forces = case_{i}.{prefix}_forces(y, constants, rests);\n\
+                 console.log([0, ...constants, ...rests, energy, ...forces].join(\" \")); }}",
+                list(deformed),
+                list(x),
+                word(*lambda),
+                word(*mu)
+            )
+            .unwrap();
+        }
+    }
+    fs::write(folder.path().join("main.mjs"), main).unwrap();
+    Some(read(cases, &run(folder.path(), "node", &["main.mjs"])?))
+}
+
 /// Programs that check the syntax of a language and are not needed to build springfit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tool {

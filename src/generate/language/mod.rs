@@ -3,6 +3,7 @@
 mod c;
 mod cuda;
 mod glsl;
+mod javascript;
 mod latex;
 mod printer;
 mod python;
@@ -40,10 +41,16 @@ pub const LANGUAGES: &[LanguageRow] = &[
     LanguageRow { name: "cuda", endings: &["cuh", "cu"], most_work: DEVICE, syntax: &cuda::Cuda },
     LanguageRow { name: "rust", endings: &["rs"], most_work: STACK, syntax: &rust::Rust },
     LanguageRow { name: "python", endings: &["py"], most_work: usize::MAX, syntax: &python::Python },
+    LanguageRow { name: "javascript", endings: &["js", "mjs"], most_work: usize::MAX, syntax: &javascript::JavaScript },
     LanguageRow { name: "wgsl", endings: &["wgsl"], most_work: SHADER, syntax: &wgsl::Wgsl },
     LanguageRow { name: "glsl", endings: &["glsl", "comp"], most_work: SHADER, syntax: &glsl::Glsl },
     LanguageRow { name: "latex", endings: &["tex"], most_work: usize::MAX, syntax: &latex::Latex },
 ];
+
+/// The languages that have room for so many numbers in a function.
+pub fn languages_for(work: usize) -> Vec<&'static str> {
+    LANGUAGES.iter().filter(|language| language.most_work >= work).map(|language| language.name).collect()
+}
 
 /// The language with this name.
 ///
