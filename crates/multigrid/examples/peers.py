@@ -42,12 +42,13 @@ def rigid(points):
     return b.reshape(-1, 6)
 
 
-def tell(name, n, setup, iterations, solve, residual):
+def tell(n, setup, iterations, solve, residual):
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-    print(f"{name}: {n} unknowns, setup {setup:.2f} s, {iterations} iterations {solve:.2f} s, residual {residual:.1e}, peak {peak:.2f} GB")
+    return f"{n} unknowns, setup {setup:.2f} s, {iterations} iterations {solve:.2f} s, residual {residual:.1e}, peak {peak:.2f} GB"
 
 
 def petsc(folder):
+    """Unknowns, seconds of the setup, iterations, their seconds, residual."""
     import petsc4py
 
     petsc4py.init([])
@@ -77,10 +78,11 @@ def petsc(folder):
     ksp.solve(f, x)
     solve = time.process_time() - start
     residual = (f - m * x).norm() / f.norm()
-    tell("PETSc GAMG", n, setup, ksp.getIterationNumber(), solve, residual)
+    return n, setup, ksp.getIterationNumber(), solve, residual
 
 
 def pyamg(folder):
+    """The same."""
     import pyamg as amg
     from scipy.sparse import bsr_matrix
 
@@ -95,9 +97,9 @@ def pyamg(folder):
 
     x, _ = cg(a, b, M=m, tol=1e-8, criteria="rMr", maxiter=500, residuals=count)
     solve = time.process_time() - start
-    tell("pyamg", a.shape[0], setup, len(count) - 1, solve, np.linalg.norm(b - a @ x) / np.linalg.norm(b))
+    return a.shape[0], setup, len(count) - 1, solve, np.linalg.norm(b - a @ x) / np.linalg.norm(b)
 
 
 if __name__ == "__main__":
     for name in sys.argv[2:] or ["petsc", "pyamg"]:
-        {"petsc": petsc, "pyamg": pyamg}[name](sys.argv[1])
+        print(f"{name}: {tell(*{'petsc': petsc, 'pyamg': pyamg}[name](sys.argv[1]))}")
