@@ -29,6 +29,7 @@ mod fills;
 mod fits;
 mod formats;
 mod fraction;
+mod functions;
 mod generate;
 mod golden;
 mod integrals;

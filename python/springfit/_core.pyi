@@ -109,6 +109,7 @@ def fit(
     keys: dict[str, Any],
     held: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
+    functions: dict[str, Any] | None = None,
 ) -> Network: ...
 def finite_elements(mesh: Mesh, material: Any) -> Triplets: ...
 def run(

@@ -5,6 +5,7 @@ mod distributed;
 mod element;
 mod error;
 mod fit;
+mod functions;
 mod gradient;
 mod mesh;
 mod network;
