@@ -26,10 +26,10 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_class::<network::Network>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_class::<sweep::Studies>()?;
+    module.add_class::<distributed::DistributedBody>()?;
     module.add_class::<distributed::BodyShare>()?;
     module.add_class::<distributed::NetworkShare>()?;
     module.add_class::<gradient::CellConstants>()?;
-    module.add_function(wrap_pyfunction!(distributed::distributed, module)?)?;
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
