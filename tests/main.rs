@@ -30,6 +30,7 @@ mod fills;
 mod fits;
 mod formats;
 mod fraction;
+mod functions;
 mod generate;
 mod golden;
 mod integrals;

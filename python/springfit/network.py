@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import _core
+from ._functions import separated, warn_of_rest
 from ._progress import listener
 from .material import Material
 from .mesh import Mesh, failure, matrix
@@ -47,23 +48,45 @@ def fit(
     if fix is not None and objective != "whole":
         raise failure("fix", 'what is held with the objective "whole" alone', f'it with "{objective}"')
     held = None if fix is None else held_flags(mesh, fix)
+    entry, functions = separated(entry)
+    if functions is not None and functions["energy"] is not None:
+        warn_of_rest(material, *functions["energy"][1:])
     with listener(progress) as told:
-        return Network(_core.fit(mesh._core, material, entry, held, told), mesh)
+        return Network(_core.fit(mesh._core, material, entry, held, told, functions), mesh)
 
 
-def sampled(mesh: Mesh, material: Material, law: "str | os.PathLike", **keys: Any) -> "Network":
+def sampled(
+    mesh: Mesh,
+    material: Material,
+    law: "str | os.PathLike | Callable[[np.ndarray], Any] | None" = None,
+    *,
+    stress: "Callable[[np.ndarray], Any] | None" = None,
+    force: "str | Callable[..., Any] | Mapping[str, str | Callable[..., Any]] | None" = None,
+    **keys: Any,
+) -> "Network":
     """Fits the springs of every cell to the forces of an energy at sampled shapes.
 
     Args:
-        law: A shipped energy, such as "neo-hookean", or the path of a material file. An energy of your own is such a file: its expression
-            is differentiated, which a Python function cannot be.
-        **keys: The other keys of a ``[[fit]]`` with the objective "sampled", such as ``force="k1*s + k3*s^3"`` and
-            ``shapes={"count": 300, "stretch": 0.3}``; and the options of :func:`fit`.
+        law: A shipped energy, such as "neo-hookean", or the path of a material file, whose expression is differentiated exactly. Or a
+            function W(F) of the deformation gradients (n, 3, 3) that returns the energies per volume at rest (n,), J/m³. F is that of a
+            solid; of a plane body its stretch through the thickness follows from the plane state. Without ``stress``, W is differentiated
+            by differences of the fourth order, whose error is some 1e-12 of the moduli. The material gives the moduli at rest; a warning tells where W has others.
+        stress: The derivative P(F) of W, (n, 3, 3), Pa: the first Piola-Kirchhoff stress. It is enough without W; with W both are compared.
+        force: The law of force of the springs: an expression, such as "k1*s + k3*s^3", or a function such as f(s, k, a), or a dictionary of
+            laws by spring group. Arguments of a function are the strain s = (c - c0)/c0 and the measure c, of shape (n,), the measure c0 at
+            rest, and the parameters to fit, which are numbers and have any other names; those with a default keep it. It returns the
+            forces (n,), N. Its derivatives are differences.
+        **keys: The other keys of a ``[[fit]]`` with the objective "sampled", such as ``shapes={"count": 300, "stretch": 0.3}``; and the
+            options of :func:`fit`.
+
+    Functions are called on the threads of the fit, one call at a time. What they raise is the cause of the error. A network whose law of
+    force is a function is not written to files.
 
     Raises:
-        SpringfitError: A key or a value is wrong, or a cell cannot be fitted.
+        SpringfitError: A key or a value is wrong, a function fails or returns an array of another shape, or a cell cannot be fitted.
     """
-    return fit(mesh, material, "sampled", law=os.fspath(law), **keys)
+    law = law if law is None or callable(law) else os.fspath(law)
+    return fit(mesh, material, "sampled", law=law, stress=stress, force=force, **keys)
 
 
 def whole(mesh: Mesh, material: Material, fix: Any, **keys: Any) -> "Network":

@@ -2,49 +2,152 @@
 
 use crate::arrays::{list, matrix, place_list, places, rows};
 use crate::error::{invalid, raised};
-use crate::mesh::Mesh;
 use crate::progress::{self, apart};
 use crate::study::{keyless, settings_of, text_of};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::SpringKind;
+use springfit::mesh;
 use springfit::model::{BlockStiffness, is_exact, length_shares};
 use springfit::report::{NetworkShard, Shard, ShardRun};
 use springfit::study::{self, Scene, distributed_body};
+use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Where the blocks of each point begin, the other point of each, and the blocks, `[blocks, dimension²]`.
 type Blocks<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f64>>);
 
-/// Name, nodal forces, what is held, and prescribed displacements.
-type Load<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<bool>>, Bound<'py, PyArray2<f64>>);
+/// Nodal forces, what is held, and prescribed displacements of some points.
+type Load<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<bool>>, Bound<'py, PyArray2<f64>>);
 
-/// The text of the scene and its path, its title, its fits, its mesh and its loads.
-type Body<'py> = ((String, PathBuf), String, Vec<String>, Mesh, Vec<Load<'py>>);
+/// What is worked out once for all ranks, of which slices are shared out.
+#[pyclass(frozen, module = "springfit._core")]
+pub struct DistributedBody {
+    source: (String, PathBuf),
+    title: String,
+    fits: Vec<String>,
+    mesh: mesh::Mesh,
+    loads: Vec<study::Case>,
+}
 
-/// What is worked out once for all ranks.
-#[pyfunction]
-pub fn distributed<'py>(
-    py: Python<'py>,
-    scene: &Bound<'py, PyAny>,
-    folder: PathBuf,
-    settings: &Bound<'py, PyDict>,
-) -> PyResult<Body<'py>> {
-    let (text, path) = text_of(py, scene, &folder)?;
-    let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
-    let scene = scene.map_err(|error| raised(py, keyless(error)))?;
-    let (mesh, cases) = progress::run(py, None, |_| distributed_body(&scene))?;
-    let d = mesh.dimension;
-    let load = |case: study::Case| {
-        let held = case.support.prescribed.iter().map(Option::is_some).collect();
-        let given = case.support.prescribed.iter().map(|u| u.unwrap_or(0.0)).collect();
-        (case.name, matrix(py, case.forces, d), matrix(py, held, d), matrix(py, given, d))
-    };
-    let fits = scene.fits().iter().map(|fit| fit.name.clone()).collect();
-    let loads = cases.into_iter().map(load).collect();
-    Ok(((text, path), scene.title().into(), fits, Mesh(Arc::new(mesh)), loads))
+#[pymethods]
+impl DistributedBody {
+    #[new]
+    fn new(py: Python, scene: &Bound<PyAny>, folder: PathBuf, settings: &Bound<PyDict>) -> PyResult<DistributedBody> {
+        let source = text_of(py, scene, &folder)?;
+        let scene = Scene::parse_with(&source.0, &source.1, &settings_of(py, settings)?);
+        let scene = scene.map_err(|error| raised(py, keyless(error)))?;
+        let (mesh, loads) = progress::run(py, None, |_| distributed_body(&scene))?;
+        let fits = scene.fits().iter().map(|fit| fit.name.clone()).collect();
+        Ok(DistributedBody { source, title: scene.title().into(), fits, mesh, loads })
+    }
+
+    /// The text of the scene and its path.
+    #[getter]
+    fn source(&self) -> (&str, &PathBuf) {
+        (&self.source.0, &self.source.1)
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The names of the fits.
+    #[getter]
+    fn fits(&self) -> Vec<&str> {
+        self.fits.iter().map(String::as_str).collect()
+    }
+
+    /// The names of the loads.
+    #[getter]
+    fn loads(&self) -> Vec<&str> {
+        self.loads.iter().map(|load| &load.name[..]).collect()
+    }
+
+    /// The numbers of points and of cells.
+    #[getter]
+    fn counts(&self) -> (usize, usize) {
+        (self.mesh.point_count(), self.mesh.cell_count())
+    }
+
+    /// The element of each block of cells.
+    #[getter]
+    fn elements(&self) -> Vec<&str> {
+        self.mesh.blocks.iter().map(|block| &block.element.name[..]).collect()
+    }
+
+    /// The number of cells of each block.
+    #[getter]
+    fn sizes(&self) -> Vec<usize> {
+        self.mesh.blocks.iter().map(|block| block.cells().len()).collect()
+    }
+
+    #[getter]
+    fn checksum(&self) -> String {
+        format!("{:08x}", self.mesh.checksum())
+    }
+
+    /// Whether the file of the mesh numbers its points.
+    #[getter]
+    fn is_numbered(&self) -> bool {
+        self.mesh.numbering.is_some()
+    }
+
+    /// Of `count` points from `first` on, `[count, dimension]`, m.
+    fn points<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let d = self.mesh.dimension;
+        let range = self.range(py, first, count)?;
+        Ok(matrix(py, self.mesh.points[range.start * d..range.end * d].to_vec(), d))
+    }
+
+    /// Of these points in the file of the mesh.
+    fn numbers<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let range = self.range(py, first, count)?;
+        let numbers = self.mesh.numbering.as_ref().map_or(&[][..], |numbering| &numbering.nodes[range]);
+        Ok(list(py, numbers.iter().map(|&number| number as i64).collect()))
+    }
+
+    /// The nodes of `count` cells of a block from `first` on.
+    fn cells<'py>(
+        &self,
+        py: Python<'py>,
+        block: usize,
+        first: usize,
+        count: usize,
+    ) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        let blocks = &self.mesh.blocks;
+        let expected = || invalid(py, "block", "cells of the mesh", format!("{count} from {first} of block {block}"));
+        let block = blocks.get(block).ok_or_else(expected)?;
+        let n = block.element.nodes();
+        let nodes = first.checked_add(count).and_then(|end| block.connectivity.get(first * n..end * n));
+        Ok(matrix(py, nodes.ok_or_else(expected)?.iter().map(|&p| p as i64).collect(), n))
+    }
+
+    /// A load on `count` points from `first` on.
+    fn load<'py>(&self, py: Python<'py>, load: usize, first: usize, count: usize) -> PyResult<Load<'py>> {
+        let expected = || invalid(py, "load", &format!("a number below {}", self.loads.len()), load);
+        let case = self.loads.get(load).ok_or_else(expected)?;
+        let d = self.mesh.dimension;
+        let range = self.range(py, first, count)?;
+        let given = &case.support.prescribed[range.start * d..range.end * d];
+        Ok((
+            matrix(py, case.forces[range.start * d..range.end * d].to_vec(), d),
+            matrix(py, given.iter().map(Option::is_some).collect(), d),
+            matrix(py, given.iter().map(|u| u.unwrap_or(0.0)).collect(), d),
+        ))
+    }
+}
+
+impl DistributedBody {
+    fn range(&self, py: Python, first: usize, count: usize) -> PyResult<Range<usize>> {
+        let points = self.mesh.point_count();
+        match first.checked_add(count).filter(|end| *end <= points) {
+            Some(end) => Ok(first..end),
+            None => Err(invalid(py, "count", &format!("a part of {points} points"), format!("{count} from {first}"))),
+        }
+    }
 }
 
 /// The cells of one rank.

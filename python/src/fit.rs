@@ -2,6 +2,7 @@
 
 use crate::arrays::list;
 use crate::error::{invalid, raised};
+use crate::functions::{Functions, Given};
 use crate::mesh::Mesh;
 use crate::network::{Network, Triplets};
 use crate::progress::{self, apart};
@@ -12,7 +13,7 @@ use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
 use springfit::material::{Material, MaterialMap, Plane};
 use springfit::model::{self, Support};
-use springfit::study::{BodyConstants, Controls, FitEntry, Reference, WholeBody, fit_mesh, point_masses};
+use springfit::study::{BodyConstants, Controls, Event, FitEntry, Reference, WholeBody, fit_mesh, point_masses};
 
 /// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²).
 #[derive(FromPyObject)]
@@ -37,9 +38,9 @@ impl Constants {
     }
 }
 
-/// Fits the springs of every cell; `keys` are those of a `[[fit]]` of a scene.
+/// Fits the springs of every cell; `keys` are those of a `[[fit]]` of a scene, and `functions` stand for some of them.
 #[pyfunction]
-#[pyo3(signature = (mesh, material, keys, held=None, progress=None))]
+#[pyo3(signature = (mesh, material, keys, held=None, progress=None, functions=None))]
 pub fn fit(
     py: Python,
     mesh: &Mesh,
@@ -47,16 +48,19 @@ pub fn fit(
     keys: &Bound<PyDict>,
     held: Option<PyReadonlyArray2<bool>>,
     progress: Option<Py<PyAny>>,
+    functions: Option<Given>,
 ) -> PyResult<Network> {
     let support = held.map(|held| support(py, mesh, &held)).transpose()?;
     let entry: FitEntry = table(keys)?
         .try_into()
         .map_err(|error: toml::de::Error| raised(py, Error::new(error.message().to_string())))?;
     let (density, constants) = (material.density, material);
-    progress::run(py, progress, |told| {
+    let functions = functions.map(|given| Functions::new(py, given, constants.young)).transpose()?;
+    let work = |told: &mut dyn FnMut(Event)| {
         entry.check()?;
-        let named = entry.fits(std::path::Path::new(""))?.remove(0);
         let material = constants.of(mesh)?;
+        let own = functions.as_ref().map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
+        let named = entry.fits_with(std::path::Path::new(""), &own)?.remove(0);
         let controls = Controls::default();
         let map = MaterialMap::from(material);
         let whole = match (named.recipe.whole(), &support) {
@@ -67,8 +71,14 @@ pub fn fit(
         let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh.0, material, &reference, &named, told)?;
         let masses = density.map(|density| point_masses(&mesh.0, density, material)).transpose()?;
-        Ok(Network::new(mesh.0.clone(), material, masses, fit))
-    })
+        Ok((material, masses, fit))
+    };
+    let ends = functions.as_ref().map(|functions| functions.ends.clone());
+    let (material, masses, fit) = match &ends {
+        Some(ends) => progress::run_functions(py, progress, ends, work)?,
+        None => progress::run(py, progress, work)?,
+    };
+    Ok(Network::new(mesh.0.clone(), material, masses, fit, ends))
 }
 
 /// What is held at rest, `[points, dimension]`.

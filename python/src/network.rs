@@ -2,6 +2,7 @@
 
 use crate::arrays::{list, matrix, vectors};
 use crate::error::{invalid, raised};
+use crate::functions::Ends;
 use crate::progress::apart;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -27,15 +28,31 @@ use std::sync::Arc;
 pub struct Network {
     mesh: Arc<Mesh>,
     outcome: Outcome,
+    /// Of the functions that its laws of force call.
+    ends: Option<Arc<Ends>>,
 }
 
 /// Rows, columns and values of a matrix.
 pub type Triplets<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
 
 impl Network {
-    pub fn new(mesh: Arc<Mesh>, material: Material, masses: Option<Vec<f64>>, fit: FitOutcome) -> Network {
+    pub fn new(
+        mesh: Arc<Mesh>,
+        material: Material,
+        masses: Option<Vec<f64>>,
+        fit: FitOutcome,
+        ends: Option<Arc<Ends>>,
+    ) -> Network {
         let outcome = Outcome::of_fit(String::new(), Mesh::clone(&mesh), material, masses, fit);
-        Network { mesh, outcome }
+        Network { mesh, outcome, ends }
+    }
+
+    /// The result of work that may have called functions of Python.
+    fn heard<T>(&self, py: Python, result: PyResult<T>) -> PyResult<T> {
+        match &self.ends {
+            Some(ends) => ends.heard(py, result),
+            None => result,
+        }
     }
 
     fn fit(&self) -> &FitOutcome {
@@ -96,7 +113,8 @@ impl Network {
     fn energy(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<f64> {
         let x = self.positions(py, x)?;
         let energy = apart(py, || self.network().energy(&x));
-        energy.ok_or_else(|| invalid(py, "x", "positions where the springs have an energy", "others"))
+        let expected = "positions where the springs have an energy";
+        self.heard(py, energy.ok_or_else(|| invalid(py, "x", expected, "others")))
     }
 
     /// The forces of the springs on the points at positions `x`, N.
@@ -104,9 +122,9 @@ impl Network {
     fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let x = self.positions(py, x)?;
         let mut slopes = vec![0.0; x.len()];
-        if !apart(py, || self.network().forces(&x, &mut slopes)) {
-            return Err(invalid(py, "x", "positions where the springs have a force", "others"));
-        }
+        let has_forces = apart(py, || self.network().forces(&x, &mut slopes));
+        let expected = "positions where the springs have a force";
+        self.heard(py, has_forces.then_some(()).ok_or_else(|| invalid(py, "x", expected, "others")))?;
         // The springs pull against the energy's slope.
         slopes.iter_mut().for_each(|slope| *slope = 0.0 - *slope);
         Ok(matrix(py, slopes, self.mesh.dimension))
@@ -121,8 +139,8 @@ impl Network {
             true => Some(self.network().stiffness(&x)),
             false => self.network().respond(&x).map(|response| response.tangent),
         });
-        let entries =
-            entries.ok_or_else(|| invalid(py, "x", "positions where the springs have a tangent", "others"))?;
+        let expected = "positions where the springs have a tangent";
+        let entries = self.heard(py, entries.ok_or_else(|| invalid(py, "x", expected, "others")))?;
         Ok(triplets(py, &entries, list))
     }
 
@@ -151,7 +169,7 @@ impl Network {
             let factor = system.factorize()?;
             Ok(factor.map(|factor| (system.solve(&factor, &forces), factor.is_positive_definite())))
         });
-        let solved = solved.map_err(|error| raised(py, error))?;
+        let solved = self.heard(py, solved.map_err(|error| raised(py, error)))?;
         let expected = "supports that hold the network, and springs that resist every motion";
         let ((u, left), is_stable) =
             solved.ok_or_else(|| invalid(py, "fix", expected, "a motion without stiffness"))?;
@@ -179,6 +197,7 @@ impl Network {
     ) -> PyResult<(Vec<PathBuf>, Vec<String>, &'static str)> {
         let written = apart(py, || {
             let target = target_named(to).map_err(|e| e.at_key("to"))?;
+            self.network().check_formulas()?;
             let network = NetworkFile::of(&self.outcome, self.fit()).record();
             let files = target.files(&network, gravity.as_deref()).map_err(|e| match e.key() {
                 Some("--gravity") => e.at_key("gravity"),

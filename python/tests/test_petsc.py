@@ -138,13 +138,18 @@ def scene_of(name, scenes, folder):
 
 
 @pytest.mark.parametrize("name", list(SCENES))
-@pytest.mark.parametrize("ranks", [1, 2, 4])
-def test_figures_are_those_of_one_machine(name, ranks, scenes, tmp_path):
+@pytest.mark.parametrize("ranks, partitioner", [(1, None), (2, None), (2, "bisection"), (4, "ptscotch"), (4, "bisection")])
+def test_figures_are_those_of_one_machine(name, ranks, partitioner, scenes, tmp_path):
     path, settings = scene_of(name, scenes, tmp_path)
     options = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    options += ["--partitioner", partitioner] if partitioner else []
     code, out, err = run(ranks, path, "--json", *options)
     assert code == 0, err
-    report, known = json.loads(out), sf.run(path, set=settings).record
+    expected = "none" if ranks == 1 else partitioner or "ptscotch"
+    report = json.loads(out)
+    assert report["partitioner"] == expected and sum(report["cells_of_ranks"]) == report["elements"]
+    assert max(report["cells_of_ranks"]) <= 1.5 * report["elements"] / ranks
+    known = sf.run(path, set=settings).record
     assert (report["ranks"], report["nodes"], report["elements"]) == (ranks, known["nodes"], known["elements"])
     assert [fit["name"] for fit in report["fits"]] == [fit["name"] for fit in known["fits"]]
     compared = 0
@@ -174,6 +179,8 @@ def test_figures_are_those_of_one_machine(name, ranks, scenes, tmp_path):
         (["cube_hex_motion.toml"], "on several machines"),
         (["membrane.toml"], "on several machines"),
         (["cube_hex.toml", "--out", "/proc/out"], "--out"),
+        (["cube_hex.toml", "--partitioner", "chaco"], "--partitioner"),
+        (["cube_tet.toml", "--set", "fit[0].shear=edges", "--set", "fit[0].volume=patches"], 'fit[0].shear: expected "cells"'),
         ([], "scene"),
     ],
 )
@@ -182,6 +189,60 @@ def test_wrong_input_ends_all_ranks_with_one_message(options, words, scenes):
     code, out, err = run(2, *arguments)
     assert code == 2 and out == "", (code, out, err)
     assert words in err and err.count("springfit.petsc: ") == 1 and "Traceback" not in err, err
+
+
+PARTS = """
+import sys
+import numpy as np
+from mpi4py import MPI
+import petsc4py
+petsc4py.init()
+from springfit.petsc.partition import bisected, graph
+from springfit.petsc.slices import Slices, exchange
+
+def bisect(centres, parts):
+    part, waiting = np.zeros(len(centres), int), [(np.arange(len(centres)), 0, parts)]
+    while waiting:
+        members, first, count = waiting.pop()
+        if count == 1:
+            part[members] = first
+            continue
+        below, own = count // 2, centres[members]
+        cut = len(members) * below // count
+        order = members[np.argsort(own[:, int(np.argmax(np.ptp(own, axis=0)))], kind="stable")]
+        waiting += [(order[:cut], first, below), (order[cut:], first + below, count - below)]
+    return part
+
+comm, rng = MPI.COMM_WORLD, np.random.default_rng(5)
+# Planes of equal coordinates, and random points.
+grid = np.stack(np.meshgrid(np.arange(7.0), np.arange(4.0), np.arange(3.0), indexing="ij"), -1).reshape(-1, 3)
+for points in (grid, rng.normal(size=(101, 2)), np.ones((5, 3))):
+    slices = Slices(comm, len(points))
+    own = slice(slices.first, slices.first + slices.count)
+    assert (bisected(comm, slices, points[own]) == bisect(points, comm.size)[own]).all()
+    places = rng.integers(0, len(points), 20)
+    found, again = slices.found(places, points[own], np.arange(len(points))[own])
+    assert (found == points[places]).all() and (again == places).all()
+cells = rng.integers(0, 50, (40, 4))
+slices = Slices(comm, 50)
+starts, columns = graph(comm, slices, [cells[comm.rank :: comm.size]])
+for row in range(slices.count):
+    near = cells[(cells == row + slices.first).any(axis=1)]
+    expected = set(near.ravel()) if len(near) else set()
+    repeated = any((cell == row + slices.first).sum() > 1 for cell in near)
+    assert set(columns[starts[row] : starts[row + 1]]) == expected - (set() if repeated else {row + slices.first})
+rows = exchange(comm, np.arange(30) % comm.size, np.arange(30) + 100 * comm.rank)
+assert (rows == np.concatenate([np.arange(comm.rank, 30, comm.size) + 100 * r for r in range(comm.size)])).all()
+print("sound")
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+def test_parts_and_slices_are_those_of_one_process(ranks, tmp_path):
+    (tmp_path / "parts.py").write_text(PARTS)
+    command = [MPIRUN, "-n", str(ranks), sys.executable, str(tmp_path / "parts.py")]
+    made = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT, timeout=60)
+    assert made.returncode == 0 and made.stdout.count("sound") == ranks, made.stderr
 
 
 def test_a_rank_that_dies_ends_all(scenes):

@@ -9,14 +9,9 @@ import numpy as np
 import pytest
 
 import springfit as sf
+from conftest import square
 
-SCENE = {
-    "mesh": {"box": {"element": "quad4", "size": [1.0, 1.0], "cells": [4, 4]}},
-    "material": {"young": 1e4, "poisson": 0.3},
-    "fix": [{"group": "ymin"}],
-    "load": [{"name": "tension", "group": "ymax", "traction": [0.0, 100.0]}],
-    "fit": [{"objective": "frobenius"}, {"objective": "exact"}],
-}
+SCENE = square(4)
 
 
 def test_a_scene_as_a_dictionary_and_as_a_file(tmp_path, scenes):

@@ -8,15 +8,10 @@ import numpy as np
 import pytest
 
 import springfit as sf
+from conftest import square
 
 MATERIAL = sf.Material(young=1e4, poisson=0.3)
-SCENE = {
-    "mesh": {"box": {"element": "quad4", "size": [1.0, 1.0], "cells": [2, 2]}},
-    "material": {"young": 1e4, "poisson": 0.3},
-    "fix": [{"group": "ymin"}],
-    "load": [{"name": "tension", "group": "ymax", "traction": [0.0, 100.0]}],
-    "fit": [{"objective": "frobenius"}, {"objective": "exact"}],
-}
+SCENE = square(2)
 
 
 def box():

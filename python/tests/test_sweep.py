@@ -12,14 +12,9 @@ import pandas
 import pytest
 
 import springfit as sf
+from conftest import square
 
-SCENE = {
-    "mesh": {"box": {"element": "quad4", "size": [1.0, 1.0], "cells": [4, 4]}},
-    "material": {"young": 1e4, "poisson": 0.3},
-    "fix": [{"group": "ymin"}],
-    "load": [{"name": "tension", "group": "ymax", "traction": [0.0, 100.0]}],
-    "fit": [{"objective": "frobenius"}, {"objective": "exact"}],
-}
+SCENE = square(4)
 OVER = {"material.poisson": [0.0, 0.2, 0.4, 1.5], "mesh.box.cells": [[2, 2], [3, 3]]}
 
 

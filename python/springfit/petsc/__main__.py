@@ -9,6 +9,8 @@ import sys
 import traceback
 from pathlib import Path
 
+from . import PARTITIONERS
+
 MISSING = (
     "petsc4py and mpi4py are required; on Debian: apt-get install python3-petsc4py python3-mpi4py, an environment of /usr/bin/python3 with"
     " --system-site-packages, and PETSC_DIR=/usr/lib/petscdir/petsc*/*-real"
@@ -24,6 +26,7 @@ def arguments(given: "list[str]") -> "tuple[argparse.Namespace, list[str]]":
     parser.add_argument("scene", type=Path, help="a scene file")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene with another value")
     parser.add_argument("--out", type=Path, help="a folder that all ranks see: report.json and the springs of each rank and fit, for springfit merge")
+    parser.add_argument("--partitioner", choices=PARTITIONERS, help="who shares out the points; the first of these that PETSc has")
     parser.add_argument("--json", action="store_true", help="print one JSON document in place of the table")
     return parser.parse_known_args(given)
 
@@ -55,7 +58,7 @@ def make(folder: Path) -> None:
 
 def table(report: dict) -> str:
     """The errors of each fit, and the times."""
-    head = f"{report['scene']}: {report['nodes']} points, {report['elements']} elements on {report['ranks']} ranks\n\n"
+    head = f"{report['scene']}: {report['nodes']} points, {report['elements']} elements on {report['ranks']} ranks, shared out by {report['partitioner']}\n\n"
     width = max(len(fit["name"]) for fit in report["fits"]) if report["fits"] else 3
     lines = [f" {'fit':{width}}  {'load':12}  {'%e_rms':>9}  {'%e_max':>9}  iterations"]
     number = lambda value: "-" if value is None else f"{value:.4f}"
@@ -101,7 +104,7 @@ def main(given: "list[str]") -> int:
         try:
             if options.out is not None:
                 together(comm, lambda: make(options.out))
-            report = run(comm, options.scene, settings, options.out)
+            report = run(comm, options.scene, settings, options.out, options.partitioner)
             if options.out is not None and comm.rank == 0:
                 partial = options.out / "report.json.partial"
                 partial.write_text(json.dumps(report, indent=1) + "\n")

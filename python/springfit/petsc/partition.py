@@ -1,94 +1,118 @@
-"""Which rank has which cells and points."""
+"""Which rank has which points and cells."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from . import PARTITIONERS
+from .slices import Slices, exchange
+
+#: Bisections of a coordinate's range: its rounding is reached.
+HALVINGS = 60
 
 
-@dataclass
-class Share:
-    """What one rank has.
+def parts_of(comm: Any, slices: Slices, points: np.ndarray, blocks: "list[np.ndarray]", kind: "str | None") -> "tuple[np.ndarray, str]":
+    """The rank of each point of this rank's slice, and the partitioner that has found it.
 
-    Attributes:
-        points: Of its cells, m, shape (points, dimension).
-        blocks: Element names and the nodes of its cells, places in ``points``.
-        numbers: Of its points in the order of all ranks, in which each rank owns a range.
-        places: Of its points in the mesh.
-        is_inside: Which of its points belong to no cell of another rank.
-        total: The number of all points.
+    Args:
+        points: Of the slice, m, (count, dimension).
+        blocks: Nodes of some cells, places in the mesh; those of all ranks are the cells of the body.
+        kind: One of PARTITIONERS; the first that there is, if None.
     """
-
-    points: np.ndarray
-    blocks: "list[tuple[str, np.ndarray]]"
-    numbers: np.ndarray
-    places: np.ndarray
-    is_inside: np.ndarray
-    total: int
-
-
-def bisect(centres: np.ndarray, parts: int) -> np.ndarray:
-    """The part of each centre by recursive coordinate bisection: the longest side of the bounding box is cut where the numbers of
-    centres on both sides are as those of the parts (Berger, Bokhari 1987)."""
-    part = np.zeros(len(centres), np.int32)
-    waiting = [(np.arange(len(centres)), 0, parts)]
-    while waiting:
-        members, first, count = waiting.pop()
-        if count == 1:
-            part[members] = first
+    if comm.size == 1:
+        return np.zeros(slices.count, np.int32), "none"
+    for name in PARTITIONERS if kind is None else (kind,):
+        part = bisected(comm, slices, points) if name == "bisection" else _by_graph(comm, slices, blocks, name)
+        if part is None:
             continue
-        below = count // 2
-        own = centres[members]
-        axis = int(np.argmax(np.ptp(own, axis=0)))
-        cut = len(members) * below // count
-        # Stable: centres in one plane are cut in the order of the mesh, the same on each machine.
-        order = np.argsort(own[:, axis], kind="stable")
-        waiting.append((members[order[:cut]], first, below))
-        waiting.append((members[order[cut:]], first + below, count - below))
+        # Of a small body a partitioner may leave a rank without points.
+        if name == "bisection" or comm.allreduce(np.bincount(part, minlength=comm.size), MPI.SUM).min() > 0:
+            return part, name
+    return bisected(comm, slices, points), "bisection"
+
+
+def _by_graph(comm: Any, slices: Slices, blocks: "list[np.ndarray]", kind: str) -> "np.ndarray | None":
+    """By a partitioner of PETSc on the graph of points that share a cell; None if PETSc is without it."""
+    partitioning = PETSc.MatPartitioning().create(comm)
+    try:
+        partitioning.setType(kind)
+    except PETSc.Error:
+        partitioning.destroy()
+        return None
+    starts, columns = graph(comm, slices, blocks)
+    sizes = (slices.count, slices.total)
+    given = (starts.astype(PETSc.IntType), columns.astype(PETSc.IntType), np.ones(len(columns)))
+    matrix = PETSc.Mat().createAIJ((sizes, sizes), csr=given, comm=comm)
+    partitioning.setAdjacency(matrix)
+    partitioning.setFromOptions()
+    found = PETSc.IS()
+    partitioning.apply(found)
+    part = found.getIndices().astype(np.int32)
+    for own in (found, matrix, partitioning):
+        own.destroy()
     return part
 
 
-class Partition:
-    """The cells and points of a mesh by ranks; a point belongs to the lowest rank with one of its cells.
+def graph(comm: Any, slices: Slices, blocks: "list[np.ndarray]") -> "tuple[np.ndarray, np.ndarray]":
+    """The other points of the cells of each point of the slice, in rows: where each row begins, and the places."""
+    total, own = slices.total, []
+    for nodes in blocks:
+        for column in range(nodes.shape[1] - 1):
+            for other in range(column + 1, nodes.shape[1]):
+                # A pair as one number, ordered by its first point.
+                own.append(np.unique(nodes[:, column] * total + nodes[:, other]))
+                own.append(np.unique(nodes[:, other] * total + nodes[:, column]))
+    pairs = np.unique(np.concatenate(own)) if own else np.zeros(0, np.int64)
+    pairs = np.unique(exchange(comm, slices.holder(pairs // total), pairs))
+    rows = pairs // total - slices.first
+    return np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=slices.count))]), pairs % total
 
-    Attributes:
-        starts: Where the range of each rank begins in the order of all ranks, and the end, shape (ranks + 1,).
-        order: The places of the points in the mesh, in that order.
-    """
 
-    def __init__(self, points: np.ndarray, blocks: "list[tuple[str, np.ndarray]]", ranks: int) -> None:
-        self._points, self._blocks = points, blocks
-        centres = np.concatenate([points[nodes].mean(axis=1) for _, nodes in blocks])
-        self._part = bisect(centres, ranks)
-        owner, last = np.full(len(points), ranks, np.int32), np.full(len(points), -1, np.int32)
-        first = 0
-        for _, nodes in blocks:
-            own = self._part[first : first + len(nodes)]
-            for column in nodes.T:
-                np.minimum.at(owner, column, own)
-                np.maximum.at(last, column, own)
-            first += len(nodes)
-        self._is_inside = owner == last
-        self.order = np.argsort(owner, kind="stable")
-        self.starts = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=ranks))])
-        self._number = np.empty(len(points), np.int64)
-        self._number[self.order] = np.arange(len(points))
+def bisected(comm: Any, slices: Slices, points: np.ndarray) -> np.ndarray:
+    """By recursive coordinate bisection: the longest side of the bounding box is cut where the numbers of points on both sides are as
+    those of the parts (Berger, Bokhari 1987). Points in one plane are cut in the order of the mesh."""
+    part = np.zeros(slices.count, np.int32)
+    waiting = [(0, comm.size)]
+    while waiting:
+        first, count = waiting.pop()
+        if count == 1:
+            continue
+        members = np.flatnonzero(part == first)
+        own = points[members]
+        low, high = own.min(axis=0, initial=np.inf), own.max(axis=0, initial=-np.inf)
+        comm.Allreduce(MPI.IN_PLACE, low, MPI.MIN)
+        comm.Allreduce(MPI.IN_PLACE, high, MPI.MAX)
+        axis = int(np.argmax(high - low))
+        along = own[:, axis]
+        below = count // 2
+        target = comm.allreduce(len(members), MPI.SUM) * below // count
+        cut = _cut(comm, along, low[axis], high[axis], target)
+        is_above = along > cut
+        level = np.flatnonzero(along == cut)
+        room = target - comm.allreduce(int(np.count_nonzero(along < cut)), MPI.SUM)
+        before = comm.scan(len(level), MPI.SUM) - len(level)
+        is_above[level[max(0, room - before) :]] = True
+        part[members[is_above]] = first + below
+        waiting += [(first, below), (first + below, count - below)]
+    return part
 
-    def owned(self, rank: int) -> np.ndarray:
-        """The places in the mesh of the points that a rank owns, in the order of all ranks."""
-        return self.order[self.starts[rank] : self.starts[rank + 1]]
 
-    def shares(self) -> "Iterator[Share]":
-        """What each rank has, one after the other."""
-        for rank in range(len(self.starts) - 1):
-            chosen, first = [], 0
-            for name, nodes in self._blocks:
-                chosen.append((name, nodes[self._part[first : first + len(nodes)] == rank]))
-                first += len(nodes)
-            chosen = [(name, nodes) for name, nodes in chosen if len(nodes)]
-            places = np.unique(np.concatenate([nodes.ravel() for _, nodes in chosen])) if chosen else np.zeros(0, np.int64)
-            local = [(name, np.searchsorted(places, nodes)) for name, nodes in chosen]
-            is_inside = self._is_inside[places]
-            yield Share(self._points[places], local, self._number[places], places, is_inside, len(self._points))
+def _cut(comm: Any, along: np.ndarray, low: float, high: float, target: int) -> float:
+    """The coordinate of the point with this number in their order, over all ranks."""
+    for _ in range(HALVINGS):
+        middle = low + (high - low) / 2
+        if comm.allreduce(int(np.count_nonzero(along <= middle)), MPI.SUM) > target:
+            high = middle
+        else:
+            low = middle
+    # The largest coordinate that is not above the interval.
+    return float(comm.allreduce(along[along <= high].max(initial=-np.inf), MPI.MAX))
+
+
+def ranks_of(parts: np.ndarray) -> np.ndarray:
+    """The rank of each cell, from those of its nodes, (cells, nodes): the middle one, so that cells between two ranks go to either."""
+    return np.sort(parts, axis=1)[:, parts.shape[1] // 2]

@@ -4,111 +4,15 @@ from __future__ import annotations
 
 import resource
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
-from .. import _core
 from .equations import Equations, assemble
-from .partition import Partition, Share
-from .ranks import receive, send, together
-
-
-@dataclass
-class Load:
-    """A load on the points that a rank owns, each array of shape (owned, dimension)."""
-
-    name: str
-    forces: np.ndarray
-    held: np.ndarray
-    prescribed: np.ndarray
-    support: int
-
-
-@dataclass
-class Body:
-    """What a rank has of the scene."""
-
-    comm: Any
-    title: str
-    fits: "list[str]"
-    cells: int
-    points: np.ndarray
-    loads: "list[Load]"
-    share: Share
-    core: Any
-    identity: tuple
-    seconds: "dict[str, float]" = field(default_factory=dict)
-
-    @contextmanager
-    def timed(self, stage: str) -> "Iterator[None]":
-        """Adds the time of the slowest rank to that of a stage, s."""
-        self.comm.Barrier()
-        start = time.perf_counter()
-        yield
-        own = time.perf_counter() - start
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + self.comm.allreduce(own, MPI.MAX)
-
-
-def share_out(comm: Any, scene: Path, settings: dict) -> Body:
-    """Reads the scene on the first rank and gives each rank its cells.
-
-    Raises:
-        Ended: The scene is wrong, or asks for what several machines do not do.
-    """
-    start = time.perf_counter()
-    read = lambda: _core.distributed(scene, Path("."), settings) if comm.rank == 0 else None
-    found = together(comm, read)
-    words, own = None, None
-    if comm.rank == 0:
-        source, title, fits, mesh, loads = found
-        blocks = mesh.blocks
-        cells = sum(len(nodes) for _, nodes in blocks)
-        fault = None if cells >= comm.size else f"mpirun: expected at most as many ranks as cells, {cells}, found {comm.size}"
-        words = (source, title, fits, cells, [name for name, *_ in loads], supports([load[2:4] for load in loads]), fault)
-    words = comm.bcast(words)
-    source, title, fits, cells, names, kinds, fault = words
-    together(comm, lambda: _refuse(fault))
-    if comm.rank == 0:
-        partition = Partition(mesh.points, blocks, comm.size)
-        for rank, share in enumerate(partition.shares()):
-            owned = partition.owned(rank)
-            own_numbers = share.places if mesh.numbers is None else mesh.numbers[share.places]
-            arrays = [share.points, share.numbers, share.places, own_numbers, share.is_inside, mesh.points[owned]]
-            arrays += [nodes for _, nodes in share.blocks]
-            arrays += [array[owned] for load in loads for array in load[1:4]]
-            words = (share.total, [name for name, _ in share.blocks], mesh.checksum, mesh.numbers is not None)
-            if rank == 0:
-                own = (arrays, words)
-            else:
-                send(comm, rank, arrays, words)
-    arrays, (total, elements, checksum, is_numbered) = own if own is not None else receive(comm)
-    points, numbers, places, tags, is_inside, owned, *rest = arrays
-    share = Share(points, list(zip(elements, rest)), numbers, places, is_inside, total)
-    each = rest[len(elements) :]
-    loads = [Load(name, *each[3 * i : 3 * i + 3], support) for i, (name, support) in enumerate(zip(names, kinds))]
-    text, path = source
-    core = together(comm, lambda: _core.BodyShare(text, path, settings, share.points, share.blocks))
-    identity = (checksum, total, cells, tags if is_numbered else None)
-    body = Body(comm, title, fits, cells, owned, loads, share, core, identity)
-    body.seconds["partition"] = comm.allreduce(time.perf_counter() - start, MPI.MAX)
-    return body
-
-
-def _refuse(fault: "str | None") -> None:
-    if fault is not None:
-        raise _core.SpringfitError(fault)
-
-
-def supports(loads: "list[tuple[np.ndarray, np.ndarray]]") -> "list[int]":
-    """For each load the first load with the same support, whose equations it shares."""
-    same = lambda a, b: np.array_equal(a[0], b[0]) and np.array_equal(a[1], b[1])
-    return [next(j for j, other in enumerate(loads) if same(load, other)) for load in loads]
+from .ranks import together
+from .share import Body, refuse, share_out
 
 
 def solve_model(
@@ -164,30 +68,30 @@ def fitted(body: Body, index: int) -> tuple:
 
 def write_shards(body: Body, index: int, springs: Any, folder: Path) -> "list[str]":
     """Writes the springs of each rank by one fit; the names of all files."""
-    comm, (checksum, total, cells, tags) = body.comm, body.identity
+    comm, share = body.comm, body.share
     stem = "".join(c if c.isalnum() or c in "-." else "-" for c in body.fits[index])
     name = lambda rank: f"{index + 1}-{stem}-{rank + 1}-of-{comm.size}.shard"
     fit = f"{body.title}: fit {index + 1} on {comm.size} ranks: {body.fits[index]}"
     place = (comm.rank + 1, comm.size)
-    write = lambda: body.core.write(
-        springs, folder / name(comm.rank), place, (checksum, total, cells, fit), body.share.places, tags, body.share.is_inside
-    )
+    whole = (body.checksum, share.total, body.cells, fit)
+    write = lambda: body.core.write(springs, folder / name(comm.rank), place, whole, share.places, share.tags, share.is_inside)
     together(comm, write)
     return [name(rank) for rank in range(comm.size)]
 
 
-def run(comm: Any, scene: Path, settings: dict, out: "Path | None" = None) -> dict:
+def run(comm: Any, scene: Path, settings: dict, out: "Path | None" = None, partitioner: "str | None" = None) -> dict:
     """Runs a scene; the report is the same on all ranks. With ``out`` the springs of each rank are written into that folder, which all
-    ranks see.
+    ranks see. ``partitioner`` is one of ``PARTITIONERS``; the first that PETSc has, if None.
 
     Raises:
         Ended: An input is wrong, or the equations of the finite elements cannot be solved.
     """
-    body = share_out(comm, scene, settings)
+    body = share_out(comm, scene, settings, partitioner)
+    shared = _peaks(comm)
     fem, levels = solve_model(body, together(comm, body.core.stiffness), "finite elements", {}, True)
     for load, (u, _, left, _) in zip(body.loads, fem):
         problem = f"mesh: expected equations that can be solved to 1e-6 of the forces, found {left:.1e} left under load \"{load.name}\""
-        together(comm, lambda: _refuse(problem if u is None else None))
+        together(comm, lambda: refuse(problem if u is None else None))
     fits = []
     for index, name in enumerate(body.fits):
         with body.timed("fits"):
@@ -204,6 +108,7 @@ def run(comm: Any, scene: Path, settings: dict, out: "Path | None" = None) -> di
     return {
         "scene": body.title,
         "ranks": comm.size,
+        "partitioner": body.partitioner,
         "nodes": body.share.total,
         "elements": body.cells,
         "unknowns": comm.allreduce(int(np.count_nonzero(~body.loads[0].held)), MPI.SUM),
@@ -211,6 +116,13 @@ def run(comm: Any, scene: Path, settings: dict, out: "Path | None" = None) -> di
         "fits": fits,
         "seconds": body.seconds,
         "seconds_processor": comm.allgather(time.process_time()),
-        "bytes": [1024 * peak for peak in comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)],
+        "bytes": _peaks(comm),
+        "bytes_partition": shared,
+        "cells_of_ranks": comm.allgather(sum(len(nodes) for _, nodes in body.share.blocks)),
         "shared_points": comm.allreduce(len(body.share.numbers), MPI.SUM) - body.share.total,
     }
+
+
+def _peaks(comm: Any) -> "list[int]":
+    """The most memory that each rank has had so far, bytes."""
+    return [1024 * peak for peak in comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)]

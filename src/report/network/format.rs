@@ -58,8 +58,9 @@ impl NetworkFormat {
     /// Writes the network.
     ///
     /// # Errors
-    /// The file cannot be written, or the format does not hold all springs of the network.
+    /// The file cannot be written, the format does not hold all springs of the network, or a law of force is a function.
     pub fn write(&self, path: &Path, file: &NetworkFile) -> Result<()> {
+        file.network.check_formulas()?;
         (self.write)(path, file)
     }
 }

@@ -91,7 +91,7 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
 /// linear in its parameters.
 fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
     let mut all: Vec<MeasureSpring> = Vec::new();
-    let mut known: HashMap<([usize; 2], &str), usize> = HashMap::new();
+    let mut known: HashMap<([usize; 2], (&str, usize)), usize> = HashMap::new();
     for (block, fit) in mesh.blocks.iter().zip(fits) {
         let Force::Laws(laws) = &fit.force else { continue };
         let m = fit.springs.len();
@@ -106,7 +106,7 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
                 }
                 let points = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
                 let next = all.len();
-                let place = if law.is_linear() { *known.entry((points, &law.text)).or_insert(next) } else { next };
+                let place = if law.is_linear() { *known.entry((points, law.mark())).or_insert(next) } else { next };
                 if place < next {
                     all[place].constant += fit.constants[at];
                     all[place].parameters.iter_mut().zip(parameters).for_each(|(sum, p)| *sum += p);

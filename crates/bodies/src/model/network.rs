@@ -4,6 +4,7 @@ use super::Entries;
 use super::steady::steady_law;
 use super::system::dofs;
 use crate::element::SpringKind;
+use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{Law, Measure, distance, linear};
 use crate::stiffness::gather;
 use faer::sparse::Triplet;
@@ -146,6 +147,21 @@ pub struct Network {
 }
 
 impl Network {
+    /// Checks that the law of force of every spring is an expression, which files hold.
+    ///
+    /// # Errors
+    /// One is a function of the program; the kind is `Unsupported`.
+    pub fn check_formulas(&self) -> Result<()> {
+        match self.others.iter().filter_map(|spring| spring.law.as_ref()).find(|law| law.is_function()) {
+            Some(law) => {
+                let found = format!("the function {}", law.text);
+                let expected = "laws of force that are expressions, which a file can hold";
+                Err(Error::expected("force", expected, found).of_kind(ErrorKind::Unsupported))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The tangent stiffness at rest, `Σ_s k_s g_s g_sᵀ`, N/m, with the points of the mesh, `[points × dimension]`, m.
     pub fn stiffness(&self, points: &[f64]) -> Entries {
         let d = self.dimension;

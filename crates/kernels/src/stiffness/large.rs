@@ -31,12 +31,12 @@ impl Geometry {
         let (n, d) = (self.nodes, self.dimension);
         let mut response =
             ElementResponse { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
-        for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
+        let free = free_axes(state);
+        for (grad, v) in self.weighted() {
             let f = deformation(grad, x, d);
-            let (w, stress, tangent) = match state {
-                State::PlaneStress { .. } => without_stress(energy, f, &[2])?,
-                State::Rod { .. } => without_stress(energy, f, &[1, 2])?,
-                _ => energy.respond(&f),
+            let (w, stress, tangent) = match free {
+                [] => energy.respond(&f),
+                _ => without_stress(energy, f, free)?,
             };
             if !(w.is_finite() && tangent.norm().is_finite()) {
                 return None;
@@ -65,27 +65,67 @@ impl Geometry {
     /// Writes the nodal forces of [`Geometry::respond`] alone into `force`. False if the energy is not finite, or if
     /// less than the share `upright` of the volume (in the plane of the area) is left at a quadrature point.
     pub fn forces(&self, energy: &Energy, state: State, x: &[f64], upright: f64, force: &mut [f64]) -> bool {
-        let (n, d) = (self.nodes, self.dimension);
+        let d = self.dimension;
+        let free = free_axes(state);
         force.fill(0.0);
-        for (grad, v) in self.gradients.chunks_exact(n * d).zip(&self.volumes).filter(|(_, v)| **v != 0.0) {
+        for (grad, v) in self.weighted() {
             let f = deformation(grad, x, d);
             if f.determinant() < upright {
                 return false;
             }
-            let stress = match state {
-                State::PlaneStress { .. } => without_stress(energy, f, &[2]).map(|(_, stress, _)| stress),
-                State::Rod { .. } => without_stress(energy, f, &[1, 2]).map(|(_, stress, _)| stress),
-                _ => Some(energy.stress(&f)),
+            let stress = match free {
+                [] => Some(energy.stress(&f)),
+                _ => without_stress(energy, f, free).map(|(_, stress, _)| stress),
             };
             let Some(stress) = stress.filter(|p| p.iter().all(|entry| entry.is_finite())) else { return false };
-            let v = v * state.thickness();
-            for (force, ga) in force.chunks_exact_mut(d).zip(grad.chunks_exact(d)) {
-                for (k, force) in force.iter_mut().enumerate() {
-                    *force += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
-                }
-            }
+            add_forces(&stress, grad, v * state.thickness(), d, force);
         }
         true
+    }
+
+    /// Appends the F of each quadrature point with a weight to `f`, with the nodes at `x`, `[nodes × dimension]`, m. False, with
+    /// nothing appended, if less than the share `upright` of the volume (in the plane of the area) is left at one.
+    pub fn deformations(&self, x: &[f64], upright: f64, f: &mut Vec<Matrix3<f64>>) -> bool {
+        let first = f.len();
+        f.extend(self.weighted().map(|(grad, _)| deformation(grad, x, self.dimension)));
+        let is_upright = f[first..].iter().all(|f| f.determinant() >= upright);
+        if !is_upright {
+            f.truncate(first);
+        }
+        is_upright
+    }
+
+    /// Writes the nodal forces of the stresses at the points of [`Geometry::deformations`] into `force`. False if they are not finite.
+    pub fn forces_of(&self, stresses: &[Matrix3<f64>], state: State, force: &mut [f64]) -> bool {
+        force.fill(0.0);
+        for (stress, (grad, v)) in stresses.iter().zip(self.weighted()) {
+            add_forces(stress, grad, v * state.thickness(), self.dimension, force);
+        }
+        force.iter().all(|force| force.is_finite())
+    }
+
+    /// The gradients of the quadrature points that have a weight, `[nodes × dimension]`, and their volumes.
+    fn weighted(&self) -> impl Iterator<Item = (&[f64], f64)> {
+        let points = self.gradients.chunks_exact(self.nodes * self.dimension).zip(&self.volumes);
+        points.map(|(grad, v)| (grad, *v)).filter(|(_, v)| *v != 0.0)
+    }
+}
+
+/// Adds `v P ∇N_a` for each node.
+fn add_forces(stress: &Matrix3<f64>, grad: &[f64], v: f64, d: usize, force: &mut [f64]) {
+    for (force, ga) in force.chunks_exact_mut(d).zip(grad.chunks_exact(d)) {
+        for (k, force) in force.iter_mut().enumerate() {
+            *force += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
+        }
+    }
+}
+
+/// The axes along which the state has no stress.
+pub(super) fn free_axes(state: State) -> &'static [usize] {
+    match state {
+        State::PlaneStress { .. } => &[2],
+        State::Rod { .. } => &[1, 2],
+        State::Solid | State::PlaneStrain { .. } => &[],
     }
 }
 
@@ -114,7 +154,11 @@ fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
 
 /// The response with stretches along the `free` axes that leave no stress along them, condensed to the other axes. All
 /// free stretches are equal.
-fn without_stress(energy: &Energy, mut f: Matrix3<f64>, free: &[usize]) -> Option<(f64, Matrix3<f64>, Tangent)> {
+pub(super) fn without_stress(
+    energy: &Energy,
+    mut f: Matrix3<f64>,
+    free: &[usize],
+) -> Option<(f64, Matrix3<f64>, Tangent)> {
     let place = |k: usize| 4 * k;
     let mut step = 1.0;
     for _ in 0..STEPS {

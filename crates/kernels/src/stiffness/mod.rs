@@ -3,10 +3,12 @@
 //! Theory: page *Stiffness and the reduced space* of the book.
 
 mod fault;
+mod hyperelastic;
 mod large;
 mod placement;
 
 pub use fault::Fault;
+pub use hyperelastic::{EnergyFunction, Hyperelastic, StressFunction};
 pub use large::ElementResponse;
 pub use placement::{Placement, gather};
 

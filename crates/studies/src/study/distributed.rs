@@ -8,7 +8,7 @@ use super::progress::Progress;
 use super::scene::{Scene, load_elements};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::fit::CellFits;
+use crate::fit::{CellFits, ShearSprings};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
@@ -62,7 +62,7 @@ fn check(scene: &Scene) -> Result<()> {
         return Err(refused(&format!("load[{i}].measured"), "displacements of finite elements", "measured ones"));
     }
     for fit in scene.fits() {
-        check_fit(fit).map_err(|e| e.at_key(fit.place()))?;
+        check_fit(fit).map_err(|e| e.under(fit.place()))?;
     }
     Ok(())
 }
@@ -73,9 +73,13 @@ fn check_fit(fit: &NamedFit) -> Result<()> {
         Recipe::Stiffness(_) | Recipe::Exact(_) | Recipe::Published(_) => fit.recipe.kind().cell_method().is_some(),
         Recipe::Sampled(_) | Recipe::Whole(_) => false,
     };
-    match is_of_cells {
-        true => Ok(()),
-        false => {
+    match (is_of_cells, &fit.recipe) {
+        (true, _) => Ok(()),
+        (false, Recipe::Exact(exact)) if exact.shear == ShearSprings::Edges => {
+            let expected = "\"cells\" where cells are fitted apart from each other: the springs of an edge are those of all its cells";
+            Err(Error::expected("shear", expected, "\"edges\"").of_kind(ErrorKind::Unsupported))
+        }
+        (false, _) => {
             let expected = "a fit to the stiffness of one cell at a time, where cells are fitted apart from each other";
             Err(Error::expected("objective", expected, format!("\"{}\"", fit.name)).of_kind(ErrorKind::Unsupported))
         }

@@ -52,8 +52,8 @@ pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, contents, draft};
 pub use extent::extent;
 pub use fits::{
-    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitKind, Fitted, FittedKind, FittedLoad,
-    FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
+    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,
+    FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
     ModelFrequencies, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe,
     Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord,
     Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, Task, TensionOutcome, TensionRecord,

@@ -7,7 +7,6 @@ use super::cell::{Sample, SampledCell, Sums};
 use super::shapes::Part;
 use crate::error::Result;
 use crate::scalar::{Packed, PackedWork, widest};
-use crate::springs::LawRoom;
 
 /// The number of shapes is filled up to a multiple of this, which every width of registers divides.
 const SIDE: usize = 8;
@@ -48,40 +47,41 @@ pub struct Curved {
 /// Some of the shapes that a fit uses, drawn once as far as memory allows.
 pub struct Drawn<'a, 'c> {
     cell: &'a SampledCell<'c>,
+    part: Part,
     indices: Vec<usize>,
     held: Vec<Block>,
 }
 
 impl<'a, 'c> Drawn<'a, 'c> {
-    /// Draws the shapes with these indices.
+    /// Draws the shapes of a part with these indices.
     ///
     /// # Errors
-    /// Those of [`SampledCell::sample`].
-    pub fn new(cell: &'a SampledCell<'c>, indices: Vec<usize>) -> Result<Drawn<'a, 'c>> {
+    /// Those of [`SampledCell::placed`] and [`SampledCell::sample`].
+    pub fn new(cell: &'a SampledCell<'c>, part: Part, indices: Vec<usize>) -> Result<Drawn<'a, 'c>> {
         let (mut held, mut values) = (Vec::new(), 0);
         for indices in indices.chunks(SHAPES) {
             if values > MOST_HELD {
                 break;
             }
-            let block = Block::draw(cell, indices)?;
+            let block = Block::draw(cell, part, indices)?;
             values += block.values();
             held.push(block);
         }
-        Ok(Drawn { cell, indices, held })
+        Ok(Drawn { cell, part, indices, held })
     }
 
     /// The sums at `unknowns`; only the derivatives in the unknowns of `chosen` are computed, the others are zero. If
     /// some unknowns of a spring are chosen and others are not, those that are must vanish, and its force with them.
     ///
     /// # Errors
-    /// Those of [`SampledCell::sample`].
+    /// Those of [`SampledCell::placed`] and [`SampledCell::sample`].
     pub fn sums(&self, unknowns: &[f64], chosen: &[bool]) -> Result<Curved> {
         let count = self.cell.count();
         let mut curved = Curved { sums: Sums::of(count), bends: vec![0.0; count * count] };
         for (i, indices) in self.indices.chunks(SHAPES).enumerate() {
             match self.held.get(i) {
                 Some(block) => block.add(self.cell, unknowns, chosen, &mut curved),
-                None => Block::draw(self.cell, indices)?.add(self.cell, unknowns, chosen, &mut curved),
+                None => Block::draw(self.cell, self.part, indices)?.add(self.cell, unknowns, chosen, &mut curved),
             }
         }
         Ok(curved)
@@ -89,18 +89,19 @@ impl<'a, 'c> Drawn<'a, 'c> {
 }
 
 impl Block {
-    fn draw(cell: &SampledCell, indices: &[usize]) -> Result<Block> {
+    fn draw(cell: &SampledCell, part: Part, indices: &[usize]) -> Result<Block> {
         let (seen, springs) = (cell.seen(), cell.len());
         let shapes = indices.len().next_multiple_of(SIDE);
         let mut forces = vec![0.0; seen * shapes];
         let mut measures = vec![0.0; springs * shapes];
         let mut gradients = vec![0.0; springs * seen * shapes];
         let mut sample = Sample::default();
+        let placed = cell.placed(part, indices)?;
         for q in 0..shapes {
             // The last shape fills the lanes that remain, with a weight of zero.
-            let weight = match indices.get(q) {
-                Some(&i) => {
-                    cell.sample(Part::Trained, i, &mut sample)?;
+            let weight = match placed.get(q) {
+                Some(placed) => {
+                    cell.sample(placed, &mut sample)?;
                     sample.weight.sqrt()
                 }
                 None => 0.0,
@@ -159,13 +160,7 @@ impl Block {
             (0..values).map(|i| whole || (1..=own.len()).contains(&i) && chosen[i - 1]).collect();
         // A law without chosen parameters pulls whatever these are.
         wanted[0] |= chosen.iter().all(|chosen| !chosen);
-        let (mut room, mut results) = (LawRoom::default(), vec![[0.0; SIDE]; values]);
-        for (i, c) in self.springs[s].measures.as_chunks::<SIDE>().0.iter().enumerate() {
-            law.respond_each(c, (rest, own), &wanted, &mut room, &mut results);
-            for (row, result) in all.chunks_exact_mut(self.shapes).zip(&results) {
-                row[i * SIDE..(i + 1) * SIDE].copy_from_slice(result);
-            }
-        }
+        law.respond::<SIDE>(&self.springs[s].measures, (rest, own), &wanted, &mut all);
         all
     }
 }

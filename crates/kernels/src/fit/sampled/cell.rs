@@ -1,14 +1,15 @@
 //! One cell of a sampled fit: its forces and those of its springs at every shape, summed to normal equations.
 
+use super::placed::{Placed, ShapeForces};
 use super::settings::{SampledFit, Weights};
 use super::shapes::{Part, Shapes};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::dense::inner;
 use crate::fit::normal::Normal;
-use crate::material::{Energy, State};
+use crate::material::State;
 use crate::springs::{Force, Law, Measure, Springs, distance};
-use crate::stiffness::Geometry;
+use crate::stiffness::{Geometry, Hyperelastic};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
@@ -16,11 +17,6 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A shape that leaves less than this share of the volume at some point is replaced by one with half of its
-/// deformation.
-const FLAT: f64 = 0.2;
-/// The largest number of such halvings.
-const HALVINGS: i32 = 8;
 /// The number of shapes that one thread sums,
 const BLOCK: usize = 256;
 /// and the number of such blocks before they are added to the rest.
@@ -48,7 +44,7 @@ pub struct SampledCell<'a> {
     /// The `‖f‖²` of a strain below which forces count as those of no deformation.
     least_square: f64,
     geometry: &'a Geometry,
-    energy: &'a Energy,
+    energy: &'a dyn Hyperelastic,
     state: State,
     shapes: Shapes<'a>,
     pub(super) fit: &'a SampledFit,
@@ -89,7 +85,7 @@ impl<'a> SampledCell<'a> {
         element: &Arc<Element>,
         springs: &'a Springs,
         geometry: &'a Geometry,
-        energy: &'a Energy,
+        energy: &'a dyn Hyperelastic,
         state: State,
         fit: &'a SampledFit,
         shapes: Shapes<'a>,
@@ -177,8 +173,9 @@ impl<'a> SampledCell<'a> {
         let block = |first: usize| {
             let mut sums = Sums::of(self.count);
             let (mut sample, mut rows, mut lacking) = (Sample::default(), Vec::new(), Vec::new());
-            for i in first..(first + BLOCK).min(total) {
-                self.sample(part, i, &mut sample)?;
+            let indices: Vec<usize> = (first..(first + BLOCK).min(total)).collect();
+            for placed in self.placed(part, &indices)? {
+                self.sample(&placed, &mut sample)?;
                 self.equations(&sample, unknowns, &mut rows, &mut lacking);
                 sums.size += sample.weight * inner(&sample.force, &sample.force);
                 if rows.len() > HELD {
@@ -199,37 +196,39 @@ impl<'a> SampledCell<'a> {
         Ok(sums)
     }
 
-    /// Shape `i`, with less of its deformation if it would invert the cell.
+    /// The shapes of a part with these indices.
     ///
     /// # Errors
-    /// The shape is inverted however small the deformation is made, or a spring has no gradient there.
-    pub fn sample(&self, part: Part, i: usize, sample: &mut Sample) -> Result<()> {
+    /// Those of [`ShapeForces::at`].
+    pub fn placed(&self, part: Part, indices: &[usize]) -> Result<Vec<Placed>> {
+        let &SampledCell { geometry, energy, state, ref shapes, .. } = self;
+        ShapeForces { shapes, geometry, energy, state }.at(part, indices)
+    }
+
+    /// What the springs measure at a shape, and the forces there, weighted.
+    ///
+    /// # Errors
+    /// A spring has no gradient there.
+    pub fn sample(&self, placed: &Placed, sample: &mut Sample) -> Result<()> {
         let size = self.shapes.rest.len();
         let seen = self.seen();
         sample.force.resize(seen, 0.0);
+        sample.force[..size].copy_from_slice(&placed.force);
         sample.gradients.clear();
         sample.gradients.resize(self.springs.len() * seen, 0.0);
-        for halvings in 0..HALVINGS {
-            let x = self.shapes.place(part, i, 0.5f64.powi(halvings));
-            if !self.geometry.forces(self.energy, self.state, &x, FLAT, &mut sample.force[..size]) {
-                continue;
-            }
-            self.measure(&x, sample);
-            if sample.gradients.iter().chain(&sample.measures).any(|g| !g.is_finite()) {
-                let problem = "what a spring measures has no finite gradient at a sampled shape";
-                return Err(Error::new(problem).of_kind(ErrorKind::Infeasible));
-            }
-            std::iter::once(&mut sample.force[..])
-                .chain(sample.gradients.chunks_exact_mut(seen))
-                .for_each(|row| self.see(row));
-            sample.weight = match self.fit.weights {
-                Weights::Alike => 1.0,
-                Weights::Relative => 1.0 / inner(&sample.force, &sample.force).max(self.least_square),
-            };
-            return Ok(());
+        self.measure(&placed.x, sample);
+        if sample.gradients.iter().chain(&sample.measures).any(|g| !g.is_finite()) {
+            let problem = "what a spring measures has no finite gradient at a sampled shape";
+            return Err(Error::new(problem).of_kind(ErrorKind::Infeasible));
         }
-        let problem = "the sampled shapes are turned inside out: expected a smaller stretch";
-        Err(Error::new(problem).of_kind(ErrorKind::Infeasible))
+        std::iter::once(&mut sample.force[..])
+            .chain(sample.gradients.chunks_exact_mut(seen))
+            .for_each(|row| self.see(row));
+        sample.weight = match self.fit.weights {
+            Weights::Alike => 1.0,
+            Weights::Relative => 1.0 / inner(&sample.force, &sample.force).max(self.least_square),
+        };
+        Ok(())
     }
 
     /// The number of values of a weighted force.

@@ -7,7 +7,7 @@
 use super::block::Drawn;
 use super::cell::{SampledCell, Sums};
 use super::newton::{Descent, End};
-use super::shapes::Numbers;
+use super::shapes::{Numbers, Part};
 use crate::error::{Error, ErrorKind, Result};
 
 /// The iteration has converged when a step cannot lower the sum of squares by more than this share.
@@ -48,10 +48,10 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
     };
     let descent = Descent { bounds, eliminated: &eliminated, nonnegative };
     let total = cell.fit.sampling.shapes;
-    let all = Drawn::new(cell, (0..total).collect())?;
+    let all = Drawn::new(cell, Part::Trained, (0..total).collect())?;
     let few = FEW[0].max((FEW[1] * cell.count()).div_ceil(cell.seen()));
     let few = match starts > 1 && 2 * few < total {
-        true => Some(Drawn::new(cell, (0..few).map(|i| i * STRIDE % total).collect())?),
+        true => Some(Drawn::new(cell, Part::Trained, (0..few).map(|i| i * STRIDE % total).collect())?),
         false => None,
     };
     let mut found: Vec<End> = Vec::new();

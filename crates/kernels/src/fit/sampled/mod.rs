@@ -12,6 +12,7 @@ mod block;
 mod cell;
 mod inner;
 mod newton;
+mod placed;
 mod settings;
 mod shapes;
 
@@ -28,8 +29,10 @@ use super::visit::each_cell;
 use crate::bound::{self, check_count};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Energy, State};
+use crate::material::State;
 use crate::springs::{Force, Law, Springs};
+use crate::stiffness::Hyperelastic;
+use block::Drawn;
 use cell::{REST_RANGE, Sample, SampledCell};
 use rayon::prelude::*;
 use shapes::{Part, Shapes};
@@ -58,10 +61,12 @@ pub struct SampledFits {
 
 /// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
-/// `progress` is called from time to time with the number of finished cells.
+/// The energy may be a function ([`EnergyFunction`](crate::stiffness::EnergyFunction)) and so may laws of force
+/// ([`Law::of_function`]); they are called on the threads of the fit. `progress` is called from time to time with the number
+/// of finished cells.
 ///
 /// # Errors
-/// An array has a wrong length; a coordinate is not finite; the springs belong to another element; the state is not one
+/// An array has a wrong length; a function has failed; a coordinate is not finite; the springs belong to another element; the state is not one
 /// of its dimension; a cell is tangled; the numbers of the sampling are out of range; or the cells are those of a
 /// surface or curve in space.
 #[allow(clippy::too_many_arguments)]
@@ -70,7 +75,7 @@ pub fn fit_sampled(
     springs: &Springs,
     points: &[f64],
     connectivity: &[usize],
-    energy: &Energy,
+    energy: &dyn Hyperelastic,
     state: State,
     fit: &SampledFit,
     progress: &mut dyn FnMut(usize),
@@ -219,11 +224,21 @@ impl SampledCell<'_> {
     fn fit(&mut self) -> Result<CellFit> {
         let (unknowns, found) = match &self.fit.force {
             Force::Laws(_) if !self.fit.is_direct() || !self.fit.bounds.is_empty() => self.iterated()?,
+            // Functions are asked for many shapes at once there.
+            Force::Laws(_) if self.has_functions() && self.fit.norm == Norm::Two => self.iterated()?,
             _ => self.direct()?,
         };
-        let held_out = match self.has_others() {
-            true => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
-            false => f64::NAN,
+        for s in 0..self.len() {
+            let own = self.of_spring(s, &unknowns);
+            self.law(s).map_or(Ok(()), |law| law.check_linear(self.rest(s), own))?;
+        }
+        let held_out = match (self.has_others(), self.has_functions()) {
+            (false, _) => f64::NAN,
+            (true, false) => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
+            (true, true) => {
+                let shapes = Drawn::new(self, Part::HeldOut, (0..self.fit.sampling.held_out).collect())?;
+                shapes.sums(&unknowns, &vec![false; self.count()])?.sums.error(&vec![0.0; self.count()])
+            }
         };
         let (constants, parameters) = self.written(&unknowns);
         let finite = constants.iter().chain(&parameters).all(|k| k.is_finite());
@@ -232,6 +247,10 @@ impl SampledCell<'_> {
             return Err(Error::expected("force", expected, "one without").of_kind(ErrorKind::Infeasible));
         }
         Ok(CellFit { constants, parameters, held_out, ..found })
+    }
+
+    fn has_functions(&self) -> bool {
+        matches!(&self.fit.force, Force::Laws(laws) if laws.iter().any(|law| law.is_function()))
     }
 
     fn direct(&self) -> Result<(Vec<f64>, CellFit)> {
@@ -252,15 +271,15 @@ impl SampledCell<'_> {
     /// The unknowns with the least residual forces in a norm that normal equations cannot express. All shapes are
     /// stored.
     fn in_norm(&self, bounded: bool) -> Result<Option<Vec<f64>>> {
-        let (shapes, count) = (self.fit.sampling.shapes, self.count());
+        let (shapes, count, seen) = (self.fit.sampling.shapes, self.count(), self.seen());
+        if shapes.saturating_mul(seen).saturating_mul(count) > MOST_NUMBERS {
+            let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (seen * count));
+            return Err(Error::expected("shapes", expected, shapes).of_kind(ErrorKind::Limit));
+        }
         let (mut rows, mut rhs) = (Vec::new(), Vec::new());
         let mut sample = Sample::default();
-        for i in 0..shapes {
-            self.sample(Part::Trained, i, &mut sample)?;
-            if shapes.saturating_mul(sample.force.len()).saturating_mul(count) > MOST_NUMBERS {
-                let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (sample.force.len() * count));
-                return Err(Error::expected("shapes", expected, shapes).of_kind(ErrorKind::Limit));
-            }
+        for placed in self.placed(Part::Trained, &(0..shapes).collect::<Vec<_>>())? {
+            self.sample(&placed, &mut sample)?;
             self.equations(&sample, &vec![0.0; count], &mut rows, &mut rhs);
         }
         Ok(solve_norm(&rows, &rhs, count, self.fit.norm, bounded))

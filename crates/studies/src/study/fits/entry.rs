@@ -5,7 +5,7 @@ use super::keys::keys;
 use super::named::NamedFit;
 use super::published::PublishedEntry;
 use super::recipe::Recipe;
-use super::sampled::SampledEntry;
+use super::sampled::{FitFunctions, SampledEntry};
 use super::stiffness::StiffnessEntry;
 use super::whole::{WholeEntry, starts};
 use crate::error::{Error, Result};
@@ -139,16 +139,28 @@ impl FitEntry {
     /// # Errors
     /// A key has a wrong value, or belongs to another objective.
     pub fn fits(&self, folder: &Path) -> Result<Vec<NamedFit>> {
+        self.fits_with(folder, &FitFunctions::default())
+    }
+
+    /// As [`FitEntry::fits`], with functions of the program in place of keys.
+    ///
+    /// # Errors
+    /// Those of [`FitEntry::fits`]; or a function stands for a key that is there as well, or that the objective does not have.
+    pub fn fits_with(&self, folder: &Path, functions: &FitFunctions) -> Result<Vec<NamedFit>> {
         let kind = Kind::of(&self.objective)?;
         self.check_owners(kind)?;
+        if let (Some(key), false) = (functions.key(), kind == Kind::Sampled) {
+            let found = format!("one with \"{}\"", self.objective);
+            return Err(Error::expected(key, "a function with the objective \"sampled\" alone", found));
+        }
         let recipe = match kind {
             Kind::Stiffness => Recipe::Stiffness(self.typed::<StiffnessEntry>()?.fit(&self.objective)?),
-            Kind::Sampled => Recipe::Sampled(Box::new(self.typed::<SampledEntry>()?.check(folder)?)),
+            Kind::Sampled => Recipe::Sampled(Box::new(self.typed::<SampledEntry>()?.check(folder, functions)?)),
             Kind::Published => Recipe::Published(Method::of_name(&self.objective)?),
             Kind::Exact => Recipe::Exact(self.typed::<ExactEntry>()?.recipe(self.springs.as_deref())?),
             Kind::Whole => {
                 let (entry, sampled) = self.whole()?;
-                let recipes = entry.recipes(|| sampled.clone().check(folder))?;
+                let recipes = entry.recipes(|| sampled.clone().check(folder, functions))?;
                 let several = recipes.len() > 1;
                 let fit = |(start, recipe): (String, _)| {
                     let own = |name: &String| if several { format!("{name} from {start}") } else { name.clone() };

@@ -25,7 +25,9 @@ pub use named::NamedFit;
 pub use published::{PublishedOutcome, PublishedOutcomeRecord, PublishedRecord};
 pub use recipe::Recipe;
 pub use record::KindRecord;
-pub use sampled::{ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, law_at};
+pub use sampled::{
+    FitFunctions, ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, law_at,
+};
 pub use spread::SpreadRecord;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
 pub use whole::{

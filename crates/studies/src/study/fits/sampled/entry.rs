@@ -1,6 +1,7 @@
 //! The keys of a `[[fit]]` with the objective "sampled".
 
 use super::force::ForceRecipe;
+use super::functions::FitFunctions;
 use super::recipe::SampledRecipe;
 use crate::error::{Error, Result};
 use crate::file;
@@ -53,13 +54,15 @@ impl SampledEntry {
     /// The recipe, with the values of [`SampledRecipe::default`] for keys that are not given.
     ///
     /// # Errors
-    /// A key has a wrong value, or a file of gradients cannot be read.
-    pub fn check(self, folder: &Path) -> Result<SampledRecipe> {
+    /// A key has a wrong value, it is there beside a function in its place, or a file of gradients cannot be read.
+    pub fn check(self, folder: &Path, functions: &FitFunctions) -> Result<SampledRecipe> {
         let law = self.law.map(|law| law_at(&law, folder));
-        let mut recipe = SampledRecipe { law, ..SampledRecipe::default() };
-        if let Some(force) = &self.force {
-            recipe.force = force_of(force)?;
+        if let (Some(law), Some(energy)) = (&law, &functions.energy) {
+            let found = format!("\"{law}\" beside the function \"{}\"", energy.name());
+            return Err(Error::expected("law", "one energy", found));
         }
+        let force = functions.force(self.force.as_ref().map(force_of).transpose()?)?;
+        let mut recipe = SampledRecipe { law, energy: functions.energy.clone(), force, ..SampledRecipe::default() };
         recipe.fit.norm = choice("norm", self.norm.as_deref(), Norm::Two, Norm::named)?;
         if let Some(share) = self.huber {
             match recipe.fit.norm {

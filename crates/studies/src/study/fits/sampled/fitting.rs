@@ -6,6 +6,7 @@ use super::record::SampledRecord;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{SampledFits, fit_sampled};
 use crate::material::{Energy, EnergyMap, Material, MaterialMap, State};
+use crate::stiffness::EnergyFunction;
 use crate::study::body::LargeBody;
 use crate::study::fits::facts::SceneFacts;
 use crate::study::fits::fitted::{Fitted, FittedKind};
@@ -58,16 +59,15 @@ const MATERIALS: usize = 64;
 /// There is no energy or no shape, a force law has no group, or the elements have no such spring group.
 pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) -> Result<Vec<SampledFits>> {
     let Task { mesh, material, .. } = *task;
+    if let Some(energy) = &recipe.energy {
+        return fit_function(recipe, energy, task, progress);
+    }
     let own = recipe.law.as_ref().map(|law| laws(law, material)).transpose();
     let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?.map(LargeBody::at_rest);
     let expected = "the energy whose forces are sampled";
     let large = own.as_ref().or(task.reference.large).ok_or_else(|| Error::expected("law", expected, "none"))?;
     let states = Arc::new(large.states(mesh, &recipe.loads)?);
-    let mut known = Vec::new();
-    for block in &mesh.blocks {
-        known.extend(block.element.select_groups(task.springs)?.iter().map(|group| group.name.as_str()));
-    }
-    recipe.force.check_groups(&known)?;
+    check_groups(recipe, task)?;
     task.each_block(progress, |index, block, springs, progress| {
         let fit = recipe.resolve(&block.element, springs, &states)?;
         let mut regions = Vec::new();
@@ -91,6 +91,41 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
         }
         Ok(joined(regions))
     })
+}
+
+/// The fits of each block of cells of one material, whose energy is a function.
+///
+/// # Errors
+/// The cells have several materials, shapes are those of loads, or those of [`fit_shapes`].
+fn fit_function(
+    recipe: &SampledRecipe,
+    energy: &EnergyFunction,
+    task: &Task,
+    progress: &mut Progress,
+) -> Result<Vec<SampledFits>> {
+    if !recipe.loads.is_empty() {
+        let expected = "a law as an expression: a function is not solved under loads";
+        return Err(Error::expected("shapes.loads", expected, "a function").of_kind(ErrorKind::Unsupported));
+    }
+    let Some(material) = task.material.uniform() else {
+        let expected = "one material of all cells for an energy that is a function";
+        return Err(Error::expected("law", expected, "several").of_kind(ErrorKind::Unsupported));
+    };
+    check_groups(recipe, task)?;
+    task.each_block(progress, |_, block, springs, progress| {
+        let fit = recipe.resolve(&block.element, springs, &Arc::default())?;
+        let points = &task.mesh.points;
+        fit_sampled(&block.element, springs, points, &block.connectivity, energy, material.state(), &fit, progress)
+    })
+}
+
+/// Checks that every law of force belongs to a group of the springs.
+fn check_groups(recipe: &SampledRecipe, task: &Task) -> Result<()> {
+    let mut known = Vec::new();
+    for block in &task.mesh.blocks {
+        known.extend(block.element.select_groups(task.springs)?.iter().map(|group| group.name.as_str()));
+    }
+    recipe.force.check_groups(&known)
 }
 
 /// The law of a fit with the materials of the body.

@@ -5,6 +5,7 @@
 mod entry;
 mod fitting;
 mod force;
+mod functions;
 mod outcome;
 mod recipe;
 mod record;
@@ -12,6 +13,7 @@ mod record;
 pub use entry::{SampledEntry, law_at};
 pub use fitting::fit_shapes;
 pub use force::ForceRecipe;
+pub use functions::FitFunctions;
 pub use outcome::SampledOutcome;
 pub use recipe::SampledRecipe;
 pub use record::{SampledOutcomeRecord, SampledRecord};

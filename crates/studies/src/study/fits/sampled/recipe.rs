@@ -5,6 +5,7 @@ use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::fit::{DeformationFamily, SampledFit, Sampling, Source, Weights};
 use crate::springs::Springs;
+use crate::stiffness::EnergyFunction;
 use crate::study::fits::facts::SceneFacts;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ pub struct SampledRecipe {
     pub loads: Vec<String>,
     /// The energy if the material has no law: the name of a shipped one, or the path of a file.
     pub law: Option<String>,
+    /// The energy if it is a function of the program that uses the library.
+    pub energy: Option<EnergyFunction>,
     /// The file from which deformation gradients were read.
     pub gradients: Option<PathBuf>,
 }
@@ -35,7 +38,7 @@ impl Default for SampledRecipe {
         ];
         let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
         let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
-        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None, gradients: None }
+        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None, energy: None, gradients: None }
     }
 }
 

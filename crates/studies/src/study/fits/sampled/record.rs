@@ -98,7 +98,7 @@ impl SampledRecord {
             stretch: fit.sampling.stretch,
             perturbation: fit.sampling.perturbation,
             seed: fit.sampling.seed,
-            law: recipe.law.clone(),
+            law: recipe.law.clone().or_else(|| recipe.energy.as_ref().map(|energy| energy.name().into())),
         }
     }
 }

@@ -1,10 +1,19 @@
-//! Force laws: the force of a spring as a function of what it measures, given as an expression with parameters.
+//! Force laws: the force of a spring as a function of what it measures, given as an expression with parameters, or as a function of the
+//! program that uses the library.
 //!
 //! Theory: page *Sampled fits* of the book.
 
+mod formula;
+mod function;
+
+pub use formula::LawRoom;
+pub use function::ForceFunction;
+
 use super::Springs;
-use crate::error::{Error, Result};
-use crate::symbolic::{Expr, Program, Scope, variables_of};
+use crate::error::{Error, ErrorKind, Result};
+use crate::symbolic::{Expr, Scope, variables_of};
+use formula::Formula;
+use function::Function;
 use gauss_quad::GaussLegendre;
 use std::sync::{Arc, OnceLock};
 
@@ -21,23 +30,27 @@ const KNOWN: f64 = 1e-14;
 const HALVINGS: usize = 10;
 /// Strains at which a law is tested for being linear in its parameters.
 const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
+/// What rounding may leave between a function and the sum over its parameters, relative to the force.
+const LINEAR: f64 = 1e-9;
 
 /// A force law `T(c)`, the derivative of a spring's energy in its measure c: in N if c is a length, in Pa if it is a
 /// volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
-    /// The expression.
+    /// The expression; of a function its name and its parameters.
     pub text: String,
     /// The parameters: names in the text that are neither variables nor functions, in the order in which they appear.
     pub parameters: Vec<String>,
-    force: Program,
-    slope_in_strain: Program,
-    slope_in_measure: Program,
-    by_parameter: Vec<Program>,
-    /// `∂²T/∂p_i∂p_j` for j ≤ i, row by row.
-    by_parameters: Vec<Program>,
+    body: Body,
     outer: Vec<bool>,
     linear: bool,
+}
+
+/// What gives the force.
+#[derive(Debug, Clone, PartialEq)]
+enum Body {
+    Formula(Box<Formula>),
+    Function(Function),
 }
 
 impl Law {
@@ -63,18 +76,12 @@ impl Law {
         for (i, slope) in by_parameter.iter().enumerate() {
             outer[i] = !slope.uses(first + i) && (0..i).all(|j| !outer[j] || !slope.uses(first + j));
         }
-        let by_parameters =
-            by_parameter.iter().enumerate().flat_map(|(i, slope)| (0..=i).map(move |j| slope.derivative(first + j)));
         let mut law = Law {
             text,
-            by_parameters: by_parameters.map(|e| Program::of(&e)).collect(),
-            slope_in_strain: Program::of(&force.derivative(0)),
-            slope_in_measure: Program::of(&force.derivative(1)),
             linear: outer.iter().all(|outer| *outer),
             outer,
             parameters,
-            force: Program::of(&force),
-            by_parameter: by_parameter.iter().map(Program::of).collect(),
+            body: Body::Formula(Box::new(Formula::new(&force, &by_parameter, first))),
         };
         let inner: Vec<f64> = law.outer.iter().map(|outer| if *outer { 0.0 } else { 1.0 }).collect();
         if STRAINS.iter().any(|s| law.force(1.0 + s, 1.0, &inner) != 0.0) {
@@ -82,6 +89,47 @@ impl Law {
             law.outer.fill(false);
         }
         Ok(law)
+    }
+
+    /// A law that is a function, under a name. It is tried at some values: in which parameters it is linear, see
+    /// [`Law::outer`]. Derivatives are differences of the fourth order. A network with such a law cannot be written to a file.
+    ///
+    /// # Errors
+    /// There is no parameter, two have the same name, or one has that of a variable.
+    pub fn of_function(name: &str, parameters: Vec<String>, function: Arc<dyn ForceFunction>) -> Result<Law> {
+        if parameters.is_empty() {
+            return Err(Error::expected(
+                "force",
+                "a function with parameters to fit, such as f(s, k)",
+                format!("{name}(s)"),
+            ));
+        }
+        let is_taken = |i: usize| VARIABLES.contains(&&*parameters[i]) || parameters[..i].contains(&parameters[i]);
+        if let Some(taken) = (0..parameters.len()).find(|&i| is_taken(i)) {
+            let expected = format!("parameters with names of their own, not {}", VARIABLES.join(", "));
+            return Err(Error::expected("force", expected, format!("\"{}\" in {name}", parameters[taken])));
+        }
+        let text = format!("{name}({})", parameters.join(", "));
+        let function = Function::new(function, parameters.len());
+        let outer = function.outer().to_vec();
+        let linear = outer.iter().all(|outer| *outer);
+        Ok(Law { text, parameters, body: Body::Function(function), outer, linear })
+    }
+
+    /// Whether the law is a function of the program, which no file can hold.
+    pub fn is_function(&self) -> bool {
+        match &self.body {
+            Body::Formula(_) => false,
+            Body::Function(_) => true,
+        }
+    }
+
+    /// What tells the law from others: springs with the same one can be added.
+    pub fn mark(&self) -> (&str, usize) {
+        match &self.body {
+            Body::Formula(_) => (&self.text, 0),
+            Body::Function(function) => (&self.text, function.address()),
+        }
     }
 
     /// Whether the force is a linear function of the parameters. Then the parameters of parallel springs add up, and a
@@ -98,53 +146,92 @@ impl Law {
 
     /// The force `T(c)`.
     pub fn force(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        at(c, rest, parameters, |at| self.force.evaluate(at))
+        match &self.body {
+            Body::Formula(formula) => formula.force(c, rest, parameters),
+            Body::Function(function) => function.forces(&[c], rest, parameters)[0],
+        }
     }
 
-    /// The force `T` of N springs. `at` holds c, c₀ and the parameters of each spring; `values` is working memory.
-    pub fn force_each<const N: usize>(&self, at: &[[f64; N]], values: &mut LawRoom<N>) -> [f64; N] {
-        let LawRoom { at: all, values } = values;
-        all.clear();
-        all.push(std::array::from_fn(|i| (at[0][i] - at[1][i]) / at[1][i]));
-        all.extend_from_slice(at);
-        self.force.evaluate_each(all, values)
+    /// The force `T` of N springs. `at` holds c, c₀ and the parameters of each spring; `room` is working memory.
+    pub fn force_each<const N: usize>(&self, at: &[[f64; N]], room: &mut LawRoom<N>) -> [f64; N] {
+        match &self.body {
+            Body::Formula(formula) => formula.force_each(at, room),
+            Body::Function(function) => std::array::from_fn(|i| {
+                let own: Vec<f64> = at.iter().map(|values| values[i]).collect();
+                function.forces(&own[..1], own[1], &own[2..])[0]
+            }),
+        }
     }
 
-    /// T, its derivatives in the parameters p, and its second derivatives in `p_i` and `p_j`, j ≤ i, row by row, at N
-    /// measures of one spring; `results` has a row for each, and those that are not `wanted` are left as they are.
-    /// `room` is working memory.
-    pub(crate) fn respond_each<const N: usize>(
+    /// T, its derivatives in the parameters p, and its second derivatives in `p_i` and `p_j`, j ≤ i, row by row, at the measures
+    /// c of one spring, whose number is a multiple of N; `results` is `[values × measures]`, and those values that are not
+    /// `wanted` are left as they are.
+    pub(crate) fn respond<const N: usize>(
         &self,
-        c: &[f64; N],
-        (rest, parameters): (f64, &[f64]),
+        c: &[f64],
+        spring: (f64, &[f64]),
         wanted: &[bool],
-        room: &mut LawRoom<N>,
-        results: &mut [[f64; N]],
+        results: &mut [f64],
     ) {
-        let LawRoom { at, values } = room;
-        at.clear();
-        at.extend([c.map(|c| (c - rest) / rest), *c, [rest; N]]);
-        at.extend(parameters.iter().map(|&p| [p; N]));
-        let programs = std::iter::once(&self.force).chain(&self.by_parameter).chain(&self.by_parameters);
-        for ((result, program), _) in results.iter_mut().zip(programs).zip(wanted).filter(|(_, wanted)| **wanted) {
-            *result = program.evaluate_each(at, values);
+        let formula = match &self.body {
+            Body::Formula(formula) => formula,
+            Body::Function(function) => return function.respond(c, spring, wanted, results),
+        };
+        let (mut room, mut rows) = (LawRoom::default(), vec![[0.0; N]; wanted.len()]);
+        for (i, each) in c.as_chunks::<N>().0.iter().enumerate() {
+            formula.respond_each(each, spring, wanted, &mut room, &mut rows);
+            for (row, values) in results.chunks_exact_mut(c.len()).zip(&rows) {
+                row[i * N..(i + 1) * N].copy_from_slice(values);
+            }
         }
     }
 
     /// The slope `dT/dc = (∂T/∂s)/c₀ + ∂T/∂c`.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        at(c, rest, parameters, |at| {
-            // There is no strain if the measure at rest is zero.
-            let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(at) / rest };
-            by_strain + self.slope_in_measure.evaluate(at)
-        })
+        match &self.body {
+            Body::Formula(formula) => formula.slope(c, rest, parameters),
+            Body::Function(function) => function.slope(c, rest, parameters),
+        }
     }
 
     /// Writes the derivatives `∂T/∂p` into `slopes`, `[parameters]`.
     pub fn by_parameter(&self, c: f64, rest: f64, parameters: &[f64], slopes: &mut [f64]) {
-        at(c, rest, parameters, |at| {
-            slopes.iter_mut().zip(&self.by_parameter).for_each(|(slope, e)| *slope = e.evaluate(at))
-        })
+        match &self.body {
+            Body::Formula(formula) => formula.by_parameter(c, rest, parameters, slopes),
+            Body::Function(function) => {
+                slopes
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(i, slope)| *slope = function.first(&[c], rest, parameters, i)[0]);
+            }
+        }
+    }
+
+    /// Checks that a function is linear in its outer parameters at `parameters` as where it was tried.
+    ///
+    /// # Errors
+    /// It is not.
+    pub(crate) fn check_linear(&self, rest: f64, parameters: &[f64]) -> Result<()> {
+        let Body::Function(function) = &self.body else { return Ok(()) };
+        if !self.outer.contains(&true) {
+            return Ok(());
+        }
+        let c = STRAINS.map(|s| (1.0 + s) * rest);
+        let forces = function.forces(&c, rest, parameters);
+        let mut sum = vec![0.0; c.len()];
+        for i in (0..parameters.len()).filter(|&i| self.outer[i]) {
+            let slopes = function.first(&c, rest, parameters, i);
+            sum.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += parameters[i] * slope);
+        }
+        let size = forces.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
+        if forces.iter().zip(&sum).all(|(t, sum)| (t - sum).abs() <= LINEAR * size || t.is_nan()) {
+            return Ok(());
+        }
+        let values: Vec<String> =
+            self.parameters.iter().zip(parameters).map(|(n, p)| format!("{n} = {p:.3e}")).collect();
+        let expected = format!("{} to be linear in its parameters as at values of about 1", self.text);
+        Err(Error::expected("force", expected, format!("another force at {}", values.join(", ")))
+            .of_kind(ErrorKind::Infeasible))
     }
 
     /// The energy `∫ T dc` from rest, by a quadrature that is refined until it agrees with that of its halves.
@@ -174,15 +261,17 @@ impl Law {
         let points = POINTS.try_into().expect("there are points");
         let rule = RULE.get_or_init(|| GaussLegendre::new(points).iter().map(|(x, w)| (*x, *w)).collect());
         let half = (to - from) / 2.0;
-        rule.iter().map(|(x, w)| w * half * self.force(from + half * (1.0 + x), rest, parameters)).sum()
+        let places = rule.iter().map(|(x, _)| from + half * (1.0 + x));
+        match &self.body {
+            Body::Formula(formula) => {
+                rule.iter().zip(places).map(|((_, w), c)| w * half * formula.force(c, rest, parameters)).sum()
+            }
+            Body::Function(function) => {
+                let forces = function.forces(&places.collect::<Vec<_>>(), rest, parameters);
+                rule.iter().zip(forces).map(|((_, w), t)| w * half * t).sum()
+            }
+        }
     }
-}
-
-/// Working memory of [`Law::force_each`].
-#[derive(Debug, Clone, Default)]
-pub struct LawRoom<const N: usize> {
-    at: Vec<[f64; N]>,
-    values: Vec<[f64; N]>,
 }
 
 /// The force law that the springs of a fit share.
@@ -259,20 +348,4 @@ impl Force {
             (Force::Linear | Force::Laws(_), None) => constant * (c - rest),
         }
     }
-}
-
-/// The number of values that are kept on the stack; most laws have fewer.
-const ROOM: usize = 12;
-
-/// Calls `work` with the values of the variables and parameters.
-fn at<R>(c: f64, rest: f64, parameters: &[f64], work: impl FnOnce(&[f64]) -> R) -> R {
-    let variables = [(c - rest) / rest, c, rest];
-    let count = variables.len() + parameters.len();
-    if count > ROOM {
-        return work(&[&variables, parameters].concat());
-    }
-    let mut values = [0.0; ROOM];
-    values[..variables.len()].copy_from_slice(&variables);
-    values[variables.len()..count].copy_from_slice(parameters);
-    work(&values[..count])
 }

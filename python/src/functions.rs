@@ -1,0 +1,270 @@
+//! Functions of Python in place of an energy and of laws of force. They are called on the threads of the fit, for many deformations or
+//! measures at once.
+
+use crate::error::{invalid, raised};
+use numpy::ndarray::ArrayD;
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use springfit::error::{Error, Result};
+use springfit::material::Material;
+use springfit::springs::{ForceFunction, Law};
+use springfit::stiffness::{EnergyFunction, StressFunction};
+use springfit::study::FitFunctions;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The step of a difference of the fourth order in an entry of F: its error and that of rounding are some 1e-12 of the moduli.
+const STEP: f64 = 1e-3;
+/// The places of such a difference in steps, and the weights of the energies there.
+const AROUND: [(f64, f64); 4] = [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)];
+/// The largest difference of a stress from that of its energy, as a share of Young's modulus.
+const SAME: f64 = 1e-6;
+
+/// The key of the first function that did not return, and what ended it.
+#[derive(Debug, Default)]
+pub struct Ends(Mutex<Option<(String, PyErr)>>);
+
+impl Ends {
+    /// Ends the work: no function is called any more.
+    pub fn set(&self, key: &str, exception: PyErr) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert((key.into(), exception));
+    }
+
+    fn is_set(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// The result, or the exception of a function; that of a user's own is the cause of a `SpringfitError`.
+    ///
+    /// # Errors
+    /// A function did not return; or those of the result.
+    pub fn heard<T>(&self, py: Python, result: PyResult<T>) -> PyResult<T> {
+        let found = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let Some((key, exception)) = found else { return result };
+        if exception.is_instance_of::<crate::error::SpringfitError>(py) || !exception.is_instance_of::<PyException>(py)
+        {
+            return Err(exception);
+        }
+        let found = format!("{}: {}", exception.get_type(py).name()?, exception.value(py));
+        let error = invalid(py, &key, "a function that returns", found);
+        error.set_cause(py, Some(exception));
+        Err(error)
+    }
+}
+
+/// A function with what is said of it in errors.
+#[derive(Debug)]
+struct Function {
+    key: String,
+    call: Py<PyAny>,
+    ends: Arc<Ends>,
+}
+
+impl Function {
+    /// The values at `arguments`, an array of this shape; `None` once a function has not returned.
+    fn values<'py>(
+        &self,
+        arguments: impl FnOnce(Python<'py>) -> PyResult<Bound<'py, PyTuple>>,
+        py: Python<'py>,
+        shape: &[usize],
+    ) -> Option<Vec<f64>> {
+        if self.ends.is_set() {
+            return None;
+        }
+        let called = || {
+            let found = self.call.bind(py).call1(arguments(py)?)?;
+            let found = py.import("numpy")?.call_method1("asarray", (found,))?;
+            let kind: String = found.getattr("dtype")?.getattr("kind")?.extract()?;
+            if !["f", "i", "u", "b"].contains(&&*kind) {
+                let found = found.getattr("dtype")?;
+                return Err(invalid(py, &self.key, "an array of real numbers from the function", found));
+            }
+            let found = found.call_method1("astype", ("float64",))?;
+            let array: &Bound<PyArrayDyn<f64>> = found.cast()?;
+            if array.shape() != shape {
+                let shown = |shape: &[usize]| PyTuple::new(py, shape).map(|shape| shape.to_string());
+                let expected = format!("an array of shape {} from the function", shown(shape)?);
+                return Err(invalid(py, &self.key, &expected, format!("one of shape {}", shown(array.shape())?)));
+            }
+            Ok(array.readonly().as_array().iter().copied().collect())
+        };
+        called().map_err(|exception| self.ends.set(&self.key, exception)).ok()
+    }
+}
+
+/// An energy `W(F)` and its derivative `P(F)`, of which one may be missing. F has the shape (n, 3, 3).
+#[derive(Debug)]
+struct Energy {
+    energy: Option<Function>,
+    stress: Option<Function>,
+    young: f64,
+}
+
+impl Energy {
+    fn of(function: &Function, f: &[[f64; 9]], shape: &[usize]) -> Result<Vec<f64>> {
+        let found = Python::attach(|py| {
+            let array = ArrayD::from_shape_vec(vec![f.len(), 3, 3], f.as_flattened().to_vec());
+            let array = array.expect("each has nine numbers").into_pyarray(py);
+            function.values(|py| PyTuple::new(py, [array]), py, shape)
+        });
+        // What ended it is raised in place of this.
+        found.ok_or_else(|| Error::at("law", "the function has not returned"))
+    }
+
+    /// P by differences of W.
+    fn slopes(&self, energy: &Function, f: &[[f64; 9]]) -> Result<Vec<f64>> {
+        let moved = |f: &[f64; 9], i: usize, share: f64| {
+            let mut f = *f;
+            f[i] += share * STEP;
+            f
+        };
+        let around = |f| (0..9).flat_map(move |i| AROUND.map(|(share, _)| moved(f, i, share)));
+        let all: Vec<[f64; 9]> = f.iter().flat_map(around).collect();
+        let energies = Energy::of(energy, &all, &[all.len()])?;
+        let slope = |w: &[f64; 4]| w.iter().zip(AROUND).map(|(w, (_, weight))| w * weight).sum::<f64>() / (12.0 * STEP);
+        Ok(energies.as_chunks::<4>().0.iter().map(slope).collect())
+    }
+
+    /// Checks that a stress is that of the energy.
+    fn check(&self, energy: &Function, f: &[f64; 9], stress: &[f64]) -> Result<()> {
+        let own = self.slopes(energy, &[*f])?;
+        let apart = own.iter().zip(stress).map(|(own, p)| (own - p).abs()).fold(0.0, f64::max);
+        let size = own.iter().fold(self.young, |most, p| most.max(p.abs()));
+        if apart > SAME * size {
+            let found = format!("another, {apart:.3e} Pa apart, at F = {f:.4?}");
+            return Err(Error::expected("stress", "the derivative of the energy", found));
+        }
+        // NaN is found later.
+        Ok(())
+    }
+}
+
+impl StressFunction for Energy {
+    fn stresses(&self, f: &[[f64; 9]], stresses: &mut [[f64; 9]]) -> Result<()> {
+        if f.is_empty() {
+            return Ok(());
+        }
+        let found = match (&self.stress, &self.energy) {
+            (Some(stress), energy) => {
+                let found = Energy::of(stress, f, &[f.len(), 3, 3])?;
+                if let Some(energy) = energy {
+                    self.check(energy, &f[0], &found[..9])?;
+                }
+                found
+            }
+            (None, Some(energy)) => self.slopes(energy, f)?,
+            (None, None) => return Err(Error::expected("law", "an energy or a stress", "none")),
+        };
+        stresses.as_flattened_mut().copy_from_slice(&found);
+        Ok(())
+    }
+}
+
+/// An argument of a law of force.
+#[derive(Debug, Clone, Copy)]
+enum Argument {
+    Strain,
+    Measure,
+    Rest,
+    Parameter(usize),
+}
+
+/// A law of force whose arguments are named.
+#[derive(Debug)]
+struct Force {
+    function: Function,
+    arguments: Vec<Argument>,
+}
+
+impl ForceFunction for Force {
+    fn forces(&self, c: &[f64], rest: f64, parameters: &[f64], forces: &mut [f64]) {
+        let found = Python::attach(|py| {
+            let array = |values: Vec<f64>| values.into_pyarray(py).into_any();
+            let argument = |argument: &Argument| match argument {
+                Argument::Strain => array(c.iter().map(|c| (c - rest) / rest).collect()),
+                Argument::Measure => array(c.to_vec()),
+                Argument::Rest => rest.into_pyobject(py).expect("a number is no fault").into_any(),
+                Argument::Parameter(i) => parameters[*i].into_pyobject(py).expect("a number is no fault").into_any(),
+            };
+            let arguments = |py| PyTuple::new(py, self.arguments.iter().map(argument));
+            self.function.values(arguments, py, &[c.len()])
+        });
+        match found {
+            Some(found) => forces.copy_from_slice(&found),
+            // What ended it is raised in place of what follows.
+            None => forces.fill(f64::NAN),
+        }
+    }
+}
+
+/// A law of force: the group of springs, or none for all; the function, its name and the names of its arguments.
+type GivenForce = (Option<String>, Py<PyAny>, String, Vec<String>);
+
+/// The name of an energy, W and P.
+type GivenEnergy = (String, Option<Py<PyAny>>, Option<Py<PyAny>>);
+
+/// The functions of a fit as they are given.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Given {
+    energy: Option<GivenEnergy>,
+    forces: Vec<GivenForce>,
+}
+
+/// Functions that have been tried.
+pub struct Functions {
+    pub ends: Arc<Ends>,
+    given: FitFunctions,
+    energy: Option<(String, Arc<dyn StressFunction>)>,
+}
+
+impl Functions {
+    /// Those of Python, for a material of this modulus.
+    ///
+    /// # Errors
+    /// A law does not return, or its arguments are wrong.
+    pub fn new(py: Python, given: Given, young: f64) -> PyResult<Functions> {
+        let ends = Arc::new(Ends::default());
+        let function = |key: &str, call: Py<PyAny>| Function { key: key.into(), call, ends: ends.clone() };
+        let energy = given.energy.map(|(name, energy, stress)| {
+            let energy = energy.map(|call| function("law", call));
+            let stress = stress.map(|call| function("stress", call));
+            let own: Arc<dyn StressFunction> = Arc::new(Energy { energy, stress, young });
+            (name, own)
+        });
+        let mut own = FitFunctions::default();
+        for (group, call, name, names) in given.forces {
+            let key = group.as_ref().map_or("force".into(), |group| format!("force.{group}"));
+            let mut parameters = Vec::new();
+            let argument = |name: String| match &*name {
+                "s" => Argument::Strain,
+                "c" => Argument::Measure,
+                "c0" => Argument::Rest,
+                _ => {
+                    parameters.push(name);
+                    Argument::Parameter(parameters.len() - 1)
+                }
+            };
+            let arguments = names.into_iter().map(argument).collect();
+            let force = Force { function: function(&key, call), arguments };
+            let law = Law::of_function(&name, parameters, Arc::new(force));
+            let law = ends.heard(py, law.map_err(|error| raised(py, error.at_key(key))))?;
+            match group {
+                Some(group) => own.groups.push((group, law)),
+                None => own.force = Some(law),
+            }
+        }
+        Ok(Functions { ends, given: own, energy })
+    }
+
+    /// Those of a fit of this material.
+    ///
+    /// # Errors
+    /// Those of [`EnergyFunction::new`].
+    pub fn of(&self, material: Material) -> Result<FitFunctions> {
+        let energy = self.energy.as_ref().map(|(name, energy)| EnergyFunction::new(name, material, energy.clone()));
+        let energy = energy.transpose().map_err(|error| error.at_key("law"))?;
+        Ok(FitFunctions { energy, ..self.given.clone() })
+    }
+}

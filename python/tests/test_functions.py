@@ -1,0 +1,225 @@
+"""Python functions as energies and as laws of force."""
+
+import signal
+import subprocess
+import sys
+import threading
+import warnings
+
+import numpy as np
+import pytest
+
+import springfit as sf
+
+MATERIAL = sf.Material(young=1e4, poisson=0.3)
+LAMBDA, MU = 1e4 * 0.3 / (1.3 * 0.4), 1e4 / 2.6
+SHAPES = {"count": 60, "held_out": 20, "stretch": 0.2}
+
+
+def energy(f):
+    """Neo-Hookean, as materials/neo-hookean.toml."""
+    j = np.linalg.det(f)
+    return MU / 2 * (np.einsum("nij,nij->n", f, f) - 3) - MU * np.log(j) + LAMBDA / 2 * np.log(j) ** 2
+
+
+def stress(f):
+    inverse = np.linalg.inv(f).transpose(0, 2, 1)
+    j = np.linalg.det(f)[:, None, None]
+    return MU * (f - inverse) + LAMBDA * np.log(j) * inverse
+
+
+def box(name="tet4"):
+    d = sf.Element(name).dimension
+    mesh = sf.Mesh.box(name, size=[1.0, 0.8, 0.7][:d], cells=[2, 1, 1][:d])
+    x = mesh.points + 0.03 * np.random.default_rng(3).uniform(-1, 1, mesh.points.shape)
+    return sf.Mesh(x, dict(mesh.cells))
+
+
+def same(net, other, tolerance):
+    assert np.array_equal(net.springs, other.springs) and len(net) == len(other) > 0
+    scale = max([abs(other.constants).max(initial=0)] + [abs(kind["constants"]).max() for kind in other.contents])
+    assert np.abs(net.constants - other.constants).max(initial=0) <= tolerance * scale
+    for kind, known in zip(net.contents, other.contents, strict=True):
+        assert kind["kind"] == known["kind"] and np.array_equal(kind["points"], known["points"])
+        for key in kind:
+            if key not in ("kind", "unit", "points", "law"):
+                a, b = np.asarray(kind[key], float), np.asarray(known[key], float)
+                assert np.abs(a - b).max() <= tolerance * np.abs(b).max(), (key, np.abs(a - b).max())
+
+
+@pytest.mark.parametrize("name", ["tet4", "hex8", "tri3", "quad4"])
+@pytest.mark.parametrize("functions", [(energy, None), (None, stress), (energy, stress)])
+def test_a_function_is_the_energy_of_a_file(name, functions):
+    known = sf.sampled(box(name), MATERIAL, "neo-hookean", shapes=SHAPES)
+    net = sf.sampled(box(name), MATERIAL, functions[0], stress=functions[1], shapes=SHAPES)
+    same(net, known, 1e-9)
+    assert net.status == known.status
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+def test_plane_states_relax_functions(plane):
+    material = sf.Material(1e4, 0.3, plane=plane, thickness=0.02)
+    known = sf.sampled(box("quad4"), material, "neo-hookean", shapes=SHAPES, springs=["edge", "diagonal", "bulk"])
+    net = sf.sampled(box("quad4"), material, energy, shapes=SHAPES, springs=["edge", "diagonal", "bulk"])
+    same(net, known, 1e-9)
+
+
+LAWS = [
+    ("k1*s + k3*s^3", lambda s, k1, k3: k1 * s + k3 * s**3),
+    ("k*(c - c0) + a*(c - c0)^2", lambda c, c0, k, a: k * (c - c0) + a * (c - c0) ** 2),
+    ("k*(exp(a*s) - 1)", lambda s, k, a: k * (np.exp(a * s) - 1)),
+]
+
+
+@pytest.mark.parametrize("text, function", LAWS)
+def test_a_function_is_the_law_of_an_expression(text, function):
+    keys = {"shapes": SHAPES, "springs": ["edge"]}
+    if "exp" in text:
+        keys |= {"bounds": {"a": [0.1, 8.0]}, "starts": 2}
+    mesh = box("tet4")
+    known = sf.sampled(mesh, MATERIAL, "neo-hookean", force=text, **keys)
+    net = sf.sampled(mesh, MATERIAL, "neo-hookean", force=function, **keys)
+    same(net, known, 1e-6 if "exp" in text else 1e-9)
+    x = mesh.points * [1.1, 0.95, 1.05]
+    assert net.energy(x) == pytest.approx(known.energy(x), rel=1e-6)
+    assert np.allclose(net.forces(x), known.forces(x), rtol=1e-6, atol=1e-6 * abs(known.forces(x)).max())
+    slopes = known.stiffness(x).toarray()
+    assert np.abs(net.stiffness(x).toarray() - slopes).max() <= 1e-6 * np.abs(slopes).max()
+
+
+def test_laws_of_groups_may_be_functions_beside_expressions(tmp_path):
+    laws = {"edge": "k*c", "bulk": lambda s, a, b: a / (1 + s) + b * np.log(1 + s) / (1 + s)}
+    net = sf.sampled(box(), MATERIAL, energy, force=laws, springs=["edge", "bulk"], shapes=SHAPES)
+    bulk = next(kind for kind in net.contents if kind["kind"] == "volume")
+    # The neo-Hookean energy of a tetrahedron is that of such springs.
+    assert np.allclose(bulk["a"], -MU, rtol=1e-8) and np.allclose(bulk["b"], LAMBDA, rtol=1e-8)
+    for write in (lambda: net.write(tmp_path / "net.json"), lambda: net.write(tmp_path / "net.csv"), lambda: net.export("npz", tmp_path / "out")):
+        with pytest.raises(sf.SpringfitError) as error:
+            write()
+        assert error.value.key == "force" and error.value.kind == "unsupported", str(error.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_two_laws_of_one_name_are_two():
+    def pair(stiff):
+        return lambda s, k: stiff * k * s
+
+    mesh = sf.Mesh.box("quad4", size=[1, 1], cells=[2, 2])
+    net = sf.sampled(mesh, MATERIAL, energy, force={"edge": pair(1.0), "diagonal": pair(3.0)}, shapes=SHAPES)
+    known = sf.sampled(mesh, MATERIAL, energy, force={"edge": "k*s", "diagonal": "3*k*s"}, shapes=SHAPES)
+    slopes = known.stiffness().toarray()
+    assert np.abs(net.stiffness().toarray() - slopes).max() <= 1e-9 * np.abs(slopes).max()
+
+
+def test_arguments_with_a_default_are_not_fitted():
+    net = sf.sampled(box(), MATERIAL, energy, force=lambda s, k, a=2.0: k * (s + a * s**2), springs=["edge"], shapes=SHAPES)
+    known = sf.sampled(box(), MATERIAL, energy, force="k*(s + 2*s^2)", springs=["edge"], shapes=SHAPES)
+    same(net, known, 1e-9)
+
+
+def broken(f):
+    raise KeyError("no such table")
+
+
+@pytest.mark.parametrize(
+    "given, key, words",
+    [
+        ({"law": broken}, "law", "KeyError"),
+        ({"law": lambda f: f[0]}, "law", "shape (36,)"),
+        ({"law": lambda f: np.zeros(len(f), complex)}, "law", "complex"),
+        ({"law": lambda f: "stiff"}, "law", "real numbers"),
+        ({"law": lambda f: energy(f) * np.nan}, "law", "finite"),
+        ({"law": lambda f: energy(f) + 10.0 * f[:, 0, 0]}, "law", "no stress at rest"),
+        ({"law": None, "stress": lambda f: f[0]}, "stress", "shape (1, 3, 3)"),
+        ({"law": energy, "stress": lambda f: 2 * stress(f)}, "stress", "derivative"),
+        ({"law": "neo-hookean", "stress": stress}, "stress", "a function, or none"),
+        ({"law": energy, "stress": 3}, "stress", "function"),
+        ({"law": None}, "law", "none"),
+        ({"law": energy, "shapes": {"loads": ["tension"]}}, "shapes.loads", "expression"),
+        ({"law": energy, "force": lambda k: k}, "force", "strain"),
+        ({"law": energy, "force": lambda s: s}, "force", "parameters"),
+        ({"law": energy, "force": lambda *a: a[0]}, "force", "named"),
+        ({"law": energy, "force": lambda s, k: k * s[:1]}, "force", "shape"),
+        ({"law": energy, "force": lambda s, k: 1 / 0}, "force", "ZeroDivisionError"),
+        ({"law": energy, "force": lambda s, k: k * s * np.nan}, "force", "finite"),
+        ({"law": energy, "force": {"edges": lambda s, k: k * s}}, "force", "edge"),
+        ({"law": energy, "force": lambda s, k: 1e-3 * k * s * (1.0 if abs(k) < 3e4 else 1.5)}, "force", "linear"),
+    ],
+)
+def test_what_functions_do_wrong_is_named(given, key, words):
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.sampled(box(), MATERIAL, given.pop("law"), springs=["edge"], **{"shapes": SHAPES, **given})
+    assert key in str(error.value.key) and words in str(error.value), (error.value.key, str(error.value))
+    if "Error" in words:
+        assert type(error.value.__cause__).__name__ == words
+
+
+@pytest.mark.parametrize("functions", [(energy, None), (None, stress)])
+def test_another_stiffness_at_rest_is_told(functions):
+    for material, count in [(MATERIAL, 0), (sf.Material(2e4, 0.3), 1), (sf.Material(1e4, 0.35), 1)]:
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            sf.sampled(box(), material, functions[0], stress=functions[1], shapes=SHAPES)
+        assert len(told) == count and all("at rest" in str(warning.message) for warning in told)
+
+
+def test_other_objectives_have_no_functions():
+    for objective in ("offdiag", "exact", "van-gelder"):
+        with pytest.raises(sf.SpringfitError) as error:
+            sf.fit(box(), MATERIAL, objective, law=energy)
+        assert error.value.key == "law", str(error.value)
+
+
+def test_functions_that_fail_later_are_heard():
+    state = {"fail": False}
+
+    def force(s, k):
+        if state["fail"]:
+            raise RuntimeError("gone")
+        return k * s
+
+    net = sf.sampled(box(), MATERIAL, energy, force=force, springs=["edge"], shapes=SHAPES)
+    state["fail"] = True
+    x = net.points * 1.1
+    for call in (net.forces, net.energy, net.stiffness):
+        with pytest.raises(sf.SpringfitError) as error:
+            call(x)
+        assert isinstance(error.value.__cause__, RuntimeError)
+    state["fail"] = False
+    assert np.isfinite(net.forces(x)).all()
+
+
+def test_functions_are_called_while_other_threads_hold_the_lock():
+    stop, count = threading.Event(), [0]
+
+    def busy():
+        while not stop.is_set():
+            count[0] += 1
+
+    thread = threading.Thread(target=busy)
+    thread.start()
+    try:
+        net = sf.sampled(box(), MATERIAL, energy, shapes=SHAPES)
+    finally:
+        stop.set()
+        thread.join()
+    assert len(net) > 0 and count[0] > 0
+
+
+def test_ctrl_c_ends_a_function():
+    code = (
+        "import signal, time, springfit as sf, numpy as np\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "def slow(f):\n"
+        "    print('go', flush=True)\n"
+        "    time.sleep(0.2)\n"
+        "    return ((f - np.eye(3))**2).sum((1, 2))\n"
+        "mesh = sf.Mesh.box('hex8', size=[1, 1, 1], cells=[6, 6, 6])\n"
+        "x = mesh.points + 1e-3 * np.random.default_rng(1).uniform(-1, 1, mesh.points.shape)\n"
+        "sf.sampled(sf.Mesh(x, dict(mesh.cells)), sf.Material(1.0, 0.0), slow)\n"
+    )
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "go\n"
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20)
+    assert errors.rstrip().endswith("KeyboardInterrupt") and process.returncode != 0, errors
