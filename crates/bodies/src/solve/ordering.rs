@@ -95,7 +95,7 @@ impl Graph {
             };
             let cuts = (0..d).map(|axis| (axis, sort(&mut part, axis)));
             let best = cuts.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-            let Some((axis, Cut { position, side, .. })) = best else { return None };
+            let (axis, Cut { position, side, .. }) = best?;
             sort(&mut part, axis);
             let (mut low, mut high, mut separator) = (Vec::new(), Vec::new(), Vec::new());
             for (i, &node) in part.iter().enumerate() {
