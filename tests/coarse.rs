@@ -1,7 +1,11 @@
 //! Coarse networks for fine bodies: where the points of one mesh lie in another, and what a network fitted to a finer body gains.
 
+use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, Embedding, Mesh};
+use springfit::model::{Entries, Support, finite_elements};
+use springfit::solve::System;
 use springfit::study::{Outcome, Scene, run};
+use springfit::whole::varied_loads;
 use std::sync::Arc;
 
 fn block(element: &str, size: &[f64], cells: &[usize]) -> Mesh {
@@ -67,7 +71,7 @@ objective = "exact"
 [[fit]]
 name      = "coarse"
 objective = "whole"
-start     = "exact"
+start     = "START"
 KEYS
 
 [[fix]]
@@ -79,10 +83,15 @@ group    = "xmax"
 traction = [0, 0, 100]
 "#;
 
-fn ran(element: &str, keys: &str) -> Outcome {
+/// The text of the scene.
+fn scene(element: &str, start: &str, keys: &str) -> String {
+    SCENE.replace("ELEMENT", element).replace("START", start).replace("KEYS", keys)
+}
+
+fn ran(element: &str, start: &str, keys: &str) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
-    std::fs::write(&path, SCENE.replace("ELEMENT", element).replace("KEYS", keys)).unwrap();
+    std::fs::write(&path, scene(element, start, keys)).unwrap();
     run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap()
 }
 
@@ -94,12 +103,21 @@ fn a_coarse_network_answers_like_a_finer_body() {
         ("hex8", ""),
         ("hex8", "volume = \"cells\""),
         ("tet4", "volume = \"patches\""),
+        ("tet4", "shear = \"edges\"\nvolume = \"patches\""),
+        ("tet4", "shear = \"edges\""),
         ("hex8", "supports = [[\"xmin\"], [\"xmin\", \"xmax\"]]\nvalidate_supports = [[\"ymin\"]]"),
+        (
+            "tet4",
+            "shear = \"edges\"\nvolume = \"patches\"\nsupports = [[\"xmin\"], [\"xmin\", \"xmax\"]]\nvalidate_supports = [[\"xmin\"], [\"ymin\"]]",
+        ),
         ("hex8", "unknowns = \"body-moduli\""),
     ] {
-        let outcome = ran(element, keys);
+        let outcome = ran(element, "exact", keys);
         let whole = outcome.fits[1].kind.whole().unwrap();
         assert!(whole.stands && !whole.held_out.is_empty());
+        // A support that is fitted and chooses rho as well is reported once.
+        let supports: Vec<&str> = whole.held_out.iter().map(|held_out| &held_out.support[..]).collect();
+        assert!((1..supports.len()).all(|i| !supports[..i].contains(&supports[i])), "{supports:?}");
         for held_out in &whole.held_out {
             let median = |model: &str| held_out.models.iter().find(|m| m.model == model).unwrap().median.unwrap();
             let (body, fitted) = (median("finite elements"), median("fitted"));
@@ -122,16 +140,77 @@ fn a_coarse_network_answers_like_a_finer_body() {
     }
 }
 
+/// The errors under each load, worked out again from both meshes: the median, the largest and the loads that are listed as worse than with
+/// the finite elements of the mesh. Springs with the rest lengths of the mesh do not hold Poisson's ratio, so that pressure is one of them.
+#[test]
+fn loads_that_a_fit_has_made_worse_are_listed() {
+    let material = Material::new(1e5, 0.3, State::Solid).unwrap();
+    for (element, start, keys) in [
+        ("tet4", "exact", "shear = \"edges\"\nvolume = \"patches\""),
+        ("hex8", "offdiag", "unknowns = \"group\"\nregularization = 10"),
+    ] {
+        let outcome = ran(element, start, keys);
+        let held_out = &outcome.fits[1].kind.whole().unwrap().held_out[0];
+        let mesh = &outcome.mesh;
+        let fine = mesh.refined().unwrap().refined().unwrap();
+        let held = |mesh: &Mesh| {
+            let mut support = Support::free(mesh);
+            support.fix(&mesh.groups["xmin"].points, &[0, 1, 2], 3);
+            support
+        };
+        // The seed of the fit is 2010.
+        let loads = varied_loads(&fine, &held(&fine), 1.0, 30, 2010 + 1000);
+        let (down, up) = (Embedding::of(&fine.points, mesh).unwrap(), Embedding::of(&mesh.points, &fine).unwrap());
+        let moved = |mesh: &Mesh, entries: &Entries, forces: &[f64]| {
+            let system = System::new(entries, &held(mesh)).unwrap();
+            system.solve(&system.cholesky().unwrap().unwrap(), forces).0
+        };
+        let [of_fine, of_body] = [&fine, mesh].map(|mesh| finite_elements(mesh, material.moduli()));
+        let of_network = outcome.fits[1].network.stiffness(&mesh.points);
+        let norm = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let (mut fitted, mut worse) = (Vec::new(), Vec::new());
+        for load in &loads {
+            let wanted = up.interpolate(&moved(&fine, &of_fine, &load.forces));
+            let error = |entries: &Entries| {
+                let u = moved(mesh, entries, &down.restrict(&load.forces));
+                let lack: Vec<f64> = u.iter().zip(&wanted).map(|(u, wanted)| u - wanted).collect();
+                norm(&lack) / norm(&wanted)
+            };
+            let (body, own) = (error(&of_body), error(&of_network));
+            fitted.push(own);
+            worse.extend((own > 1.1 * body).then(|| (load.name.clone(), body, own)));
+        }
+        fitted.sort_by(f64::total_cmp);
+        let model = held_out.models.iter().find(|m| m.model == "fitted").unwrap();
+        // Both sides solve the same equations, with factors of their own.
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b;
+        assert!(close(model.median.unwrap(), 0.5 * (fitted[14] + fitted[15])), "{start}: {model:?} {fitted:?}");
+        assert!(close(model.worst.unwrap(), fitted[29]), "{start}: {model:?} {fitted:?}");
+        assert_eq!(held_out.worse.len(), worse.len(), "{start}: {worse:?}");
+        for (found, (load, body, own)) in held_out.worse.iter().zip(&worse) {
+            assert!(
+                found.load == *load && close(found.finite_elements, *body) && close(found.fitted, *own),
+                "{found:?}"
+            );
+        }
+        assert_eq!(worse.iter().any(|(load, ..)| load == "pressure"), start == "offdiag", "{start}: {worse:?}");
+        let of = |model: &str| held_out.models.iter().find(|m| m.model == model).unwrap().median.unwrap();
+        // Before any fit the exact network is the finite elements, and springs on edges leave less than half of their error.
+        assert!(close(of("exact"), of("finite elements")), "{held_out:?}");
+        assert!(element == "hex8" || of("exact edges patches") < 0.5 * of("exact"), "{held_out:?}");
+    }
+}
+
 /// Frequencies after those that the masses were fitted to err at most a third as much as those of the finite elements of the mesh. Mass and centre are those of the finer body, worked out here from its size, and
 /// second moments its own or those of lumped masses.
 #[test]
 fn masses_give_the_frequencies_of_a_finer_body() {
     let keys = "masses = 6\nvolume = \"patches\"";
-    let text = SCENE.replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
+    let text = scene("tet4", "exact", keys).replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
     let text = text.replace("cells = [4, 1, 1]", "cells = [8, 2, 2]");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
-    std::fs::write(&path, text.replace("ELEMENT", "tet4").replace("KEYS", keys)).unwrap();
+    std::fs::write(&path, text).unwrap();
     let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
     let found = outcome.fits[1].kind.whole().unwrap().masses.as_ref().unwrap();
     assert!(found.supports.len() == 1);
@@ -172,7 +251,7 @@ fn masses_give_the_frequencies_of_a_finer_body() {
 fn masses_that_cannot_be_fitted_are_named() {
     let text = |keys: &str, density: &str| {
         let material = format!("poisson = 0.3\n{density}");
-        SCENE.replace("poisson = 0.3", &material).replace("ELEMENT", "hex8").replace("KEYS", keys)
+        scene("hex8", "exact", keys).replace("poisson = 0.3", &material)
     };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");

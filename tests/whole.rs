@@ -2,10 +2,10 @@
 
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
-use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
-use springfit::material::{CellMap, Hooke, Material};
+use springfit::fit::{CellFits, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells};
+use springfit::material::{CellMap, Hooke, LinearMaterial, Material, MaterialMap};
 use springfit::mesh::{CellIndex, Group, Mesh, vtk};
-use springfit::model::{Network, Support, finite_elements, masses};
+use springfit::model::{Network, Support, exact_network, finite_elements, masses};
 use springfit::report;
 use springfit::solve::{Equations, Newton, System, lowest_modes};
 use springfit::springs::Springs;
@@ -146,42 +146,48 @@ fn derivatives_are_those_of_differences() {
 /// The same where the unknowns are the moduli of an exact network, each in all ways to share them.
 #[test]
 fn derivatives_in_moduli_are_those_of_differences() {
-    for (scene, held, volume) in [
-        ("cube_tet", "fixed", VolumeSprings::Points),
-        ("cube_tet", "fixed", VolumeSprings::Patches),
-        ("tissue_quad", "fixed", VolumeSprings::Cells),
+    for (scene, held, shear, volume) in [
+        ("cube_tet", "fixed", ShearSprings::Cells, VolumeSprings::Points),
+        ("cube_tet", "fixed", ShearSprings::Cells, VolumeSprings::Patches),
+        ("cube_tet", "fixed", ShearSprings::Edges, VolumeSprings::Points),
+        ("cube_tet", "fixed", ShearSprings::Edges, VolumeSprings::Patches),
+        ("tissue_tri", "fixed", ShearSprings::Edges, VolumeSprings::Patches),
+        ("tissue_quad", "fixed", ShearSprings::Cells, VolumeSprings::Cells),
     ] {
         let body = Body::new(&load(scene), held);
         let mut targets = body.made();
         targets.truncate(2);
         let frequencies = body.frequencies(2);
-        let parts = ModuliParts::new(&body.mesh, body.material, volume, &[]).unwrap();
+        let parts = ModuliParts::new(&body.mesh, body.material, (shear, volume), &[]).unwrap();
         for sharing in [ModuliSharing::Body, ModuliSharing::Region, ModuliSharing::Element] {
             let object = Object::of_moduli(parts.clone(), parts.unknowns(sharing)).unwrap();
             let problem = Displacements::new(&object, targets.iter().collect(), Some(&frequencies)).unwrap();
             compare_with_differences(&problem);
         }
-        // With all factors at one the parts are the finite elements, unless patches or cells carry lambda.
         let unknowns = parts.unknowns(ModuliSharing::Element);
         let object = Object::of_moduli(parts.clone(), unknowns.clone()).unwrap();
-        if volume == VolumeSprings::Points {
-            let network = object.network(&vec![0.0; unknowns.count()]);
+        let start = object.network(&vec![0.0; unknowns.count()]);
+        // With all factors at one the network is the exact one, which patches of networks with springs on cells are not: they share λ.
+        if shear == ShearSprings::Edges || volume == VolumeSprings::Points {
+            let fit = ExactFit { shear, volume, ..ExactFit::default() };
+            let exact = exact_network(&body.mesh, &body.material.into(), &fit, &[]).unwrap();
+            assert_eq!((start.lengths.len(), start.others.len()), (exact.lengths.len(), exact.others.len()));
+            for (a, b) in start.lengths.iter().zip(&exact.lengths) {
+                assert!((a.constant - b.constant).abs() < 1e-9 * b.constant.abs().max(1e-3), "{a:?} {b:?}");
+            }
+            for (a, b) in start.others.iter().zip(&exact.others) {
+                assert!(
+                    (a.constant - b.constant).abs() < 1e-9 * b.constant.abs()
+                        && (a.rest - b.rest).abs() < 1e-9 * b.rest,
+                    "{a:?} {b:?}"
+                );
+            }
+        }
+        // It is the finite elements where nothing averages.
+        if (shear, volume) == (ShearSprings::Cells, VolumeSprings::Points) {
             let problem = Displacements::new(&object, targets.iter().collect(), None).unwrap();
             let errors = problem.errors(&vec![0.0; unknowns.count()]).unwrap().unwrap();
             assert!(errors.loads.iter().all(|e| *e < 1e-10), "{errors:?}");
-            let exact = fit_exact(
-                &body.mesh.blocks[0].element,
-                &body.mesh.points,
-                &body.mesh.blocks[0].connectivity,
-                body.material,
-                &ExactFit::default(),
-                &mut |_| {},
-            );
-            let exact = Network::assemble(&body.mesh, &[exact.unwrap()]);
-            assert_eq!(network.lengths.len(), exact.lengths.len());
-            for (a, b) in network.lengths.iter().zip(&exact.lengths) {
-                assert!((a.constant - b.constant).abs() < 1e-9 * b.constant.abs().max(1e-3), "{a:?} {b:?}");
-            }
         }
         // The network of any factors has the stiffness of the parts.
         let theta = waves(unknowns.count(), 0.5);
@@ -191,7 +197,50 @@ fn derivatives_in_moduli_are_those_of_differences() {
         let own = Target::new("own".into(), body.support.clone(), targets[0].forces.clone(), u);
         let problem = Displacements::new(&object, vec![&own], None).unwrap();
         let errors = problem.errors(&theta).unwrap().unwrap();
-        assert!(errors.loads[0] < 1e-9, "{scene} {volume:?}: {errors:?}");
+        assert!(errors.loads[0] < 1e-9, "{scene} {shear:?} {volume:?}: {errors:?}");
+    }
+}
+
+/// Factors on the moduli of groups of cells whose domains of edges cross from one to the other: the network is that of a material which
+/// varies from cell to cell within one region, and the measured moduli of the groups come back by their names.
+#[test]
+fn domains_of_edges_share_the_moduli_of_groups() {
+    let mut body = Body::new(&load("cube_tet"), "fixed");
+    let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
+    let is_upper: Vec<bool> = body.mesh.blocks[0].cells().map(|cell| height(cell) > 0.01).collect();
+    let upper = (0..is_upper.len()).filter(|&cell| is_upper[cell]).map(|cell| CellIndex { block: 0, cell }).collect();
+    body.mesh.groups.insert("upper".into(), Group { cells: upper, ..Group::default() });
+    body.mesh.groups.remove("body");
+    let (young, poisson, state) = (body.material.young(), body.material.poisson(), body.material.state());
+    // μ and λ four times as large, at the same ratio.
+    let of_cell = |upper: &bool| Material::new(if *upper { 4.0 * young } else { young }, poisson, state).unwrap();
+    let material = MaterialMap::of_regions(
+        CellMap::of_blocks(vec![is_upper.iter().map(|upper| LinearMaterial::from(of_cell(upper))).collect()]),
+        vec!["all".into()],
+        CellMap::of_blocks(vec![vec![0; is_upper.len()]]),
+    );
+    let shear = ShearSprings::Edges;
+    let fit = ExactFit { shear, ..ExactFit::default() };
+    let known = exact_network(&body.mesh, &material.unwrap(), &fit, &[]).unwrap();
+    let parts = ModuliParts::new(&body.mesh, body.material, (shear, VolumeSprings::Points), &[]).unwrap();
+    for (sharing, count) in [(ModuliSharing::Region, 4), (ModuliSharing::RegionYoung, 2)] {
+        let names = parts.names(sharing);
+        assert_eq!(names.len(), count, "{names:?}");
+        let truth: Vec<f64> = names.iter().map(|name| if name.contains("upper") { 4.0f64.ln() } else { 0.0 }).collect();
+        let object = Object::of_moduli(parts.clone(), parts.unknowns(sharing)).unwrap();
+        let network = object.network(&truth);
+        let [own, other] = [&network, &known].map(|network| {
+            let mut matrix = nalgebra::DMatrix::<f64>::zeros(body.mesh.points.len(), body.mesh.points.len());
+            network.stiffness(&body.mesh.points).iter().for_each(|e| matrix[(e.row, e.col)] += e.val);
+            matrix
+        });
+        assert!((&own - &other).norm() < 1e-12 * other.norm(), "{sharing:?}: {:e}", (own - other).norm());
+        let found = object.region_factors(&truth);
+        assert_eq!(found.len(), 2);
+        for (groups, factors) in found {
+            let factor = if groups.contains(&"upper".to_string()) { 4.0 } else { 1.0 };
+            assert!(factors.iter().all(|f| (f - factor).abs() < 1e-12), "{groups:?} {factors:?}");
+        }
     }
 }
 
@@ -200,7 +249,7 @@ fn derivatives_in_moduli_are_those_of_differences() {
 #[test]
 fn moduli_of_two_halves_come_back() {
     let body = Body::new(&load("cube_tet"), "fixed");
-    let parts = ModuliParts::new(&body.mesh, body.material, VolumeSprings::Points, &[]).unwrap();
+    let parts = ModuliParts::new(&body.mesh, body.material, Default::default(), &[]).unwrap();
     let unknowns = parts.unknowns(ModuliSharing::Element);
     let object = Object::of_moduli(parts.clone(), unknowns.clone()).unwrap();
     let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
@@ -256,7 +305,7 @@ fn intervals_of_moduli_hold_the_truth() {
         .collect();
     body.mesh.groups.insert("upper".into(), Group { cells: upper, ..Group::default() });
     body.mesh.groups.remove("body");
-    let parts = ModuliParts::new(&body.mesh, body.material, VolumeSprings::Points, &[]).unwrap();
+    let parts = ModuliParts::new(&body.mesh, body.material, Default::default(), &[]).unwrap();
     let unknowns = parts.unknowns(ModuliSharing::Region);
     let names = parts.names(ModuliSharing::Region);
     assert_eq!((unknowns.count(), names.len()), (4, 4), "{names:?}");

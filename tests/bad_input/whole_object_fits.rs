@@ -7,7 +7,7 @@ const FIT: &str = "objective = \"modal\"";
 const WHOLE: &str = "objective = \"whole\"";
 
 /// The options that follow `objective = "whole"`, the key below `fit[0]`, and words of the problem.
-const OPTIONS: [(&str, &str, &str); 25] = [
+const OPTIONS: [(&str, &str, &str); 28] = [
     ("loads = []", "loads", "found none"),
     ("loads = [\"push\"]", "loads", "(load 1), found \"push\""),
     ("validate = [\"push\"]", "validate", "(load 1), found \"push\""),
@@ -33,6 +33,9 @@ const OPTIONS: [(&str, &str, &str); 25] = [
     ("start = \"equal\"\nhigher = 0.1", "higher", "\"equal\""),
     ("residual = \"forces\"\nfrequencies = 2", "frequencies", "residual = \"forces\""),
     ("range = 10\nregularization = 1", "range", "\"validate\""),
+    ("shear = \"edges\"", "shear", "\"exact\""),
+    ("start = \"exact\"\nshear = \"faces\"", "shear", "found \"faces\""),
+    ("start = \"exact\"\nshear = \"edges\"\nvolume = \"cells\"", "volume", "found \"cells\""),
 ];
 
 #[test]
@@ -55,6 +58,12 @@ fn options_of_whole_object_fits() {
 #[test]
 fn whole_objects() {
     let mut refusals = Refusals::default();
+    let cubes = edited(BRICK, "tet4", "hex8");
+    refusals.expect_of_scene(
+        &edited(&cubes, FIT, &format!("{WHOLE}\nstart = \"exact\"\nshear = \"edges\"")),
+        "scene.toml: fit[0].shear",
+        "found \"edges\" with hex8",
+    );
     let whole = edited(BRICK, FIT, WHOLE);
     refusals.expect_of_scene(
         &edited(&whole, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\""),

@@ -270,6 +270,7 @@ refine = 1
 objective = "whole"
 masses = 1
 start = "exact"
+shear = "edges"
 volume = "patches"
 supports = [["xmin"]]
 validate_supports = [["xmax"]]

@@ -83,45 +83,54 @@ impl Embedding {
 /// The shape functions at a point that do not vanish, and whether a cell has the point.
 type Found = (Vec<(usize, f64)>, bool);
 
-/// The cells by the bins that their boxes meet.
+/// The cells by the bins that their surroundings meet.
 struct Bins {
     width: f64,
-    cells: HashMap<[i64; 3], Vec<CellIndex>>,
+    boxes: Vec<CellBox>,
+    /// Indices of boxes.
+    cells: HashMap<[i64; 3], Vec<usize>>,
 }
 
 impl Bins {
     fn of(mesh: &Mesh) -> Bins {
-        let boxes: Vec<(CellIndex, [[f64; 3]; 2])> =
-            mesh.cell_indices().map(|cell| (cell, surroundings(mesh, cell))).collect();
-        let mean = boxes.iter().map(|(_, [low, high])| distance(low, high)).sum::<f64>() / boxes.len().max(1) as f64;
-        let mut bins = Bins { width: mean, cells: HashMap::new() };
-        for (cell, [low, high]) in boxes {
-            let (from, to) = (bins.bin(&low), bins.bin(&high));
+        let boxes: Vec<CellBox> = mesh.cell_indices().map(|cell| CellBox::of(mesh, cell)).collect();
+        let mean =
+            boxes.iter().map(|of| distance(&of.around(0), &of.around(1))).sum::<f64>() / boxes.len().max(1) as f64;
+        let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        for (index, of) in boxes.iter().enumerate() {
+            let (from, to) = (bin(&of.around(0), mean), bin(&of.around(1), mean));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     for k in from[2]..=to[2] {
-                        bins.cells.entry([i, j, k]).or_default().push(cell);
+                        cells.entry([i, j, k]).or_default().push(index);
                     }
                 }
             }
         }
-        bins
+        Bins { width: mean, boxes, cells }
     }
 
-    fn bin(&self, x: &[f64; 3]) -> [i64; 3] {
-        x.map(|x| (x / self.width).floor() as i64)
-    }
-
-    /// The shape functions at x of the cell that has it, or is nearest to having it, and whether it has it.
+    /// The shape functions at x of the cell that has it, or is nearest to having it, and whether it has it. Cells whose boxes have x come
+    /// first, because a search in a cell is dear.
     fn find(&self, mesh: &Mesh, x: &[f64]) -> Option<Found> {
+        let place = spatial(x);
+        let near = self.cells.get(&bin(&place, self.width))?;
+        let mut near: Vec<(usize, &CellBox)> =
+            near.iter().map(|&index| (self.boxes[index].least(&place), &self.boxes[index])).collect();
+        near.sort_by_key(|(least, _)| *least);
         let mut best: Option<(usize, CellIndex, Vec<f64>)> = None;
-        for &cell in self.cells.get(&self.bin(&spatial(x)))? {
-            let Some((multiple, at)) = local(mesh, cell, x) else { continue };
-            if best.as_ref().is_none_or(|best| multiple < best.0) {
-                best = Some((multiple, cell, at));
-            }
-            if multiple == 0 {
+        for (least, of) in near {
+            let found = best.as_ref().map_or(MULTIPLES.len(), |best| best.0);
+            if found == 0 {
                 break;
+            }
+            // A straight cell lies in its box, and its multiples in those of the box.
+            if of.is_straight && least > found {
+                continue;
+            }
+            let Some((multiple, at)) = local(mesh, of.cell, x) else { continue };
+            if best.as_ref().is_none_or(|best| multiple < best.0) {
+                best = Some((multiple, of.cell, at));
             }
         }
         let (multiple, cell, at) = best?;
@@ -131,14 +140,53 @@ impl Bins {
     }
 }
 
-/// A box around a cell that also has the points that may lie outside it.
-fn surroundings(mesh: &Mesh, cell: CellIndex) -> [[f64; 3]; 2] {
-    let points: Vec<[f64; 3]> = mesh.cell_nodes(cell).iter().map(|&p| spatial(mesh.point(p))).collect();
-    let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| points.iter().map(|x| x[k]).fold(start, pick);
-    let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
-    let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
-    let margin = 0.5 * (FARTHEST - 1.0) * distance(&low, &high);
-    [low.map(|x| x - margin), high.map(|x| x + margin)]
+fn bin(x: &[f64; 3], width: f64) -> [i64; 3] {
+    x.map(|x| (x / width).floor() as i64)
+}
+
+/// The box of the nodes of a cell.
+struct CellBox {
+    cell: CellIndex,
+    /// Its lower and its upper corner.
+    ends: [[f64; 3]; 2],
+    /// The mean of the nodes.
+    centre: [f64; 3],
+    /// Whether the cell is a simplex with straight edges.
+    is_straight: bool,
+}
+
+/// The rounding of a place relative to the size of a box.
+const SLACK: f64 = 1e-6;
+
+impl CellBox {
+    fn of(mesh: &Mesh, cell: CellIndex) -> CellBox {
+        let element = &mesh.blocks[cell.block].element;
+        let points: Vec<[f64; 3]> = mesh.cell_nodes(cell).iter().map(|&p| spatial(mesh.point(p))).collect();
+        let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| points.iter().map(|x| x[k]).fold(start, pick);
+        let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
+        let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
+        let centre = std::array::from_fn(|k| points.iter().map(|x| x[k]).sum::<f64>() / points.len() as f64);
+        let is_straight = element.cell.is_simplex() && element.nodes() == element.cell.corners().len();
+        CellBox { cell, ends: [low, high], centre, is_straight }
+    }
+
+    /// The lower (0) or upper (1) corner of a box that also has the points that may lie outside the cell.
+    fn around(&self, end: usize) -> [f64; 3] {
+        let margin = 0.5 * (FARTHEST - 1.0) * distance(&self.ends[0], &self.ends[1]);
+        self.ends[end].map(|x| if end == 0 { x - margin } else { x + margin })
+    }
+
+    /// The index of the least multiple of the box about the centre of the cell that has x; their number if none has it.
+    fn least(&self, x: &[f64; 3]) -> usize {
+        let slack = SLACK * distance(&self.ends[0], &self.ends[1]);
+        let has = |multiple: &f64| {
+            (0..3).all(|k| {
+                let (c, [low, high]) = (self.centre[k], [self.ends[0][k], self.ends[1][k]]);
+                c + multiple * (low - c) - slack <= x[k] && x[k] <= c + multiple * (high - c) + slack
+            })
+        };
+        MULTIPLES.iter().position(has).unwrap_or(MULTIPLES.len())
+    }
 }
 
 /// The position in the coordinates of a cell, by Newton's method, and the index of the least multiple of the cell that has it.

@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::fit::{DomainSprings, ExactDomains, ExactFit};
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
-use crate::springs::Measure;
+use crate::springs::{Law, Measure};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -28,15 +28,23 @@ use std::sync::Arc;
 /// of their own dimension; or the network has no such form (kind `Unsupported`).
 pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFit) -> Result<Network> {
     let material = material.into();
-    let (block, domains) = parts(mesh, &material, fit)?;
-    let (materials, element) = (material.materials()?, &block.element);
-    let (d, n) = (mesh.dimension, element.nodes());
+    let (block, springs) = parts(mesh, &material, fit)?;
+    let is_uniform = matches!(material.materials()?, CellMap::Uniform(_));
+    let domains = edge_domains(mesh, block, &material);
+    let of_domain = |domain: &EdgeDomain| springs.springs(&domain.table, &domain.shares(is_uniform));
+    let found: Vec<DomainSprings> = domains.par_iter().map(of_domain).collect();
+    Ok(network_of(mesh.dimension, domains.iter().zip(&found), springs.law()))
+}
+
+/// The domains of all edges of linear simplices, one in each region of the material that meets at the edge.
+pub(crate) fn edge_domains(mesh: &Mesh, block: &CellBlock, material: &MaterialMap) -> Vec<EdgeDomain> {
+    let (d, n) = (mesh.dimension, block.element.nodes());
     let (mut gradients, mut volumes) = (Vec::with_capacity(block.connectivity.len() * d), Vec::new());
     each_cell(mesh, |_, _, geometry| {
         gradients.extend_from_slice(&geometry.gradients);
         volumes.push(geometry.volumes[0]);
     });
-    let pairs = element.cell.edges();
+    let pairs = block.element.cell.edges();
     let share = 1.0 / pairs.len() as f64;
     let at_edges = |(cell, nodes): (usize, &[usize])| {
         let region = *material.region().at(0, cell);
@@ -59,19 +67,23 @@ pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFi
                 sums.iter_mut().zip(own).for_each(|(sum, g)| *sum += volumes[cell] / whole * g);
             }
         }
-        let table = table(d, whole * share, mean);
-        let shares = parts.iter().map(|part| match materials {
-            CellMap::Uniform(_) => (0, volumes[part.2] / whole),
-            CellMap::Each(_) => (part.2, volumes[part.2] / whole),
-        });
-        let springs = domains.springs(&table, &shares.collect::<Vec<_>>());
-        Domain { nodes, table: Arc::new(table), springs }
+        let table = Arc::new(table(d, whole * share, mean));
+        let cells = parts.iter().map(|part| (part.2, volumes[part.2] / whole)).collect();
+        EdgeDomain { edge: parts[0].0, nodes, cells, table }
     };
     let groups: Vec<&[([usize; 2], usize, usize)]> = shares.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
-    let found: Vec<Domain> = groups.par_iter().map(|parts| domain(parts)).collect();
-    let lengths = merged(found.iter().flat_map(Domain::pairs).collect());
-    let others = found.into_iter().flat_map(|domain| domain.others(d, &domains)).collect();
-    Ok(Network { dimension: d, lengths, others })
+    groups.par_iter().map(|parts| domain(parts)).collect()
+}
+
+/// The network of the springs of domains; `law` is that of their springs on content.
+pub(crate) fn network_of<'a>(
+    dimension: usize,
+    domains: impl Iterator<Item = (&'a EdgeDomain, &'a DomainSprings)> + Clone,
+    law: Option<&Arc<Law>>,
+) -> Network {
+    let lengths = merged(domains.clone().flat_map(|(domain, springs)| domain.pairs(springs)).collect());
+    let others = domains.flat_map(|(domain, springs)| domain.others(dimension, springs, law)).collect();
+    Network { dimension, lengths, others }
 }
 
 /// Whether a body has [`edge_springs`]; no spring is computed.
@@ -80,7 +92,11 @@ pub fn has_edge_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit) -> 
 }
 
 /// The cells of the mesh, and what their domains have in common.
-fn parts<'a>(mesh: &'a Mesh, material: &MaterialMap, fit: &ExactFit) -> Result<(&'a CellBlock, ExactDomains)> {
+pub(crate) fn parts<'a>(
+    mesh: &'a Mesh,
+    material: &MaterialMap,
+    fit: &ExactFit,
+) -> Result<(&'a CellBlock, ExactDomains)> {
     let block = linear_simplices(mesh, "shear", "\"cells\": edges", fit.shear.name())?;
     let all = match material.materials()? {
         CellMap::Uniform(of_all) => std::slice::from_ref(of_all),
@@ -124,30 +140,39 @@ fn merged(mut springs: Vec<([usize; 2], f64)>) -> Vec<LengthSpring> {
     springs.chunk_by(|a, b| a.0 == b.0).filter_map(sum).collect()
 }
 
-/// The domain of an edge.
-struct Domain {
+/// The domain of an edge within one region.
+#[derive(Debug, Clone)]
+pub(crate) struct EdgeDomain {
+    /// The ends of the edge.
+    pub edge: [usize; 2],
     /// Its points, in rising order.
-    nodes: Vec<usize>,
-    table: Arc<Tabulation>,
-    springs: DomainSprings,
+    pub nodes: Vec<usize>,
+    /// Its cells with their shares of its content, which add up to one.
+    pub cells: Vec<(usize, f64)>,
+    /// The mean gradients of its cells.
+    pub table: Arc<Tabulation>,
 }
 
-impl Domain {
-    fn pairs(&self) -> impl Iterator<Item = ([usize; 2], f64)> {
+impl EdgeDomain {
+    /// The shares of its cells, by the index of their material.
+    fn shares(&self, is_uniform: bool) -> Vec<(usize, f64)> {
+        self.cells.iter().map(|(cell, share)| (if is_uniform { 0 } else { *cell }, *share)).collect()
+    }
+
+    fn pairs<'a>(&'a self, springs: &'a DomainSprings) -> impl Iterator<Item = ([usize; 2], f64)> + 'a {
         let n = self.nodes.len();
         let points = (0..n).flat_map(move |a| (a + 1..n).map(move |b| [self.nodes[a], self.nodes[b]]));
-        points.zip(self.springs.pairs.iter().copied()).filter(|(_, constant)| *constant != 0.0)
+        points.zip(springs.pairs.iter().copied()).filter(|(_, constant)| *constant != 0.0)
     }
 
     /// The springs on areas, if the energy has some, and on the content.
-    fn others(self, d: usize, domains: &ExactDomains) -> Vec<MeasureSpring> {
-        let Domain { nodes, table, springs } = self;
+    fn others(&self, d: usize, springs: &DomainSprings, law: Option<&Arc<Law>>) -> Vec<MeasureSpring> {
         let axis = |k: usize| (0..3).map(|l| f64::from(u8::from(k % 3 == l))).collect::<Vec<f64>>();
         let area = |k: usize| {
-            let unit = Tabulation { weights: vec![1.0], ..Tabulation::clone(&table) };
+            let unit = Tabulation { weights: vec![1.0], ..Tabulation::clone(&self.table) };
             MeasureSpring {
                 kind: SpringKind::PointArea,
-                points: nodes.clone(),
+                points: self.nodes.clone(),
                 constant: springs.areas,
                 rest: 0.0,
                 measure: Measure::Span(Arc::new(unit.along(&[axis(k + 1), axis(k + 2)]))),
@@ -158,12 +183,12 @@ impl Domain {
         let mut all: Vec<MeasureSpring> = if springs.areas == 0.0 { Vec::new() } else { (0..d).map(area).collect() };
         all.push(MeasureSpring {
             kind: SpringKind::PointContent,
-            points: nodes,
+            points: self.nodes.clone(),
             constant: springs.constant,
             rest: springs.rest,
-            measure: Measure::Span(table),
-            law: domains.law().cloned(),
-            parameters: springs.parameters,
+            measure: Measure::Span(self.table.clone()),
+            law: law.cloned(),
+            parameters: springs.parameters.clone(),
         });
         all
     }

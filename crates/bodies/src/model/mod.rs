@@ -11,6 +11,7 @@ mod blocks;
 mod deformation;
 mod domains;
 mod elastic;
+mod exact;
 mod fibres;
 mod forces;
 mod integration;
@@ -34,8 +35,10 @@ mod tension;
 
 pub use blocks::BlockStiffness;
 pub use deformation::Deformation;
+pub(crate) use domains::{EdgeDomain, edge_domains, network_of, parts as domain_parts};
 pub use domains::{edge_springs, has_edge_springs};
 pub use elastic::{Body, Elastic, RegionsBody};
+pub use exact::exact_network;
 pub use fibres::{fibre_springs, fibre_springs_of_regions};
 pub use linear::LinearElastic;
 pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};

@@ -9,6 +9,7 @@
 //! Theory: page *Whole-object fits* of the book.
 
 mod balance;
+mod carriers;
 mod covariance;
 mod descent;
 mod displacements;

@@ -1,20 +1,20 @@
-//! Exact networks whose unknowns are moduli: factors on μ and λ of the cells, and on λ of patches of cells.
+//! Exact networks whose unknowns are moduli: factors on μ and λ of the cells or of the domains of edges, and on λ of patches of cells.
 //!
-//! The stiffness is `Σ_e (c_μe K_μe + c_λe K_λe) + Σ_n c_n K_n`, with the tangents `K_μe`, `K_λe` of the springs of cell e
+//! The stiffness is `Σ_e (c_μe K_μe + c_λe K_λe) + Σ_n c_n K_n`, with the tangents `K_μe`, `K_λe` of the springs of cell or domain e
 //! that carry the moduli and `K_n` of patch n. Each of them is positive semidefinite, or their sum over μ and λ with
 //! equal factors is, and positive factors keep the network in the exact form.
 //!
 //! Theory: page *Whole-object fits* of the book.
 
+use super::carriers::{Carriers, Modulus, Part};
 use super::parts::{PartVectors, Places};
 use super::unknowns::Unknowns;
 use crate::error::Result;
-use crate::fit::{CellFits, ExactFit, VolumeSprings, fit_exact};
-use crate::material::{CellMap, Material, MaterialMap};
+use crate::fit::{ExactFit, ShearSprings, VolumeSprings};
+use crate::material::MaterialMap;
 use crate::mesh::{CellIndex, Mesh};
-use crate::model::{Entries, MeasureSpring, Network, dofs, patch_springs};
+use crate::model::{Entries, MeasureSpring, Network, dofs};
 use faer::sparse::Triplet;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -27,16 +27,15 @@ pub enum ModuliSharing {
     Region,
     /// The same with one factor on both moduli, so that Poisson's ratio stays; all patches.
     RegionYoung,
-    /// Each cell has factors of its own, and so has each patch.
+    /// Each cell, or each domain of an edge, has factors of its own, and so has each patch.
     Element,
 }
 
-/// The springs of an exact network by the modulus that they carry.
+/// The parts of an exact network that carry a modulus each.
 #[derive(Debug, Clone)]
 pub struct ModuliParts<'a> {
     mesh: &'a Mesh,
-    /// For each block the springs with μ alone and with λ alone.
-    fits: Vec<[CellFits; 2]>,
+    carriers: Carriers,
     /// The springs of the patches.
     patches: Vec<MeasureSpring>,
     places: Arc<Places>,
@@ -48,96 +47,37 @@ pub struct ModuliParts<'a> {
     factors: Vec<f64>,
 }
 
-/// A part of the stiffness.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Part {
-    Shear(usize, usize),
-    Volume(usize, usize),
-    Patch(usize),
-}
-
-/// The share of λ that cells keep at the start if patches carry the rest.
-const HALF: f64 = 0.5;
-
 impl<'a> ModuliParts<'a> {
-    /// The parts of the exact network of a body at small deformation. With `volume = "patches"` one half of λ is carried by
-    /// the patches, and the other by the cells. `held` says of each point whether it is held.
+    /// The parts of the exact network of a body at small deformation. With springs for μ on cells and `volume = "patches"` one half
+    /// of λ is carried by the patches, and the other by the cells. `held` says of each point whether it is held.
     ///
     /// # Errors
     /// The body has no such network.
     pub fn new(
         mesh: &'a Mesh,
         material: impl Into<MaterialMap>,
-        volume: VolumeSprings,
+        (shear, volume): (ShearSprings, VolumeSprings),
         held: &[bool],
     ) -> Result<ModuliParts<'a>> {
         let material = material.into();
         material.check(&mesh.blocks.iter().map(|block| block.cells().len()).collect::<Vec<_>>())?;
-        let fit = ExactFit { volume, ..ExactFit::default() };
-        let patched = volume == VolumeSprings::Patches;
-        let mut patches = if patched { patch_springs(mesh, material.clone(), &fit, held)? } else { Vec::new() };
-        patches.iter_mut().for_each(|patch| patch.constant *= HALF);
-        // Where patches carry λ, cells that carry it too are those with a spring for each cell.
-        let fit = ExactFit { volume: if patched { VolumeSprings::Cells } else { volume }, ..fit };
-        let share = if patched { HALF } else { 1.0 };
-        // λ vanishes where ν does, so that what remains is μ.
-        let materials = material.materials()?;
-        let shear = materials
-            .try_map(|material| Material::new(material.young() / (1.0 + material.poisson()), 0.0, material.state()))?;
-        let mut fits = Vec::new();
-        for (index, block) in mesh.blocks.iter().enumerate() {
-            let of = |materials: &CellMap<Material>| {
-                let cells = &block.connectivity;
-                fit_exact(&block.element, &mesh.points, cells, materials.block(index), &fit, &mut |_| {})
-            };
-            let (all, shear) = (of(materials)?, of(&shear)?);
-            let rest = |all: &[f64], own: &[f64]| all.iter().zip(own).map(|(a, b)| share * (a - b)).collect();
-            let volume = CellFits {
-                constants: rest(&all.constants, &shear.constants),
-                parameters: rest(&all.parameters, &shear.parameters),
-                ..all
-            };
-            fits.push([shear, volume]);
+        let fit = ExactFit { shear, volume, ..ExactFit::default() };
+        let (carriers, patches) = Carriers::new(mesh, &material, &fit, held)?;
+        let (d, mut places, mut tangents, mut parts) = (mesh.dimension, Places::new(), Vec::new(), Vec::new());
+        for of_part in carriers.tangents(mesh) {
+            places.push(dofs(&of_part.nodes, d));
+            tangents.extend(of_part.matrix);
+            parts.push(of_part.part);
         }
-        let (places, tangents, parts, factors) = Default::default();
-        let mut parts = ModuliParts { mesh, fits, patches, places, tangents, parts, factors };
-        parts.tabulate();
-        Ok(parts)
-    }
-
-    /// The tangent of every part. A part without stiffness is left out.
-    fn tabulate(&mut self) {
-        let (mesh, d) = (self.mesh, self.mesh.dimension);
-        let cells: Vec<CellIndex> = mesh.cell_indices().collect();
-        let of_cell = |index: &CellIndex| -> [Vec<f64>; 2] {
-            let alone = mesh.of_cell(*index);
-            [0, 1].map(|modulus| {
-                let own = self.fits[index.block][modulus].of_cells(&[index.cell]);
-                dense(&Network::assemble(&alone, &[own]).stiffness(&alone.points), alone.points.len())
-            })
-        };
-        let tangents: Vec<[Vec<f64>; 2]> = cells.par_iter().map(of_cell).collect();
-        let (mut places, mut all, mut parts) = (Places::new(), Vec::new(), Vec::new());
-        for (index, [shear, volume]) in cells.iter().zip(tangents) {
-            let nodes = mesh.cell_nodes(*index);
-            let (block, cell) = (index.block, index.cell);
-            for (part, tangent) in [(Part::Shear(block, cell), shear), (Part::Volume(block, cell), volume)] {
-                if tangent.iter().any(|k| *k != 0.0) {
-                    places.push(dofs(nodes, d));
-                    all.extend(tangent);
-                    parts.push(part);
-                }
-            }
-        }
-        for (index, patch) in self.patches.iter().enumerate() {
+        for (index, patch) in patches.iter().enumerate() {
             let mut tangent = vec![0.0; (patch.points.len() * d).pow(2)];
             patch.tangent(&mesh.points, d, &mut tangent);
             places.push(dofs(&patch.points, d));
-            all.extend(tangent);
+            tangents.extend(tangent);
             parts.push(Part::Patch(index));
         }
-        self.factors = vec![1.0; parts.len()];
-        (self.places, self.tangents, self.parts) = (Arc::new(places), Arc::new(all), parts);
+        let (places, tangents, factors) = (Arc::new(places), Arc::new(tangents), vec![1.0; parts.len()]);
+        Ok(ModuliParts { mesh, carriers, patches, places, tangents, parts, factors })
     }
 
     /// The unknowns that cells share in this way.
@@ -152,28 +92,27 @@ impl<'a> ModuliParts<'a> {
 
     fn shared(&self, sharing: ModuliSharing) -> (Unknowns, Vec<String>) {
         let regions = self.mesh.regions();
-        let label = |part: &Part| match (sharing, *part) {
-            (ModuliSharing::Element, part) => (part, Vec::new()),
-            (_, Part::Patch(_)) => (Part::Patch(0), Vec::new()),
-            (ModuliSharing::Body, Part::Shear(..)) => (Part::Shear(0, 0), Vec::new()),
-            (ModuliSharing::Body, Part::Volume(..)) => (Part::Volume(0, 0), Vec::new()),
-            (ModuliSharing::Region, Part::Shear(b, c))
-            | (ModuliSharing::RegionYoung, Part::Shear(b, c) | Part::Volume(b, c)) => {
-                (Part::Shear(0, 0), regions[b][c].clone())
-            }
-            (ModuliSharing::Region, Part::Volume(b, c)) => (Part::Volume(0, 0), regions[b][c].clone()),
+        let groups = |cell: CellIndex| regions[cell.block][cell.cell].clone();
+        let label = |part: &Part| match (sharing, self.cell(*part)) {
+            (ModuliSharing::Element, _) => (self.modulus(*part), Vec::new(), self.place(*part)),
+            (_, None) => (None, Vec::new(), [0; 2]),
+            (ModuliSharing::Body, Some(_)) => (self.modulus(*part), Vec::new(), [0; 2]),
+            (ModuliSharing::RegionYoung, Some(cell)) => (Some(Modulus::Shear), groups(cell), [0; 2]),
+            (ModuliSharing::Region, Some(cell)) => (self.modulus(*part), groups(cell), [0; 2]),
         };
-        let (mut known, mut names): (BTreeMap<(Part, Vec<&str>), usize>, _) = (BTreeMap::new(), Vec::new());
+        let (mut known, mut names) = (BTreeMap::new(), Vec::new());
         let own = self.parts.iter().map(|part| {
             let (count, label) = (known.len(), label(part));
-            let name = match (sharing, *part) {
-                (ModuliSharing::Element, Part::Shear(_, cell)) => format!("mu of cell {}", cell + 1),
-                (ModuliSharing::Element, Part::Volume(_, cell)) => format!("lambda of cell {}", cell + 1),
-                (ModuliSharing::Element, Part::Patch(patch)) => format!("lambda of patch {}", patch + 1),
-                (_, Part::Patch(_)) => "lambda of patches".into(),
-                (ModuliSharing::RegionYoung, Part::Shear(..) | Part::Volume(..)) => in_region("E", &label.1),
-                (_, Part::Shear(..)) => in_region("mu", &label.1),
-                (_, Part::Volume(..)) => in_region("lambda", &label.1),
+            let modulus = match (sharing, self.modulus(*part)) {
+                (_, None) => "lambda",
+                (ModuliSharing::RegionYoung, Some(_)) => "E",
+                (_, Some(Modulus::Shear)) => "mu",
+                (_, Some(Modulus::Volume)) => "lambda",
+            };
+            let name = match (sharing, self.cell(*part)) {
+                (ModuliSharing::Element, _) => format!("{modulus} of {}", self.place_name(*part)),
+                (_, None) => "lambda of patches".into(),
+                (_, Some(_)) => in_region(modulus, &label.1),
             };
             *known.entry(label).or_insert_with(|| {
                 names.push(name);
@@ -184,18 +123,57 @@ impl<'a> ModuliParts<'a> {
         (unknowns, names)
     }
 
+    /// The modulus of a part of cells; `None` for the patches, which carry λ.
+    fn modulus(&self, part: Part) -> Option<Modulus> {
+        match (part, &self.carriers) {
+            (Part::Cell(modulus, _), _) => Some(modulus),
+            (Part::Domain(index), Carriers::Domains(_, parts)) => Some(parts[index].modulus),
+            (Part::Domain(_), Carriers::Cells(_)) | (Part::Patch(_), _) => None,
+        }
+    }
+
+    /// A cell whose groups are those of all cells of a part; `None` for the patches, which all groups share.
+    fn cell(&self, part: Part) -> Option<CellIndex> {
+        match (part, &self.carriers) {
+            (Part::Cell(_, cell), _) => Some(cell),
+            (Part::Domain(index), Carriers::Domains(_, parts)) => Some(CellIndex { block: 0, cell: parts[index].cell }),
+            (Part::Domain(_), Carriers::Cells(_)) | (Part::Patch(_), _) => None,
+        }
+    }
+
+    /// What tells a cell, a domain or a patch from the others.
+    fn place(&self, part: Part) -> [usize; 2] {
+        match (part, &self.carriers) {
+            (Part::Cell(_, CellIndex { block, cell }), _) => [block, cell],
+            (Part::Domain(index), Carriers::Domains(_, parts)) => [0, parts[index].domain],
+            (Part::Domain(index), Carriers::Cells(_)) | (Part::Patch(index), _) => [0, index],
+        }
+    }
+
+    /// The cell, the edge or the patch of a part, counted from 1.
+    fn place_name(&self, part: Part) -> String {
+        match (part, &self.carriers) {
+            (Part::Domain(index), Carriers::Domains(domains, parts)) => {
+                let [a, b] = domains[parts[index].domain].edge;
+                format!("edge {}-{}", a + 1, b + 1)
+            }
+            (Part::Patch(index), _) => format!("patch {}", index + 1),
+            (Part::Cell(..) | Part::Domain(_), _) => format!("cell {}", self.place(part)[1] + 1),
+        }
+    }
+
     /// The factors on μ and λ of the cells that belong to the same groups, with these of the parts.
     pub(super) fn region_factors(&self, factors: &[f64]) -> BTreeMap<Vec<String>, [f64; 2]> {
         let regions = self.mesh.regions();
         let mut found = BTreeMap::new();
         for ((part, own), factor) in self.parts.iter().zip(&self.factors).zip(factors) {
-            let (block, cell, modulus) = match *part {
-                Part::Shear(block, cell) => (block, cell, 0),
-                Part::Volume(block, cell) => (block, cell, 1),
-                Part::Patch(_) => continue,
+            let (Some(cell), Some(modulus)) = (self.cell(*part), self.modulus(*part)) else { continue };
+            let groups = regions[cell.block][cell.cell].iter().map(|name| name.to_string()).collect();
+            let place = match modulus {
+                Modulus::Shear => 0,
+                Modulus::Volume => 1,
             };
-            let groups = regions[block][cell].iter().map(|name| name.to_string()).collect();
-            found.entry(groups).or_insert([1.0; 2])[modulus] = own * factor;
+            found.entry(groups).or_insert([1.0; 2])[place] = own * factor;
         }
         found
     }
@@ -204,7 +182,7 @@ impl<'a> ModuliParts<'a> {
     #[must_use]
     pub fn scaled(&self, factors: &[f64]) -> ModuliParts<'a> {
         let mut scaled = self.clone();
-        (scaled.fits, scaled.patches) = self.scaled_springs(factors);
+        (scaled.carriers, scaled.patches) = self.scaled_springs(factors);
         scaled.factors.iter_mut().zip(factors).for_each(|(own, factor)| *own *= factor);
         let mut tangents = self.tangents.to_vec();
         let mut rest = &mut tangents[..];
@@ -218,39 +196,21 @@ impl<'a> ModuliParts<'a> {
     }
 
     /// The springs of the parts, multiplied by factors, `[parts]`.
-    fn scaled_springs(&self, factors: &[f64]) -> (Vec<[CellFits; 2]>, Vec<MeasureSpring>) {
-        let (mut fits, mut patches) = (self.fits.clone(), self.patches.clone());
+    fn scaled_springs(&self, factors: &[f64]) -> (Carriers, Vec<MeasureSpring>) {
+        let (mut carriers, mut patches) = (self.carriers.clone(), self.patches.clone());
         for (part, factor) in self.parts.iter().zip(factors) {
-            let (modulus, block, cell) = match *part {
-                Part::Shear(block, cell) => (0, block, cell),
-                Part::Volume(block, cell) => (1, block, cell),
-                Part::Patch(index) => {
-                    patches[index].constant *= factor;
-                    continue;
-                }
-            };
-            let fit = &mut fits[block][modulus];
-            let (m, cells) = (fit.springs.len(), self.mesh.blocks[block].cells().len());
-            let p = fit.parameters.len() / cells.max(1);
-            fit.constants[cell * m..(cell + 1) * m].iter_mut().for_each(|k| *k *= factor);
-            fit.parameters[cell * p..(cell + 1) * p].iter_mut().for_each(|k| *k *= factor);
+            match *part {
+                Part::Patch(index) => patches[index].constant *= factor,
+                Part::Cell(..) | Part::Domain(_) => carriers.scale(self.mesh, *part, *factor),
+            }
         }
-        (fits, patches)
+        (carriers, patches)
     }
 
     /// The network of the parts, multiplied by factors, `[parts]`.
     pub fn network(&self, factors: &[f64]) -> Network {
-        let (fits, patches) = self.scaled_springs(factors);
-        let sum = |[shear, volume]: &[CellFits; 2]| {
-            let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
-            CellFits {
-                constants: add(&shear.constants, &volume.constants),
-                parameters: add(&shear.parameters, &volume.parameters),
-                ..shear.clone()
-            }
-        };
-        let fits: Vec<CellFits> = fits.iter().map(sum).collect();
-        let mut network = Network::assemble(self.mesh, &fits);
+        let (carriers, patches) = self.scaled_springs(factors);
+        let mut network = carriers.network(self.mesh);
         network.others.extend(patches);
         network
     }
@@ -306,16 +266,4 @@ impl<'a> ModuliParts<'a> {
 /// `mu of tumour`, or `mu` of cells in no group.
 fn in_region(modulus: &str, groups: &[&str]) -> String {
     if groups.is_empty() { modulus.into() } else { format!("{modulus} of {}", groups.join(", ")) }
-}
-
-/// A matrix with these entries of its lower triangle, `[size × size]`.
-fn dense(entries: &Entries, size: usize) -> Vec<f64> {
-    let mut matrix = vec![0.0; size * size];
-    for entry in entries {
-        matrix[entry.row * size + entry.col] += entry.val;
-        if entry.row != entry.col {
-            matrix[entry.col * size + entry.row] += entry.val;
-        }
-    }
-    matrix
 }

@@ -57,7 +57,7 @@ pub use fits::{
     ModelFrequencies, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe,
     Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord,
     Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, Task, TensionOutcome, TensionRecord,
-    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
 };
 pub use fitting::fit_mesh;
 pub use forecast::{ExpectedStage, Forecast};

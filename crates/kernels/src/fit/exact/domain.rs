@@ -44,6 +44,37 @@ pub struct DomainSprings {
     pub parameters: Vec<f64>,
 }
 
+impl DomainSprings {
+    /// The springs with all forces multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> DomainSprings {
+        let times = |values: &[f64]| values.iter().map(|k| factor * k).collect();
+        DomainSprings {
+            pairs: times(&self.pairs),
+            areas: factor * self.areas,
+            constant: factor * self.constant,
+            rest: self.rest,
+            parameters: times(&self.parameters),
+        }
+    }
+
+    /// The springs with the forces of these and `factor` times those of others of the same domain and form.
+    #[must_use]
+    pub fn sum(&self, others: &DomainSprings, factor: f64) -> DomainSprings {
+        let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + factor * b).collect();
+        let constant = self.constant + factor * others.constant;
+        let pull = self.constant * self.rest + factor * others.constant * others.rest;
+        DomainSprings {
+            pairs: add(&self.pairs, &others.pairs),
+            areas: self.areas + factor * others.areas,
+            constant,
+            // Equal rest contents, of laws or of springs that cancel, stay as they are.
+            rest: if self.rest == others.rest { self.rest } else { pull / constant },
+            parameters: add(&self.parameters, &others.parameters),
+        }
+    }
+}
+
 impl ExactDomains {
     /// The network of this fit for bodies of these materials, which are all in the same state.
     ///

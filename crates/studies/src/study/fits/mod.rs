@@ -33,5 +33,5 @@ pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRe
 pub use whole::{
     Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, ModelError,
     ModelFrequencies, RESERVED, RegionFactors, Sharing, Start, SupportFrequencies, ValidationRecipe, WholeBody,
-    WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord,
+    WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
 };

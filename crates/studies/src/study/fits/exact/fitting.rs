@@ -1,7 +1,7 @@
 //! Computes the exact network of a body.
 
 use super::outcome::ExactOutcome;
-use super::recipe::ExactRecipe;
+use super::recipe::{ExactRecipe, spring_words};
 use super::record::ExactRecord;
 use crate::element::Element;
 use crate::error::Result;
@@ -20,20 +20,13 @@ use std::time::Instant;
 impl FitKind for ExactRecipe {
     fn title(&self, _groups: &str) -> String {
         let energy = self.energy.map_or(String::new(), |energy| format!(" {}", energy.name()));
-        let shear = match self.shear {
-            ShearSprings::Cells => String::new(),
-            ShearSprings::Edges => format!(" {}", self.shear.name()),
-        };
-        let volume = match self.volume {
-            VolumeSprings::Points => String::new(),
-            VolumeSprings::Cells | VolumeSprings::Patches => format!(" {}", self.volume.name()),
-        };
+        let springs = spring_words(self.shear, self.volume);
         let positive = match self.positive {
             None => "",
             Some(PositiveFit { across: false, .. }) => " k>=0",
             Some(PositiveFit { across: true, .. }) => " k>=0 across",
         };
-        format!("exact{energy}{shear}{volume}{positive}")
+        format!("exact{energy}{springs}{positive}")
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {

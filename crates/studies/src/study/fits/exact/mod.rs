@@ -12,5 +12,5 @@ mod record;
 pub use entry::ExactEntry;
 pub use outcome::ExactOutcome;
 pub use positive::PositiveRecord;
-pub use recipe::ExactRecipe;
+pub use recipe::{ExactRecipe, spring_words};
 pub use record::ExactRecord;

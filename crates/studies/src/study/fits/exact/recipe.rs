@@ -20,6 +20,18 @@ pub struct ExactRecipe {
     pub positive: Option<PositiveFit>,
 }
 
+/// The springs for μ and λ in the name of an exact network; those that are usual are not named.
+pub fn spring_words(shear: ShearSprings, volume: VolumeSprings) -> String {
+    let shear = match shear {
+        ShearSprings::Cells => String::new(),
+        ShearSprings::Edges => format!(" {}", shear.name()),
+    };
+    match volume {
+        VolumeSprings::Points => shear,
+        VolumeSprings::Cells | VolumeSprings::Patches => format!("{shear} {}", volume.name()),
+    }
+}
+
 impl ExactRecipe {
     /// The exact network of a body with these laws, if the material has some.
     ///

@@ -150,7 +150,7 @@ impl<'a> WholeBody<'a> {
         };
         let moduli = found_moduli(recipe, &object, &wanted, &found, &mesh)?;
         let held_out = if self.fine.is_some() || !recipe.supports.is_empty() {
-            self.held_out(recipe, &object.network(&none), &found.network, progress)?
+            self.held_out((recipe, held), &object.network(&none), &found.network, progress)?
         } else {
             Vec::new()
         };

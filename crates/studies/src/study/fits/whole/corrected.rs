@@ -48,7 +48,7 @@ impl WholeBody<'_> {
         progress: &mut Progress,
     ) -> Result<Corrected> {
         let fine = self.fine.ok_or_else(|| Error::expected("reference", "a finer mesh", "none"))?;
-        if recipe.start == Start::Exact(VolumeSprings::Patches) {
+        if matches!(recipe.start, Start::Exact(_, VolumeSprings::Patches)) {
             let expected = "\"points\" or \"cells\", where moduli come from measurements with [reference]";
             return Err(Error::expected("volume", expected, "\"patches\""));
         }

@@ -3,7 +3,7 @@
 use super::recipe::{DISCREPANCY, LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective, VolumeSprings};
+use crate::fit::{Choices, Fit, Objective, ShearSprings, VolumeSprings};
 use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
@@ -49,6 +49,9 @@ pub struct WholeEntry {
     pub supports: Option<Vec<Vec<String>>>,
     /// The same for the loads that choose ρ.
     pub validate_supports: Option<Vec<Vec<String>>>,
+    /// The springs for μ of the start "exact".
+    #[schemars(extend("enum" = ShearSprings::NAMES))]
+    pub shear: Option<String>,
     /// The springs for λ of the start "exact".
     #[schemars(extend("enum" = VolumeSprings::NAMES))]
     pub volume: Option<String>,
@@ -67,7 +70,7 @@ impl WholeEntry {
             let start = match name.as_str() {
                 "sampled" => Start::Sampled(Box::new(sampled()?)),
                 "equal" => self.without_objective("equal", Start::Equal)?,
-                "exact" => self.without_objective("exact", Start::Exact(self.volume()?))?,
+                "exact" => self.exact()?,
                 objective => self.objective(objective)?,
             };
             Ok((name, self.recipe(start)?))
@@ -75,8 +78,11 @@ impl WholeEntry {
         starts(self.start.as_ref())?.into_iter().map(recipe).collect()
     }
 
-    fn volume(&self) -> Result<VolumeSprings> {
-        choice("volume", self.volume.as_deref(), VolumeSprings::default(), VolumeSprings::named)
+    fn exact(&self) -> Result<Start> {
+        let shear = choice("shear", self.shear.as_deref(), ShearSprings::default(), ShearSprings::named)?;
+        let volume = choice("volume", self.volume.as_deref(), VolumeSprings::default(), VolumeSprings::named)?;
+        shear.check(volume)?;
+        self.without_objective("exact", Start::Exact(shear, volume))
     }
 
     fn without_objective(&self, name: &str, start: Start) -> Result<Start> {
@@ -113,7 +119,7 @@ impl WholeEntry {
                 return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
             }
         }
-        let is_exact = matches!(start, Start::Exact(_));
+        let is_exact = matches!(start, Start::Exact(..));
         let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
         let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
         // Few unknowns are found to the last digit.
@@ -182,8 +188,9 @@ impl WholeEntry {
             let expected = "\"moduli\", \"region-moduli\", \"region-young\" or \"body-moduli\" with the start \"exact\", and no others";
             return Err(Error::expected("unknowns", expected, found));
         }
-        if self.volume.is_some() && !is_exact {
-            return Err(Error::at("volume", "belongs to the start \"exact\""));
+        let of_exact = [("shear", self.shear.is_some()), ("volume", self.volume.is_some())];
+        if let Some((key, _)) = of_exact.iter().find(|(_, given)| *given && !is_exact) {
+            return Err(Error::at(*key, "belongs to the start \"exact\""));
         }
         let supports = checked_supports("supports", self.supports.as_deref())?;
         let validation_supports = checked_supports("validate_supports", self.validate_supports.as_deref())?;

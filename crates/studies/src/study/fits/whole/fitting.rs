@@ -22,7 +22,7 @@ impl WholeRecipe {
             Start::Fit(fit) => fit_at_rest(fit, task, progress),
             // Only its springs are needed, not their constants.
             Start::Equal => fit_at_rest(&Fit::new(Objective::Frobenius(Weight::None)), task, progress),
-            Start::Exact(_) => Ok(Vec::new()),
+            Start::Exact(..) => Ok(Vec::new()),
             Start::Sampled(recipe) => {
                 Ok(fit_shapes(recipe, task, progress)?.into_iter().map(|found| found.fits).collect())
             }
@@ -54,7 +54,7 @@ impl FitKind for WholeRecipe {
         let start = Instant::now();
         let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
         let body = task.reference.whole.ok_or_else(missing)?;
-        let own = (!matches!(self.start, Start::Exact(_))).then_some((&cells[..], &network));
+        let own = (!matches!(self.start, Start::Exact(..))).then_some((&cells[..], &network));
         let (network, outcome) = body.fit((task.name, task.springs, task.reference.held), self, own, progress)?;
         let seconds = seconds + start.elapsed().as_secs_f64();
         let (cells, kind) = (Vec::new(), FittedKind::Whole(Box::new(outcome)));
@@ -64,7 +64,7 @@ impl FitKind for WholeRecipe {
     fn sampled(&self) -> Option<&SampledRecipe> {
         match &self.start {
             Start::Sampled(recipe) => Some(recipe),
-            Start::Fit(_) | Start::Equal | Start::Exact(_) => None,
+            Start::Fit(_) | Start::Equal | Start::Exact(..) => None,
         }
     }
 

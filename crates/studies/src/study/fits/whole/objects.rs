@@ -3,7 +3,7 @@
 use super::body::WholeBody;
 use super::recipe::{Sharing, Start, WholeRecipe};
 use crate::error::Result;
-use crate::fit::{CellFits, VolumeSprings};
+use crate::fit::{CellFits, ShearSprings, VolumeSprings};
 use crate::model::Network;
 use crate::whole::{
     Displacements, ModuliParts, ModuliSharing, Object, Unknowns, Validation, Wanted, WholeSettings, fit_whole,
@@ -25,8 +25,11 @@ impl WholeBody<'_> {
 
     /// The moduli of the exact network. Those of cells or regions start from those of the body that fit best.
     pub(super) fn moduli(&self, recipe: &WholeRecipe, held: &[bool], wanted: &Wanted) -> Result<Object<'_>> {
-        let volume = if let Start::Exact(volume) = recipe.start { volume } else { VolumeSprings::default() };
-        let parts = ModuliParts::new(self.mesh, self.material.clone(), volume, held).map_err(|e| e.at_key("start"))?;
+        let springs = match recipe.start {
+            Start::Exact(shear, volume) => (shear, volume),
+            Start::Fit(_) | Start::Sampled(_) | Start::Equal => (ShearSprings::default(), VolumeSprings::default()),
+        };
+        let parts = ModuliParts::new(self.mesh, self.material.clone(), springs, held)?;
         let of_body = parts.unknowns(ModuliSharing::Body);
         let sharing = recipe.unknowns.moduli().unwrap_or(ModuliSharing::Element);
         if sharing == ModuliSharing::Body {

@@ -103,8 +103,22 @@ pub struct HeldOut {
     pub loads: usize,
     /// The models.
     pub models: Vec<ModelError>,
+    /// The loads whose errors the fitted network has more than a tenth larger than the finite elements of the mesh.
+    pub worse: Vec<WorseLoad>,
     /// Seconds of the same step of the finer body, if there is one.
     pub seconds_fine: Option<f64>,
+}
+
+/// The relative errors `‖u − ū‖/‖ū‖` under a load.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct WorseLoad {
+    /// The name of the load.
+    pub load: String,
+    /// Of the finite elements of the mesh.
+    pub finite_elements: f64,
+    /// Of the fitted network.
+    pub fitted: f64,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` of a model over some loads.
@@ -112,7 +126,7 @@ pub struct HeldOut {
 #[non_exhaustive]
 pub struct ModelError {
     /// The model.
-    pub model: &'static str,
+    pub model: String,
     /// The median; `None` if the model is not stable.
     pub median: Option<f64>,
     /// The largest.
@@ -189,7 +203,7 @@ impl WholeOutcome {
             steps: found.steps,
             stands: found.stands,
             cancelled: found.cancelled,
-            is_exact: matches!(recipe.start, Start::Exact(_)),
+            is_exact: matches!(recipe.start, Start::Exact(..)),
             moduli: FoundModuli::default(),
             held_out: Vec::new(),
             masses: None,
@@ -243,8 +257,20 @@ impl WholeOutcome {
                 |model: &ModelError| format!("{} {} / {}", model.model, percent(model.median), percent(model.worst));
             let models: Vec<String> = held_out.models.iter().map(model).collect();
             let (loads, support) = (held_out.loads, &held_out.support);
+            let worse = |load: &WorseLoad| {
+                format!("{} {} / {}", load.load, percent(Some(load.finite_elements)), percent(Some(load.fitted)))
+            };
+            let worse: Vec<String> = held_out.worse.iter().map(worse).collect();
+            let listed = if worse.is_empty() {
+                String::new()
+            } else {
+                format!(
+                    "; loads worse than finite elements by more than a tenth (finite elements / fitted): {}",
+                    worse.join(", ")
+                )
+            };
             format!(
-                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}",
+                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}{listed}",
                 models.join(", ")
             )
         });

@@ -1,7 +1,8 @@
 //! A whole-object fit, before the mesh is known.
 
 use crate::error::{Error, Result};
-use crate::fit::{Fit, VolumeSprings};
+use crate::fit::{Fit, ShearSprings, VolumeSprings};
+use crate::study::fits::exact::spring_words;
 use crate::study::fits::facts::SceneFacts;
 use crate::study::fits::sampled::SampledRecipe;
 use crate::whole::{ModuliSharing, WholeSettings};
@@ -41,8 +42,8 @@ pub enum Start {
     Sampled(Box<SampledRecipe>),
     /// One constant for all springs of a kind.
     Equal,
-    /// The exact network, whose moduli are the unknowns.
-    Exact(VolumeSprings),
+    /// The exact network with these springs for μ and λ, whose moduli are the unknowns.
+    Exact(ShearSprings, VolumeSprings),
 }
 
 /// The springs that share an unknown factor.
@@ -57,7 +58,7 @@ pub enum Sharing {
     Region,
     /// Each spring of each element has a factor.
     Element,
-    /// The moduli of each cell of an exact network have factors, and so has each patch.
+    /// The moduli of each cell of an exact network, or of the domain of each edge, have factors, and so has each patch.
     Moduli,
     /// The moduli of the cells of each region of the mesh have factors.
     RegionModuli,
@@ -105,8 +106,7 @@ impl Start {
             Start::Fit(fit) => fit.objective.title(),
             Start::Sampled(recipe) => format!("sampled{}", recipe.force.name()),
             Start::Equal => "equal".into(),
-            Start::Exact(VolumeSprings::Points) => "exact".into(),
-            Start::Exact(volume) => format!("exact {}", volume.name()),
+            Start::Exact(shear, volume) => format!("exact{}", spring_words(*shear, *volume)),
         }
     }
 }

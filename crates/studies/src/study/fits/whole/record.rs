@@ -2,6 +2,7 @@
 
 use super::outcome::{
     FittedLoad, FittedMasses, FoundModulus, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome,
+    WorseLoad,
 };
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
@@ -195,10 +196,23 @@ pub struct HeldOutRecord {
     pub trained: bool,
     /// The number of loads.
     pub loads: usize,
-    /// The finite elements of the mesh, the network at the start, and the fitted one.
+    /// The finite elements of the mesh, its exact networks, the network at the start, and the fitted one.
     pub models: Vec<ModelErrorRecord>,
+    /// The loads whose errors the fitted network has more than a tenth larger than the finite elements of the mesh.
+    #[serde(default)]
+    pub worse_than_finite_elements: Vec<WorseLoadRecord>,
     /// Seconds of the same step of the finer body; null without one.
     pub seconds_per_step_fine: Option<f64>,
+}
+
+/// The relative errors `‖u − ū‖/‖ū‖` under a load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WorseLoadRecord {
+    pub load: String,
+    /// Of the finite elements of the mesh.
+    pub finite_elements: f64,
+    /// Of the fitted network.
+    pub fitted: f64,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` of a model; null if it is not stable.
@@ -215,17 +229,23 @@ pub struct ModelErrorRecord {
 impl HeldOutRecord {
     fn of(held_out: &HeldOut) -> HeldOutRecord {
         let model = |model: &ModelError| ModelErrorRecord {
-            model: model.model.into(),
+            model: model.model.clone(),
             median: model.median,
             worst: model.worst,
             worst_load: model.worst_load.clone(),
             seconds_per_step: model.seconds_per_step,
+        };
+        let worse = |load: &WorseLoad| WorseLoadRecord {
+            load: load.load.clone(),
+            finite_elements: load.finite_elements,
+            fitted: load.fitted,
         };
         HeldOutRecord {
             support: held_out.support.clone(),
             trained: held_out.is_trained,
             loads: held_out.loads,
             models: held_out.models.iter().map(model).collect(),
+            worse_than_finite_elements: held_out.worse.iter().map(worse).collect(),
             seconds_per_step_fine: held_out.seconds_fine,
         }
     }
@@ -269,14 +289,14 @@ impl WholeRecord {
     pub(super) fn of(recipe: &WholeRecipe) -> WholeRecord {
         let objective = match &recipe.start {
             Start::Fit(fit) => Some(fit.objective),
-            Start::Sampled(_) | Start::Equal | Start::Exact(_) => None,
+            Start::Sampled(_) | Start::Equal | Start::Exact(..) => None,
         };
         WholeRecord {
             objective: "whole".into(),
             start: match &recipe.start {
                 Start::Fit(fit) => StartRecord::Name(fit.objective.name().into()),
                 Start::Sampled(recipe) => StartRecord::Sampled(Box::new(SampledRecord::of(recipe))),
-                Start::Equal | Start::Exact(_) => StartRecord::Name(recipe.start.title()),
+                Start::Equal | Start::Exact(..) => StartRecord::Name(recipe.start.title()),
             },
             weight: objective.and_then(|objective| objective.weight()).map(|weight| weight.name().into()),
             higher: objective.and_then(|objective| objective.higher()),

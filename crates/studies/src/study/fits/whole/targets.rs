@@ -137,14 +137,16 @@ impl WholeBody<'_> {
         groups.iter().enumerate().map(held).collect()
     }
 
-    /// The supports of the fit, and after them those of its validation; with whether loads under them are fitted.
+    /// The supports of the fit, and after them those of its validation alone; with whether loads under them are fitted.
     pub(super) fn all_supports(&self, recipe: &WholeRecipe) -> Result<Vec<(Held, bool)>> {
-        let own = self.supports("supports", &recipe.supports)?.into_iter().map(|held| (held, true));
+        let own = self.supports("supports", &recipe.supports)?;
         let others = match recipe.validation_supports.is_empty() {
             true => Vec::new(),
             false => self.supports("validate_supports", &recipe.validation_supports)?,
         };
-        Ok(own.chain(others.into_iter().map(|held| (held, false))).collect())
+        let is_new = |held: &Held| own.iter().all(|own| own.support != held.support);
+        let others: Vec<(Held, bool)> = others.into_iter().filter(is_new).map(|held| (held, false)).collect();
+        Ok(own.into_iter().map(|held| (held, true)).chain(others).collect())
     }
 
     fn targets(
