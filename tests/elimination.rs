@@ -86,7 +86,7 @@ fn every_order_gives_the_same_solution() {
         let force: Vec<f64> = mesh.points.iter().map(|x| (3.0 * x).sin()).collect();
         let solve = |system: System| {
             let factor = system.cholesky().unwrap().unwrap();
-            (system.solve(&factor, &force).0, system.solve_all(&factor, &[force.clone()]).remove(0))
+            (system.solve(&factor, &force).0, system.solve_all(&factor, std::slice::from_ref(&force)).remove(0))
         };
         let (plain, once) = solve(System::new(&entries, &support).unwrap());
         let (placed, again) = solve(System::new(&entries, &support).unwrap().placed(&mesh.points, 3));
