@@ -76,6 +76,7 @@ mod settings;
 mod shapes;
 mod shards;
 mod small_loads;
+mod smooth_fills;
 mod springs;
 mod stability;
 mod sums;
