@@ -1,4 +1,4 @@
-//! A bar for each body: the energy beside finite elements of the same mesh.
+//! A bar for each body: by how much its energy differs from that of the model that the engine was given.
 
 use super::record::{RefereeRecord, RefereeRow};
 use super::tables::{bodies, loads};
@@ -18,8 +18,7 @@ const MOST: f64 = 60.0;
 /// Of the lines of the axis, percent.
 const EVERY: i32 = 20;
 
-/// The own elements, and the springs that are the finite element or held by the engine alone: every row for which the error of the
-/// model itself is what the bar shows.
+/// The error of the engine, without that of the fit: own elements beside finite elements, springs beside their own equilibrium.
 fn drawn(row: &RefereeRow) -> Option<f64> {
     row.found.map(|found| if row.is_of_elements() { found.energy_percent } else { found.of_model_percent })
 }
