@@ -21,7 +21,8 @@ use std::sync::Arc;
 /// A closed surface that is filled with cubes, or with the tetrahedra of a body-centred cubic lattice.
 ///
 /// A place is inside if the surface winds around it at least once. With a stepped boundary a cell belongs to the body if its centre is
-/// inside; with a smooth one the corners of all cells are inside or on the surface. The groups of the mesh are `surface` for the outer sides and `body` for the cells.
+/// inside; with a smooth one the corners of all cells are inside or on the surface. The groups of the mesh are `surface` for the outer
+/// sides and `body` for the cells.
 #[derive(Debug, Clone)]
 pub struct FillMesh {
     /// The element of all cells, a hexahedron or a tetrahedron.
