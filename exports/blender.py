@@ -16,6 +16,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from settle import settle
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -70,22 +71,17 @@ def move(seconds):
 
 
 def come_to_rest():
-    """Positions at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on all
-    velocities are damped so that this motion hardly swings, for 120 times as long."""
-    x, v = points, np.zeros_like(points)
-    highest = quarter = count = 0
-    while not quarter or count <= 120 * quarter:
-        x, v = advance(x, v)
-        energy = float(masses @ np.sum(v**2, axis=1))
-        if not np.isfinite(energy):
-            sys.exit("the motion has diverged")
-        count += 1
-        if not quarter and energy >= highest:
-            highest = energy
-            continue
-        quarter = quarter or count
-        v = v * np.exp(-np.pi / quarter)
-    return x
+    """Positions at rest."""
+    body = {"x": points, "v": np.zeros_like(points)}
+
+    def step_on():
+        body["x"], body["v"] = advance(**body)
+
+    def damp(factor):
+        body["v"] = body["v"] * factor
+
+    settle(step_on, lambda: float(masses @ np.sum(body["v"] ** 2, axis=1)), damp, 120)
+    return body["x"]
 
 
 def objects():

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+from settle import settle
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -115,23 +116,15 @@ def positions(m, d):
 
 
 def come_to_rest(material=None):
-    """Positions at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on all
-    velocities are damped so that this motion hardly swings, for 40 times as long."""
+    """Positions at rest."""
     m = model(material)
     d = mujoco.MjData(m)
     weight = m.body_mass[m.dof_bodyid]
-    highest = quarter = count = 0
-    while not quarter or count < 40 * quarter:
-        mujoco.mj_step(m, d)
-        energy = float(np.sum(weight * d.qvel**2))
-        if not np.isfinite(energy):
-            sys.exit("the motion has diverged")
-        count += 1
-        if not quarter and energy >= highest:
-            highest = energy
-            continue
-        quarter = quarter or max(count, 3)
-        d.qvel[:] *= np.exp(-np.pi / quarter)
+
+    def damp(factor):
+        d.qvel[:] *= factor
+
+    settle(lambda: mujoco.mj_step(m, d), lambda: float(np.sum(weight * d.qvel**2)), damp, 40)
     mujoco.mj_forward(m, d)
     return positions(m, d)
 

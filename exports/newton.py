@@ -14,6 +14,7 @@ from pathlib import Path
 
 import newton
 import numpy as np
+from settle import settle
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -51,43 +52,34 @@ def build(material=None):
     return builder
 
 
-def move(steps, after_step=None, material=None):
-    """Positions after so many steps, or when `after_step` says so."""
-    made = build(material).finalize()
-    solver = newton.solvers.SolverSemiImplicit(made)
-    now, after = made.state(), made.state()
-    control = made.control()
-    for _ in range(steps):
-        now.clear_forces()
-        solver.step(now, after, control, None, step)
-        now, after = after, now
-        if after_step and after_step(now.particle_qd):
-            break
-    return now.particle_q.numpy().astype(float)
+class Motion:
+    """The body in motion, by the explicit solver."""
+
+    def __init__(self, material=None):
+        model = build(material).finalize()
+        self.solver, self.control = newton.solvers.SolverSemiImplicit(model), model.control()
+        self.now, self.after = model.state(), model.state()
+
+    def advance(self):
+        self.now.clear_forces()
+        self.solver.step(self.now, self.after, self.control, None, step)
+        self.now, self.after = self.after, self.now
+
+    def positions(self):
+        return self.now.particle_q.numpy().astype(float)
+
+    def velocities(self):
+        return self.now.particle_qd.numpy().astype(float)
 
 
 def come_to_rest(material=None):
-    """Positions at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on all
-    velocities are damped so that this motion hardly swings, for 120 times as long."""
+    """Positions at rest."""
+    body = Motion(material)
     weight = masses.copy()
     weight[net["fixed"]] = 0.0
-    highest = quarter = count = 0
-
-    def damp(velocity):
-        nonlocal highest, quarter, count
-        v = velocity.numpy().astype(float)
-        energy = float(weight @ np.sum(v**2, axis=1))
-        if not np.isfinite(energy):
-            sys.exit("the motion has diverged")
-        count += 1
-        if not quarter and energy >= highest:
-            highest = energy
-            return False
-        quarter = quarter or count
-        velocity.assign(v * np.exp(-np.pi / quarter))
-        return count > 120 * quarter
-
-    return move(1000000, damp, material)
+    energy = lambda: float(weight @ np.sum(body.velocities() ** 2, axis=1))
+    settle(body.advance, energy, lambda factor: body.now.particle_qd.assign(body.velocities() * factor), 120)
+    return body.positions()
 
 
 if __name__ == "__main__":
@@ -95,6 +87,8 @@ if __name__ == "__main__":
         np.save(sys.argv[2], come_to_rest(tuple(map(float, sys.argv[3:])) or None))
     else:
         duration = float((sys.argv[1:] or [0.5])[0])
-        x = move(round(duration / step))
-        moved = np.linalg.norm(x - points, axis=1)
+        body = Motion()
+        for _ in range(round(duration / step)):
+            body.advance()
+        moved = np.linalg.norm(body.positions() - points, axis=1)
         print(f"{len(points)} points, {duration:g} s: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}")

@@ -227,3 +227,24 @@ fn a_scene_and_its_network_give_the_same_files_and_a_refusal_leaves_none() {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before, "{arguments:?}");
     }
 }
+
+/// The rule by which bodies come to rest is in one file, and put into each script that imports it.
+#[test]
+fn scripts_stand_alone() {
+    let networks = networks(SCENE);
+    for target in ["mujoco", "newton", "blender"] {
+        let script = String::from_utf8(texts(target, &networks["exact"])["run.py"].clone()).unwrap();
+        assert_eq!(script.matches("def settle(").count(), 1, "{target}");
+        assert!(!script.contains("import settle"), "{target}");
+    }
+}
+
+/// Also of targets that only pass gravity on.
+#[test]
+fn gravity_has_the_dimension_of_the_network() {
+    let network = &networks(SCENE)["classical"];
+    for target in &TARGETS {
+        let error = target.files(network, Some(&[0.0, -9.81])).err().unwrap().to_string();
+        assert_eq!(error, "--gravity: expected 3 numbers in m/s², found 2", "{}", target.name);
+    }
+}

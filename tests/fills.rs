@@ -1,7 +1,7 @@
 //! Closed surfaces that are filled with cells.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillMesh, Filled, Mesh, MeshSource};
+use springfit::mesh::{FillBoundary, FillMesh, Filled, Mesh, MeshSource};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ fn element(name: &str) -> Arc<Element> {
 }
 
 fn fill(source: &MeshSource, name: &str, cell: f64) -> springfit::error::Result<Mesh> {
-    FillMesh { element: element(name), cell }.build(source, 1.0)
+    FillMesh { element: element(name), cell, boundary: FillBoundary::Stepped }.build(source, 1.0)
 }
 
 fn filled(mesh: &Mesh) -> &Filled {

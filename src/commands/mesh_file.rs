@@ -2,7 +2,7 @@
 
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::mesh::{FillMesh, Gate, Mesh, MeshSource};
+use springfit::mesh::{FillBoundary, FillMesh, Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::study::{FillEntry, load_elements};
@@ -28,6 +28,9 @@ pub struct MeshOptions {
     /// The element of hexahedra or tetrahedra that fills a surface [default: cubes of eight nodes]
     #[arg(long, requires = "fill")]
     fill_element: Option<String>,
+    /// The boundary of a filled surface: stepped, or smooth with tetrahedra that are cut off at it [default: stepped]
+    #[arg(long, requires = "fill")]
+    fill_boundary: Option<String>,
     /// An element file to look in before the shipped ones; may be repeated
     #[arg(long)]
     element: Vec<String>,
@@ -71,7 +74,12 @@ impl MeshOptions {
                 return Err(Error::at(option, problem));
             }
             let fault = |e: Error| {
-                e.placed(|e| if e.key() == Some("cell") { e.at_key("--fill") } else { e.at_key("--fill-element") })
+                let option = match e.key() {
+                    Some("cell") => "--fill",
+                    Some("boundary") => "--fill-boundary",
+                    _ => "--fill-element",
+                };
+                e.placed(|e| e.at_key(option))
             };
             return fill.build(scale, Path::new("")).map_err(fault);
         }
@@ -84,7 +92,8 @@ impl MeshOptions {
     /// How the surface in the file is filled, if it is.
     pub fn filling(&self, surface: &Path) -> Option<FillEntry> {
         let element = self.fill_element.clone().unwrap_or_else(|| FillMesh::cube().into());
-        self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element })
+        let boundary = self.fill_boundary.clone().unwrap_or_else(|| FillBoundary::default().name().into());
+        self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element, boundary })
     }
 
     /// That none is given with a scene, which has its own.

@@ -19,6 +19,7 @@ mod new;
 mod output;
 mod paper;
 mod plot;
+mod referee;
 mod run;
 mod scene_file;
 mod schema;
@@ -66,6 +67,7 @@ commands! {
     Converge: converge::Converge,
     Sweep: sweep::Sweep,
     Plot: plot::Plot,
+    Referee: referee::Referee,
     Paper: paper::Paper,
     Stability: stability::Stability,
     Elements: elements::Elements,

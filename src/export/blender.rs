@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, content_dampers};
+use super::target::{Content, NamedFile, Target, content_dampers, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -23,6 +23,6 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     let job = Job::new(network, gravity, "Blender", &HOLDS)?;
     Ok(vec![
         ("network.npz", Content::Bytes(arrays(&job))),
-        ("run.py", Content::Bytes(include_bytes!("../../exports/blender.py").to_vec())),
+        ("run.py", script(include_str!("../../exports/blender.py"))),
     ])
 }

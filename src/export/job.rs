@@ -107,7 +107,7 @@ impl<'a> Job<'a> {
             let found = format!("point {} moved", held.point);
             return unsupported("held".into(), "supports at rest", found, "move it in the program");
         }
-        let job = Job { network, parts, gravity: spatial(gravity, network)?, masses, step };
+        let job = Job { network, parts, gravity: spatial(gravity, network), masses, step };
         if !holds.off_edges {
             job.check_edges(program)?;
         }
@@ -220,14 +220,10 @@ fn free_points(network: &NetworkRecord) -> usize {
     network.points.len() - held
 }
 
-fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> Result<[f64; 3]> {
-    let d = network.dimension;
-    if let Some(asked) = asked.filter(|asked| asked.len() != d) {
-        return Err(Error::expected("--gravity", format!("{d} numbers in m/s²"), asked.len()));
-    }
-    let usual = if d == 2 { [0.0, -9.81, 0.0] } else { [0.0, 0.0, -9.81] };
+fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> [f64; 3] {
+    let usual = if network.dimension == 2 { [0.0, -9.81, 0.0] } else { [0.0, 0.0, -9.81] };
     let given = asked.or(network.gravity.as_deref());
-    Ok(given.map_or(usual, |given| [0, 1, 2].map(|k| given.get(k).copied().unwrap_or(0.0))))
+    given.map_or(usual, |given| [0, 1, 2].map(|k| given.get(k).copied().unwrap_or(0.0)))
 }
 
 fn ordered(a: usize, b: usize) -> [usize; 2] {

@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, dampers};
+use super::target::{Content, NamedFile, Target, dampers, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -21,8 +21,5 @@ pub const TARGET: Target = Target {
 
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let job = Job::new(network, gravity, "MuJoCo", &HOLDS)?;
-    Ok(vec![
-        ("network.npz", Content::Bytes(arrays(&job))),
-        ("run.py", Content::Bytes(include_bytes!("../../exports/mujoco.py").to_vec())),
-    ])
+    Ok(vec![("network.npz", Content::Bytes(arrays(&job))), ("run.py", script(include_str!("../../exports/mujoco.py")))])
 }

@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, content_dampers, mass_damping};
+use super::target::{Content, NamedFile, Target, content_dampers, mass_damping, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -20,8 +20,5 @@ pub const TARGET: Target = Target {
 
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let job = Job::new(network, gravity, "Newton", &HOLDS)?;
-    Ok(vec![
-        ("network.npz", Content::Bytes(arrays(&job))),
-        ("run.py", Content::Bytes(include_bytes!("../../exports/newton.py").to_vec())),
-    ])
+    Ok(vec![("network.npz", Content::Bytes(arrays(&job))), ("run.py", script(include_str!("../../exports/newton.py")))])
 }

@@ -1,6 +1,6 @@
 //! What an export is: a row for each program, and its files.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::file::write_whole;
 use crate::mesh::vtk::{self, Grid};
 use crate::report::{MeasureKind, NetworkRecord, SpringRecord};
@@ -28,6 +28,15 @@ impl Content {
     }
 }
 
+/// What a script in Python says where it takes in the rule by which bodies come to rest, and that rule.
+const SETTLING: [&str; 2] = ["from settle import settle\n", include_str!("../../exports/settle.py")];
+
+/// A script in Python, which stands alone: the rule by which it comes to rest is put where it is imported.
+pub(super) fn script(text: &str) -> Content {
+    let [import, rule] = SETTLING;
+    Content::Bytes(text.replacen(import, &format!("\n\n{}\n\n", rule.trim_end()), 1).into_bytes())
+}
+
 /// Makes the files of a network with a gravity that may be given.
 type Writer = fn(&NetworkRecord, Option<&[f64]>) -> Result<Vec<NamedFile>>;
 
@@ -49,8 +58,12 @@ impl Target {
     /// last axis.
     ///
     /// # Errors
-    /// The program does not hold the network; the error says what it holds and which fit has it.
+    /// The gravity has another dimension; or the program does not hold the network: the error says what it holds and which fit has it.
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+        if let Some(asked) = gravity.filter(|asked| asked.len() != network.dimension) {
+            let expected = format!("{} numbers in m/s²", network.dimension);
+            return Err(Error::expected("--gravity", expected, asked.len()));
+        }
         (self.write)(network, gravity)
     }
 

@@ -28,6 +28,7 @@ mod outputs;
 pub mod page;
 mod paper;
 mod pictures;
+mod referee;
 mod region_record;
 mod result_table;
 mod rows;
@@ -69,6 +70,10 @@ pub use outputs::{check_outputs, check_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_result_table, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
+pub use referee::{
+    EngineRecord, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
+    referee_tables, referee_text, write_referee,
+};
 pub use region_record::RegionRecord;
 pub use result_table::{CellRecord, ColumnRecord, ResultTable};
 pub use series::write_series;

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 30] = [
+const LAYERS: [&str; 31] = [
     "shipped",
     "multigrid",
     "page",
@@ -40,6 +40,7 @@ const LAYERS: [&str; 30] = [
     "prelude",
     "report",
     "export",
+    "referee",
     "program",
 ];
 

@@ -23,8 +23,9 @@ pub use sheet::Columns;
 
 pub(super) use chart::stacked;
 pub(super) use convergence::{CONVERGENCE_TABLE, convergence_charts};
-pub(super) use palette::COLORS;
+pub(super) use palette::{COLORS, faded};
 pub(super) use precision::precision_chart;
+pub(in crate::report) use sheet::{sheet, words};
 
 use crate::error::{Error, Result};
 use crate::report::json::Report;

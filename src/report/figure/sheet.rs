@@ -26,7 +26,7 @@ impl Columns {
     }
 
     /// Pixels across, 96 an inch.
-    pub(super) fn pixels(self) -> u32 {
+    pub(in crate::report) fn pixels(self) -> u32 {
         (f64::from(self.millimetres()) * 96.0 / 25.4) as u32
     }
 }
@@ -35,7 +35,7 @@ impl Columns {
 pub(super) const LETTERS: u32 = 10;
 
 /// A white sheet of this height in pixels.
-pub(super) fn sheet(columns: Columns, height: f64, title: &str) -> Document {
+pub(in crate::report) fn sheet(columns: Columns, height: f64, title: &str) -> Document {
     let width = columns.pixels();
     let tall = f64::from(columns.millimetres()) * height / f64::from(width);
     Document::new()
@@ -49,7 +49,7 @@ pub(super) fn sheet(columns: Columns, height: f64, title: &str) -> Document {
 }
 
 /// Words at a place: `anchor` is `start`, `middle` or `end`.
-pub(super) fn words(text: &str, [x, y]: [f64; 2], anchor: &str) -> Text {
+pub(in crate::report) fn words(text: &str, [x, y]: [f64; 2], anchor: &str) -> Text {
     Text::new(printable(text))
         .set("x", tenth(x))
         .set("y", tenth(y))

@@ -1,7 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::extent;
-use crate::mesh::{CellBlock, Filled, Group, Mesh};
+use crate::mesh::{CellBlock, FillBoundary, Filled, Group, Mesh};
 use crate::quantity::Quantity;
 use std::fmt::Write;
 
@@ -43,6 +43,8 @@ pub enum DraftSource<'a> {
         cell: &'a str,
         /// The element of the cells.
         element: &'a str,
+        /// `stepped` or `smooth`.
+        boundary: &'a str,
     },
 }
 
@@ -71,10 +73,12 @@ pub fn draft(
     line("[mesh]");
     match source {
         DraftSource::File(file) => line(&format!("file  = {}", quoted(file))),
-        DraftSource::Fill { surface, cell, element } => {
+        DraftSource::Fill { surface, cell, element, boundary } => {
             let (surface, element) = (quoted(surface), quoted(element));
+            let is_usual = boundary == FillBoundary::default().name();
+            let boundary = if is_usual { String::new() } else { format!(", boundary = {}", quoted(boundary)) };
             line(&format!(
-                "fill  = {{ surface = {surface}, cell = {cell}, element = {element} }} # the edge of a cube in mesh units"
+                "fill  = {{ surface = {surface}, cell = {cell}, element = {element}{boundary} }} # the edge of a cube in mesh units"
             ));
         }
     }

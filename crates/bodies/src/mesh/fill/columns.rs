@@ -20,7 +20,7 @@ pub(super) struct Columns<'a> {
 pub(super) struct Crossing {
     triangle: [usize; 3],
     /// 1 if the outside of the triangle is up, otherwise −1.
-    pub sign: i32,
+    sign: i32,
     /// About the height, m.
     height: f64,
 }
@@ -70,7 +70,7 @@ impl<'a> Columns<'a> {
     }
 
     /// The triangles that the line through (x, y) passes through.
-    pub fn crossings(&self, x: f64, y: f64, found: &mut Vec<Crossing>) {
+    fn crossings(&self, x: f64, y: f64, found: &mut Vec<Crossing>) {
         found.clear();
         let at = [x, y];
         if (0..2).any(|k| at[k] < self.surface.low[k] || at[k] > self.surface.high[k]) {
@@ -87,8 +87,43 @@ impl<'a> Columns<'a> {
         }
     }
 
+    /// How often the surface winds around each of the points at `(x, y, z + k step)`, k from 0 to below `count`. `crossings` is room to work.
+    pub fn windings(
+        &self,
+        start: [f64; 3],
+        step: f64,
+        count: usize,
+        crossings: &mut Vec<Crossing>,
+        found: &mut Vec<i32>,
+    ) {
+        self.crossings(start[0], start[1], crossings);
+        found.clear();
+        if crossings.is_empty() {
+            return;
+        }
+        // First by how much the winding changes at each point, then their sums.
+        found.resize(count + 1, 0);
+        for crossing in crossings.iter() {
+            found[0] += crossing.sign;
+            found[self.below(crossing, start, step, count)] -= crossing.sign;
+        }
+        found.truncate(count);
+        let mut winding = 0;
+        for change in found {
+            winding += *change;
+            *change = winding;
+        }
+    }
+
+    /// How often the surface winds around a place.
+    pub fn winding(&self, at: [f64; 3]) -> i32 {
+        let (mut crossings, mut found) = (Vec::new(), Vec::new());
+        self.windings(at, 1.0, 1, &mut crossings, &mut found);
+        found.first().copied().unwrap_or(0)
+    }
+
     /// How many of the points at `(x, y, z + k step)`, k from 0 to below `count`, are below the crossing.
-    pub fn below(&self, crossing: &Crossing, [x, y, z]: [f64; 3], step: f64, count: usize) -> usize {
+    fn below(&self, crossing: &Crossing, [x, y, z]: [f64; 3], step: f64, count: usize) -> usize {
         let corners = crossing.triangle.map(|p| self.surface.points[p]);
         let [a, b, c] = corners.map(|[x, y, z]| Coord3D { x, y, z });
         // Positive if the point is below the plane of a triangle whose corners run counter-clockwise as seen from above.

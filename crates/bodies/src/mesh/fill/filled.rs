@@ -7,6 +7,8 @@ pub struct Filled {
     pub surface_volume: f64,
     /// The volume of the cells, m³.
     pub volume: f64,
+    /// The least and the largest angle between sides of a cell with a smooth boundary, degrees.
+    pub angles: Option<[f64; 2]>,
     /// The number of cells.
     pub cells: usize,
     /// Cells that hung on others by an edge or a corner alone, and were left out.
@@ -24,12 +26,28 @@ pub struct Filled {
 }
 
 impl Filled {
+    /// Notes a place that is inside several layers, or inside a part that is inside out.
+    pub(super) fn note(&mut self, winding: i32, at: impl Fn() -> [f64; 3]) {
+        let place = match winding {
+            0 | 1 => return,
+            2.. => &mut self.overlaps,
+            _ => &mut self.inverted,
+        };
+        match place {
+            Some((count, _)) => *count += 1,
+            None => *place = Some((1, at())),
+        }
+    }
+
     /// The fill beside its surface, and what is wrong with the surface, in lines of words.
     pub fn lines(&self) -> Vec<String> {
         let (cells, of) = (self.volume, self.surface_volume);
         let more = 100.0 * (cells / of - 1.0);
         let mut lines =
             vec![format!("{} cells fill a surface: {cells:.4e} m³ of {of:.4e} m³, {more:+.2} %", self.cells)];
+        if let Some([least, largest]) = self.angles {
+            lines.push(format!("dihedral angles are from {least:.1} to {largest:.1} degrees"));
+        }
         let at = |[x, y, z]: [f64; 3]| format!("({x:.4e}, {y:.4e}, {z:.4e}) m");
         if self.turned {
             lines.push("all normals of the surface were inwards and were turned".into());

@@ -1,11 +1,13 @@
 //! Cells whose centres are inside a closed surface.
 
+use super::bound::{MOST_CELLS, too_many};
 use super::columns::Columns;
 use super::filled::Filled;
+use super::grid::Grid;
 use super::lattice::{Pattern, patterns};
 use super::parts::kept;
+use super::smooth::smooth;
 use super::surface::Surface;
-use crate::bound;
 use crate::element::{Cell, Element, ElementFile, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::affine::Affine;
@@ -18,32 +20,33 @@ use std::sync::Arc;
 
 /// A closed surface that is filled with cubes, or with the tetrahedra of a body-centred cubic lattice.
 ///
-/// A cell belongs to the body if its centre is inside: if the surface winds around it at least once. The groups of the mesh
-/// are `surface` for the outer sides and `body` for the cells.
+/// A place is inside if the surface winds around it at least once. With a stepped boundary a cell belongs to the body if its centre is
+/// inside; with a smooth one the corners of all cells are inside or on the surface. The groups of the mesh are `surface` for the outer
+/// sides and `body` for the cells.
 #[derive(Debug, Clone)]
 pub struct FillMesh {
     /// The element of all cells, a hexahedron or a tetrahedron.
     pub element: Arc<Element>,
     /// The edge of a cube, m.
     pub cell: f64,
+    /// The boundary; a smooth one needs tetrahedra.
+    pub boundary: FillBoundary,
 }
 
-const MOST_CELLS: usize = bound::CELLS as usize;
 /// The largest number of cubes around the surface, filled or not.
 const MOST_CUBES: f64 = 5e8;
 
-/// The lattice: cubes from `origin`, so many along each axis, with one more around them.
-struct Grid {
-    origin: [f64; 3],
-    counts: [i32; 3],
-    edge: f64,
+/// The boundary of a filled surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FillBoundary {
+    /// Cells of the lattice whose centres are inside.
+    #[default]
+    Stepped,
+    /// Tetrahedra that are cut off at the surface.
+    Smooth,
 }
 
-impl Grid {
-    fn place(&self, quarters: [i32; 3]) -> [f64; 3] {
-        std::array::from_fn(|k| self.origin[k] + f64::from(quarters[k]) / 8.0 * self.edge)
-    }
-}
+crate::named!(FillBoundary { "stepped" => Stepped, "smooth" => Smooth });
 
 impl FillMesh {
     /// The name of the shipped element of cubes with corners alone.
@@ -75,20 +78,28 @@ impl FillMesh {
             ..Filled::default()
         };
         self.forecast(&surface, patterns.len())?;
-        let counts = [0, 1, 2].map(|k| ((surface.high[k] - surface.low[k]) / edge - 1e-9).ceil().max(1.0) as i32);
-        let middle = |k: usize| surface.low[k] / 2.0 + surface.high[k] / 2.0;
-        let origin = std::array::from_fn(|k| middle(k) - f64::from(counts[k]) / 2.0 * edge);
-        let grid = Grid { origin, counts, edge };
-        let cells = inside(&surface, &grid, &patterns, &mut filled)?;
-        if cells.is_empty() {
-            let expected = "cells whose centres are inside the surface: a smaller cell";
-            let found = format!("none of {edge:e} m in a volume of {:.3e} m³", surface.volume);
-            return Err(Error::expected("cell", expected, found));
-        }
-        let mut mesh = self.mesh(&grid, &patterns, &cells, &mut filled)?;
+        let grid = Grid::around(&surface, edge);
+        let columns = Columns::of(&surface);
+        let (mut mesh, needs) = match (self.boundary, self.element.cell) {
+            (FillBoundary::Stepped, _) => {
+                let cells = inside(&columns, &grid, &patterns, &mut filled)?;
+                (self.stepped(&grid, &patterns, &cells, &mut filled), "cells whose centres are inside the surface")
+            }
+            (FillBoundary::Smooth, Cell::Tetrahedron) => {
+                let mesh = smooth(&self.element, &grid, &columns, &patterns, &mut filled)?;
+                (mesh, "a lattice with a point inside the surface")
+            }
+            (FillBoundary::Smooth, _) => {
+                let expected = "an element of tetrahedra, which a smooth boundary needs";
+                return Err(Error::expected("element", expected, &self.element.name));
+            }
+        };
         filled.cells = mesh.cell_count();
-        let of_cell = edge.powi(3) / if self.element.cell == Cell::Tetrahedron { 12.0 } else { 1.0 };
-        filled.volume = filled.cells as f64 * of_cell;
+        if filled.cells == 0 {
+            let found = format!("none of {edge:e} m in a volume of {:.3e} m³", surface.volume);
+            return Err(Error::expected("cell", format!("{needs}: a smaller cell"), found));
+        }
+        group(&mut mesh)?;
         mesh.quality.filled = Some(filled);
         Ok(mesh)
     }
@@ -113,7 +124,7 @@ impl FillMesh {
     }
 
     /// The mesh of the cells, without those that hang on others by an edge or a corner alone.
-    fn mesh(&self, grid: &Grid, patterns: &[Pattern], cells: &[([i32; 3], u8)], filled: &mut Filled) -> Result<Mesh> {
+    fn stepped(&self, grid: &Grid, patterns: &[Pattern], cells: &[([i32; 3], u8)], filled: &mut Filled) -> Mesh {
         let corner = |cube: &[i32; 3], c: &[i32; 3]| -> [i32; 3] { std::array::from_fn(|k| 2 * cube[k] + c[k]) };
         let mut known: HashMap<[i32; 3], usize> = HashMap::new();
         let mut corners: Vec<Vec<usize>> = Vec::with_capacity(cells.len());
@@ -160,69 +171,52 @@ impl FillMesh {
             }
         }
         mesh.blocks.push(CellBlock { element: self.element.clone(), connectivity });
-        mesh.orient(false)?;
-        mesh.reversed = 0;
-        let outer = Selection::Everything.sides(&mesh)?;
-        let sides: Vec<Vec<usize>> = outer.iter().map(|side| sorted(&mesh.side_nodes(side))).collect();
-        let points = sorted(&sides.concat());
-        let mut surface = Group { points, sides, ..Group::default() };
-        surface.points.dedup();
-        let body = Group {
-            points: (0..mesh.point_count()).collect(),
-            cells: (0..mesh.cell_count()).map(|cell| CellIndex { block: 0, cell }).collect(),
-            ..Group::default()
-        };
-        mesh.groups.insert("surface".into(), surface);
-        mesh.groups.insert("body".into(), body);
-        mesh.quality.pieces = Some(mesh.pieces().len());
-        Ok(mesh)
+        let of_cell = self.cell.powi(3) / if self.element.cell == Cell::Tetrahedron { 12.0 } else { 1.0 };
+        filled.volume = mesh.cell_count() as f64 * of_cell;
+        mesh
     }
 }
 
-/// The cells whose centres are inside: their cubes and patterns, sorted.
-fn inside(surface: &Surface, grid: &Grid, patterns: &[Pattern], filled: &mut Filled) -> Result<Vec<([i32; 3], u8)>> {
-    let columns = Columns::of(surface);
-    let mut cells = Vec::new();
-    let mut crossings = Vec::new();
-    let around = |k: usize| -1..grid.counts[k] + 1;
-    let height = around(2).len();
-    let mut changes = vec![0; height + 1];
-    let note = |place: &mut Option<(usize, [f64; 3])>, at: [f64; 3]| match place {
-        Some((count, _)) => *count += 1,
-        None => *place = Some((1, at)),
+/// Turns all cells alike, and adds the groups.
+fn group(mesh: &mut Mesh) -> Result<()> {
+    mesh.orient(false)?;
+    mesh.reversed = 0;
+    let outer = Selection::Everything.sides(mesh)?;
+    let sides: Vec<Vec<usize>> = outer.iter().map(|side| sorted(&mesh.side_nodes(side))).collect();
+    let points = sorted(&sides.concat());
+    let mut surface = Group { points, sides, ..Group::default() };
+    surface.points.dedup();
+    let body = Group {
+        points: (0..mesh.point_count()).collect(),
+        cells: (0..mesh.cell_count()).map(|cell| CellIndex { block: 0, cell }).collect(),
+        ..Group::default()
     };
-    for i in around(0) {
-        for j in around(1) {
+    mesh.groups.insert("surface".into(), surface);
+    mesh.groups.insert("body".into(), body);
+    mesh.quality.pieces = Some(mesh.pieces().len());
+    Ok(())
+}
+
+/// The cells whose centres are inside: their cubes and patterns, sorted.
+fn inside(columns: &Columns, grid: &Grid, patterns: &[Pattern], filled: &mut Filled) -> Result<Vec<([i32; 3], u8)>> {
+    let mut cells = Vec::new();
+    let (mut crossings, mut windings) = (Vec::new(), Vec::new());
+    for i in grid.along(0) {
+        for j in grid.along(1) {
             for (index, pattern) in patterns.iter().enumerate() {
                 let centre = |k: i32| {
                     let cube = [i, j, k];
                     grid.place(std::array::from_fn(|axis| 8 * cube[axis] + pattern.centre[axis]))
                 };
-                let start = centre(-1);
-                columns.crossings(start[0], start[1], &mut crossings);
-                if crossings.is_empty() {
-                    continue;
-                }
-                changes.fill(0);
-                for crossing in &crossings {
-                    changes[0] += crossing.sign;
-                    changes[columns.below(crossing, start, grid.edge, height)] -= crossing.sign;
-                }
-                let mut winding = 0;
-                for (k, change) in around(2).zip(&changes) {
-                    winding += change;
-                    if winding > 0 {
+                columns.windings(centre(-1), grid.edge, grid.along(2).len(), &mut crossings, &mut windings);
+                for (k, winding) in grid.along(2).zip(&windings) {
+                    if *winding > 0 {
                         cells.push(([i, j, k], index as u8));
                     }
-                    match winding {
-                        0 | 1 => {}
-                        2.. => note(&mut filled.overlaps, centre(k)),
-                        _ => note(&mut filled.inverted, centre(k)),
-                    }
+                    filled.note(*winding, || centre(k));
                 }
                 if cells.len() > MOST_CELLS {
-                    let expected = format!("at most {MOST_CELLS} cells: a larger cell");
-                    return Err(Error::expected("cell", expected, "more").of_kind(ErrorKind::Limit));
+                    return Err(too_many());
                 }
             }
         }

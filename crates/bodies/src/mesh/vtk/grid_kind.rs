@@ -69,6 +69,38 @@ impl Extent {
         Ok(Extent { first: [numbers[0], numbers[2], numbers[4]], lattice })
     }
 
+    /// The box of the extents of all pieces, whose cells fill it.
+    ///
+    /// # Errors
+    /// There are fewer or more cells than places.
+    pub fn around(pieces: &[Extent]) -> Result<Extent> {
+        let last = |extent: &Extent, k: usize| extent.first[k] + (extent.lattice.0[k] as i64 - 1);
+        let low: [i64; 3] = std::array::from_fn(|k| pieces.iter().map(|extent| extent.first[k]).min().unwrap_or(0));
+        let high: [i64; 3] = std::array::from_fn(|k| pieces.iter().map(|extent| last(extent, k)).max().unwrap_or(0));
+        let count = |k: usize| u64::try_from(high[k].checked_sub(low[k])?.checked_add(1)?).ok();
+        let lattice = Lattice::new(std::array::from_fn(|k| count(k).unwrap_or(0)));
+        let whole = Extent { first: low, lattice: lattice.map_err(|error| error.under("Piece.Extent"))? };
+        let (places, found) = (whole.lattice.cell_count(), pieces.iter().map(|extent| extent.lattice.cell_count()));
+        let found = found.fold(0, usize::saturating_add);
+        if places != found {
+            let expected = format!("pieces whose cells fill {:?} to {high:?}, which are {places}", low);
+            return Err(Error::expected("Piece.Extent", expected, format!("{found} cells")));
+        }
+        Ok(whole)
+    }
+
+    /// The index among the cells or points of this extent of each of those of a piece.
+    pub fn places_of(&self, piece: &Extent, is_of_cells: bool) -> impl Iterator<Item = usize> {
+        let counts = |extent: &Extent| if is_of_cells { extent.lattice.cells() } else { extent.lattice.0 };
+        let (whole, own) = (counts(self), counts(piece));
+        let shift: [usize; 3] = std::array::from_fn(|k| (piece.first[k] - self.first[k]) as usize);
+        (0..own.iter().product()).map(move |index| {
+            let at = Lattice::place(own, index);
+            let [x, y, z] = std::array::from_fn(|k| at[k] + shift[k]);
+            (z * whole[1] + y) * whole[0] + x
+        })
+    }
+
     /// The place of the points, of which `grid` has those of the whole image.
     pub fn image(&self, grid: &Regular) -> Image {
         let steps: [[f64; 3]; 3] =

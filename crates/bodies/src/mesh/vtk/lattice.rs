@@ -52,8 +52,8 @@ impl Lattice {
         [1, 3, 8, 11][self.0.iter().filter(|points| **points > 1).count()]
     }
 
-    /// The row, column and layer of a cell.
-    fn place(counts: [usize; 3], index: usize) -> [usize; 3] {
+    /// The row, column and layer of a cell or point.
+    pub fn place(counts: [usize; 3], index: usize) -> [usize; 3] {
         [index % counts[0], index / counts[0] % counts[1], index / counts[0] / counts[1]]
     }
 

@@ -1,7 +1,7 @@
 //! XML files: `.vtu`, `.vtp`, `.vti`, `.vts` and `.vtr`.
 
 use super::document::{ArrayTag, Content, Document, PieceTag, Section};
-use super::grid_kind::GridKind;
+use super::grid_kind::{Extent, GridKind};
 use super::piece::{self, DataArray, Labels, Piece};
 use super::polydata::{self, Cells, KINDS};
 use super::storage::Stored;
@@ -40,7 +40,12 @@ pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
         return Err(Error::expected(document.kind.name(), "at least one <Piece>", "none"));
     }
     let mut arrays = Arrays { document: &document, size: 0 };
-    document.pieces.iter().map(|tag| arrays.piece(tag)).collect()
+    match document.kind {
+        GridKind::Image => Ok(vec![arrays.image()?]),
+        GridKind::Unstructured | GridKind::Polygonal | GridKind::Structured | GridKind::Rectilinear => {
+            document.pieces.iter().map(|tag| arrays.piece(tag)).collect()
+        }
+    }
 }
 
 /// The arrays of a file, decoded one after the other.
@@ -51,19 +56,57 @@ struct Arrays<'a> {
 }
 
 impl Arrays<'_> {
+    /// The pieces of an image, put together by their places.
+    fn image(&mut self) -> Result<Piece> {
+        let tags = &self.document.pieces;
+        let extents: Vec<Extent> = tags.iter().filter_map(|tag| tag.extent).collect();
+        let whole = Extent::around(&extents)?;
+        if extents.len() > 1 {
+            // A short file can announce many places.
+            whole.lattice.limited()?;
+        }
+        let of_cells = self.whole_labels(&whole, &extents, Section::CellData)?;
+        // Labels of points count only if those of cells do not.
+        let of_points = match of_cells.is_empty() {
+            true => self.whole_labels(&whole, &extents, Section::PointData)?,
+            false => Vec::new(),
+        };
+        let active = tags.iter().find_map(|tag| tag.active[usize::from(!of_cells.is_empty())].as_deref());
+        whole.image(&self.document.regular).piece(of_cells, of_points, active)
+    }
+
+    /// The arrays of labels of all pieces. Pieces share points, and no cells.
+    fn whole_labels(&mut self, whole: &Extent, extents: &[Extent], section: Section) -> Result<Vec<Labels>> {
+        let is_of_cells = section == Section::CellData;
+        let tags = &self.document.pieces;
+        let mut all: Vec<Labels> = Vec::new();
+        for (tag, extent) in tags.iter().zip(extents) {
+            let found = self.all_labels(tag, section, if is_of_cells { tag.cells } else { tag.points })?;
+            let names =
+                |labels: &[Labels]| labels.iter().map(|labels| labels.name.clone()).collect::<Vec<_>>().join(", ");
+            if extents.len() == 1 {
+                return Ok(found);
+            }
+            if all.is_empty() {
+                let size = if is_of_cells { whole.lattice.cell_count() } else { whole.lattice.point_count() };
+                let empty = |labels: &Labels| Labels { name: labels.name.clone(), values: vec![0; size] };
+                all = found.iter().map(empty).collect();
+            }
+            if names(&all) != names(&found) {
+                let expected = format!("the arrays {} of the first piece in each", names(&all));
+                return Err(Error::expected(format!("{section:?}"), expected, names(&found)));
+            }
+            for (all, found) in all.iter_mut().zip(found) {
+                for (place, value) in whole.places_of(extent, is_of_cells).zip(found.values) {
+                    all.values[place] = value;
+                }
+            }
+        }
+        Ok(all)
+    }
+
     fn piece(&mut self, tag: &PieceTag) -> Result<Piece> {
         let mut piece = match (self.document.kind, tag.extent) {
-            (GridKind::Image, Some(extent)) => {
-                let of_cells = self.all_labels(tag, Section::CellData, tag.cells)?;
-                // Labels of points count only if those of cells do not.
-                let of_points = if of_cells.is_empty() {
-                    self.all_labels(tag, Section::PointData, tag.points)?
-                } else {
-                    Vec::new()
-                };
-                let active = tag.active[usize::from(!of_cells.is_empty())].as_deref();
-                return extent.image(&self.document.regular).piece(of_cells, of_points, active);
-            }
             (GridKind::Rectilinear, Some(extent)) => {
                 let lattice = extent.lattice.limited()?;
                 let axes = self.coordinates(tag, lattice.0)?;

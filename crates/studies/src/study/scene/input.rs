@@ -4,7 +4,7 @@ use super::elements::{load_element, load_elements};
 use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
-use crate::mesh::{BoxMesh, DiscMesh, FillMesh, Gate, Mesh, MeshSource};
+use crate::mesh::{BoxMesh, DiscMesh, FillBoundary, FillMesh, Gate, Mesh, MeshSource};
 use crate::range;
 use crate::study::extent::extent;
 use schemars::JsonSchema;
@@ -98,6 +98,13 @@ pub struct FillEntry {
     /// The name of a shipped element of hexahedra or tetrahedra, or a path relative to the scene that ends in .toml.
     #[serde(default = "cubes")]
     pub element: String,
+    /// `stepped` for whole cells of the lattice, or `smooth` for tetrahedra that are cut off at the surface.
+    #[serde(default = "stepped")]
+    pub boundary: String,
+}
+
+fn stepped() -> String {
+    FillBoundary::default().name().into()
 }
 
 fn cubes() -> String {
@@ -114,7 +121,8 @@ impl FillEntry {
         let element = load_element(&self.element, folder)?;
         let path = folder.join(&self.surface);
         let source = MeshSource::read(&path)?;
-        FillMesh { element, cell: scale * self.cell }
+        let boundary = FillBoundary::named(&self.boundary).map_err(|e| e.at_key("boundary"))?;
+        FillMesh { element, cell: scale * self.cell, boundary }
             .build(&source, scale)
             .map_err(|e| if matches!(e.key(), Some("surface" | "points")) { e.in_file(&path) } else { e })
     }
