@@ -54,7 +54,7 @@ fn what_does_not_fit_into_memory_is_refused_with_its_figures() {
     };
     let figures = [" GB of memory", " GB is left", "fewer points"];
     assert_refused(&run("cholesky", 600), "scene.toml:2: mesh: the stiffness", &figures);
-    assert_refused(&run("cholesky", 1500), "scene.toml:2: mesh: the factor", &figures);
+    assert_refused(&run("cholesky", 1200), "scene.toml:2: mesh: the factor", &figures);
     assert_refused(&run("multigrid", 200), "scene.toml:2: mesh: the stiffness", &figures);
 }
 

@@ -6,62 +6,11 @@
 //! `‖t_1 × t_2‖`. The force of a node is `Σ_l T ∂c/∂t_l ∂N_a/∂ξ_l`.
 
 use super::laws::{Lawful, Laws, LawsRoom};
+use super::tables::{Cells, Tables, merged};
 use super::tangents::{content, slopes};
-use crate::element::Tabulation;
 use crate::model::network::{MeasureSpring, Network};
 use crate::scalar::{Packed, PackedWork, widest};
 use crate::springs::Measure;
-use std::collections::HashMap;
-
-/// Cells with as many nodes and points.
-#[derive(Debug)]
-struct Cells {
-    nodes: usize,
-    dimension: usize,
-    points: usize,
-    gradients: Gradients,
-    /// The rows of the nodes, `[cells × nodes]`.
-    rows: Vec<u32>,
-    /// The number of points of the tables before.
-    first: usize,
-}
-
-/// `∂N_a/∂ξ_l`, `[points × nodes × dimension]`.
-#[derive(Debug)]
-enum Gradients {
-    /// Of all cells.
-    Shared(Vec<f64>),
-    /// Of each cell its own, `[cells / LANES][points × nodes × dimension][LANES]`.
-    Own(Vec<f64>),
-}
-
-/// The most lanes of any vector; the others are divisors of it. Tables of fewer cells would leave lanes empty.
-const LANES: usize = 8;
-
-impl Gradients {
-    /// The number at that place of the table, for the cells from `first`, a multiple of the lanes.
-    #[inline(always)]
-    fn at<T: Packed>(&self, zero: &T, first: usize, [place, size]: [usize; 2]) -> T {
-        match self {
-            Gradients::Shared(table) => zero.constant(&table[place]),
-            Gradients::Own(tables) => {
-                let begin = (first / LANES * size + place) * LANES + first % LANES;
-                let mut lanes = zero.clone();
-                lanes.as_mut_slice().copy_from_slice(&tables[begin..begin + T::COUNT]);
-                lanes
-            }
-        }
-    }
-
-    /// Appends the table of cell number `cell`, the last one so far.
-    fn push(&mut self, cell: usize, table: &[f64]) {
-        if let Gradients::Own(tables) = self {
-            let first = cell / LANES * table.len() * LANES;
-            tables.resize(first + table.len() * LANES, 0.0);
-            table.iter().enumerate().for_each(|(i, g)| tables[first + i * LANES + cell % LANES] = *g);
-        }
-    }
-}
 
 /// A spring on the whole content of a cell, `Σ_q w_q c_q`.
 #[derive(Debug)]
@@ -182,74 +131,6 @@ impl Contents {
             cells.visit(space, Pulls { cells, x, tensions, force });
         }
         sound
-    }
-}
-
-/// The cells of tables that would leave lanes empty, with others of the same shape; and where each table is now: its index, and the
-/// number of its first cell.
-fn merged(tables: Vec<(Vec<f64>, Cells)>) -> (Vec<Cells>, Vec<[usize; 2]>) {
-    let (mut all, mut homes, mut of_shape) = (Vec::<Cells>::new(), Vec::new(), HashMap::new());
-    for (gradients, cells) in tables {
-        let count = cells.rows.len() / cells.nodes;
-        if count >= LANES {
-            homes.push([all.len(), 0]);
-            all.push(Cells { gradients: Gradients::Shared(gradients), ..cells });
-            continue;
-        }
-        let shape = [cells.nodes, cells.dimension, cells.points];
-        let home = *of_shape.entry(shape).or_insert(all.len());
-        if home == all.len() {
-            all.push(Cells { rows: Vec::new(), ..cells });
-        }
-        let own = &mut all[home];
-        let first = own.rows.len() / own.nodes;
-        homes.push([home, first]);
-        own.rows.extend(cells.rows);
-        (first..first + count).for_each(|cell| own.gradients.push(cell, &gradients));
-    }
-    (all, homes)
-}
-
-/// Collects cells by their table and nodes.
-#[derive(Default)]
-struct Tables {
-    /// Each table of gradients with its cells.
-    cells: Vec<(Vec<f64>, Cells)>,
-    /// Tables by the bits of their gradients: cells of one shape have equal ones, and each fibre its own.
-    by_value: HashMap<Vec<u64>, usize>,
-    by_place: HashMap<*const Tabulation, usize>,
-    known: HashMap<(usize, Vec<u32>), usize>,
-}
-
-impl Tables {
-    /// The table and the cell of it.
-    fn cell(&mut self, table: &Tabulation, rows: Vec<u32>) -> (usize, usize) {
-        let index = match self.by_place.get(&std::ptr::from_ref(table)) {
-            Some(index) => *index,
-            None => self.table(table),
-        };
-        let (_, cells) = &mut self.cells[index];
-        let next = cells.rows.len() / cells.nodes;
-        let cell = *self.known.entry((index, rows)).or_insert_with_key(|(_, rows)| {
-            cells.rows.extend(rows);
-            next
-        });
-        (index, cell)
-    }
-
-    fn table(&mut self, table: &Tabulation) -> usize {
-        let shape = [table.nodes, table.dimension, table.points()].map(|n| n as u64);
-        let key: Vec<u64> = shape.into_iter().chain(table.gradients.iter().map(|g| g.to_bits())).collect();
-        let next = self.cells.len();
-        let index = *self.by_value.entry(key).or_insert(next);
-        if index == next {
-            let Tabulation { nodes, dimension, .. } = *table;
-            let (points, gradients, rows) = (table.points(), Gradients::Own(Vec::new()), Vec::new());
-            let cells = Cells { nodes, dimension, points, gradients, rows, first: 0 };
-            self.cells.push((table.gradients.clone(), cells));
-        }
-        self.by_place.insert(table, index);
-        index
     }
 }
 

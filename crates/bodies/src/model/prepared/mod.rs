@@ -6,6 +6,7 @@ mod edges;
 mod laws;
 mod part;
 mod simplices;
+mod tables;
 mod tangents;
 
 use super::network::Network;
