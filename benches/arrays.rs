@@ -3,6 +3,9 @@
 //! The folder that is given has `points.f64`, `[points × 3]`, and `cells.i64`, `[cells × 4]`, of tetrahedra. Each line of the input is one
 //! run; its answer is the seconds of the processor, the sum of all constants and the number of springs.
 
+mod clock;
+
+use clock::clock;
 use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight};
 use springfit::material::{Material, State};
@@ -13,13 +16,6 @@ use std::fs;
 use std::io::stdin;
 use std::path::Path;
 use std::sync::Arc;
-
-/// The seconds of the processor that this process has used, as Linux counts them, in hundredths.
-fn processor() -> f64 {
-    let stat = fs::read_to_string("/proc/self/stat").expect("Linux has it");
-    let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
-    [11, 12].iter().map(|&i| fields[i].parse::<f64>().expect("it is a count")).sum::<f64>() / 100.0
-}
 
 fn words(path: &Path) -> Vec<[u8; 8]> {
     fs::read(path).expect("the script has written it").as_chunks::<8>().0.to_vec()
@@ -38,7 +34,7 @@ fn main() {
     let material = Material::new(1e4, 0.3, State::Solid).expect("it is valid");
     let named = NamedFit::new(Fit::new(Objective::Frobenius(Weight::OffDiagonal)), None);
     for _ in stdin().lines() {
-        let start = processor();
+        let start = clock();
         // As Python, whose arrays stay its own.
         let arrays = MeshArrays {
             dimension: 3,
@@ -52,7 +48,7 @@ fn main() {
         let springs: Vec<i32> = lengths.iter().flat_map(|spring| spring.points.map(|p| p as i32)).collect();
         let constants: Vec<f64> = lengths.iter().map(|spring| spring.constant).collect();
         let rest: Vec<f64> = lengths.iter().map(|spring| spring.rest).collect();
-        let seconds = processor() - start;
+        let seconds = clock() - start;
         assert_eq!(springs.len(), 2 * rest.len());
         println!("{seconds} {:?} {}", constants.iter().sum::<f64>(), rest.len());
     }

@@ -2,6 +2,9 @@
 //! its rim and poked in the middle, and ones of more springs: larger membranes of the same cells, where `h² k/m` of a spring stays, and
 //! the same membrane refined, where it grows as the number of springs. `cargo bench --bench dynamics`.
 
+mod clock;
+
+use clock::clock;
 use springfit::dynamics::{Curve, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome};
 use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight, fit_cells};
@@ -10,7 +13,6 @@ use springfit::mesh::{DiscMesh, Mesh};
 use springfit::model::{Network, Support, masses};
 use springfit::springs::Springs;
 use std::sync::Arc;
-use std::time::Instant;
 
 const THICKNESS: f64 = 5e-4;
 
@@ -28,13 +30,6 @@ fn membrane(rings: Vec<usize>, radius: f64) -> (Mesh, Network) {
     (mesh, network)
 }
 
-/// What the processor has spent on this thread, s, where the system says so, however busy others keep the machine; else the time.
-fn clock(begun: Instant) -> f64 {
-    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let spent = spent.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    spent.map_or_else(|| begun.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
-}
-
 /// Of every motion, from rest on: steps at another time may have other shapes to solve for.
 const STEPS: usize = 24;
 
@@ -49,10 +44,10 @@ fn seconds(mesh: &Mesh, network: &Network, options: Options, times: usize) -> (f
     let motion = Motion { support, drive, ..Motion::free(network, &mesh.points, &masses) };
     let mut simulation = Simulation::new(motion, options).expect("the model is sound");
     let zero = vec![0.0; mesh.points.len()];
-    let (begun, mut iterations) = (Instant::now(), 0);
+    let mut iterations = 0;
     let mut runs: Vec<f64> = (0..3)
         .map(|_| {
-            let start = clock(begun);
+            let start = clock();
             for _ in 0..times {
                 simulation.start(&zero, &zero).expect("it rests");
                 for _ in 0..STEPS {
@@ -61,7 +56,7 @@ fn seconds(mesh: &Mesh, network: &Network, options: Options, times: usize) -> (f
                     iterations += step.solver_iterations;
                 }
             }
-            (clock(begun) - start) / (times * STEPS) as f64
+            (clock() - start) / (times * STEPS) as f64
         })
         .collect();
     runs.sort_by(f64::total_cmp);

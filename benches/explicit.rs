@@ -4,6 +4,7 @@
 //! `-- hex8` for the networks with this in their name. `RAYON_NUM_THREADS=1` keeps large networks on one thread.
 
 mod c_loop;
+mod clock;
 
 use c_loop::{Case, c_loop, case, compile, cube, exact, springfit, write};
 use springfit::element::Element;

@@ -4,6 +4,9 @@
 //! it is without preparation. All in one run, in turn, so that what else the machine does meets all alike.
 //! `cargo bench --bench steps`.
 
+mod clock;
+
+use clock::clock;
 use springfit::element::Element;
 use springfit::fit::{ExactEnergy, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
 use springfit::material::{Material, State};
@@ -12,7 +15,6 @@ use springfit::model::{Elastic, Network, masses, patch_springs};
 use springfit::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 use springfit::springs::Springs;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Cubes along an edge of the box, each six tetrahedra.
 const SIDE: usize = 26;
@@ -30,15 +32,6 @@ fn mesh(jitter: f64) -> Mesh {
         *x += jitter / SIDE as f64 * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0);
     }
     mesh
-}
-
-/// What the processor has spent on this thread, s, where the system says so, however busy others keep the machine; else the time.
-fn clock(begun: Instant) -> f64 {
-    // The system books what was spent when it looks for others to run.
-    std::thread::yield_now();
-    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let spent = spent.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    spent.map_or_else(|| begun.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
 }
 
 /// A tetrahedron of the usual form: `∇N` of its last three nodes, and its volume.
@@ -302,14 +295,14 @@ fn compare(title: &str, mesh: &Mesh) {
         assert!(error < 1e-10, "{}: forces differ by {error:e}", all[other].name);
     }
     let inverse: Vec<f64> = masses(mesh, 1000.0, 1.0).iter().flat_map(|m| [1.0 / m; 3]).collect();
-    let (begun, cells) = (Instant::now(), mesh.cell_count() as f64);
+    let cells = mesh.cell_count() as f64;
     let mut runs = vec![Vec::new(); all.len()];
     for _ in 0..ROUNDS {
         for (model, runs) in all.iter_mut().zip(&mut runs) {
             let steps = if model.name.ends_with("not prepared") { 2 } else { STEPS };
-            let from = clock(begun);
+            let from = clock();
             (0..steps).for_each(|_| model.step(1e-4, &inverse));
-            runs.push(1e9 * (clock(begun) - from) / steps as f64 / cells);
+            runs.push(1e9 * (clock() - from) / steps as f64 / cells);
         }
     }
     let median = |mut values: Vec<f64>| {
@@ -318,9 +311,9 @@ fn compare(title: &str, mesh: &Mesh) {
     };
     let ratio = |a: usize, b: usize| median(runs[a].iter().zip(&runs[b]).map(|(a, b)| a / b).collect());
     println!("{title}: {} tetrahedra, {} points, {} length springs", cells, mesh.point_count(), points.lengths.len());
-    let from = clock(begun);
+    let from = clock();
     drop(points.prepared());
-    println!("  preparation of the exact network: {:.1} ms", 1e3 * (clock(begun) - from));
+    println!("  preparation of the exact network: {:.1} ms", 1e3 * (clock() - from));
     println!("  {:30} {:>10} {:>10} {:>10}", "", "ns/tet", "to usual", "to best");
     for (i, model) in all.iter().enumerate() {
         assert!(model.x.iter().all(|x| x.abs() < 2.0), "{} ran away", model.name);
@@ -329,10 +322,13 @@ fn compare(title: &str, mesh: &Mesh) {
 }
 
 fn main() {
-    // A jittered box has springs along all of its edges, an even one none across its right angles.
-    compare("jittered box", &mesh(0.1));
-    compare("even box", &mesh(0.0));
-    compare("jittered box, points numbered at random", &shuffled(mesh(0.1)));
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+    one.install(|| {
+        // A jittered box has springs along all of its edges, an even one none across its right angles.
+        compare("jittered box", &mesh(0.1));
+        compare("even box", &mesh(0.0));
+        compare("jittered box, points numbered at random", &shuffled(mesh(0.1)));
+    });
 }
 
 /// The same mesh with other numbers of points, and its cells in another order.

@@ -63,7 +63,7 @@
 //! | `generate` | code that computes the springs of a cell at run time (feature `cli`) |
 //! | `report` | tables, JSON, CSV, SVG and VTU files of the results (feature `cli`) |
 //! | `export` | networks as files and scripts of other programs (feature `cli`) |
-//! | `referee` | whether simulators have the modulus that they are told (feature `cli`) |
+//! | `referee` | whether simulators reproduce the modulus in their input (feature `cli`) |
 //! | [`prelude`] | the names that most programs need |
 //!
 //! Lengths are in m, moduli in Pa, forces in N, masses in kg and times in s. Arrays are row by row; their shapes are

@@ -1,5 +1,6 @@
 //! A network in motion by `Simulation::step` and by a plain loop in C, `explicit.c`, that is compiled for this machine.
 
+use crate::clock::clock;
 use springfit::dynamics::{Integrator, Motion, Options, Simulation, StepOutcome};
 use springfit::element::Element;
 use springfit::fit::{ExactEnergy, ExactFit, fit_exact};
@@ -81,14 +82,6 @@ pub fn write(case: &Case, steps: usize, to: &Path) {
     }
     table.iter().filter(|_| !hexes.is_empty()).for_each(|g| real(&mut data, *g));
     std::fs::write(to, data).expect("the folder can be written");
-}
-
-/// What the processor has spent on all threads, s.
-pub fn clock() -> f64 {
-    std::thread::yield_now();
-    let tasks = std::fs::read_dir("/proc/self/task").expect("this bench needs Linux").flatten();
-    let spent = tasks.filter_map(|task| std::fs::read_to_string(task.path().join("schedstat")).ok());
-    1e-9 * spent.filter_map(|text| text.split(' ').next()?.parse::<f64>().ok()).sum::<f64>()
 }
 
 /// Seconds per step of the simulation, and where the points are at the end.

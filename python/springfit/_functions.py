@@ -12,7 +12,7 @@ import numpy as np
 from .material import Material
 from .mesh import failure
 
-#: The step of differences at rest, and the difference of stiffnesses that is told.
+#: The step of differences at rest, and the relative difference of stiffnesses above which a warning is given.
 _STEP, _TOLD = 1e-4, 0.01
 
 

@@ -9,7 +9,7 @@ use springfit::report::{self, REFEREE_FILES, check_outputs};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Measure whether simulators have the modulus that they are told; exit code 1 if a simulator ends early
+/// Measure whether simulators reproduce the modulus in their input; exit code 1 if a simulator ends early
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n{}", engine_list()))]
 pub struct Referee {

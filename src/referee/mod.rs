@@ -1,4 +1,4 @@
-//! Whether simulators have the modulus that they are told: standard bodies come to rest in them, beside finite elements.
+//! Whether simulators reproduce the modulus in their input: standard bodies come to rest in them, beside finite elements.
 //!
 //! An engine is a row of [`ENGINES`]; its script, in the folder `exports/referee`, answers requests of a process.
 //!

@@ -83,7 +83,7 @@ impl Factored {
         let order = elimination_order(pattern_of(&pairs)?.as_ref(), &free, points, dimension).map_err(|_| large())?;
         let (place, pairs) = lower(&order);
         let pattern = pattern_of(&pairs)?;
-        // The analysis without a permutation reads the upper triangle, whichever triangle it is told to read.
+        // Without a permutation the analysis reads the upper triangle, regardless of its argument `side`.
         let upper = pattern_of(&turned(&pairs))?;
         let supernodal_flop_ratio_threshold = SupernodalThreshold(SUPERNODAL);
         let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold, ..Default::default() };

@@ -6,11 +6,11 @@
 
 use faer::sparse::{SymbolicSparseColMat, SymbolicSparseColMatRef};
 
-/// Parts of so many nodes are not cut any more.
+/// A part with at most this number of nodes is not divided.
 const LEAF: usize = 8;
-/// How far from the middle a part may be cut, as a share of it.
+/// The largest distance of a cut from the middle of a part, as a share of its nodes.
 const ASIDE: f64 = 0.1;
-/// Nodes from which on a dissection is tried. Below, both orders cost about the same.
+/// The least number of nodes for which dissection is tried. Smaller graphs cost about the same in both orders.
 const NODES: usize = 500;
 const ABSENT: u32 = u32::MAX;
 
@@ -88,15 +88,17 @@ impl Graph {
                 order.extend(part.iter().rev().map(|&node| node as usize));
                 continue;
             }
-            let mut sort = |part: &mut Vec<u32>, axis: usize| {
+            let sort = |part: &mut Vec<u32>, axis: usize, rank: &mut Vec<u32>| {
                 part.sort_unstable_by(|a, b| at(a, axis).total_cmp(&at(b, axis)).then(a.cmp(b)));
                 part.iter().enumerate().for_each(|(i, &node)| rank[node as usize] = i as u32);
-                self.best_cut(part, &rank)
             };
-            let cuts = (0..d).map(|axis| (axis, sort(&mut part, axis)));
+            let cuts = (0..d).map(|axis| {
+                sort(&mut part, axis, &mut rank);
+                (axis, self.best_cut(&part, &rank))
+            });
             let best = cuts.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
             let (axis, Cut { position, side, .. }) = best?;
-            sort(&mut part, axis);
+            sort(&mut part, axis, &mut rank);
             let (mut low, mut high, mut separator) = (Vec::new(), Vec::new(), Vec::new());
             for (i, &node) in part.iter().enumerate() {
                 let [least, most] = self.reach(node, &rank);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// The stress of a hyperelastic material as a function.
 pub trait StressFunction: Debug + Send + Sync {
-    /// Writes the first Piola–Kirchhoff stress `P = ∂W/∂F`, Pa, of each deformation gradient F, both row by row; NaN where there is none.
+    /// Writes the first Piola–Kirchhoff stress `P = ∂W/∂F`, Pa, of each deformation gradient F, both row by row; NaN where it is undefined.
     /// F is that of a solid, also of plane bodies.
     ///
     /// # Errors
@@ -27,7 +27,7 @@ pub trait Hyperelastic: Debug + Sync {
     /// Poisson's ratio at rest; the contraction of shapes that are stretched.
     fn poisson(&self) -> f64;
 
-    /// Replaces each F by the stress in this state; NaN where there is none. In the plane F has the stretch through the thickness that
+    /// Replaces each F by the stress in this state; NaN where it is undefined. In the plane F has the stretch through the thickness that
     /// the state implies, and on entry any.
     ///
     /// # Errors

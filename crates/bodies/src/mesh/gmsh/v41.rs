@@ -94,7 +94,7 @@ pub(super) fn elements(reader: &mut Reader, nodes: &Nodes) -> Result<Gather<Key>
     cells(reader, nodes, [blocks, total], |reader| Ok([reader.number()?, reader.number()?]))
 }
 
-/// The cells of so many blocks, and so many in all; `entity` reads the dimension and the tag of the entity of a block.
+/// Reads `total` cells in `blocks` blocks; `entity` reads the dimension and the tag of the entity of a block.
 pub(super) fn cells(
     reader: &mut Reader,
     nodes: &Nodes,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// A force law as a function.
 pub trait ForceFunction: Debug + Send + Sync {
     /// Writes the force `T` of one spring at each measure `c`, `[measures]`; `rest` is its measure at rest. The force is that of
-    /// [`Law`](super::Law), NaN where there is none.
+    /// [`Law`](super::Law), NaN where it is undefined.
     fn forces(&self, c: &[f64], rest: f64, parameters: &[f64], forces: &mut [f64]);
 }
 
