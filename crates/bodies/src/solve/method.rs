@@ -34,10 +34,10 @@ impl Default for StaticSolver {
     }
 }
 
-/// Unknowns from which on the levels are faster for one load, in the plane and in space. A factor of a plane mesh fills less.
-const FROM: [usize; 2] = [400_000, 30_000];
-/// A factor of so many unknowns in space is as dear as the iterations of one load more: 24 s and 1.2 s at 1e5.
-const UNKNOWNS_PER_LOAD: usize = 5_000;
+/// In the plane and in space: unknowns from which on the levels are faster for one load, and the unknowns whose factor is as dear as the
+/// iterations of one load more. A factor of a plane mesh fills less.
+const FROM: [usize; 2] = [50_000, 15_000];
+const PER_LOAD: [usize; 2] = [20_000, 2_000];
 
 impl StaticSolver {
     /// Whether equations that iterations could not solve for that reason are factorised instead.
@@ -53,7 +53,8 @@ impl StaticSolver {
             (StaticMethod::Multigrid, 2 | 3) => true,
             // A surface or lines in space may have no stiffness across.
             (StaticMethod::Auto, 2 | 3) if mesh.cell_dimension() == mesh.dimension => {
-                unknowns >= FROM[mesh.dimension - 2] && loads <= unknowns / UNKNOWNS_PER_LOAD
+                let space = mesh.dimension - 2;
+                unknowns >= FROM[space] && loads <= unknowns / PER_LOAD[space]
             }
             (StaticMethod::Multigrid | StaticMethod::Auto, _) => false,
         }

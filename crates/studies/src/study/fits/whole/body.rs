@@ -38,8 +38,9 @@ pub struct WholeBody<'a> {
     known: Mutex<Vec<(Support, Equations)>>,
 }
 
-/// About the loads of a fit under a support, by which the way to solve equations is chosen.
-const LOADS: usize = 16;
+/// As many loads are as dear as the solutions of a fit under a support, by which the way to solve equations is chosen: each step has some tens
+/// for each load with one factor.
+const LOADS: usize = 40;
 
 impl<'a> WholeBody<'a> {
     /// A body at small deformation, without loads of a scene.
