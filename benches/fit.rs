@@ -127,14 +127,18 @@ fn main() {
         let count = (25_000_000 / (springs * springs)).clamp(64, 30_000);
         let (Some(mesh), Some(small)) = (jittered(element, count), jittered(element, count / 30)) else { continue };
         let frobenius = [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::DEFAULT), Weight::Relative];
-        let mut objectives: Vec<(Objective, &Mesh)> = frobenius.map(|w| (Objective::Frobenius(w), &mesh)).into();
-        objectives.push((Objective::Spectral(MotionWeight::None), &small));
-        objectives.push((Objective::Divergence(Balance::DEFAULT), &small));
-        for (objective, mesh) in objectives {
+        let mut fits: Vec<(Fit, &Mesh)> = frobenius.map(|w| (Fit::new(Objective::Frobenius(w)), &mesh)).into();
+        let weights = [MotionWeight::None, MotionWeight::Modal(Higher::DEFAULT), MotionWeight::Relative];
+        for (weight, gap) in weights.iter().flat_map(|w| [(w, 0.0), (w, 1e-8)]) {
+            fits.push((Fit { gap, ..Fit::new(Objective::Spectral(*weight)) }, &small));
+        }
+        fits.push((Fit::new(Objective::Divergence(Balance::DEFAULT)), &small));
+        for (fit, mesh) in fits {
             for nonnegative in [false, true] {
-                let (_, seconds) = one.install(|| timed(mesh, Fit { nonnegative, ..Fit::new(objective) }));
+                let (_, seconds) = one.install(|| timed(mesh, Fit { nonnegative, ..fit }));
                 let each = seconds / mesh.cell_count() as f64;
-                let name = format!("{}{}", objective.title(), if nonnegative { ", k >= 0" } else { "" });
+                let gap = if fit.gap > 0.0 { format!(", gap {:e}", fit.gap) } else { String::new() };
+                let name = format!("{}{gap}{}", fit.objective.title(), if nonnegative { ", k >= 0" } else { "" });
                 println!("{:10} {name:28} {:14.0} {:16.0}", element.name, 1e9 * each, 1.0 / each);
             }
         }

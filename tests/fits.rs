@@ -347,6 +347,35 @@ fn spectral_optima_are_certified() {
     assert!(most < 1e-10, "{most:e}");
 }
 
+/// A fit that may end at a gap ends there with its proof, and differs from the best by no more.
+#[test]
+fn spectral_fits_end_at_the_gap_that_is_asked_for() {
+    let (mut early, mut all) = (0, 0);
+    for case in cases(2).into_iter().filter(|case| case.springs.len() <= LARGE) {
+        for (weight, nonnegative) in SPECTRAL.into_iter().flat_map(|w| [(w, false), (w, true)]) {
+            let best = Fit { nonnegative, ..Fit::new(Objective::Spectral(weight)) };
+            let [best, ended] = [0.0, 1e-8].map(|gap| case.certified(Fit { gap, ..best }).certificates[0]);
+            let name = format!("{} {weight:?} nonnegative {nonnegative}: {best:?} {ended:?}", case.name);
+            assert!(ended.gap() <= 1e-8 + ended.rounding(), "{name}");
+            let least = 1e-6 * case.r.norm();
+            assert!((ended.value - best.value).abs() <= 1.1e-8 * best.value.max(least), "{name}");
+            (early, all) = (early + usize::from(ended.gap() > 1e-10), all + 1);
+        }
+    }
+    assert!(2 * early > all, "{early} of {all} ended before they were refined");
+}
+
+#[test]
+fn gaps_are_checked() {
+    let spectral = Fit::new(Objective::Spectral(MotionWeight::None));
+    for gap in [-1e-9, 2e-8, f64::NAN, f64::INFINITY] {
+        let error = Fit { gap, ..spectral }.check_gap().unwrap_err().to_string();
+        assert!(error.contains("gap: expected a number from 0 to 1e-8"), "{error}");
+    }
+    let error = Fit { gap: 1e-8, ..Fit::new(Objective::Frobenius(Weight::None)) }.check_gap().unwrap_err().to_string();
+    assert!(error.contains("gap: belongs to objective = \"spectral\""), "{error}");
+}
+
 /// With weight `relative` the value ε is dimensionless, and `(1 − ε) R ⪯ K ⪯ (1 + ε) R`.
 #[test]
 fn relative_spectral_fits_bound_the_energy() {

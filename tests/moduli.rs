@@ -14,6 +14,7 @@ const FROBENIUS: Fit = Fit {
     nonnegative: false,
     solver: springfit::fit::Solver::Native,
     rest: springfit::fit::Rest::Mesh,
+    gap: 0.0,
 };
 
 fn lattice(name: &str, material: Material) -> Lattice {

@@ -93,6 +93,9 @@ pub struct Fit {
     /// Rest lengths of the springs: mesh (as in the mesh), free (fitted) or zero [default: mesh] (frobenius, offdiag and modal only)
     #[arg(long, help_heading = "Fits to the stiffness")]
     rest: Option<String>,
+    /// Proved gap at which the search may end, up to 1e-8 [default: 0, where rounding ends it] (spectral only)
+    #[arg(long, allow_hyphen_values = true, help_heading = "Fits to the stiffness")]
+    gap: Option<f64>,
     /// Plane mesh or surface: stress or strain [default: stress]
     #[arg(long, help_heading = "Material")]
     plane: Option<State>,
@@ -276,6 +279,7 @@ impl Fit {
             .with("nonnegative", self.nonnegative.then_some(true))
             .with("across", self.across.then_some(true))
             .with("rest", self.rest.clone())
+            .with("gap", self.gap)
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
             .with("law", self.law.clone());

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 19] = [
+const RUNS: [&[&str]; 20] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -22,6 +22,17 @@ const RUNS: [&[&str]; 19] = [
         "--law",
         "neo-hookean",
         "--shapes=20",
+    ],
+    &[
+        "fit",
+        "mesh.msh",
+        "--young=1e4",
+        "--poisson=0.3",
+        "-o",
+        "springs.csv",
+        "--objective",
+        "spectral",
+        "--springs=edge",
     ],
     &["fit", "plate.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.vtu", "--objective", "offdiag"],
     &["fit", "rods.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json", "--objective", "frobenius"],
@@ -106,7 +117,7 @@ fn every_number_of_the_command_line_may_be_extreme() {
         for option in options(run[0]).into_iter().filter(|option| is_numeric(run, option)) {
             let name = format!("{} {option}", run[0]);
             numeric.insert(name.clone());
-            if ["0.5", "2"].iter().any(|value| springfit(&with(run, &option, value)).0.status.success()) {
+            if ["0.5", "2", "1e-9"].iter().any(|value| springfit(&with(run, &option, value)).0.status.success()) {
                 taken.insert(name);
             } else {
                 continue;

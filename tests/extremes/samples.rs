@@ -17,6 +17,9 @@ springs = ["edge", "face diagonal", "body diagonal", "bulk"]
 objective = "divergence"
 balance = 0.5
 [[fit]]
+objective = "spectral"
+gap = 1e-9
+[[fit]]
 objective = "exact"
 energy = "stable-mooney-rivlin"
 share = 0.5

@@ -82,6 +82,8 @@ pub struct Method<T> {
     reduced: Reduced<T>,
     weight: MotionWeight,
     nonnegative: bool,
+    /// At which a spectral fit may end.
+    gap: f64,
     /// Whether springs measure functions.
     measures: bool,
     solver: Solver<T>,
@@ -122,7 +124,7 @@ impl<T: Real> Method<T> {
             }
         };
         let measures = !springs.functions.is_empty();
-        Some(Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver })
+        Some(Method { reduced, weight, nonnegative: fit.nonnegative, gap: fit.gap, measures, solver })
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
@@ -304,14 +306,17 @@ impl<T: Real> Method<T> {
                 let size = lane(&self.reduced.size);
                 let kappa = solver.kappa.iter().map(&lane).collect();
                 let mut optimum = Optimum { kappa, value: lane(&solver.value), bound: lane(&solver.bound) };
-                let problem = Problem::of(&self.reduced, solver, &lane, quality());
                 // Half of the digits is enough in numbers of more digits than `f64`.
-                if T::epsilon() >= T::given() {
-                    refine(&problem, &mut optimum);
-                }
+                let is_enough = optimum.value - optimum.bound <= self.gap * optimum.value.max(EXACT);
+                let refines = T::epsilon() >= T::given() && !is_enough;
                 // A nonnegative optimum stays in the middle of the optima, away from the bounds.
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
-                let ambiguous = doubtful && least_frobenius(&problem, &mut optimum);
+                let problem = (refines || doubtful).then(|| Problem::of(&self.reduced, solver, &lane, quality()));
+                if let Some(problem) = problem.as_ref().filter(|_| refines) {
+                    refine(problem, &mut optimum);
+                }
+                let problem = problem.filter(|_| doubtful);
+                let ambiguous = problem.is_some_and(|problem| least_frobenius(&problem, &mut optimum));
                 verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
                 // For an optimum of zero the gap is only rounding.
                 verdict.delicate |= optimum.value <= EXACT;

@@ -3,6 +3,7 @@
 use super::objective::Objective;
 use super::rest::Rest;
 use super::solver::Solver;
+use super::spectral::GAP;
 use crate::error::{Error, Result};
 use crate::springs::Springs;
 
@@ -19,13 +20,16 @@ pub struct Fit {
     pub solver: Solver,
     /// The rest measures of the springs.
     pub rest: Rest,
+    /// Of a spectral fit: the proved gap, relative to the value, at which the search may end; at most 1e-8. At zero it ends where rounding
+    /// ends it, which takes longer.
+    pub gap: f64,
 }
 
 impl Fit {
     /// A fit with this objective, one free constant per spring, the native solver, and springs that do not pull at
     /// rest.
     pub fn new(objective: Objective) -> Fit {
-        Fit { objective, tied: false, nonnegative: false, solver: Solver::Native, rest: Rest::Mesh }
+        Fit { objective, tied: false, nonnegative: false, solver: Solver::Native, rest: Rest::Mesh, gap: 0.0 }
     }
 
     /// Checks that the settings are compatible.
@@ -34,7 +38,22 @@ impl Fit {
     /// They are not.
     pub(super) fn check(&self) -> Result<()> {
         self.solver.check(self.objective)?;
+        self.check_gap()?;
         self.rest.check(self.objective, self.solver)
+    }
+
+    /// Checks that the gap is one that the search can end at.
+    ///
+    /// # Errors
+    /// It is not, or nothing proves a gap.
+    pub fn check_gap(&self) -> Result<()> {
+        let proves = matches!((self.objective, self.solver), (Objective::Spectral(_), Solver::Native));
+        match self.gap {
+            0.0 => Ok(()),
+            _ if !proves => Err(Error::at("gap", "belongs to objective = \"spectral\" with solver = \"native\"")),
+            gap if gap > 0.0 && gap <= GAP => Ok(()),
+            gap => Err(Error::expected("gap", "a number from 0 to 1e-8", gap)),
+        }
     }
 
     /// Checks that the springs do not pull at rest.

@@ -23,6 +23,7 @@ pub struct StiffnessEntry {
     pub sparsity: Option<f64>,
     #[schemars(extend("enum" = Rest::NAMES))]
     pub rest: Option<String>,
+    pub gap: f64,
 }
 
 impl StiffnessEntry {
@@ -41,6 +42,8 @@ impl StiffnessEntry {
         let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations, topology)?;
         let rest = self.rest.as_deref().map_or(Ok(Rest::Mesh), Rest::named).map_err(|e| e.at_key("rest"))?;
         rest.check(objective, solver)?;
-        Ok(Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver, rest })
+        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver, rest, gap: self.gap };
+        fit.check_gap()?;
+        Ok(fit)
     }
 }

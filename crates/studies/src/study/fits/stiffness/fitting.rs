@@ -27,6 +27,9 @@ impl FitKind for Fit {
         if self.nonnegative {
             title += " k>=0";
         }
+        if self.gap > 0.0 {
+            title += &format!(" to {:e}", self.gap);
+        }
         title
     }
 

@@ -25,6 +25,8 @@ pub struct StiffnessRecord {
     pub sparsity: Option<f64>,
     /// The rest measures: `mesh`, `free` or `zero`.
     pub rest: String,
+    /// The gap at which a spectral fit may end.
+    pub gap: Option<f64>,
 }
 
 impl StiffnessRecord {
@@ -53,6 +55,7 @@ impl StiffnessRecord {
             solver: solver.into(),
             sparsity: fit.solver.topology().map(|topology| topology.sparsity),
             rest: fit.rest.name().into(),
+            gap: matches!((fit.objective, fit.solver), (Objective::Spectral(_), Solver::Native)).then_some(fit.gap),
         }
     }
 }
