@@ -247,4 +247,9 @@ fn gravity_has_the_dimension_of_the_network() {
         let error = target.files(network, Some(&[0.0, -9.81])).err().unwrap().to_string();
         assert_eq!(error, "--gravity: expected 3 numbers in m/s², found 2", "{}", target.name);
     }
+    let picture = target_named("vtu").unwrap();
+    let error = picture.files(network, Some(&[0.0, 0.0, -1.0])).err().unwrap().to_string();
+    let expected = "--gravity: belongs to programs that move the network, found it with vtu, which is a picture";
+    assert_eq!(error, expected);
+    assert!(picture.files(network, None).is_ok());
 }

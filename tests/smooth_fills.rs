@@ -1,7 +1,7 @@
 //! Closed surfaces that are filled with tetrahedra up to the surface.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillMesh, Filled, Mesh, MeshSource};
+use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Filled, Mesh, MeshSource};
 use springfit::study::{Scene, run};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 fn fill(source: &MeshSource, name: &str, cell: f64, boundary: FillBoundary) -> springfit::error::Result<Mesh> {
     let element = Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap();
-    FillMesh { element: Arc::new(element), cell, boundary }.build(source, 1.0)
+    FillMesh { element: Arc::new(element), cell, boundary, layers: FillLayers::Refuse }.build(source, 1.0)
 }
 
 fn smooth(source: &MeshSource, cell: f64) -> Mesh {
@@ -29,7 +29,7 @@ fn obj(points: &[[f64; 3]], triangles: &[[usize; 3]]) -> MeshSource {
 }
 
 /// An octahedron whose triangles are divided in four, with its points at the radius of their direction.
-fn ball(times: usize, radius: impl Fn([f64; 3]) -> f64) -> MeshSource {
+pub(super) fn ball(times: usize, radius: impl Fn([f64; 3]) -> f64) -> MeshSource {
     let mut points: Vec<[f64; 3]> =
         vec![[1., 0., 0.], [-1., 0., 0.], [0., 1., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
     let mut triangles: Vec<[usize; 3]> =

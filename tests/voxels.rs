@@ -13,12 +13,12 @@ fn mesh(source: &MeshSource) -> Mesh {
     Mesh::resolve(source, &[], 1.0).unwrap()
 }
 
-fn error(bytes: &[u8], ending: &str) -> String {
+pub(super) fn error(bytes: &[u8], ending: &str) -> String {
     MeshSource::parse(bytes, ending).unwrap_err().to_string()
 }
 
 /// The element, the groups and the positions of the nodes of each cell in the order of the element, sorted. Positions are in 2⁻²⁰.
-fn cells(source: &MeshSource) -> Vec<(String, Vec<String>, Vec<i64>)> {
+pub(super) fn cells(source: &MeshSource) -> Vec<(String, Vec<String>, Vec<i64>)> {
     let mesh = mesh(source);
     let mut all = Vec::new();
     for (number, block) in mesh.blocks.iter().enumerate() {
@@ -35,7 +35,7 @@ fn cells(source: &MeshSource) -> Vec<(String, Vec<String>, Vec<i64>)> {
 }
 
 /// Labels with the first index fastest.
-fn label([i, j, k]: [usize; 3]) -> usize {
+pub(super) fn label([i, j, k]: [usize; 3]) -> usize {
     (i + 2 * j + 3 * k) % 4
 }
 
@@ -299,62 +299,16 @@ fn faults_of_images_and_lattices_name_what_is_expected() {
     assert!(xml("Table", "").contains("VTKFile.type: expected one of UnstructuredGrid, PolyData, ImageData"));
     assert!(xml("ImageData", "<Piece Extent=\"0 1 0 1\"/>").contains("Extent: expected six whole numbers"));
     let twice = "<Piece Extent=\"0 1 0 1 0 1\"/>".repeat(2);
-    assert!(xml("StructuredGrid", &twice).contains("Piece: expected one piece of StructuredGrid, found several"));
-    let overlapping = xml("ImageData", &twice);
-    let expected = "Piece.Extent: expected pieces whose cells fill [0, 0, 0] to [1, 1, 1], which are 1, found 2 cells";
-    assert!(overlapping.contains(expected), "{overlapping}");
+    for kind in ["ImageData", "StructuredGrid", "RectilinearGrid"] {
+        let overlapping = xml(kind, &twice);
+        let expected =
+            "Piece.Extent: expected pieces whose cells fill [0, 0, 0] to [1, 1, 1], which are 1, found 2 cells";
+        assert!(overlapping.contains(expected), "{overlapping}");
+    }
     let apart = "<Piece Extent=\"0 1 0 1 0 1\"/><Piece Extent=\"9 10 0 1 0 1\"/>";
     assert!(xml("ImageData", apart).contains("which are 10, found 2 cells"));
     let huge = "<Piece Extent=\"0 4000 0 4000 0 1\"/><Piece Extent=\"0 4000 0 4000 1 2\"/>";
     assert!(xml("ImageData", huge).contains("expected at most 8388608 points, found up to"));
     let far = format!("<Piece Extent=\"{0} {0} 0 1 0 1\"/><Piece Extent=\"{1} {1} 0 1 0 1\"/>", i64::MIN, i64::MAX);
     assert!(xml("ImageData", &far).contains("Piece.Extent"));
-}
-
-/// An image of labels as the pieces of parallel programs: cells from `bounds[k][i]` to `bounds[k][i + 1]` along each axis. Labels belong to
-/// cells, or to points, of which neighbouring pieces share some.
-fn image(bounds: &[Vec<usize>; 3], of_points: bool) -> String {
-    let mut text = String::from(
-        "<VTKFile type=\"ImageData\"><ImageData Origin=\"1 2 3\" Spacing=\"0.5 1 2\" WholeExtent=\"0 1 0 1 0 1\">",
-    );
-    let parts = |k: usize| bounds[k].windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>();
-    for z in parts(2) {
-        for y in parts(1) {
-            for x in parts(0) {
-                let ends = [x, y, z];
-                let extent = ends.as_flattened().iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
-                let section = if of_points { "PointData" } else { "CellData" };
-                let last = |k: usize| ends[k][1] + usize::from(of_points);
-                let mut labels = Vec::new();
-                for k in ends[2][0]..last(2) {
-                    for j in ends[1][0]..last(1) {
-                        labels.extend((ends[0][0]..last(0)).map(|i| label([i, j, k]).to_string()));
-                    }
-                }
-                text += &format!(
-                    "<Piece Extent=\"{extent}\"><{section}><DataArray type=\"Int32\" Name=\"label\" format=\"ascii\">{}\
-                     </DataArray></{section}></Piece>",
-                    labels.join(" ")
-                );
-            }
-        }
-    }
-    text + "</ImageData></VTKFile>"
-}
-
-#[test]
-fn an_image_in_pieces_is_the_image() {
-    for of_points in [false, true] {
-        let read =
-            |bounds: [Vec<usize>; 3]| cells(&MeshSource::parse(image(&bounds, of_points).as_bytes(), "vti").unwrap());
-        let whole = read([vec![0, 5], vec![0, 4], vec![0, 3]]);
-        assert!(whole.len() > 30);
-        assert_eq!(read([vec![0, 2, 5], vec![0, 1, 4], vec![0, 3]]), whole);
-        assert_eq!(read([vec![0, 1, 2, 3, 4, 5], vec![0, 4], vec![0, 1, 2, 3]]), whole);
-    }
-    let halves = image(&[vec![0, 2, 5], vec![0, 4], vec![0, 3]], false);
-    let place = halves.rfind("Name=\"label\"").unwrap();
-    let other = format!("{}{}", &halves[..place], halves[place..].replacen("label", "tissue", 1));
-    let expected = "CellData: expected the arrays label of the first piece in each, found tissue";
-    assert!(error(other.as_bytes(), "vti").contains(expected), "{}", error(other.as_bytes(), "vti"));
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::mesh::{FillBoundary, FillMesh, Gate, Mesh, MeshSource};
+use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::study::{FillEntry, load_elements};
@@ -31,6 +31,9 @@ pub struct MeshOptions {
     /// The boundary of a filled surface: stepped, or smooth with tetrahedra that are cut off at it [default: stepped]
     #[arg(long, requires = "fill")]
     fill_boundary: Option<String>,
+    /// What happens if layers of the surface overlap: refuse, or union to fill what any of them encloses [default: refuse]
+    #[arg(long, requires = "fill")]
+    fill_layers: Option<String>,
     /// An element file to look in before the shipped ones; may be repeated
     #[arg(long)]
     element: Vec<String>,
@@ -77,6 +80,7 @@ impl MeshOptions {
                 let option = match e.key() {
                     Some("cell") => "--fill",
                     Some("boundary") => "--fill-boundary",
+                    Some("layers") => "--fill-layers",
                     _ => "--fill-element",
                 };
                 e.placed(|e| e.at_key(option))
@@ -93,7 +97,8 @@ impl MeshOptions {
     pub fn filling(&self, surface: &Path) -> Option<FillEntry> {
         let element = self.fill_element.clone().unwrap_or_else(|| FillMesh::cube().into());
         let boundary = self.fill_boundary.clone().unwrap_or_else(|| FillBoundary::default().name().into());
-        self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element, boundary })
+        let layers = self.fill_layers.clone().unwrap_or_else(|| FillLayers::default().name().into());
+        self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element, boundary, layers })
     }
 
     /// That none is given with a scene, which has its own.

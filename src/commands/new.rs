@@ -64,7 +64,13 @@ impl New {
         let here = folder.unwrap_or(Path::new(""));
         let own = fill.as_ref().map(|fill| own_file(&fill.element, here)).unwrap_or_default();
         let source = match &fill {
-            Some(fill) => DraftSource::Fill { surface: &file, cell: &numbers, element: &own, boundary: &fill.boundary },
+            Some(fill) => DraftSource::Fill {
+                surface: &file,
+                cell: &numbers,
+                element: &own,
+                boundary: &fill.boundary,
+                layers: &fill.layers,
+            },
             None => DraftSource::File(&file),
         };
         let text = draft(&mesh, source, unit, &elements, &title, &self.material(&mesh)?);

@@ -1,7 +1,7 @@
 //! VTU: a picture of the network for ParaView.
 
 use super::target::{Content, NamedFile, Target, nothing};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::vtk::{Array, Grid};
 use crate::report::NetworkRecord;
 
@@ -17,7 +17,13 @@ pub const TARGET: Target = Target {
     write,
 };
 
-fn write(network: &NetworkRecord, _: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    if gravity.is_some() {
+        return Err(Error::at(
+            "--gravity",
+            "belongs to programs that move the network, found it with vtu, which is a picture",
+        ));
+    }
     Ok(vec![("network.vtu", Content::Grid(Box::new(grid(network))))])
 }
 

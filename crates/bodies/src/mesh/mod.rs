@@ -50,7 +50,7 @@ pub use boxes::BoxMesh;
 pub use disc::DiscMesh;
 pub use embedding::Embedding;
 pub use field::{Field, Holder, Interpolation, Samples};
-pub use fill::{FillBoundary, FillMesh, Filled};
+pub use fill::{FaceCrossings, FillBoundary, FillLayers, FillMesh, Filled};
 pub use formats::{MESH_FORMATS, MeshFormat, listed_endings};
 pub use mesh::{CellBlock, CellIndex, Group, Mesh, SideIndex};
 pub use numbering::{NumberOrigin, Numbering};

@@ -1,7 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::extent;
-use crate::mesh::{CellBlock, FillBoundary, Filled, Group, Mesh};
+use crate::mesh::{CellBlock, FillBoundary, FillLayers, Filled, Group, Mesh};
 use crate::quantity::Quantity;
 use std::fmt::Write;
 
@@ -45,6 +45,8 @@ pub enum DraftSource<'a> {
         element: &'a str,
         /// `stepped` or `smooth`.
         boundary: &'a str,
+        /// `refuse` or `union`.
+        layers: &'a str,
     },
 }
 
@@ -73,12 +75,16 @@ pub fn draft(
     line("[mesh]");
     match source {
         DraftSource::File(file) => line(&format!("file  = {}", quoted(file))),
-        DraftSource::Fill { surface, cell, element, boundary } => {
+        DraftSource::Fill { surface, cell, element, boundary, layers } => {
             let (surface, element) = (quoted(surface), quoted(element));
-            let is_usual = boundary == FillBoundary::default().name();
-            let boundary = if is_usual { String::new() } else { format!(", boundary = {}", quoted(boundary)) };
+            let unusual = |key: &str, value: &str, usual: &str| match value == usual {
+                true => String::new(),
+                false => format!(", {key} = {}", quoted(value)),
+            };
+            let boundary = unusual("boundary", boundary, FillBoundary::default().name());
+            let layers = unusual("layers", layers, FillLayers::default().name());
             line(&format!(
-                "fill  = {{ surface = {surface}, cell = {cell}, element = {element}{boundary} }} # the edge of a cube in mesh units"
+                "fill  = {{ surface = {surface}, cell = {cell}, element = {element}{boundary}{layers} }} # the edge of a cube in mesh units"
             ));
         }
     }

@@ -64,6 +64,17 @@ impl<'a> Columns<'a> {
         true
     }
 
+    /// The squares of the plane, with the triangles whose boxes reach into each.
+    pub fn squares(&self) -> impl Iterator<Item = ([usize; 2], &[u32])> {
+        let columns = self.counts[1];
+        self.bins.iter().enumerate().map(move |(index, bin)| ([index / columns, index % columns], bin.as_slice()))
+    }
+
+    /// The square of a place in the plane.
+    pub fn square(&self, at: [f64; 2]) -> [usize; 2] {
+        [0, 1].map(|k| self.bin(k, at[k]))
+    }
+
     fn bin(&self, k: usize, x: f64) -> usize {
         let place = (x - self.surface.low[k]) / self.width[k];
         (place.max(0.0) as usize).min(self.counts[k] - 1)

@@ -1,5 +1,24 @@
 //! What a fill is beside its surface, in figures and words.
 
+/// Faces that pass through each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceCrossings {
+    /// The number of pairs, or the least number if the surface has too many faces at one place to compare them all.
+    pub pairs: usize,
+    /// The faces of one pair in words, by their places in the file from 1.
+    pub faces: [String; 2],
+    /// Where these two cross, m.
+    pub at: [f64; 3],
+}
+
+impl FaceCrossings {
+    /// How many there are and one of them, in words.
+    pub fn words(&self) -> String {
+        let [one, other] = &self.faces;
+        format!("{} pairs of faces cross, such as {one} and {other} at {}", self.pairs, at(self.at))
+    }
+}
+
 /// What a fill is beside its surface.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Filled {
@@ -17,10 +36,12 @@ pub struct Filled {
     pub turned: bool,
     /// Triangles without an area, which were left out.
     pub flat: usize,
-    /// Cells whose centres are within several layers of the surface, and the centre of one: it overlaps or meets itself.
+    /// Places of the lattice, such as centres of cells, that are inside several layers of the surface, and one of them.
     pub overlaps: Option<(usize, [f64; 3])>,
-    /// Centres around which the surface winds the other way round, and one of them: a part of it is inside out.
+    /// Places of the lattice around which the surface winds the other way round, and one of them: a part of it is inside out.
     pub inverted: Option<(usize, [f64; 3])>,
+    /// Faces of the surface that pass through each other.
+    pub crossings: Option<FaceCrossings>,
     /// Edges with more than two triangles, and the middle of one.
     pub branched: Option<(usize, [f64; 3])>,
 }
@@ -48,7 +69,6 @@ impl Filled {
         if let Some([least, largest]) = self.angles {
             lines.push(format!("dihedral angles are from {least:.1} to {largest:.1} degrees"));
         }
-        let at = |[x, y, z]: [f64; 3]| format!("({x:.4e}, {y:.4e}, {z:.4e}) m");
         if self.turned {
             lines.push("all normals of the surface were inwards and were turned".into());
         }
@@ -58,12 +78,17 @@ impl Filled {
         if let Some((count, place)) = self.branched {
             lines.push(format!("{count} edges of the surface have more than two triangles, one at {}", at(place)));
         }
+        if let Some(crossings) = &self.crossings {
+            let is_filled = self.overlaps.is_none() && self.inverted.is_none();
+            let effect = if is_filled { ": no place of the lattice is inside several layers" } else { "" };
+            lines.push(format!("{}{effect}", crossings.words()));
+        }
         if let Some((count, place)) = self.overlaps {
-            let words = "cells are inside several layers of the surface, which overlaps or meets itself";
+            let words = "places of the lattice are inside several layers of the surface";
             lines.push(format!("{count} {words}, one at {}: each is filled once", at(place)));
         }
         if let Some((count, place)) = self.inverted {
-            let words = "cells are inside a part of the surface that is inside out, and are not filled";
+            let words = "places of the lattice are inside a part of the surface that is inside out, and are not filled";
             lines.push(format!("{count} {words}, one at {}", at(place)));
         }
         if self.loose > 0 {
@@ -71,4 +96,9 @@ impl Filled {
         }
         lines
     }
+}
+
+/// A place in words.
+pub(super) fn at([x, y, z]: [f64; 3]) -> String {
+    format!("({x:.4e}, {y:.4e}, {z:.4e}) m")
 }

@@ -2,9 +2,11 @@
 
 use super::bound::{MOST_CELLS, too_many};
 use super::columns::Columns;
+use super::crossings::crossings;
 use super::filled::Filled;
 use super::grid::Grid;
 use super::lattice::{Pattern, patterns};
+use super::layers::FillLayers;
 use super::parts::kept;
 use super::smooth::smooth;
 use super::surface::Surface;
@@ -31,6 +33,8 @@ pub struct FillMesh {
     pub cell: f64,
     /// The boundary; a smooth one needs tetrahedra.
     pub boundary: FillBoundary,
+    /// What happens if layers of the surface overlap.
+    pub layers: FillLayers,
 }
 
 /// The largest number of cubes around the surface, filled or not.
@@ -58,7 +62,7 @@ impl FillMesh {
     /// Fills the surface in `source`, with `scale` metres per unit.
     ///
     /// # Errors
-    /// The surface is open or its triangles are turned differently; the element has other cells; or there are no cells or too
+    /// The surface is open, its triangles are turned differently, or its layers overlap and are refused; the element has other cells; or there are no cells or too
     /// many.
     pub fn build(&self, source: &MeshSource, scale: f64) -> Result<Mesh> {
         let patterns = patterns(self.element.cell);
@@ -94,6 +98,9 @@ impl FillMesh {
                 return Err(Error::expected("element", expected, &self.element.name));
             }
         };
+        let faulty = filled.overlaps.or(filled.inverted).map(|(_, place)| place);
+        filled.crossings = crossings(source, &surface, &columns, faulty, faulty.is_some());
+        self.layers.check(&filled)?;
         filled.cells = mesh.cell_count();
         if filled.cells == 0 {
             let found = format!("none of {edge:e} m in a volume of {:.3e} m³", surface.volume);

@@ -12,6 +12,8 @@ pub(super) struct Surface {
     /// The coordinates, m.
     pub points: Vec<[f64; 3]>,
     pub triangles: Vec<[usize; 3]>,
+    /// The place among the faces of the file of each triangle, from 0.
+    pub faces: Vec<u32>,
     /// The enclosed volume by the divergence theorem, `∫ x·n dA / 3`, m³.
     pub volume: f64,
     pub low: [f64; 3],
@@ -32,8 +34,8 @@ impl Surface {
     pub fn of(source: &MeshSource, scale: f64) -> Result<Surface> {
         let mut coincident = Coincident::default();
         let mut index = |node: usize| coincident.index(source.points[node].map(|x| x * scale));
-        let mut triangles = Vec::new();
-        let mut flat = 0;
+        let (mut triangles, mut faces) = (Vec::new(), Vec::new());
+        let (mut flat, mut face) = (0, 0);
         for block in source.blocks.iter().filter(|block| block.dimension > 1) {
             let is_known = match (source.format, block.cell_type) {
                 (Format::Vtk, 5 | 9) | (Format::Gmsh, 2 | 3) => true,
@@ -52,9 +54,13 @@ impl Surface {
                     let [a, b, c] = triangle;
                     match a == b || b == c || c == a {
                         true => flat += 1,
-                        false => triangles.push(triangle),
+                        false => {
+                            triangles.push(triangle);
+                            faces.push(face);
+                        }
                     }
                 }
+                face += 1;
             }
         }
         if triangles.is_empty() {
@@ -82,7 +88,7 @@ impl Surface {
         if !(volume > 0.0) {
             return Err(Error::expected("surface", "a surface that encloses a volume", format!("{volume} m³")));
         }
-        Ok(Surface { points, triangles, volume, low, high, is_turned, flat, branched })
+        Ok(Surface { points, triangles, faces, volume, low, high, is_turned, flat, branched })
     }
 }
 

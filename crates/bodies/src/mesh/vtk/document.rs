@@ -144,11 +144,6 @@ impl<'a> Document<'a> {
                 if self.pieces.len() == MOST_PIECES {
                     return Err(Error::expected("Piece", format!("at most {MOST_PIECES} pieces"), "more"));
                 }
-                // Those of an image are put together by their places; those of other lattices share points that are not.
-                let is_one = matches!(self.kind, GridKind::Structured | GridKind::Rectilinear);
-                if is_one && !self.pieces.is_empty() {
-                    return Err(Error::expected("Piece", format!("one piece of {}", self.kind.name()), "several"));
-                }
                 self.pieces.push(self.piece(tag)?);
             }
             ([path @ .., section], b"DataArray") if self.is_piece(path) => {

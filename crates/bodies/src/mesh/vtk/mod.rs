@@ -5,6 +5,7 @@ mod document;
 mod grid_kind;
 mod image;
 mod lattice;
+mod lattice_pieces;
 mod legacy;
 mod legacy_cells;
 mod legacy_dataset;

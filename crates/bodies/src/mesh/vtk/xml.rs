@@ -2,6 +2,7 @@
 
 use super::document::{ArrayTag, Content, Document, PieceTag, Section};
 use super::grid_kind::{Extent, GridKind};
+use super::lattice_pieces::{Part, joined};
 use super::piece::{self, DataArray, Labels, Piece};
 use super::polydata::{self, Cells, KINDS};
 use super::storage::Stored;
@@ -42,10 +43,21 @@ pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
     let mut arrays = Arrays { document: &document, size: 0 };
     match document.kind {
         GridKind::Image => Ok(vec![arrays.image()?]),
-        GridKind::Unstructured | GridKind::Polygonal | GridKind::Structured | GridKind::Rectilinear => {
-            document.pieces.iter().map(|tag| arrays.piece(tag)).collect()
-        }
+        GridKind::Structured | GridKind::Rectilinear => Ok(vec![arrays.lattice()?]),
+        GridKind::Unstructured | GridKind::Polygonal => document.pieces.iter().map(|tag| arrays.piece(tag)).collect(),
     }
+}
+
+/// The box of the extents of pieces.
+///
+/// # Errors
+/// They do not fill it, or it has too many points: a short file can announce many places.
+fn whole(extents: &[Extent]) -> Result<Extent> {
+    let whole = Extent::around(extents)?;
+    if extents.len() > 1 {
+        whole.lattice.limited()?;
+    }
+    Ok(whole)
 }
 
 /// The arrays of a file, decoded one after the other.
@@ -60,11 +72,7 @@ impl Arrays<'_> {
     fn image(&mut self) -> Result<Piece> {
         let tags = &self.document.pieces;
         let extents: Vec<Extent> = tags.iter().filter_map(|tag| tag.extent).collect();
-        let whole = Extent::around(&extents)?;
-        if extents.len() > 1 {
-            // A short file can announce many places.
-            whole.lattice.limited()?;
-        }
+        let whole = whole(&extents)?;
         let of_cells = self.whole_labels(&whole, &extents, Section::CellData)?;
         // Labels of points count only if those of cells do not.
         let of_points = match of_cells.is_empty() {
@@ -80,29 +88,25 @@ impl Arrays<'_> {
         let is_of_cells = section == Section::CellData;
         let tags = &self.document.pieces;
         let mut all: Vec<Labels> = Vec::new();
-        for (tag, extent) in tags.iter().zip(extents) {
+        for (n, (tag, piece)) in tags.iter().zip(extents).enumerate() {
             let found = self.all_labels(tag, section, if is_of_cells { tag.cells } else { tag.points })?;
-            let names =
-                |labels: &[Labels]| labels.iter().map(|labels| labels.name.clone()).collect::<Vec<_>>().join(", ");
             if extents.len() == 1 {
                 return Ok(found);
             }
-            if all.is_empty() {
-                let size = if is_of_cells { whole.lattice.cell_count() } else { whole.lattice.point_count() };
-                let empty = |labels: &Labels| Labels { name: labels.name.clone(), values: vec![0; size] };
-                all = found.iter().map(empty).collect();
-            }
-            if names(&all) != names(&found) {
-                let expected = format!("the arrays {} of the first piece in each", names(&all));
-                return Err(Error::expected(format!("{section:?}"), expected, names(&found)));
-            }
-            for (all, found) in all.iter_mut().zip(found) {
-                for (place, value) in whole.places_of(extent, is_of_cells).zip(found.values) {
-                    all.values[place] = value;
-                }
-            }
+            Part { whole, piece, is_first: n == 0 }.put_labels(&mut all, found, is_of_cells)?;
         }
         Ok(all)
+    }
+
+    /// The pieces of a structured or rectilinear grid, put together by their places.
+    fn lattice(&mut self) -> Result<Piece> {
+        let tags = &self.document.pieces;
+        if let [tag] = &tags[..] {
+            return self.piece(tag);
+        }
+        let extents: Vec<Extent> = tags.iter().filter_map(|tag| tag.extent).collect();
+        let whole = whole(&extents)?;
+        joined(&whole, &extents, tags.iter().map(|tag| self.piece(tag)).collect::<Result<_>>()?)
     }
 
     fn piece(&mut self, tag: &PieceTag) -> Result<Piece> {

@@ -4,7 +4,7 @@ use super::elements::{load_element, load_elements};
 use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
-use crate::mesh::{BoxMesh, DiscMesh, FillBoundary, FillMesh, Gate, Mesh, MeshSource};
+use crate::mesh::{BoxMesh, DiscMesh, FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
 use crate::range;
 use crate::study::extent::extent;
 use schemars::JsonSchema;
@@ -101,10 +101,17 @@ pub struct FillEntry {
     /// `stepped` for whole cells of the lattice, or `smooth` for tetrahedra that are cut off at the surface.
     #[serde(default = "stepped")]
     pub boundary: String,
+    /// `refuse` if layers of the surface overlap, or `union` to fill what any of them encloses.
+    #[serde(default = "refused")]
+    pub layers: String,
 }
 
 fn stepped() -> String {
     FillBoundary::default().name().into()
+}
+
+fn refused() -> String {
+    FillLayers::default().name().into()
 }
 
 fn cubes() -> String {
@@ -122,7 +129,8 @@ impl FillEntry {
         let path = folder.join(&self.surface);
         let source = MeshSource::read(&path)?;
         let boundary = FillBoundary::named(&self.boundary).map_err(|e| e.at_key("boundary"))?;
-        FillMesh { element, cell: scale * self.cell, boundary }
+        let layers = FillLayers::named(&self.layers).map_err(|e| e.at_key("layers"))?;
+        FillMesh { element, cell: scale * self.cell, boundary, layers }
             .build(&source, scale)
             .map_err(|e| if matches!(e.key(), Some("surface" | "points")) { e.in_file(&path) } else { e })
     }
