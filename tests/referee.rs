@@ -2,7 +2,9 @@
 
 use serde_json::Value;
 use springfit::referee::ENGINES;
-use springfit::report::{FoundRow, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg, referee_text};
+use springfit::report::{
+    Factor, FoundRow, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg, referee_text,
+};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -37,7 +39,7 @@ fn row(load: &str, told: Option<[f64; 2]>, found: Option<(f64, bool)>, moving: O
 }
 
 fn record() -> RefereeRecord {
-    let repair = |factor: Option<f64>| RepairRecord {
+    let repair = |factor: Factor| RepairRecord {
         engine: "newton".into(),
         solver: "VBD 1 ms".into(),
         model: "own elements".into(),
@@ -47,7 +49,7 @@ fn record() -> RefereeRecord {
     };
     let told = Some([1e4, 0.3]);
     RefereeRecord {
-        repairs: vec![repair(Some(1.25)), repair(None)],
+        repairs: vec![repair(Factor::Number(1.25)), repair(Factor::TooSoft), repair(Factor::NotAtRest)],
         rows: vec![
             row("tension", told, Some((-0.01, true)), Some(0.01)),
             row("shear", told, Some((7.46, false)), Some(0.42)),
@@ -66,9 +68,21 @@ fn tables_say_what_is_at_rest_and_what_is_not() {
     let cells: Vec<&str> = own.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
     assert_eq!(cells[3..], ["0.3", "0.0", "+7.5*", "not at rest", "diverged"], "{own}");
     assert!(text.contains("(* still moving, by at most 0.42 % of the largest displacement)"), "{text}");
-    for word in ["1.250", "none", "+400.0", "-5.0"] {
+    for word in ["+400.0", "-5.0"] {
         assert!(text.contains(word), "{word}: {text}");
     }
+    let factors = text.split_once("What to tell the engine").unwrap().1;
+    for factor in ["1.250", "too soft", "not at rest"] {
+        assert!(factors.contains(factor), "{factor}: {text}");
+    }
+}
+
+/// A number where there is one, and otherwise why there is none.
+#[test]
+fn factors_in_json_are_numbers_or_words() {
+    let json = serde_json::to_value(record()).unwrap();
+    let factors: Vec<Value> = json["repairs"].as_array().unwrap().iter().map(|r| r["factor"].clone()).collect();
+    assert_eq!(Value::from(factors), serde_json::json!([1.25, "too-soft", "not-at-rest"]));
 }
 
 /// Bars beyond the axis are cut, and have their number beside them.

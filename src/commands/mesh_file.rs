@@ -5,7 +5,7 @@ use springfit::error::{Error, Result};
 use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::study::{FillEntry, load_elements};
+use springfit::study::{FillEntry, check_unit, load_elements};
 use std::path::Path;
 
 /// How a mesh file is read.
@@ -85,12 +85,16 @@ impl MeshOptions {
                 };
                 e.placed(|e| e.at_key(option))
             };
-            return fill.build(scale, Path::new("")).map_err(fault);
+            let mesh = fill.build(scale, Path::new("")).map_err(fault)?;
+            check_unit(&mesh, scale).map_err(|e| e.at_key("--scale").in_file(file))?;
+            return Ok(mesh);
         }
         let source = MeshSource::read(file)?;
         let asked = self.below.is_some() || self.least.is_some();
         let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
-        Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))
+        let mesh = Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))?;
+        check_unit(&mesh, scale).map_err(|e| e.at_key("--scale").in_file(file))?;
+        Ok(mesh)
     }
 
     /// How the surface in the file is filled, if it is.

@@ -16,9 +16,12 @@ pub struct Referee {
     /// A simulator; may be repeated [default: all that are there]
     #[arg(long, value_name = "NAME")]
     engine: Vec<String>,
-    /// Only this solver of a simulator; may be repeated
+    /// Only this solver of a simulator; may be repeated [default: the usual ones]
     #[arg(long, value_name = "NAME")]
     solver: Vec<String>,
+    /// All solvers, also those that take long
+    #[arg(long, conflicts_with = "solver")]
+    all: bool,
     /// Poisson's ratio of the bodies; may be repeated [default: 0.3 and 0.45]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     poisson: Vec<f64>,
@@ -39,7 +42,7 @@ const EXAMPLES: &str = "\
 Examples:
   springfit referee --engine mujoco --engine newton --python venv/bin/python
   springfit referee --engine newton --solver SemiImplicit --poisson 0.3
-  springfit referee --table markdown
+  springfit referee --all --table markdown
 
 Simulators:";
 
@@ -50,6 +53,7 @@ impl Referee {
         let options = RefereeOptions {
             engines: self.engine.iter().map(|name| engine_named(name)).collect::<Result<_>>()?,
             solvers: self.solver.clone(),
+            all: self.all,
             poisson: if self.poisson.is_empty() { vec![0.3, 0.45] } else { self.poisson.clone() },
             python: self.python.clone(),
             node: self.node.clone(),

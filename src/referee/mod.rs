@@ -27,8 +27,10 @@ use trial::Trial;
 pub struct RefereeOptions {
     /// The engines; all that are there if it is empty.
     pub engines: Vec<&'static Engine>,
-    /// The solvers; all if it is empty.
+    /// The solvers; if it is empty, the usual ones.
     pub solvers: Vec<String>,
+    /// All solvers where none is named, not only the usual ones.
+    pub all: bool,
     /// Poisson's ratios of the bodies, from 0 to below 0.5.
     pub poisson: Vec<f64>,
     /// The program that runs Python.
@@ -105,8 +107,10 @@ impl RefereeOptions {
     }
 
     fn chosen<'a>(&'a self, engine: &'static Engine) -> impl Iterator<Item = &'static Solver> + 'a {
-        let is_chosen =
-            |solver: &&Solver| self.solvers.is_empty() || self.solvers.iter().any(|name| name == solver.name);
+        let is_chosen = |solver: &&Solver| match self.solvers.is_empty() {
+            true => self.all || solver.is_usual,
+            false => self.solvers.iter().any(|name| name == solver.name),
+        };
         engine.solvers.iter().filter(is_chosen)
     }
 }

@@ -7,7 +7,7 @@ use super::session::Session;
 use crate::error::Result;
 use crate::export::target_named;
 use crate::file::create_folder;
-use crate::report::{FoundRow, NetworkRecord, RefereeRecord, RefereeRow, RepairRecord, Telling};
+use crate::report::{Factor, FoundRow, NetworkRecord, RefereeRecord, RefereeRow, RepairRecord, Telling};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -79,7 +79,7 @@ impl Trial<'_> {
             return Ok(());
         };
         let factor = self.factor(solver, model, given, error / 100.0)?;
-        if let Some(factor) = factor {
+        if let Factor::Number(factor) = factor {
             let rows = self.measured(solver, model, Told { telling: Telling::Repaired, factor, ..given }, None)?;
             self.keep(rows);
         }
@@ -101,16 +101,18 @@ impl Trial<'_> {
     }
 
     /// The factor by which tension is right. The compliance that is found is affine in that which is told, `c = a/f + b`: b is 0 if the
-    /// law has another modulus, and positive if iterations are left out. `None` if b alone is too soft, or the second body is not still.
-    fn factor(&mut self, solver: &Solver, model: Model, given: Told, error: f64) -> Result<Option<f64>> {
+    /// law has another modulus, and positive if iterations are left out. If b alone is too soft, there is none.
+    fn factor(&mut self, solver: &Solver, model: Model, given: Told, error: f64) -> Result<Factor> {
         let first = 1.0 + error;
         let told = Told { telling: Telling::Repaired, factor: first, ..given };
         let rows = self.measured(solver, model, told, Some(TENSION))?;
-        let Some(second) = rows.first().and_then(|row| row.found) else { return Ok(None) };
+        let Some(second) = rows.first().and_then(|row| row.found) else {
+            return Ok(Factor::NotAtRest);
+        };
         let (at_one, at_first) = (1.0 + error, 1.0 + second.of_model_percent / 100.0);
         let a = (at_one - at_first) / (1.0 - 1.0 / first);
         let factor = a / (1.0 - (at_one - a));
-        Ok(Some(factor).filter(|factor| factor.is_finite() && *factor > 0.0))
+        Ok(if factor.is_finite() && factor > 0.0 { Factor::Number(factor) } else { Factor::TooSoft })
     }
 
     fn keep(&mut self, rows: Vec<RefereeRow>) {

@@ -71,7 +71,7 @@ pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_result_table, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use referee::{
-    EngineRecord, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
+    EngineRecord, Factor, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
     referee_tables, referee_text, write_referee,
 };
 pub use region_record::RegionRecord;

@@ -99,12 +99,32 @@ fn truncated_meshes() {
     refusals.finish();
 }
 
+/// Also where the mesh is a surface that is filled.
+#[test]
+fn bodies_of_a_hundred_kilometres_whose_unit_is_missing() {
+    let mut refusals = Refusals::default();
+    let brick = crate::fills::brick([0.0; 3], [1.2e5, 2e4, 2e4], false, 0);
+    let scene = scene_of("mesh.obj");
+    let filled = scene.replacen("file = \"mesh.obj\"", "fill = { surface = \"mesh.obj\", cell = 1e4 }", 1);
+    assert_ne!(scene, filled);
+    let words = "expected the length of a mesh unit, such as mm, for a body longer than 100 km, found 1 m, and a body of 120 km";
+    for scene in [scene, filled] {
+        let files: [(&str, &[u8]); 2] = [("scene.toml", scene.as_bytes()), ("mesh.obj", brick.as_bytes())];
+        refusals.expect(&files, &["run", "scene.toml"], "scene.toml: mesh.scale", words);
+    }
+    let files: [(&str, &[u8]); 1] = [("mesh.obj", brick.as_bytes())];
+    refusals.expect(&files, &["groups", "mesh.obj"], "mesh.obj: --scale", words);
+    refusals.expect(&files, &["new", "mesh.obj", "--fill", "1e4"], "mesh.obj: --scale", words);
+    refusals.finish();
+}
+
 #[test]
 fn contents_of_another_kind() {
     let mut refusals = Refusals::default();
     for (name, content, words) in [
         ("mesh.med", "", "found .med; what converts it: gmsh mesh.med"),
         ("mesh", "", "expected a mesh ending in .msh, .vtu, "),
+        ("mesh.h5", "", "found .h5; Gmsh and meshio convert many others"),
         ("mesh.vtu", "", "found none"),
         ("mesh.vtu", "$MeshFormat\n", "found none"),
     ] {

@@ -58,7 +58,7 @@ fn words(error: &serde_json::Error) -> String {
 fn syntax(error: &serde_json::Error, text: &[u8]) -> Error {
     let problem = match error.is_eof() {
         true => format!("the file is cut short after {} bytes: {}", text.len(), words(error)),
-        false => format!("expected JSON: {}", words(error)),
+        false => format!("expected JSON: {} at column {}", words(error), error.column()),
     };
     Error::new(problem).of_kind(ErrorKind::Syntax).on_line(error.line().max(1))
 }

@@ -5,7 +5,7 @@ mod record;
 mod tables;
 
 pub use chart::referee_svg;
-pub use record::{EngineRecord, FoundRow, RefereeRecord, RefereeRow, RepairRecord, Telling};
+pub use record::{EngineRecord, Factor, FoundRow, RefereeRecord, RefereeRow, RepairRecord, Telling};
 pub use tables::{referee_tables, referee_text};
 
 use super::write_files;

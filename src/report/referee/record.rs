@@ -39,10 +39,23 @@ pub struct RepairRecord {
     pub model: String,
     /// Poisson's ratio of the body.
     pub poisson: f64,
-    /// What E or all constants are multiplied by so that tension is right; null if no factor does it.
-    pub factor: Option<f64>,
+    /// What E or all constants are multiplied by so that tension is right.
+    pub factor: Factor,
     /// The factor of E and the Poisson's ratio that follow from the engine's law, where it is known to be another.
     pub derived: Option<[f64; 2]>,
+}
+
+/// What E or all constants are multiplied by so that tension is right.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Factor {
+    /// None is large enough: with any factor the engine is too soft.
+    TooSoft,
+    /// It is not known, because the body with the changed modulus, by which it is found, was not at rest.
+    NotAtRest,
+    /// This number.
+    #[serde(untagged)]
+    Number(f64),
 }
 
 /// A body under a load, at rest in an engine.

@@ -1,6 +1,6 @@
 //! The rows of a referee as tables: a column for each load.
 
-use super::record::{FoundRow, RefereeRecord, RefereeRow};
+use super::record::{Factor, FoundRow, RefereeRecord, RefereeRow};
 use crate::report::columns::{Heading, aligned};
 use crate::report::result_table::ResultTable;
 
@@ -131,7 +131,11 @@ fn repairs(record: &RefereeRecord) -> Sheet {
     let number = |value: Option<f64>| value.map_or("–".into(), |value| format!("{value:.3}"));
     let row = |repair: &super::record::RepairRecord| {
         let derived = |k: usize| number(repair.derived.map(|derived| derived[k]));
-        let factor = repair.factor.map_or("none".into(), |factor| number(Some(factor)));
+        let factor = match repair.factor {
+            Factor::Number(factor) => number(Some(factor)),
+            Factor::TooSoft => "too soft".into(),
+            Factor::NotAtRest => "not at rest".into(),
+        };
         let names = [&repair.engine, &repair.model, &repair.solver].map(String::clone);
         names.into_iter().chain([repair.poisson.to_string(), factor, derived(0), derived(1)]).collect()
     };

@@ -83,6 +83,7 @@ pub(super) fn parser(ending: &str) -> Result<Parse> {
     let error = Error::new(format!("expected a mesh ending in {}", listed_endings())).of_kind(ErrorKind::Unsupported);
     Err(match CONVERTED.iter().find(|(endings, _)| endings.contains(&ending)) {
         Some((_, way)) => error.followed_by(format!(", found .{ending}; what converts it: {way}")),
-        None => error,
+        None if ending.is_empty() => error.followed_by(", found none"),
+        None => error.followed_by(format!(", found .{ending}; Gmsh and meshio convert many others")),
     })
 }

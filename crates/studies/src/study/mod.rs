@@ -75,7 +75,7 @@ pub use progress::{Event, Progress};
 pub use run::{run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, LoadCase, LoadKind, MeshInput, MotionRecipe, Output,
-    Part, PrescribedMotion, ReferenceEntry, Scene, Setting, load_elements, scene_schema,
+    Part, PrescribedMotion, ReferenceEntry, Scene, Setting, check_unit, load_elements, scene_schema,
 };
 pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};

@@ -115,7 +115,8 @@ impl Deck {
                     Kind::Unknown => {
                         let expected =
                             format!("one of the types {}, with letters such as R, H or M after them", types::listed());
-                        return Err(lines.expected(&expected, name).of_kind(ErrorKind::Unsupported));
+                        let error = lines.expected(&expected, name).of_kind(ErrorKind::Unsupported);
+                        return Err(error.followed_by("; elements that are no part of the body may be deleted"));
                     }
                 };
                 let set = keyword.value("ELSET").map(|name| self.element_sets.named(name, line));

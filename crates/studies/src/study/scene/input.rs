@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 
 /// A longer body of a file is rarely meant, m.
 const LONGEST: f64 = 10.0;
+/// A body of a file that is longer than this has another unit than the metre, m.
+const TOO_LONG: f64 = 1e5;
 
 /// The mesh of a scene: a file, a box, a disc or a filled surface.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -149,7 +151,8 @@ impl MeshInput {
     /// A note if the scene has no unit of the mesh file and the size of the mesh suggests that it is not the metre.
     pub fn unit_assumption(&self, mesh: &Mesh) -> Option<String> {
         let longest = extent(mesh).into_iter().fold(0.0, f64::max);
-        (self.file.is_some() && self.scale == 1.0 && longest > LONGEST).then(|| {
+        let is_of_file = self.file.is_some() || self.fill.is_some();
+        (is_of_file && self.scale == 1.0 && longest > LONGEST).then(|| {
             format!("the coordinates of the mesh are taken in metres: the body is {longest:.0} m long; scale = \"mm\" if they are in millimetres")
         })
     }
@@ -206,6 +209,21 @@ impl MeshInput {
     }
 }
 
+/// That a body of a file is no longer than bodies are, if its unit is taken to be the metre.
+///
+/// # Errors
+/// It is; the key is `scale`.
+pub fn check_unit(mesh: &Mesh, scale: f64) -> Result<()> {
+    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    if scale == 1.0 && longest > TOO_LONG {
+        let expected =
+            format!("the length of a mesh unit, such as mm, for a body longer than {:.0} km", TOO_LONG / 1e3);
+        let found = format!("1 m, and a body of {:.0} km", longest / 1e3);
+        return Err(Error::expected("scale", expected, found));
+    }
+    Ok(())
+}
+
 impl DiscEntry {
     fn build(&self, scale: f64, folder: &Path) -> Result<Mesh> {
         if !(1..=MOST_RINGS).contains(&self.rings) {
@@ -255,13 +273,17 @@ impl MeshInput {
             let path = folder.join(file);
             let gate = self.quality.as_ref().map(QualityEntry::gate).transpose()?;
             let source = MeshSource::read(&path)?;
-            return Mesh::resolve_within(&source, &own, self.scale, gate).map_err(|e| e.in_file(&path));
+            let mesh = Mesh::resolve_within(&source, &own, self.scale, gate).map_err(|e| e.in_file(&path))?;
+            check_unit(&mesh, self.scale).map_err(at("mesh"))?;
+            return Ok(mesh);
         }
         if let Some(disc) = &self.disc {
             return disc.build(self.scale, folder).map_err(at("mesh.disc"));
         }
         if let Some(fill) = &self.fill {
-            return fill.build(self.scale, folder).map_err(at("mesh.fill"));
+            let mesh = fill.build(self.scale, folder).map_err(at("mesh.fill"))?;
+            check_unit(&mesh, self.scale).map_err(at("mesh"))?;
+            return Ok(mesh);
         }
         let entry = self.generated.as_ref().expect("a scene has a file, a box, a disc or a surface");
         let element = load_element(&entry.element, folder).map_err(at("mesh.box"))?;

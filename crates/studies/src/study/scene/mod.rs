@@ -26,7 +26,7 @@ pub(in crate::study) use elements::load_element;
 pub use elements::load_elements;
 pub use entry::scene_schema;
 pub use gauge::Gauge;
-pub use input::{BoxEntry, DiscEntry, FillEntry, MeshInput};
+pub use input::{BoxEntry, DiscEntry, FillEntry, MeshInput, check_unit};
 pub use load::{LoadCase, LoadKind, MeasuredEntry};
 pub use motion::{AppliedForce, DampingRecipe, MotionRecipe, PrescribedMotion};
 pub use output::Output;
