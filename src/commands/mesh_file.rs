@@ -86,14 +86,14 @@ impl MeshOptions {
                 e.placed(|e| e.at_key(option))
             };
             let mesh = fill.build(scale, Path::new("")).map_err(fault)?;
-            check_unit(&mesh, scale).map_err(|e| e.at_key("--scale").in_file(file))?;
+            check_unit(&mesh, scale, scale * fill.cell).map_err(|e| e.at_key("--scale").in_file(file))?;
             return Ok(mesh);
         }
         let source = MeshSource::read(file)?;
         let asked = self.below.is_some() || self.least.is_some();
         let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
         let mesh = Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))?;
-        check_unit(&mesh, scale).map_err(|e| e.at_key("--scale").in_file(file))?;
+        check_unit(&mesh, scale, 0.0).map_err(|e| e.at_key("--scale").in_file(file))?;
         Ok(mesh)
     }
 

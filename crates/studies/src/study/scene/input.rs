@@ -209,13 +209,14 @@ impl MeshInput {
     }
 }
 
-/// That a body of a file is no longer than bodies are, if its unit is taken to be the metre.
+/// That a body of a file is no longer than bodies are, if its unit is taken to be the metre. A filled surface is shorter than its cells
+/// by up to `edge`, that of a cell in m; 0 of other meshes.
 ///
 /// # Errors
 /// It is; the key is `scale`.
-pub fn check_unit(mesh: &Mesh, scale: f64) -> Result<()> {
+pub fn check_unit(mesh: &Mesh, scale: f64, edge: f64) -> Result<()> {
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
-    if scale == 1.0 && longest > TOO_LONG {
+    if scale == 1.0 && longest - edge > TOO_LONG {
         let expected =
             format!("the length of a mesh unit, such as mm, for a body longer than {:.0} km", TOO_LONG / 1e3);
         let found = format!("1 m, and a body of {:.0} km", longest / 1e3);
@@ -274,7 +275,7 @@ impl MeshInput {
             let gate = self.quality.as_ref().map(QualityEntry::gate).transpose()?;
             let source = MeshSource::read(&path)?;
             let mesh = Mesh::resolve_within(&source, &own, self.scale, gate).map_err(|e| e.in_file(&path))?;
-            check_unit(&mesh, self.scale).map_err(at("mesh"))?;
+            check_unit(&mesh, self.scale, 0.0).map_err(at("mesh"))?;
             return Ok(mesh);
         }
         if let Some(disc) = &self.disc {
@@ -282,7 +283,7 @@ impl MeshInput {
         }
         if let Some(fill) = &self.fill {
             let mesh = fill.build(self.scale, folder).map_err(at("mesh.fill"))?;
-            check_unit(&mesh, self.scale).map_err(at("mesh"))?;
+            check_unit(&mesh, self.scale, self.scale * fill.cell).map_err(at("mesh"))?;
             return Ok(mesh);
         }
         let entry = self.generated.as_ref().expect("a scene has a file, a box, a disc or a surface");
