@@ -12,6 +12,8 @@ const BETWEEN: f64 = 9.0;
 const ABOVE: f64 = 40.0;
 const BESIDE: f64 = 300.0;
 const RIGHT: f64 = 34.0;
+/// Of the names, so that the longest has room.
+const LABEL: f64 = 9.0;
 /// The ends of the axis, percent; bars beyond are cut and have their number beside them.
 const LEAST: f64 = -20.0;
 const MOST: f64 = 60.0;
@@ -50,7 +52,8 @@ pub fn referee_svg(record: &RefereeRecord) -> String {
         let top = ABOVE + g as f64 * each;
         let RefereeRow { engine, solver, poisson, .. } = group.first;
         let name = format!("{engine} {solver}, {}, ν = {poisson}", group.first.title());
-        document = document.add(words(&name, [BESIDE - 6.0, top + (each - BETWEEN) / 2.0 + 4.0], "end"));
+        let label = words(&name, [BESIDE - 6.0, top + (each - BETWEEN) / 2.0 + 4.0], "end");
+        document = document.add(label.set("font-size", LABEL));
         for (i, row) in group.by_load.iter().enumerate() {
             if let Some(row) = row {
                 document = bar(document, row, i, top + i as f64 * BAR, &place);
