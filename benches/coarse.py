@@ -53,8 +53,11 @@ seed = {seed}
 {keys}
 """
 FITS = {
-    "three supports": 'supports = [["left"], ["left", "right"]]\nvalidate_supports = [["left"], ["left", "right"], ["bottom"]]',
+    "three supports": """supports = [["left"], ["left", "right"]]
+validate_supports = [["left"], ["left", "right"], ["bottom"]]
+other_supports = [["right"]]""",
     "one support": 'supports = [["left"]]',
+    "both ends alone": 'supports = [["left", "right"]]',
 }
 MODELS = ["finite elements", "exact patches", "exact edges patches", "fitted"]
 
@@ -108,17 +111,21 @@ def percent(median, worst):
     return f"{100 * geometric_mean(median):.2f} ({100 * geometric_mean(worst):.1f})"
 
 
+def part(held):
+    """What loads and frequencies under a support were for."""
+    return "" if held["trained"] else ", chooses rho" if held["chooses"] else ", unseen"
+
+
 def rows(report):
     """The table of one body: errors under loads for each fit and support, and errors of frequencies."""
     held_out, vibrating = {}, {}
     for fit in report["fits"]:
         name = fit["name"].rsplit(" ", 1)[0]
         for held in fit["whole"]["held_out"]:
-            held_out.setdefault((name, held["support"], held["trained"]), []).append((fit["name"], held))
+            held_out.setdefault((name, held["support"], part(held)), []).append((fit["name"], held))
         for held in fit["whole"]["masses"]["supports"]:
-            vibrating.setdefault((name, held["support"], held["trained"]), []).append(held)
-    for (name, support, trained), found in held_out.items():
-        seen = "" if trained else ", not fitted"
+            vibrating.setdefault((name, held["support"], part(held)), []).append(held)
+    for (name, support, seen), found in held_out.items():
         models = {m: [next(row for row in held["models"] if row["model"] == m) for _, held in found] for m in MODELS}
         cells = [percent([row["median"] for row in models[m]], [row["worst"] for row in models[m]]) for m in MODELS]
         gains = [body["median"] / own["median"] for body, own in zip(models[MODELS[0]], models[MODELS[-1]])]
@@ -130,8 +137,7 @@ def rows(report):
         yield f"{name} | {support}{seen} | {' | '.join(cells)} | {geometric_mean(gains):.1f} | {len(worse)} of {sum(held['loads'] for _, held in found)}" + (
             f" ({'; '.join(worse)})" if worse else ""
         )
-    for (name, support, trained), found in vibrating.items():
-        seen = "" if trained else ", not fitted"
+    for (name, support, seen), found in vibrating.items():
         models = {m: [next(row for row in held["models"] if row["model"] == m) for held in found] for m in (MODELS[0], "fitted masses")}
         cells = [
             f"{100 * geometric_mean([row['first'] for row in of]):.2f} / {100 * geometric_mean([row['next'] for row in of]):.2f}" for of in models.values()

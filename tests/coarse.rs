@@ -4,7 +4,7 @@ use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, Embedding, Mesh};
 use springfit::model::{Entries, Support, finite_elements};
 use springfit::solve::System;
-use springfit::study::{Outcome, Scene, run};
+use springfit::study::{Outcome, Scene, SupportPart, run};
 use springfit::whole::varied_loads;
 use std::sync::Arc;
 
@@ -108,7 +108,7 @@ fn a_coarse_network_answers_like_a_finer_body() {
         ("hex8", "supports = [[\"xmin\"], [\"xmin\", \"xmax\"]]\nvalidate_supports = [[\"ymin\"]]"),
         (
             "tet4",
-            "shear = \"edges\"\nvolume = \"patches\"\nsupports = [[\"xmin\"], [\"xmin\", \"xmax\"]]\nvalidate_supports = [[\"xmin\"], [\"ymin\"]]",
+            "shear = \"edges\"\nvolume = \"patches\"\nsupports = [[\"xmin\"], [\"xmin\", \"xmax\"]]\nvalidate_supports = [[\"xmin\"], [\"ymin\"]]\nother_supports = [[\"xmax\"], [\"ymin\"]]",
         ),
         ("hex8", "unknowns = \"body-moduli\""),
     ] {
@@ -118,15 +118,21 @@ fn a_coarse_network_answers_like_a_finer_body() {
         // A support that is fitted and chooses rho as well is reported once.
         let supports: Vec<&str> = whole.held_out.iter().map(|held_out| &held_out.support[..]).collect();
         assert!((1..supports.len()).all(|i| !supports[..i].contains(&supports[i])), "{supports:?}");
+        let unseen = whole.held_out.iter().filter(|held_out| held_out.part == SupportPart::Unseen);
+        let unseen: Vec<&str> = unseen.map(|held_out| &held_out.support[..]).collect();
+        // Of the other supports one chooses rho.
+        assert_eq!(unseen, if keys.contains("other") { vec!["xmax"] } else { vec![] });
         for held_out in &whole.held_out {
             let median = |model: &str| held_out.models.iter().find(|m| m.model == model).unwrap().median.unwrap();
             let (body, fitted) = (median("finite elements"), median("fitted"));
             // Several supports at once, and one that was not fitted, leave less to gain.
-            let share = match (keys.contains("body-moduli") || !held_out.is_trained, keys.contains("supports")) {
-                (true, _) => 1.0,
-                (false, true) => 0.7,
-                (false, false) => 0.5,
-            };
+            let share =
+                match (keys.contains("body-moduli") || held_out.part != SupportPart::Fitted, keys.contains("supports"))
+                {
+                    (true, _) => 1.0,
+                    (false, true) => 0.7,
+                    (false, false) => 0.5,
+                };
             assert!(fitted < share * body, "{element} {keys} {}: {body} {fitted}", held_out.support);
         }
         // The load of the scene has the finer body's displacements, and was not fitted.

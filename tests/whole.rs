@@ -11,9 +11,9 @@ use springfit::solve::{Equations, Newton, System, lowest_modes};
 use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
-    DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares, ModuliParts, ModuliSharing,
-    NodalLoad, Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted, WholeFit, WholeSettings,
-    fit_whole, made_loads, raise_idle, random_loads, varied_loads,
+    Balanced, DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares, ModuliParts,
+    ModuliSharing, NodalLoad, Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted, Weighing,
+    WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads, varied_loads,
 };
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -137,6 +137,8 @@ fn derivatives_are_those_of_differences() {
         let object = Object::new(&network, &body.mesh.points, unknowns, None).unwrap();
         let problem = Displacements::new(&object, targets.iter().collect(), Some(&frequencies)).unwrap();
         compare_with_differences(&problem);
+        let theta = waves(problem.unknowns(), 0.2);
+        compare_with_differences(&Balanced::at_errors(&problem, &theta).unwrap().unwrap());
         let equations: Vec<_> =
             [&targets[0], &targets[2]].map(|t| (t.support.clone(), body.equations_of(&t.support))).into();
         compare_with_differences(&ResidualForces::new(&object, vec![&targets[0], &targets[2]], &equations).unwrap());
@@ -465,6 +467,31 @@ fn what_a_network_did_is_found() {
     }
 }
 
+/// Loads that are weighed by their errors: one that no network can follow, here with the displacements of another load, does not keep
+/// the fit from those of the others.
+#[test]
+fn a_load_that_no_network_follows_does_not_decide() {
+    let body = Body::new(&load("cube_tet"), "fixed");
+    let network = Network::assemble(&body.mesh, &body.fits(PLAIN, false));
+    let truth = network.scaled(&waves(network.len(), 0.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
+    let system = System::new(&truth.stiffness(&body.mesh.points), &body.support).unwrap();
+    let factor = system.factorize().unwrap().unwrap();
+    let mut trained = body.made();
+    trained.iter_mut().for_each(|t| t.displacement = system.solve(&factor, &t.forces).0);
+    trained[0].displacement = trained[1].displacement.clone();
+    let wanted = Wanted { trained, ..Wanted::default() };
+    let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
+    let others = |weighing: Weighing| {
+        let regularizations = vec![1.0, 1e-1, 1e-2, 1e-3];
+        let settings = WholeSettings { regularizations, weighing, ..WholeSettings::default() };
+        let errors = quietly(&object, &wanted, &settings).trained[1].loads[1..].to_vec();
+        (errors.iter().map(|e| e.ln()).sum::<f64>() / errors.len() as f64).exp()
+    };
+    let [equal, by_error] = [Weighing::Equal, Weighing::ByError].map(others);
+    println!("the others: {equal:.4}, by their errors {by_error:.4}");
+    assert!(by_error < equal / 3.0, "{equal} {by_error}");
+}
+
 /// Without regularization the residual of forces is convex in the constants: starts far apart come to one sum of squares.
 #[test]
 fn the_residual_of_forces_has_one_minimum() {
@@ -477,7 +504,8 @@ fn the_residual_of_forces_has_one_minimum() {
         let method = DescentMethod::GaussNewton(GaussNewton { products: 400, accuracy: 0.01, decrease: 1e-9 });
         let residual = Residual::Forces;
         let (regularizations, range) = (vec![0.0], f64::INFINITY);
-        let settings = WholeSettings { regularizations, iterations: 100, method, residual, range };
+        let settings =
+            WholeSettings { regularizations, iterations: 100, method, residual, range, ..WholeSettings::default() };
         let wanted = Wanted { trained: targets.clone(), body: equations.to_vec(), ..Wanted::default() };
         let found = quietly(&object, &wanted, &settings);
         let object = Object::new(&found.network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();

@@ -277,6 +277,7 @@ shear = "edges"
 volume = "patches"
 supports = [["xmin"]]
 validate_supports = [["xmax"]]
+other_supports = [["xmin", "xmax"]]
 iterations = 2
 [[fix]]
 group = "xmin"

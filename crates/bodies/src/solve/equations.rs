@@ -107,6 +107,18 @@ impl Equations {
         }
     }
 
+    /// The displacements under each of several nodal forces, and the relative residual of each; refined with a factor where that is above
+    /// `tolerance`.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn solve_each(&self, forces: &[Vec<f64>], tolerance: f64) -> Result<Vec<(Vec<f64>, f64)>> {
+        match self {
+            Equations::Factored(system, factor) => Ok(system.solve_each(factor, forces, tolerance)),
+            Equations::Iterated(..) => forces.iter().map(|f| self.solve(f)).collect(),
+        }
+    }
+
     /// The changes of the displacements for changes of the nodal forces; iterations end at the relative error `tolerance`.
     ///
     /// # Errors

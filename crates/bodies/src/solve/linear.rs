@@ -232,6 +232,20 @@ impl System {
         self.columns(factor, forces, &reaction, &held)
     }
 
+    /// The displacements under each of several nodal forces, and the relative residual of each; only those with a residual above
+    /// `tolerance` are refined, because a refinement takes two solutions more, each by itself.
+    pub fn solve_each(&self, factor: &Factor, forces: &[Vec<f64>], tolerance: f64) -> Vec<(Vec<f64>, f64)> {
+        let checked = |(f, u): (&Vec<f64>, Vec<f64>)| {
+            let free: Vec<f64> = self.free().iter().map(|&dof| u[dof]).collect();
+            let rest = self.free().iter().zip(&self.reaction).map(|(&dof, reaction)| f[dof] - reaction.hi);
+            let (rest, inner): (Vec<f64>, Vec<f64>) = (rest.collect(), self.apply(&free));
+            let left: Vec<f64> = rest.iter().zip(&inner).map(|(f, inner)| f - inner).collect();
+            let residual = if norm(&left) == 0.0 { 0.0 } else { norm(&left) / norm(&rest) };
+            if residual <= tolerance { (u, residual) } else { self.solve(factor, f) }
+        };
+        forces.iter().zip(self.solve_all(factor, forces)).map(checked).collect()
+    }
+
     /// The changes of the displacements for changes of the nodal forces.
     pub fn respond_all(&self, factor: &Factor, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         self.columns(factor, forces, &vec![0.0; self.size()], &vec![0.0; self.prescribed.len()])

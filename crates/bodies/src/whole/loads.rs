@@ -18,6 +18,8 @@ pub struct NodalLoad {
     pub forces: Vec<f64>,
 }
 
+/// The name of the pressure among varied loads.
+pub const PRESSURE: &str = "pressure";
 /// The number of waves across the object in the random fields.
 const WAVES: f64 = 0.5;
 /// The number of sines of which a component of a random field is the sum.
@@ -130,7 +132,7 @@ pub fn varied_loads(
         (0..mesh.point_count()).filter(|p| pressure[p * d..(p + 1) * d].iter().any(|f| *f != 0.0)).collect();
     let weights = nodal_forces(mesh, &Selection::Everything, &Action::body(&vec![1.0; d]), thickness)
         .expect("a mesh has cells to act on");
-    let mut loads = vec![NodalLoad { name: "pressure".into(), forces: pressure }];
+    let mut loads = vec![NodalLoad { name: PRESSURE.into(), forces: pressure }];
     for index in 1..count {
         let direction = unit(&(0..d).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>());
         if index % 3 == 0 || on_boundary.is_empty() {

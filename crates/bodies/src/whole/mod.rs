@@ -9,6 +9,7 @@
 //! Theory: page *Whole-object fits* of the book.
 
 mod balance;
+mod balanced;
 mod carriers;
 mod covariance;
 mod descent;
@@ -28,16 +29,17 @@ mod target;
 mod unknowns;
 
 pub use balance::ResidualForces;
+pub use balanced::Balanced;
 pub use covariance::{Determination, MOST_ESTIMATED, NINETY_FIVE};
 pub use displacements::{Displacements, Errors};
 pub use fit::{WholeFit, fit_whole};
 pub use gauss_newton::GaussNewton;
 pub use linearized::{LeastSquares, Linearized};
-pub use loads::{NodalLoad, made_loads, random_loads, varied_loads};
+pub use loads::{NodalLoad, PRESSURE, made_loads, random_loads, varied_loads};
 pub use masses::{MassFit, MassStage, Vibrations, fit_masses};
 pub use moduli::{ModuliParts, ModuliSharing};
 pub use object::{Object, raise_idle};
 pub use path::{Best, Snapshot, Stage, StepCallback};
-pub use settings::{DescentMethod, Residual, Validation, Wanted, WholeSettings};
+pub use settings::{DescentMethod, Residual, Validation, Wanted, Weighing, WholeSettings};
 pub use target::{Frequencies, Target};
 pub use unknowns::Unknowns;

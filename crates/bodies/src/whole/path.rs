@@ -3,11 +3,12 @@
 //! Theory: page *Whole-object fits* of the book.
 
 use super::balance::ResidualForces;
+use super::balanced::Balanced;
 use super::descent::{Descent, lbfgs};
 use super::displacements::{Displacements, Errors};
 use super::linearized::LeastSquares;
 use super::object::Object;
-use super::settings::{DescentMethod, Residual, Validation, Wanted, WholeSettings};
+use super::settings::{DescentMethod, Residual, Validation, Wanted, Weighing, WholeSettings};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
@@ -199,7 +200,14 @@ impl Path<'_> {
             }
             theta = found.theta;
         }
-        self.descend(problem, rho, &theta, visit)
+        let balanced = match self.settings.weighing {
+            Weighing::Equal => None,
+            Weighing::ByError => Balanced::at_errors(problem, &theta)?,
+        };
+        match &balanced {
+            Some(balanced) => self.descend(balanced, rho, &theta, visit),
+            None => self.descend(problem, rho, &theta, visit),
+        }
     }
 
     fn descend(

@@ -38,6 +38,16 @@ pub enum Residual {
 
 crate::named!(Residual { "displacements" => Displacements, "forces" => Forces, "forces-first" => ForcesFirst });
 
+/// How much each load counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Weighing {
+    /// As its target says.
+    #[default]
+    Equal,
+    /// The less, the larger its error is where a stage begins, see [`Balanced`](super::Balanced).
+    ByError,
+}
+
 /// The settings of a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WholeSettings {
@@ -49,6 +59,8 @@ pub struct WholeSettings {
     pub method: DescentMethod,
     /// The residuals.
     pub residual: Residual,
+    /// How much each load counts, where the residuals are differences of displacements.
+    pub weighing: Weighing,
     /// The largest ratio of the constants of two length springs. A ρ that leads to a larger one is rejected, unless the
     /// start has it.
     pub range: f64,
@@ -67,6 +79,7 @@ impl Default for WholeSettings {
             iterations: 20,
             method: DescentMethod::GaussNewton(GaussNewton::default()),
             residual: Residual::default(),
+            weighing: Weighing::default(),
             range: 1e3,
         }
     }

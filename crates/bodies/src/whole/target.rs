@@ -17,6 +17,8 @@ pub struct Target {
     pub weights: Vec<f64>,
     /// The weight w_l of the load.
     pub weight: f64,
+    /// Whether the weight stays where those of others fall with their errors, see [`Balanced`](super::Balanced).
+    pub is_firm: bool,
 }
 
 /// Natural frequencies that the network should have.
@@ -36,7 +38,7 @@ impl Target {
     /// A load with displacements that are known everywhere with equal weight.
     pub fn new(name: String, support: Support, forces: Vec<f64>, displacement: Vec<f64>) -> Target {
         let weights = vec![1.0; displacement.len()];
-        Target { name, support, forces, displacement, weights, weight: 1.0 }
+        Target { name, support, forces, displacement, weights, weight: 1.0, is_firm: false }
     }
 
     /// `√(w_l W)/‖ū_l‖_W`; `None` if no displacement is known that is free to change.

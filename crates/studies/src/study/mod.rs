@@ -56,7 +56,7 @@ pub use fits::{
     FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
     ModelFrequencies, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe,
     Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord,
-    Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, Task, TensionOutcome, TensionRecord,
+    Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome, TensionRecord,
     ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
 };
 pub use fitting::fit_mesh;

@@ -137,7 +137,7 @@ impl<'a> WholeBody<'a> {
             }
             !ends
         };
-        let found = fit_whole(&object, &wanted, &recipe.settings, snapshot, &mut watch)?;
+        let found = fit_whole(&object, &wanted, &self.settings(recipe), snapshot, &mut watch)?;
         if let Err(e) = kept {
             // An error about the checkpoint must not discard the result.
             progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
@@ -150,7 +150,7 @@ impl<'a> WholeBody<'a> {
             false => (found, wanted, Vec::new()),
         };
         let moduli = found_moduli(recipe, &object, &wanted, &found, &mesh)?;
-        let held_out = if self.fine.is_some() || !recipe.supports.is_empty() {
+        let held_out = if self.fine.is_some() || !recipe.supports.is_empty() || !recipe.other_supports.is_empty() {
             self.held_out((recipe, held), &object.network(&none), &found.network, progress)?
         } else {
             Vec::new()

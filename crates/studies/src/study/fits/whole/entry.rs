@@ -49,6 +49,8 @@ pub struct WholeEntry {
     pub supports: Option<Vec<Vec<String>>>,
     /// The same for the loads that choose ρ.
     pub validate_supports: Option<Vec<Vec<String>>>,
+    /// The same for loads that are neither fitted nor choose ρ, whose errors are reported.
+    pub other_supports: Option<Vec<Vec<String>>>,
     /// The springs for μ of the start "exact".
     #[schemars(extend("enum" = ShearSprings::NAMES))]
     pub shear: Option<String>,
@@ -198,8 +200,11 @@ impl WholeEntry {
         if !validation_supports.is_empty() && !is_made {
             return Err(Error::at("validate_supports", "belongs to validate = \"made\""));
         }
-        if !supports.is_empty() && !loads.iter().any(|name| name == MADE) {
-            return Err(Error::at("supports", "belongs to loads = [\"made\"]"));
+        let other_supports = checked_supports("other_supports", self.other_supports.as_deref())?;
+        for (key, given) in [("supports", &supports), ("other_supports", &other_supports)] {
+            if !given.is_empty() && !loads.iter().any(|name| name == MADE) {
+                return Err(Error::at(key, "belongs to loads = [\"made\"]"));
+            }
         }
         Ok(WholeRecipe {
             start,
@@ -212,6 +217,7 @@ impl WholeEntry {
             seed: self.seed.unwrap_or(SEED),
             supports,
             validation_supports,
+            other_supports,
         })
     }
 }

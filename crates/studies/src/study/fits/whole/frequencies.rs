@@ -1,7 +1,7 @@
 //! The masses of a whole-object fit, and the natural frequencies that they give.
 
 use super::body::WholeBody;
-use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies};
+use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies, SupportPart};
 use super::recipe::WholeRecipe;
 use super::targets::Held;
 use crate::error::{Error, Result};
@@ -57,7 +57,7 @@ impl WholeBody<'_> {
         let at = |e: Error| Error::at("masses", e.problem()).of_kind(e.kind());
         let supports = self.all_supports(recipe)?;
         let (mut of_supports, mut wanted, mut others) = (Vec::new(), Vec::new(), Vec::new());
-        for (done, (held, is_trained)) in supports.iter().enumerate() {
+        for (done, (held, part)) in supports.iter().enumerate() {
             progress(Event::stage("frequencies of the body", done, supports.len()));
             let squares = self.squares("masses", held, 2 * count)?;
             let equations = self.equations_of(network, &held.support)?;
@@ -65,15 +65,15 @@ impl WholeBody<'_> {
                 equations.ok_or_else(|| Error::expected("masses", "a network that is stable", "another"))?;
             let vibrations =
                 Vibrations { support: held.support.clone(), equations, squares: squares[..count].to_vec() };
-            if *is_trained {
-                wanted.push(vibrations.clone())
-            } else {
-                others.push(vibrations.clone())
+            match part {
+                SupportPart::Fitted => wanted.push(vibrations.clone()),
+                SupportPart::Consulted => others.push(vibrations.clone()),
+                SupportPart::Unseen => {}
             }
-            of_supports.push((held, *is_trained, squares, vibrations.equations));
+            of_supports.push((held, *part, squares, vibrations.equations));
         }
         let found = fit_masses(&mesh.points, d, &lumped, &moments, (&wanted, &others)).map_err(at)?;
-        let frequencies = |(held, is_trained, squares, equations): &(_, bool, Vec<f64>, Equations)| {
+        let frequencies = |(held, part, squares, equations): &(_, SupportPart, Vec<f64>, Equations)| {
             let held: &&Held = held;
             let body = self.equations("masses", &held.support)?;
             let models = [
@@ -88,7 +88,7 @@ impl WholeBody<'_> {
                 Ok(ModelFrequencies { model, first: rms(&errors[..count]), next: rms(&errors[count..]) })
             };
             let models = models.into_iter().map(model).collect::<Result<_>>()?;
-            Ok(SupportFrequencies { support: held.words(), is_trained: *is_trained, models })
+            Ok(SupportFrequencies { support: held.words(), part: *part, models })
         };
         let own = Moments::of_masses(&mesh.points, d, &found.masses);
         let off = |k: usize| (own.second[k * d + k] / moments.second[k * d + k] - 1.0).abs();

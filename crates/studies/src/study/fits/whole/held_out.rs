@@ -40,7 +40,7 @@ impl WholeBody<'_> {
         let mut networks = self.exact_networks(held)?;
         networks.extend([("start".into(), start.clone()), ("fitted".into(), fitted.clone())]);
         let mut all = Vec::new();
-        for (held, is_trained) in supports {
+        for (held, part) in supports {
             let seed = recipe.seed.wrapping_add(SEED);
             let make = |mesh: &Mesh, support: &Support| varied_loads(mesh, support, thickness, LOADS, seed);
             let targets = self.made("loads", &held, (&make, seed), progress)?;
@@ -59,7 +59,7 @@ impl WholeBody<'_> {
                 (Some(fine), Some(support)) => Some(fine.seconds_per_step(support)?),
                 _ => None,
             };
-            all.push(HeldOut { support: held.words(), is_trained, loads: targets.len(), models, worse, seconds_fine });
+            all.push(HeldOut { support: held.words(), part, loads: targets.len(), models, worse, seconds_fine });
         }
         Ok(all)
     }

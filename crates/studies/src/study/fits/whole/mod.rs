@@ -21,7 +21,7 @@ pub use entry::{WholeEntry, starts};
 pub use finer::{Answers, Finer, RegionFactors};
 pub use outcome::{
     FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, ModelError, ModelFrequencies, SupportFrequencies,
-    WholeOutcome, WorseLoad,
+    SupportPart, WholeOutcome, WorseLoad,
 };
 pub use recipe::{LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeRecipe};
 pub use record::{WholeOutcomeRecord, WholeRecord};

@@ -42,7 +42,7 @@ impl WholeBody<'_> {
         }
         let body = Object::of_moduli(parts.clone(), of_body.clone())?.iterated(self.iterations());
         let wanted = Wanted { validation: Validation::None, ..wanted.clone() };
-        let settings = WholeSettings { regularizations: vec![0.0], ..recipe.settings.clone() };
+        let settings = WholeSettings { regularizations: vec![0.0], ..self.settings(recipe) };
         let mut last = vec![0.0; of_body.count()];
         let found = fit_whole(&body, &wanted, &settings, None, &mut |snapshot| {
             last = snapshot.map_or(last.clone(), |snapshot| snapshot.theta.clone());

@@ -67,14 +67,46 @@ pub struct FittedMasses {
     pub supports: Vec<SupportFrequencies>,
 }
 
+/// What loads and frequencies under a support are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SupportPart {
+    /// They are fitted; others may choose ρ.
+    Fitted,
+    /// They choose ρ.
+    Consulted,
+    /// Their errors are reported alone.
+    Unseen,
+}
+
+impl SupportPart {
+    /// Whether they are fitted.
+    pub fn is_fitted(self) -> bool {
+        self == SupportPart::Fitted
+    }
+
+    /// Whether they choose ρ without being fitted.
+    pub fn is_consulted(self) -> bool {
+        self == SupportPart::Consulted
+    }
+
+    /// For notes, after the support.
+    fn words(self) -> &'static str {
+        match self {
+            SupportPart::Fitted => "",
+            SupportPart::Consulted => ", a support that was not fitted",
+            SupportPart::Unseen => ", a support that was neither fitted nor chose rho",
+        }
+    }
+}
+
 /// The errors of the frequencies of several models under a support.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SupportFrequencies {
     /// The groups that are held, in words.
     pub support: String,
-    /// Whether the first of its frequencies were fitted; otherwise they chose ρ.
-    pub is_trained: bool,
+    /// What the first of its frequencies were for.
+    pub part: SupportPart,
     /// The models.
     pub models: Vec<ModelFrequencies>,
 }
@@ -97,8 +129,8 @@ pub struct ModelFrequencies {
 pub struct HeldOut {
     /// The groups that are held, in words.
     pub support: String,
-    /// Whether loads with this support were fitted.
-    pub is_trained: bool,
+    /// What loads with this support were for.
+    pub part: SupportPart,
     /// The number of loads.
     pub loads: usize,
     /// The models.
@@ -252,7 +284,7 @@ impl WholeOutcome {
         };
         let percent = |error: Option<f64>| error.map_or("-".into(), |error| format!("{:.2}", 100.0 * error));
         let held_out = self.held_out.iter().map(|held_out| {
-            let seen = if held_out.is_trained { "" } else { ", a support that was not fitted" };
+            let seen = held_out.part.words();
             let model =
                 |model: &ModelError| format!("{} {} / {}", model.model, percent(model.median), percent(model.worst));
             let models: Vec<String> = held_out.models.iter().map(model).collect();
@@ -304,7 +336,7 @@ impl FittedMasses {
             self.regularization
         );
         let support = |of: &SupportFrequencies| {
-            let seen = if of.is_trained { "" } else { ", a support that was not fitted" };
+            let seen = of.part.words();
             let model = |m: &ModelFrequencies| format!("{} {:.2} / {:.2}", m.model, 100.0 * m.first, 100.0 * m.next);
             let models: Vec<String> = of.models.iter().map(model).collect();
             let (support, last) = (&of.support, 2 * count);

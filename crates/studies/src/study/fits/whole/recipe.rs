@@ -31,6 +31,8 @@ pub struct WholeRecipe {
     pub supports: Vec<Vec<String>>,
     /// The supports under which made loads of the validation act; those of the fit if empty.
     pub validation_supports: Vec<Vec<String>>,
+    /// The supports under which loads neither are fitted nor choose ρ, and errors are reported.
+    pub other_supports: Vec<Vec<String>>,
 }
 
 /// The constants from which a fit starts; none is negative.

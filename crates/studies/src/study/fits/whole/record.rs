@@ -37,6 +37,9 @@ pub struct WholeRecord {
     pub supports: Vec<Vec<String>>,
     /// The same for the loads that choose the regularization; empty for those of the fit.
     pub validate_supports: Vec<Vec<String>>,
+    /// The same for loads that are neither fitted nor choose it, whose errors are reported.
+    #[serde(default)]
+    pub other_supports: Vec<Vec<String>>,
 }
 
 /// The start: an objective or "equal", or the settings of a sampled fit.
@@ -121,8 +124,11 @@ pub struct MassStageRecord {
 pub struct SupportFrequenciesRecord {
     /// The groups that are held.
     pub support: String,
-    /// Whether the first frequencies were fitted; otherwise they chose the regularization.
+    /// Whether the first frequencies were fitted.
     pub trained: bool,
+    /// Whether they chose the regularization without being fitted.
+    #[serde(default)]
+    pub chooses: bool,
     /// The finite elements of the mesh and the network with lumped masses, and the network with fitted ones.
     pub models: Vec<ModelFrequenciesRecord>,
 }
@@ -143,7 +149,8 @@ impl FittedMassesRecord {
             |m: &ModelFrequencies| ModelFrequenciesRecord { model: m.model.into(), first: m.first, next: m.next };
         let support = |of: &SupportFrequencies| SupportFrequenciesRecord {
             support: of.support.clone(),
-            trained: of.is_trained,
+            trained: of.part.is_fitted(),
+            chooses: of.part.is_consulted(),
             models: of.models.iter().map(model).collect(),
         };
         let stage = |stage: &MassStage| MassStageRecord {
@@ -194,6 +201,9 @@ pub struct HeldOutRecord {
     pub support: String,
     /// Whether loads with this support were fitted.
     pub trained: bool,
+    /// Whether loads with this support chose the regularization without being fitted.
+    #[serde(default)]
+    pub chooses: bool,
     /// The number of loads.
     pub loads: usize,
     /// The finite elements of the mesh, its exact networks, the network at the start, and the fitted one.
@@ -242,7 +252,8 @@ impl HeldOutRecord {
         };
         HeldOutRecord {
             support: held_out.support.clone(),
-            trained: held_out.is_trained,
+            trained: held_out.part.is_fitted(),
+            chooses: held_out.part.is_consulted(),
             loads: held_out.loads,
             models: held_out.models.iter().map(model).collect(),
             worse_than_finite_elements: held_out.worse.iter().map(worse).collect(),
@@ -308,6 +319,7 @@ impl WholeRecord {
             seed: recipe.seed,
             supports: recipe.supports.clone(),
             validate_supports: recipe.validation_supports.clone(),
+            other_supports: recipe.other_supports.clone(),
         }
     }
 }

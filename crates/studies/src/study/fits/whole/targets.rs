@@ -2,6 +2,7 @@
 
 use super::body::WholeBody;
 use super::finer::Answers;
+use super::outcome::SupportPart;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
@@ -9,7 +10,10 @@ use crate::model::{Support, unheld_bodies};
 use crate::named::unknown;
 use crate::solve::Equations;
 use crate::study::progress::Progress;
-use crate::whole::{NodalLoad, Residual, Target, Validation, Wanted, made_loads, random_loads, varied_loads};
+use crate::whole::{
+    NodalLoad, PRESSURE, Residual, Target, Validation, Wanted, Weighing, WholeSettings, made_loads, random_loads,
+    varied_loads,
+};
 use std::sync::Arc;
 
 /// The number of random loads that choose the regularization.
@@ -115,6 +119,16 @@ impl WholeBody<'_> {
         Ok(Some(1.0 / largest))
     }
 
+    /// The settings of the optimisation. Among varied loads are some that a network of the mesh cannot follow, such as tractions in
+    /// balance near the parts that are held; they would decide a fit in which all count alike.
+    pub(super) fn settings(&self, recipe: &WholeRecipe) -> WholeSettings {
+        let weighing = match recipe.loads.made && self.is_varied(recipe) {
+            true => Weighing::ByError,
+            false => Weighing::Equal,
+        };
+        WholeSettings { weighing, ..recipe.settings.clone() }
+    }
+
     /// Whether made loads are more than one of each kind.
     fn is_varied(&self, recipe: &WholeRecipe) -> bool {
         self.fine.is_some() || !recipe.supports.is_empty() || !recipe.validation_supports.is_empty()
@@ -137,16 +151,24 @@ impl WholeBody<'_> {
         groups.iter().enumerate().map(held).collect()
     }
 
-    /// The supports of the fit, and after them those of its validation alone; with whether loads under them are fitted.
-    pub(super) fn all_supports(&self, recipe: &WholeRecipe) -> Result<Vec<(Held, bool)>> {
-        let own = self.supports("supports", &recipe.supports)?;
-        let others = match recipe.validation_supports.is_empty() {
-            true => Vec::new(),
-            false => self.supports("validate_supports", &recipe.validation_supports)?,
-        };
-        let is_new = |held: &Held| own.iter().all(|own| own.support != held.support);
-        let others: Vec<(Held, bool)> = others.into_iter().filter(is_new).map(|held| (held, false)).collect();
-        Ok(own.into_iter().map(|held| (held, true)).chain(others).collect())
+    /// The supports of the fit, after them those of its validation alone, and last those that neither has.
+    pub(super) fn all_supports(&self, recipe: &WholeRecipe) -> Result<Vec<(Held, SupportPart)>> {
+        let mut all: Vec<(Held, SupportPart)> = Vec::new();
+        for (key, groups, part) in [
+            ("supports", &recipe.supports, SupportPart::Fitted),
+            ("validate_supports", &recipe.validation_supports, SupportPart::Consulted),
+            ("other_supports", &recipe.other_supports, SupportPart::Unseen),
+        ] {
+            if groups.is_empty() && !part.is_fitted() {
+                continue;
+            }
+            for held in self.supports(key, groups)? {
+                if all.iter().all(|(known, _)| known.support != held.support) {
+                    all.push((held, part));
+                }
+            }
+        }
+        Ok(all)
     }
 
     fn targets(
@@ -207,7 +229,10 @@ impl WholeBody<'_> {
         };
         let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
         let target = |(load, u): &(NodalLoad, Vec<f64>)| {
-            Target::new(format!("{}{place}", load.name), held.support.clone(), load.forces.clone(), u.clone())
+            let name = format!("{}{place}", load.name);
+            // Without it the fit loses the resistance to a change of volume, which the other loads hardly see.
+            let is_firm = load.name == PRESSURE;
+            Target { is_firm, ..Target::new(name, held.support.clone(), load.forces.clone(), u.clone()) }
         };
         Ok(answers.iter().map(target).collect())
     }
