@@ -7,12 +7,13 @@ Usage: python benches/growth.py [--springfit target/release/springfit] [--larges
 
 import argparse
 import json
-import math
 import os
 import subprocess
 import sys
 import tempfile
+from math import log
 from pathlib import Path
+from statistics import linear_regression
 
 SCENE = """
 [mesh]
@@ -34,6 +35,11 @@ CELLS = [6, 10, 16, 25, 40, 63, 100]
 HEADER = ["body", "unknowns", "processor, s", "memory, MB", "fit", "assembly", "solved, finite elements", "solved, network", "iterations"]
 
 
+def unknowns_of(cells):
+    """Those of a box of cells³ cubes that is held on one side."""
+    return 3 * cells * (cells + 1) ** 2
+
+
 def measure(springfit, element, cells, folder):
     """The columns of one box, from unknowns on."""
     scene = folder / "scene.toml"
@@ -48,14 +54,12 @@ def measure(springfit, element, cells, folder):
     load = fit["loads"][0]
     stages = [fit["seconds"], fit["seconds_assembly"], load["seconds_fem"], load["seconds_lem"]]
     iterations = [load[solver].get("iterations") for solver in ("solver_fem", "solver_lem")]
-    return [3 * cells * (cells + 1) ** 2, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, *stages, iterations]
+    return [unknowns_of(cells), used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, *stages, iterations]
 
 
 def exponent(unknowns, figures):
     """p of the least squares of ln figure = ln a + p ln unknowns."""
-    x, y = [math.log(n) for n in unknowns], [math.log(f) for f in figures]
-    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
-    return sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+    return linear_regression([log(n) for n in unknowns], [log(f) for f in figures]).slope
 
 
 def table(springfit, largest):
@@ -64,7 +68,7 @@ def table(springfit, largest):
     for element in BODIES:
         found = []
         for cells in CELLS:
-            if 3 * cells * (cells + 1) ** 2 > largest:
+            if unknowns_of(cells) > largest:
                 break
             with tempfile.TemporaryDirectory() as folder:
                 found.append(measure(springfit, element, cells, Path(folder)))

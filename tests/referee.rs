@@ -77,7 +77,7 @@ fn tables_say_what_is_at_rest_and_what_is_not() {
     }
 }
 
-/// A number where there is one, and otherwise why there is none.
+/// The factor of a repair: a number, or the word that says why there is no factor.
 #[test]
 fn factors_in_json_are_numbers_or_words() {
     let json = serde_json::to_value(record()).unwrap();

@@ -436,16 +436,22 @@ fn compare_with_differences(problem: &dyn LeastSquares) {
     }
 }
 
-/// A network that moves exactly so is found again as far as its displacements go, by both methods and from both residuals.
-#[test]
-fn what_a_network_did_is_found() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+/// A network, and made loads with the displacements of the same springs with other constants.
+fn moved_by_another(body: &Body) -> (Network, Vec<Target>) {
     let network = Network::assemble(&body.mesh, &body.fits(PLAIN, false));
     let truth = network.scaled(&waves(network.len(), 0.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
     let system = System::new(&truth.stiffness(&body.mesh.points), &body.support).unwrap();
     let factor = system.factorize().unwrap().unwrap();
     let mut trained = body.made();
     trained.iter_mut().for_each(|t| t.displacement = system.solve(&factor, &t.forces).0);
+    (network, trained)
+}
+
+/// A network that moves exactly so is found again as far as its displacements go, by both methods and from both residuals.
+#[test]
+fn what_a_network_did_is_found() {
+    let body = Body::new(&load("cube_tet"), "fixed");
+    let (network, trained) = moved_by_another(&body);
     let wanted = Wanted { trained, body: vec![(body.support.clone(), body.equations())], ..Wanted::default() };
     let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
     for (method, residual, limit) in [
@@ -472,12 +478,7 @@ fn what_a_network_did_is_found() {
 #[test]
 fn a_load_that_no_network_follows_does_not_decide() {
     let body = Body::new(&load("cube_tet"), "fixed");
-    let network = Network::assemble(&body.mesh, &body.fits(PLAIN, false));
-    let truth = network.scaled(&waves(network.len(), 0.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
-    let system = System::new(&truth.stiffness(&body.mesh.points), &body.support).unwrap();
-    let factor = system.factorize().unwrap().unwrap();
-    let mut trained = body.made();
-    trained.iter_mut().for_each(|t| t.displacement = system.solve(&factor, &t.forces).0);
+    let (network, mut trained) = moved_by_another(&body);
     trained[0].displacement = trained[1].displacement.clone();
     let wanted = Wanted { trained, ..Wanted::default() };
     let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();

@@ -29,7 +29,7 @@ pub struct RefereeOptions {
     pub engines: Vec<&'static Engine>,
     /// The solvers; if it is empty, the usual ones.
     pub solvers: Vec<String>,
-    /// All solvers where none is named, not only the usual ones.
+    /// Whether an engine without a named solver runs all of its solvers, and not only the usual ones.
     pub all: bool,
     /// Poisson's ratios of the bodies, from 0 to below 0.5.
     pub poisson: Vec<f64>,

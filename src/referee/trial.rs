@@ -101,7 +101,8 @@ impl Trial<'_> {
     }
 
     /// The factor by which tension is right. The compliance that is found is affine in that which is told, `c = a/f + b`: b is 0 if the
-    /// law has another modulus, and positive if iterations are left out. If b alone is too soft, there is none.
+    /// law has another modulus, and positive if iterations are left out. If b alone is at least the right compliance, no
+    /// factor makes tension right.
     fn factor(&mut self, solver: &Solver, model: Model, given: Told, error: f64) -> Result<Factor> {
         let first = 1.0 + error;
         let told = Told { telling: Telling::Repaired, factor: first, ..given };

@@ -53,8 +53,8 @@ impl StaticSolver {
             (StaticMethod::Multigrid, 2 | 3) => true,
             // A surface or lines in space may have no stiffness across.
             (StaticMethod::Auto, 2 | 3) if mesh.cell_dimension() == mesh.dimension => {
-                let space = mesh.dimension - 2;
-                unknowns >= FROM[space] && loads <= unknowns / PER_LOAD[space]
+                let kind = mesh.dimension - 2;
+                unknowns >= FROM[kind] && loads <= unknowns / PER_LOAD[kind]
             }
             (StaticMethod::Multigrid | StaticMethod::Auto, _) => false,
         }

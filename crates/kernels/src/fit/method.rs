@@ -82,7 +82,7 @@ pub struct Method<T> {
     reduced: Reduced<T>,
     weight: MotionWeight,
     nonnegative: bool,
-    /// At which a spectral fit may end.
+    /// The gap at which a spectral fit may end.
     gap: f64,
     /// Whether springs measure functions.
     measures: bool,
@@ -311,12 +311,14 @@ impl<T: Real> Method<T> {
                 let refines = T::epsilon() >= T::given() && !is_enough;
                 // A nonnegative optimum stays in the middle of the optima, away from the bounds.
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
-                let problem = (refines || doubtful).then(|| Problem::of(&self.reduced, solver, &lane, quality()));
-                if let Some(problem) = problem.as_ref().filter(|_| refines) {
-                    refine(problem, &mut optimum);
+                let mut ambiguous = false;
+                if refines || doubtful {
+                    let problem = Problem::of(&self.reduced, solver, &lane, quality());
+                    if refines {
+                        refine(&problem, &mut optimum);
+                    }
+                    ambiguous = doubtful && least_frobenius(&problem, &mut optimum);
                 }
-                let problem = problem.filter(|_| doubtful);
-                let ambiguous = problem.is_some_and(|problem| least_frobenius(&problem, &mut optimum));
                 verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
                 // For an optimum of zero the gap is only rounding.
                 verdict.delicate |= optimum.value <= EXACT;
