@@ -195,7 +195,7 @@ fn the_method_is_chosen_by_size_and_by_the_number_of_loads() {
             .unwrap()
     };
     let (small, large) = (scene(8), scene(22));
-    assert!(!solver.iterates(&small, 1) && solver.iterates(&large, 1) && !solver.iterates(&large, 100));
+    assert!(!solver.iterates(&small, 1) && solver.iterates(&large, 100) && !solver.iterates(&large, 200));
     assert!(StaticSolver { method: StaticMethod::Multigrid, ..solver }.iterates(&small, 100));
     assert!(!StaticSolver { method: StaticMethod::Cholesky, ..solver }.iterates(&large, 1));
 }

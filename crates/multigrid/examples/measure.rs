@@ -1,6 +1,6 @@
 //! Assembles, sets up and solves jittered bodies: `measure CASE CELLS [key=value …]`, one line of figures;
 //! times are those of the processor.
-//! With `export=FOLDER` the matrix is written for other solvers.
+//! `columns=8` solves for so many forces side by side as well. With `export=FOLDER` the matrix is written for other solvers.
 
 #[path = "../tests/multigrid/elastic/mod.rs"]
 mod elastic;
@@ -86,6 +86,14 @@ fn main() {
         Err(fault) => return println!("{case} {n}: {fault}"),
     };
     let solve = seconds() - start;
+    let columns = number("columns", 0.0) as usize;
+    let several: Vec<Vec<f64>> = (0..columns).map(|i| rotated(&force, i)).collect();
+    let several: Vec<&[f64]> = several.iter().map(|force| &force[..]).collect();
+    let start = seconds();
+    if let Err(fault) = levels.solve_each(&several, number("tolerance", 1e-8), 500, &mut watch) {
+        return println!("{case} {n}: {fault}");
+    }
+    let together = seconds() - start;
     let [low, high] = solution.spectrum;
     let start = seconds();
     let (steps, proof) = match levels.definiteness(1e-12, 3000, &mut watch) {
@@ -96,7 +104,7 @@ fn main() {
     };
     let proved = seconds() - start;
     println!(
-        "{case} {n}: {} unknowns, assembly {assembly:.2} s, setup {setup:.2} s, {} iterations {solve:.2} s, residual {:.1e}, {proof} in {steps} steps {proved:.2} s, spectrum \
+        "{case} {n}: {} unknowns, assembly {assembly:.2} s, setup {setup:.2} s, {} iterations {solve:.2} s, {columns} side by side {together:.2} s, residual {:.1e}, {proof} in {steps} steps {proved:.2} s, spectrum \
          {low:.3} {high:.3}, levels {}, matrix {:.2} GB, levels {:.2} GB, peak {:.2} GB",
         force.len(),
         solution.iterations,
@@ -106,6 +114,12 @@ fn main() {
         levels.bytes() as f64 / 1e9,
         memory(),
     );
+}
+
+/// Another load of the same size: the forces turned by i radians about x.
+fn rotated(force: &[f64], i: usize) -> Vec<f64> {
+    let (sin, cos) = (i as f64).sin_cos();
+    force.chunks_exact(3).flat_map(|f| [f[0], cos * f[1] - sin * f[2], sin * f[1] + cos * f[2]]).collect()
 }
 
 /// Row starts, columns, values, points, held and force, as raw numbers.

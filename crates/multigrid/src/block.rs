@@ -1,5 +1,7 @@
 //! Small dense blocks.
 
+use crate::entry::Entry;
+
 /// A dense block, row after row.
 pub type Block<const R: usize, const C: usize> = [[f64; C]; R];
 
@@ -12,20 +14,24 @@ pub(crate) const fn zero<const R: usize, const C: usize>() -> Block<R, C> {
 
 /// `y ← y + a x`.
 #[inline(always)]
-pub(crate) fn add_product<const R: usize, const C: usize>(y: &mut [f64; R], a: &Block<R, C>, x: &[f64; C]) {
+pub(crate) fn add_product<T: Entry, const R: usize, const C: usize>(y: &mut [T; R], a: &Block<R, C>, x: &[T; C]) {
     for i in 0..R {
         for j in 0..C {
-            y[i] += a[i][j] * x[j];
+            y[i] += x[j] * a[i][j];
         }
     }
 }
 
 /// `y ← y + aᵀ x`.
 #[inline(always)]
-pub(crate) fn add_transposed_product<const R: usize, const C: usize>(y: &mut [f64; C], a: &Block<R, C>, x: &[f64; R]) {
+pub(crate) fn add_transposed_product<T: Entry, const R: usize, const C: usize>(
+    y: &mut [T; C],
+    a: &Block<R, C>,
+    x: &[T; R],
+) {
     for i in 0..R {
         for j in 0..C {
-            y[j] += a[i][j] * x[i];
+            y[j] += x[i] * a[i][j];
         }
     }
 }

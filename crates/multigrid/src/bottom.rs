@@ -1,6 +1,7 @@
 //! The last level.
 
 use crate::block::{Block, zero};
+use crate::entry::Entry;
 use crate::level::inverses;
 use crate::matrix::BlockMatrix;
 use crate::smoother::scale;
@@ -52,13 +53,18 @@ impl<const N: usize> Bottom<N> {
     }
 
     /// `x ← A⁻¹ b`.
-    pub fn solve(&self, b: &[[f64; N]], x: &mut [[f64; N]]) {
+    pub fn solve<T: Entry>(&self, b: &[[T; N]], x: &mut [[T; N]]) {
         match self {
             Bottom::Diagonal(inverse) => scale(inverse, b, x),
             Bottom::Dense(factor) => {
-                x.copy_from_slice(b);
                 let rows = x.len() * N;
-                factor.solve_in_place(MatMut::from_column_major_slice_mut(x.as_flattened_mut(), rows, 1));
+                let b = b.as_flattened();
+                let mut columns: Vec<f64> =
+                    (0..T::COUNT).flat_map(|lane| b.iter().map(move |b| b.lane(lane))).collect();
+                factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut columns, rows, T::COUNT));
+                for (i, x) in x.as_flattened_mut().iter_mut().enumerate() {
+                    *x = T::of_each(|lane| columns[lane * rows + i]);
+                }
             }
         }
     }

@@ -1,17 +1,21 @@
 //! Conjugate gradients, preconditioned by the levels.
 
+use crate::entry::{Entry, Lanes, beside, vector};
 use crate::fault::{Fault, Motion};
 use crate::hierarchy::{Multigrid, shown};
-use crate::parallel::{combine, dot, norm};
+use crate::parallel::{PIECE, combine, dot, vectorized};
 use crate::settings::{Event, Watch};
 use crate::tridiagonal::Tridiagonal;
+use rayon::prelude::*;
 
 /// Iterations without a new least residual after which there is no hope.
 const PATIENCE: usize = 60;
 /// Times that the residual is worked out anew from the solution.
 const RESTARTS: usize = 4;
-/// A residual this many roundings of `|A| |x|` large is none.
-const ROUNDINGS: f64 = 4.0;
+/// A residual of four roundings of `|A| |x|` is none: squared.
+const ROUNDING: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
+/// So many right hand sides take less time side by side than one after another.
+const WORTH: usize = 3;
 
 /// A solution, and how it was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,105 +32,213 @@ pub struct Solution {
     pub spectrum: [f64; 2],
 }
 
+/// The state of one right hand side.
+struct Column {
+    solution: Solution,
+    /// `bᵀ M⁻¹ b`.
+    scale: Option<f64>,
+    /// `rᵀ M⁻¹ r`.
+    along: f64,
+    /// The least error, and its iteration.
+    best: (f64, usize),
+    lanczos: Lanczos,
+    /// Whether its search has ended until the residual is worked out anew, and for good.
+    rests: bool,
+    is_done: bool,
+}
+
+impl Column {
+    fn new() -> Column {
+        let solution =
+            Solution { displacement: Vec::new(), iterations: 0, residual: 0.0, error: 0.0, spectrum: [1.0, 1.0] };
+        let (scale, lanczos) = Default::default();
+        Column { solution, scale, along: 0.0, best: (f64::INFINITY, 0), lanczos, rests: false, is_done: false }
+    }
+
+    /// Begins a search from a residual worked out anew.
+    fn begin(&mut self, along: f64, tolerance: f64) {
+        let scale = *self.scale.get_or_insert(along);
+        if !self.is_done && !(along > tolerance * tolerance * scale) {
+            self.solution.error = (along / scale).max(0.0).sqrt();
+            self.is_done = true;
+        }
+        (self.along, self.rests, self.lanczos) = (along, self.is_done, Lanczos::default());
+    }
+
+    /// After a step: the share of the last direction in the next one.
+    fn advance(&mut self, step: f64, next: f64, (tolerance, iterations): (f64, usize)) -> f64 {
+        let (solution, ratio) = (&mut self.solution, next / self.along);
+        self.lanczos.step(step, ratio);
+        solution.iterations += 1;
+        solution.error = (next / self.scale.unwrap_or(next)).max(0.0).sqrt();
+        if solution.error < self.best.0 {
+            self.best = (solution.error, solution.iterations);
+        }
+        let is_stalled = solution.iterations >= iterations || solution.iterations > self.best.1 + PATIENCE;
+        self.rests = !(solution.error > tolerance) || is_stalled || !next.is_finite();
+        self.along = next;
+        ratio
+    }
+
+    /// Ends a search.
+    fn end(&mut self) {
+        if let Some([low, high]) = self.lanczos.matrix.extremes() {
+            let spectrum = &mut self.solution.spectrum;
+            *spectrum = [spectrum[0].min(low), spectrum[1].max(high)];
+        }
+    }
+}
+
 impl<const D: usize, const M: usize> Multigrid<D, M> {
     /// `A x = b` on the unknowns that are not held, where x is zero, until `rᵀ M⁻¹ r ≤ tolerance² bᵀ M⁻¹ b` or the residual is rounding.
     ///
     /// # Errors
     /// A motion of the search has no energy above zero, the residual does not become less, the sizes do not agree, or the watch broke off.
     pub fn solve(&self, b: &[f64], tolerance: f64, iterations: usize, watch: &mut Watch) -> Result<Solution, Fault> {
-        let rows = self.rows();
-        if b.len() != rows * D {
-            return Err(Fault::Size { what: "the right hand side", expected: rows * D, found: b.len() });
+        self.check(b)?;
+        Ok(self.gradients::<f64>(&[b], tolerance, iterations, watch)?.remove(0))
+    }
+
+    /// The same for each of several right hand sides, eight at a time: each product reads the matrix once for all of them. The watch
+    /// hears the largest residual of those.
+    ///
+    /// # Errors
+    /// As [`Multigrid::solve`].
+    pub fn solve_each(
+        &self,
+        b: &[&[f64]],
+        tolerance: f64,
+        iterations: usize,
+        watch: &mut Watch,
+    ) -> Result<Vec<Solution>, Fault> {
+        b.iter().try_for_each(|b| self.check(b))?;
+        let mut all = Vec::with_capacity(b.len());
+        for some in b.chunks(Lanes::COUNT) {
+            if some.len() < WORTH {
+                for one in some {
+                    all.extend(self.gradients::<f64>(&[one], tolerance, iterations, watch)?);
+                }
+            } else {
+                all.extend(self.gradients::<Lanes>(some, tolerance, iterations, watch)?);
+            }
         }
-        if b.iter().any(|x| !x.is_finite()) {
-            return Err(Fault::NotFinite);
+        Ok(all)
+    }
+
+    fn check(&self, b: &[f64]) -> Result<(), Fault> {
+        let expected = self.rows() * D;
+        if b.len() != expected {
+            return Err(Fault::Size { what: "the right hand side", expected, found: b.len() });
         }
-        let mut room = self.workspace();
-        let mut force = b.as_chunks::<D>().0.to_vec();
+        if b.iter().any(|x| !x.is_finite()) { Err(Fault::NotFinite) } else { Ok(()) }
+    }
+
+    /// Each right hand side has directions and steps of its own; a product is that of all of them.
+    fn gradients<T: Entry>(
+        &self,
+        b: &[&[f64]],
+        tolerance: f64,
+        iterations: usize,
+        watch: &mut Watch,
+    ) -> Result<Vec<Solution>, Fault> {
+        let mut room = self.rooms::<T>();
+        let mut force: Vec<[T; D]> = beside(b);
         self.mask(&mut force);
-        let size = norm(&force);
-        let mut x = vec![[0.0; D]; rows];
-        let mut solution =
-            Solution { displacement: Vec::new(), iterations: 0, residual: 0.0, error: 0.0, spectrum: [1.0, 1.0] };
-        let (mut r, mut z) = (force.clone(), vec![[0.0; D]; rows]);
-        let (mut p, mut ap) = (z.clone(), z.clone());
-        let mut first = None;
-        let mut best = (f64::INFINITY, 0);
+        let zero = || vec![[T::ZERO; D]; self.rows()];
+        let (mut x, mut z, mut p, mut ap) = (zero(), zero(), zero(), zero());
+        let mut r = force.clone();
+        let mut columns: Vec<Column> = b.iter().map(|_| Column::new()).collect();
+        // Zero in lanes without a column.
+        let lanes = |values: &[f64]| T::of_each(|lane| values.get(lane).copied().unwrap_or(0.0));
+        let one = T::of_each(|_| 1.0);
+        let wanted = dot(&force, &force);
+        let (mut left, mut rounding) = (wanted, T::ZERO);
         for _ in 0..RESTARTS {
-            self.apply(&r, &mut z, &mut room);
-            let mut along = dot(&r, &z);
-            let scale = *first.get_or_insert(along);
-            if !(along > tolerance * tolerance * scale) {
-                solution.error = (along / scale).max(0.0).sqrt();
+            self.cycle(&r, &mut z, &mut room);
+            let along = dot(&r, &z);
+            columns.iter_mut().enumerate().for_each(|(lane, column)| column.begin(along.lane(lane), tolerance));
+            if columns.iter().all(|column| column.is_done) {
                 break;
             }
             p.copy_from_slice(&z);
-            let mut t = Lanczos::default();
-            loop {
-                self.matrix().apply(&p, &mut ap);
+            while columns.iter().any(|column| !column.rests) {
+                self.matrix().product(&p, &mut ap);
                 let energy = dot(&p, &ap);
-                if !(energy > 0.0) {
-                    return Err(self.not_positive(&p, energy));
+                let mut steps = vec![0.0; columns.len()];
+                for (lane, column) in columns.iter().enumerate().filter(|(_, column)| !column.rests) {
+                    if !(energy.lane(lane) > 0.0) {
+                        return Err(self.not_positive(&vector(&p, lane), energy.lane(lane)));
+                    }
+                    steps[lane] = column.along / energy.lane(lane);
                 }
-                let step = along / energy;
-                combine(&mut x, 1.0, &p, step);
-                combine(&mut r, 1.0, &ap, -step);
+                let step = lanes(&steps);
+                combine(&mut x, one, &p, step);
+                combine(&mut r, one, &ap, T::ZERO - step);
                 self.mask(&mut r);
-                self.apply(&r, &mut z, &mut room);
+                self.cycle(&r, &mut z, &mut room);
                 let next = dot(&r, &z);
-                t.step(step, next / along);
-                solution.iterations += 1;
-                solution.error = (next / scale).max(0.0).sqrt();
-                let event = Event::Iteration { number: solution.iterations, residual: solution.error };
-                if watch(event).is_break() {
+                let mut ratios = vec![0.0; columns.len()];
+                let mut heard = (0, 0.0_f64);
+                for (lane, column) in columns.iter_mut().enumerate().filter(|(_, column)| !column.rests) {
+                    ratios[lane] = column.advance(steps[lane], next.lane(lane), (tolerance, iterations));
+                    heard = (heard.0.max(column.solution.iterations), heard.1.max(column.solution.error));
+                }
+                if watch(Event::Iteration { number: heard.0, residual: heard.1 }).is_break() {
                     return Err(Fault::Interrupted);
                 }
-                if solution.error < best.0 {
-                    best = (solution.error, solution.iterations);
-                }
-                let is_stalled = solution.iterations >= iterations || solution.iterations > best.1 + PATIENCE;
-                if !(solution.error > tolerance) || is_stalled || !next.is_finite() {
-                    break;
-                }
-                combine(&mut p, next / along, &z, 1.0);
-                along = next;
+                combine(&mut p, lanes(&ratios), &z, one);
             }
-            if let Some([low, high]) = t.matrix.extremes() {
-                solution.spectrum = [solution.spectrum[0].min(low), solution.spectrum[1].max(high)];
-            }
+            columns.iter_mut().for_each(Column::end);
             // What rounding has taken from the residual.
-            self.matrix().apply(&x, &mut ap);
+            self.matrix().product(&x, &mut ap);
             r.copy_from_slice(&force);
-            combine(&mut r, 1.0, &ap, -1.0);
+            combine(&mut r, one, &ap, T::of_each(|_| -1.0));
             self.mask(&mut r);
-            let is_rounding = norm(&r) <= ROUNDINGS * f64::EPSILON * self.rounding(&x);
-            if is_rounding || solution.iterations >= iterations {
+            (left, rounding) = (dot(&r, &r), self.rounding(&x));
+            for (lane, column) in columns.iter_mut().enumerate() {
+                let is_rounding = left.lane(lane) <= ROUNDING * rounding.lane(lane);
+                column.is_done |= is_rounding || column.solution.iterations >= iterations;
+            }
+            if columns.iter().all(|column| column.is_done) {
                 break;
             }
         }
-        solution.residual = if size > 0.0 { norm(&r) / size } else { 0.0 };
-        let is_rounding = || norm(&r) <= ROUNDINGS * f64::EPSILON * self.rounding(&x);
-        if !(solution.error <= tolerance) && !is_rounding() {
-            let (residual, iterations, levels) = (solution.residual, solution.iterations, self.levels().to_vec());
-            return Err(Fault::Stalled { residual, iterations, levels });
-        }
-        solution.displacement = x.as_flattened().to_vec();
-        Ok(solution)
+        let end = |(lane, Column { mut solution, .. }): (usize, Column)| {
+            let [wanted, left, rounding] = [wanted, left, rounding].map(|square| square.lane(lane));
+            solution.residual = if wanted > 0.0 { (left / wanted).sqrt() } else { 0.0 };
+            if !(solution.error <= tolerance) && !(left <= ROUNDING * rounding) {
+                let (residual, iterations, levels) = (solution.residual, solution.iterations, self.levels().to_vec());
+                return Err(Fault::Stalled { residual, iterations, levels });
+            }
+            solution.displacement = vector(&x, lane).into_flattened();
+            Ok(solution)
+        };
+        columns.into_iter().enumerate().map(end).collect()
     }
 
-    /// `‖ |A| |x| ‖`.
-    fn rounding(&self, x: &[[f64; D]]) -> f64 {
+    /// `‖ |A| |x| ‖²`.
+    fn rounding<T: Entry>(&self, x: &[[T; D]]) -> T {
         let a = self.matrix();
-        let mut sizes = vec![[0.0; D]; x.len()];
-        for (row, sizes) in sizes.iter_mut().enumerate() {
-            for at in a.pattern.starts[row]..a.pattern.starts[row + 1] {
-                let x = &x[a.pattern.columns[at] as usize];
-                for i in 0..D {
-                    sizes[i] += (0..D).map(|j| (a.values[at][i][j] * x[j]).abs()).sum::<f64>();
-                }
-            }
-        }
-        norm(&sizes)
+        let mut sizes = vec![[T::ZERO; D]; x.len()];
+        sizes.par_chunks_mut(PIECE).enumerate().for_each(|(piece, sizes)| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (row, sizes) in (piece * PIECE..).zip(sizes) {
+                        for at in a.pattern.starts[row]..a.pattern.starts[row + 1] {
+                            let x = &x[a.pattern.columns[at] as usize];
+                            for i in 0..D {
+                                for j in 0..D {
+                                    let product = x[j] * a.values[at][i][j];
+                                    sizes[i] += T::of_each(|lane| product.lane(lane).abs());
+                                }
+                            }
+                        }
+                    }
+                },
+            );
+        });
+        dot(&sizes, &sizes)
     }
 
     /// A motion without energy above zero, or numbers that are not finite.

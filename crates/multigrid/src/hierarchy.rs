@@ -2,6 +2,7 @@
 
 use crate::block::Block;
 use crate::bottom::{Bottom, is_diagonal};
+use crate::entry::Entry;
 use crate::fault::{Fault, Motion};
 use crate::level::{Level, Next, size};
 use crate::matrix::BlockMatrix;
@@ -25,16 +26,16 @@ pub struct Multigrid<const D: usize, const M: usize> {
 
 /// The vectors that a V-cycle needs.
 #[derive(Debug, Clone)]
-pub struct Workspace<const D: usize, const M: usize> {
-    first: Room<D>,
-    others: Vec<Stage<M>>,
+pub struct Workspace<const D: usize, const M: usize, T = f64> {
+    first: Room<D, T>,
+    others: Vec<Stage<M, T>>,
 }
 
 #[derive(Debug, Clone)]
-struct Stage<const M: usize> {
-    force: Vec<[f64; M]>,
-    motion: Vec<[f64; M]>,
-    room: Room<M>,
+struct Stage<const M: usize, T> {
+    force: Vec<[T; M]>,
+    motion: Vec<[T; M]>,
+    room: Room<M, T>,
 }
 
 impl<const D: usize, const M: usize> Multigrid<D, M> {
@@ -131,14 +132,23 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
 
     /// The vectors that [`Multigrid::apply`] needs.
     pub fn workspace(&self) -> Workspace<D, M> {
-        let stage =
-            |rows: usize| Stage { force: vec![[0.0; M]; rows], motion: vec![[0.0; M]; rows], room: Room::new(rows) };
+        self.rooms()
+    }
+
+    pub(crate) fn rooms<T: Entry>(&self) -> Workspace<D, M, T> {
+        let zero = |rows: usize| vec![[T::ZERO; M]; rows];
+        let stage = |rows: usize| Stage { force: zero(rows), motion: zero(rows), room: Room::new(rows) };
         let others = self.levels[1..].iter().map(|level| stage(level.nodes)).collect();
         Workspace { first: Room::new(self.rows()), others }
     }
 
     /// `z ← M⁻¹ r`, one V-cycle; what is held is zero in z, whatever it is in r.
     pub fn apply(&self, r: &[[f64; D]], z: &mut [[f64; D]], workspace: &mut Workspace<D, M>) {
+        self.cycle(r, z, workspace);
+    }
+
+    /// The same of one vector or of several.
+    pub(crate) fn cycle<T: Entry>(&self, r: &[[T; D]], z: &mut [[T; D]], workspace: &mut Workspace<D, M, T>) {
         let Workspace { first, others } = workspace;
         first.residual.copy_from_slice(r);
         let (stage, rest) = others.split_first_mut().expect("there is a level after the first");
@@ -147,13 +157,13 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     }
 
     /// The V-cycle of a level after the first.
-    fn descend(
+    fn descend<T: Entry>(
         &self,
         level: usize,
-        force: &[[f64; M]],
-        motion: &mut [[f64; M]],
-        room: &mut Room<M>,
-        rest: &mut [Stage<M>],
+        force: &[[T; M]],
+        motion: &mut [[T; M]],
+        room: &mut Room<M, T>,
+        rest: &mut [Stage<M, T>],
     ) {
         match (self.others.get(level), rest.split_first_mut()) {
             (Some(own), Some((stage, rest))) => {
@@ -168,9 +178,9 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     }
 
     /// Zero in what is held.
-    pub(crate) fn mask(&self, x: &mut [[f64; D]]) {
+    pub(crate) fn mask<T: Entry>(&self, x: &mut [[T; D]]) {
         for (x, held) in x.iter_mut().zip(&self.is_held) {
-            (0..D).filter(|k| held[*k]).for_each(|k| x[k] = 0.0);
+            (0..D).filter(|k| held[*k]).for_each(|k| x[k] = T::ZERO);
         }
     }
 }

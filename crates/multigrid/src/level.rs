@@ -2,6 +2,7 @@
 
 use crate::aggregation::aggregates;
 use crate::block::{Block, add_transposed_product, inverse, softest};
+use crate::entry::Entry;
 use crate::galerkin::galerkin;
 use crate::matrix::BlockMatrix;
 use crate::parallel::{PIECE, vectorized};
@@ -82,14 +83,14 @@ impl<const R: usize, const C: usize> Level<R, C> {
     }
 
     /// `y ← Pᵀ r`.
-    fn restrict(&self, r: &[[f64; R]], y: &mut [[f64; C]]) {
+    fn restrict<T: Entry>(&self, r: &[[T; R]], y: &mut [[T; C]]) {
         let piece = PIECE / 8;
         y.par_chunks_mut(piece).enumerate().for_each(|(part, y)| {
             vectorized(
                 #[inline(always)]
                 || {
                     for (coarse, y) in (part * piece..).zip(y) {
-                        *y = [0.0; C];
+                        *y = [T::ZERO; C];
                         for &[row, at] in &self.places[self.rows_of[coarse]..self.rows_of[coarse + 1]] {
                             add_transposed_product(y, &self.prolongator.values[at as usize], &r[row as usize]);
                         }
@@ -100,28 +101,28 @@ impl<const R: usize, const C: usize> Level<R, C> {
     }
 
     /// `x ← P y`.
-    pub fn prolong(&self, y: &[[f64; C]], x: &mut [[f64; R]]) {
-        self.prolongator.apply(y, x);
+    pub fn prolong<T: Entry>(&self, y: &[[T; C]], x: &mut [[T; R]]) {
+        self.prolongator.product(y, x);
     }
 
     /// One V-cycle from zero for the right hand side in `room.residual`; `solve` replaces the right hand side of the next level, its
     /// first argument, by a solution in its second.
-    pub fn cycle(
+    pub fn cycle<T: Entry>(
         &self,
-        x: &mut [[f64; R]],
-        room: &mut Room<R>,
-        force: &mut [[f64; C]],
-        motion: &mut [[f64; C]],
-        solve: impl FnOnce(&mut [[f64; C]], &mut [[f64; C]]),
+        x: &mut [[T; R]],
+        room: &mut Room<R, T>,
+        force: &mut [[T; C]],
+        motion: &mut [[T; C]],
+        solve: impl FnOnce(&mut [[T; C]], &mut [[T; C]]),
     ) {
-        x.fill([0.0; R]);
+        x.fill([T::ZERO; R]);
         self.smoother.smooth(&self.matrix, x, room, true);
         self.restrict(&room.residual, force);
         solve(force, motion);
         self.prolong(motion, &mut room.next);
         let Room { residual, next, .. } = room;
-        let add = |(x, next): (&mut [[f64; R]], &[[f64; R]])| {
-            x.as_flattened_mut().iter_mut().zip(next.as_flattened()).for_each(|(x, p)| *x += p);
+        let add = |(x, next): (&mut [[T; R]], &[[T; R]])| {
+            x.as_flattened_mut().iter_mut().zip(next.as_flattened()).for_each(|(x, p)| *x += *p);
         };
         x.par_chunks_mut(PIECE).zip(next.par_chunks(PIECE)).for_each(add);
         self.matrix.each_row(residual, next, |r, product| (0..R).for_each(|k| r[k] -= product[k]));

@@ -6,6 +6,7 @@ mod assembly;
 mod block;
 mod bottom;
 mod definiteness;
+mod entry;
 mod extreme;
 mod fault;
 mod galerkin;
@@ -26,6 +27,7 @@ mod tridiagonal;
 
 pub use block::Block;
 pub use definiteness::Definiteness;
+pub use entry::WIDTH;
 pub use extreme::{End, Extreme};
 pub use fault::{Fault, Motion, sizes};
 pub use gradients::Solution;

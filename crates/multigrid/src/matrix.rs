@@ -1,6 +1,7 @@
 //! Matrices of dense blocks, stored row by row.
 
 use crate::block::{Block, zero};
+use crate::entry::Entry;
 use crate::parallel::{PIECE, vectorized};
 use crate::pattern::Pattern;
 use rayon::prelude::*;
@@ -48,28 +49,23 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
 
     /// `Σ_j A_ij x_j`.
     #[inline(always)]
-    pub(crate) fn row_product(&self, row: usize, x: &[[f64; C]]) -> [f64; R] {
+    pub(crate) fn row_product<T: Entry>(&self, row: usize, x: &[[T; C]]) -> [T; R] {
         let range = self.pattern.starts[row]..self.pattern.starts[row + 1];
-        // A sum for each entry of a block: no addition waits for another.
-        let mut sums = zero::<R, C>();
-        for (block, &column) in self.values[range.clone()].iter().zip(&self.pattern.columns[range]) {
-            let x = &x[column as usize];
-            for i in 0..R {
-                for j in 0..C {
-                    sums[i][j] += block[i][j] * x[j];
-                }
-            }
-        }
-        sums.map(|row| row.iter().sum())
+        T::row_product(&self.values[range.clone()], &self.pattern.columns[range], x)
     }
 
     /// `y ← A x`.
     pub fn apply(&self, x: &[[f64; C]], y: &mut [[f64; R]]) {
+        self.product(x, y);
+    }
+
+    /// The same of one vector or of several.
+    pub(crate) fn product<T: Entry>(&self, x: &[[T; C]], y: &mut [[T; R]]) {
         self.each_row(y, x, |y, product| *y = product);
     }
 
     /// Calls `set(y_i, (A x)_i)` for each row.
-    pub(crate) fn each_row(&self, y: &mut [[f64; R]], x: &[[f64; C]], set: impl Fn(&mut [f64; R], [f64; R]) + Sync) {
+    pub(crate) fn each_row<T: Entry>(&self, y: &mut [[T; R]], x: &[[T; C]], set: impl Fn(&mut [T; R], [T; R]) + Sync) {
         y.par_chunks_mut(PIECE).enumerate().for_each(|(piece, y)| {
             vectorized(
                 #[inline(always)]

@@ -1,5 +1,6 @@
 //! Loops over rows on all threads, and sums whose order does not depend on the number of threads.
 
+use crate::entry::Entry;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -12,27 +13,27 @@ pub(crate) fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
-/// `Σ x·y`, piece by piece.
-pub(crate) fn dot<const N: usize>(x: &[[f64; N]], y: &[[f64; N]]) -> f64 {
-    let piece = |(x, y): (&[[f64; N]], &[[f64; N]])| -> f64 {
+/// `Σ x·y` of each vector, piece by piece.
+pub(crate) fn dot<T: Entry, const N: usize>(x: &[[T; N]], y: &[[T; N]]) -> T {
+    let piece = |(x, y): (&[[T; N]], &[[T; N]])| -> T {
         vectorized(
             #[inline(always)]
             || {
-                let mut sums = [0.0; N];
+                let mut sums = [T::ZERO; N];
                 for (x, y) in x.iter().zip(y) {
                     for i in 0..N {
                         sums[i] += x[i] * y[i];
                     }
                 }
-                sums.iter().sum()
+                sums.into_iter().fold(T::ZERO, T::add)
             },
         )
     };
     if x.len() <= PIECE {
         return piece((x, y));
     }
-    let parts: Vec<f64> = x.par_chunks(PIECE).zip(y.par_chunks(PIECE)).map(piece).collect();
-    parts.iter().sum()
+    let parts: Vec<T> = x.par_chunks(PIECE).zip(y.par_chunks(PIECE)).map(piece).collect();
+    parts.into_iter().fold(T::ZERO, T::add)
 }
 
 pub(crate) fn norm<const N: usize>(x: &[[f64; N]]) -> f64 {
@@ -40,11 +41,16 @@ pub(crate) fn norm<const N: usize>(x: &[[f64; N]]) -> f64 {
 }
 
 /// `y ← a y + b x`.
-pub(crate) fn combine<const N: usize>(y: &mut [[f64; N]], a: f64, x: &[[f64; N]], b: f64) {
+pub(crate) fn combine<T: Entry, const N: usize>(y: &mut [[T; N]], a: T, x: &[[T; N]], b: T) {
     y.par_chunks_mut(PIECE).zip(x.par_chunks(PIECE)).for_each(|(y, x)| {
-        for (y, x) in y.as_flattened_mut().iter_mut().zip(x.as_flattened()) {
-            *y = a * *y + b * x;
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for (y, x) in y.as_flattened_mut().iter_mut().zip(x.as_flattened()) {
+                    *y = a * *y + b * *x;
+                }
+            },
+        );
     });
 }
 

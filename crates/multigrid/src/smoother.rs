@@ -1,6 +1,7 @@
 //! Chebyshev's polynomials in `D⁻¹ A`, D the blocks of the diagonal.
 
 use crate::block::{Block, add_product};
+use crate::entry::Entry;
 use crate::matrix::BlockMatrix;
 use crate::parallel::{PIECE, combine, dot, vectorized};
 use crate::random::Random;
@@ -25,15 +26,16 @@ pub(crate) struct Smoother<const N: usize> {
 
 /// Vectors of a level.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Room<const N: usize> {
-    pub residual: Vec<[f64; N]>,
-    direction: Vec<[f64; N]>,
-    pub next: Vec<[f64; N]>,
+pub(crate) struct Room<const N: usize, T = f64> {
+    pub residual: Vec<[T; N]>,
+    direction: Vec<[T; N]>,
+    pub next: Vec<[T; N]>,
 }
 
-impl<const N: usize> Room<N> {
-    pub fn new(rows: usize) -> Room<N> {
-        Room { residual: vec![[0.0; N]; rows], direction: vec![[0.0; N]; rows], next: vec![[0.0; N]; rows] }
+impl<const N: usize, T: Entry> Room<N, T> {
+    pub fn new(rows: usize) -> Room<N, T> {
+        let [residual, direction, next] = std::array::from_fn(|_| vec![[T::ZERO; N]; rows]);
+        Room { residual, direction, next }
     }
 }
 
@@ -59,21 +61,26 @@ impl<const N: usize> Smoother<N> {
     }
 
     /// Adds to x the polynomial's part of the error, whose residual is in `room.residual`, and leaves the new residual there if `wanted`.
-    pub fn smooth(&self, a: &BlockMatrix<N, N>, x: &mut [[f64; N]], room: &mut Room<N>, wanted: bool) {
+    pub fn smooth<T: Entry>(&self, a: &BlockMatrix<N, N>, x: &mut [[T; N]], room: &mut Room<N, T>, wanted: bool) {
         let (theta, delta) = self.interval();
         let sigma = theta / delta;
         let mut rho = 1.0 / sigma;
         let inverse = &self.inverse;
         let Room { residual, direction, next } = room;
-        let begin = |piece: usize, x: &mut [[f64; N]], r: &[[f64; N]], d: &mut [[f64; N]]| {
-            for (((row, x), r), d) in (piece * PIECE..).zip(x).zip(r).zip(d) {
-                let mut z = [0.0; N];
-                add_product(&mut z, &inverse[row], r);
-                for k in 0..N {
-                    d[k] = z[k] / theta;
-                    x[k] += d[k];
-                }
-            }
+        let begin = |piece: usize, x: &mut [[T; N]], r: &[[T; N]], d: &mut [[T; N]]| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (((row, x), r), d) in (piece * PIECE..).zip(x).zip(r).zip(d) {
+                        let mut z = [T::ZERO; N];
+                        add_product(&mut z, &inverse[row], r);
+                        for k in 0..N {
+                            d[k] = z[k] / theta;
+                            x[k] += d[k];
+                        }
+                    }
+                },
+            );
         };
         x.par_chunks_mut(PIECE)
             .zip(residual.par_chunks(PIECE))
@@ -85,17 +92,17 @@ impl<const N: usize> Smoother<N> {
             let (keep, add) = (after * rho, 2.0 * after / delta);
             rho = after;
             let old = &*direction;
-            let step = |piece: usize, x: &mut [[f64; N]], r: &mut [[f64; N]], d: &mut [[f64; N]]| {
+            let step = |piece: usize, x: &mut [[T; N]], r: &mut [[T; N]], d: &mut [[T; N]]| {
                 vectorized(
                     #[inline(always)]
                     || {
                         for (((row, x), r), d) in (piece * PIECE..).zip(x).zip(r).zip(d) {
                             let product = a.row_product(row, old);
-                            let mut z = [0.0; N];
+                            let mut z = [T::ZERO; N];
                             (0..N).for_each(|k| r[k] -= product[k]);
                             add_product(&mut z, &inverse[row], r);
                             for k in 0..N {
-                                d[k] = keep * old[row][k] + add * z[k];
+                                d[k] = old[row][k] * keep + z[k] * add;
                                 x[k] += d[k];
                             }
                         }
@@ -115,10 +122,10 @@ impl<const N: usize> Smoother<N> {
     }
 }
 
-pub(crate) fn scale<const N: usize>(inverse: &[Block<N, N>], x: &[[f64; N]], y: &mut [[f64; N]]) {
+pub(crate) fn scale<T: Entry, const N: usize>(inverse: &[Block<N, N>], x: &[[T; N]], y: &mut [[T; N]]) {
     y.par_chunks_mut(PIECE).zip(x.par_chunks(PIECE)).zip(inverse.par_chunks(PIECE)).for_each(|((y, x), inverse)| {
         for ((y, x), inverse) in y.iter_mut().zip(x).zip(inverse) {
-            *y = [0.0; N];
+            *y = [T::ZERO; N];
             add_product(y, inverse, x);
         }
     });

@@ -103,7 +103,7 @@ impl Equations {
     pub fn solve_all(&self, forces: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
         match self {
             Equations::Factored(system, factor) => Ok(system.solve_all(factor, forces)),
-            Equations::Iterated(..) => forces.iter().map(|f| Ok(self.solve(f)?.0)).collect(),
+            Equations::Iterated(..) => Ok(self.solve_each(forces, 0.0)?.into_iter().map(|(u, _)| u).collect()),
         }
     }
 
@@ -115,7 +115,11 @@ impl Equations {
     pub fn solve_each(&self, forces: &[Vec<f64>], tolerance: f64) -> Result<Vec<(Vec<f64>, f64)>> {
         match self {
             Equations::Factored(system, factor) => Ok(system.solve_each(factor, forces, tolerance)),
-            Equations::Iterated(..) => forces.iter().map(|f| self.solve(f)).collect(),
+            Equations::Iterated(levels, solver) => {
+                let forces: Vec<&[f64]> = forces.iter().map(|f| &f[..]).collect();
+                let found = levels.solve_each(&forces, solver, &mut |_| ()).map_err(advise)?;
+                Ok(found.into_iter().map(|(u, solved)| (u, solved.residual)).collect())
+            }
         }
     }
 
@@ -128,7 +132,7 @@ impl Equations {
             Equations::Factored(system, factor) => Ok(system.respond_all(factor, forces)),
             Equations::Iterated(levels, solver) => {
                 let solver = StaticSolver { tolerance: solver.tolerance.max(tolerance), ..*solver };
-                forces.iter().map(|f| levels.respond(f, &solver).map_err(advise)).collect()
+                levels.respond_all(forces, &solver).map_err(advise)
             }
         }
     }

@@ -4,8 +4,11 @@ use super::method::StaticSolver;
 use super::modes::{Modes, modes_of};
 use super::stability::{NOTHING, SOFT, Stability, Standing};
 use crate::error::{Error, ErrorKind, Result};
+use crate::memory::available;
 use crate::model::{BlockStiffness, Support};
-use springfit_multigrid::{Definiteness, End, Event, Extreme, Fault, Multigrid, Settings, Solution, Watch, sizes};
+use springfit_multigrid::{
+    Definiteness, End, Event, Extreme, Fault, Multigrid, Settings, Solution, WIDTH, Watch, sizes,
+};
 use springfit_multigrid::{plane_motions, space_motions};
 use std::ops::ControlFlow;
 
@@ -16,6 +19,9 @@ const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
 const LEAST_STEPS: usize = 100;
 const LARGEST_STEPS: usize = 8;
+
+/// Vectors of a solution with its levels, about.
+const VECTORS: usize = 12;
 
 /// Of the solutions in the iteration for modes.
 const MODE_TOLERANCE: f64 = 1e-12;
@@ -101,34 +107,61 @@ impl Levels {
     /// # Errors
     /// The iterations stall: kind `Limit`. The stiffness is not positive definite: kind `Infeasible`.
     pub fn solve(&self, f: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<(Vec<f64>, Solved)> {
-        let (mut displacement, force) = self.loaded(&self.stiffness, f);
-        let found = self.found(&force, solver, share)?;
-        displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
-        Ok((displacement, self.told("multigrid", &found)))
+        Ok(self.solve_each(&[f], solver, share)?.remove(0))
     }
 
-    /// The changes of the displacements for changes of the nodal forces.
+    /// The same under each of several nodal forces, side by side as far as memory allows.
     ///
     /// # Errors
     /// As [`Levels::solve`].
-    pub fn respond(&self, f: &[f64], solver: &StaticSolver) -> Result<Vec<f64>> {
-        Ok(self.found(f, solver, &mut |_| ())?.displacement)
+    pub fn solve_each(
+        &self,
+        forces: &[&[f64]],
+        solver: &StaticSolver,
+        share: &mut Share,
+    ) -> Result<Vec<(Vec<f64>, Solved)>> {
+        let (displacement, reaction) = self.held(&self.stiffness);
+        let rest = |f: &&[f64]| f.iter().zip(&reaction).map(|(f, r)| f - r).collect::<Vec<f64>>();
+        let found = self.found(&forces.iter().map(rest).collect::<Vec<_>>(), solver, share)?;
+        let whole = |found: Solution| {
+            let solved = self.told("multigrid", &found);
+            let mut u = found.displacement;
+            u.iter_mut().zip(&displacement).for_each(|(u, held)| *u += held);
+            (u, solved)
+        };
+        Ok(found.into_iter().map(whole).collect())
+    }
+
+    /// The changes of the displacements for changes of each of several nodal forces.
+    ///
+    /// # Errors
+    /// As [`Levels::solve`].
+    pub fn respond_all(&self, forces: &[Vec<f64>], solver: &StaticSolver) -> Result<Vec<Vec<f64>>> {
+        Ok(self.found(forces, solver, &mut |_| ())?.into_iter().map(|found| found.displacement).collect())
     }
 
     /// What is free, with all else zero.
-    fn found(&self, force: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<Solution> {
-        let target = solver.tolerance.ln();
-        let watch: &mut Watch = &mut |event| {
-            if let Event::Iteration { residual, .. } = event {
-                share((residual.ln() / target).clamp(0.0, 1.0));
-            }
-            ControlFlow::Continue(())
-        };
-        let found = match &self.hierarchy {
-            Hierarchy::Plane(levels) => levels.solve(force, solver.tolerance, solver.iterations, watch),
-            Hierarchy::Space(levels) => levels.solve(force, solver.tolerance, solver.iterations, watch),
-        };
-        found.map_err(|fault| limit(&fault))
+    fn found(&self, forces: &[Vec<f64>], solver: &StaticSolver, share: &mut Share) -> Result<Vec<Solution>> {
+        let bytes = (VECTORS * WIDTH * size_of::<f64>() * self.degrees()) as u64;
+        let fits = forces.len() <= 1 || available().is_none_or(|available| bytes < available);
+        let (target, all) = (solver.tolerance.ln(), forces.len() as f64);
+        let mut solutions = Vec::with_capacity(forces.len());
+        for some in forces.chunks(if fits { WIDTH } else { 1 }) {
+            let (done, now) = (solutions.len() as f64, some.len() as f64);
+            let watch: &mut Watch = &mut |event| {
+                if let Event::Iteration { residual, .. } = event {
+                    share((done + now * (residual.ln() / target).clamp(0.0, 1.0)) / all);
+                }
+                ControlFlow::Continue(())
+            };
+            let some: Vec<&[f64]> = some.iter().map(|force| &force[..]).collect();
+            let found = match &self.hierarchy {
+                Hierarchy::Plane(levels) => levels.solve_each(&some, solver.tolerance, solver.iterations, watch),
+                Hierarchy::Space(levels) => levels.solve_each(&some, solver.tolerance, solver.iterations, watch),
+            };
+            solutions.extend(found.map_err(|fault| limit(&fault))?);
+        }
+        Ok(solutions)
     }
 
     /// The displacements of another model with the same supports, whose stiffness is not positive definite, under the nodal forces f, by
@@ -137,7 +170,8 @@ impl Levels {
     /// # Errors
     /// The iterations stall: kind `Limit`.
     pub fn solve_other(&self, other: &BlockStiffness, f: &[f64], solver: &StaticSolver) -> Result<(Vec<f64>, Solved)> {
-        let (mut displacement, force) = self.loaded(other, f);
+        let (mut displacement, reaction) = self.held(other);
+        let force: Vec<f64> = f.iter().zip(reaction).map(|(f, r)| f - r).collect();
         let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
         let found = match (&self.hierarchy, other) {
             (Hierarchy::Plane(levels), BlockStiffness::Plane(other)) => {
@@ -173,23 +207,21 @@ impl Levels {
         };
         let solver = StaticSolver { tolerance: MODE_TOLERANCE, ..StaticSolver::default() };
         let solve = |x: &mut [f64]| {
-            for x in x.chunks_exact_mut(free.len().max(1)) {
-                gather(&self.found(&spread(x), &solver, &mut |_| ())?.displacement, x);
-            }
+            let mut columns: Vec<&mut [f64]> = x.chunks_exact_mut(free.len().max(1)).collect();
+            let forces: Vec<Vec<f64>> = columns.iter().map(|x| spread(x)).collect();
+            let found = self.respond_all(&forces, &solver)?;
+            columns.iter_mut().zip(found).for_each(|(x, found)| gather(&found, x));
             Ok(())
         };
         modes_of(&free, apply, solve, masses, dimension, count)
     }
 
-    /// The given displacements, and the forces without those that these cause.
-    fn loaded(&self, stiffness: &BlockStiffness, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// The given displacements, and the forces that these cause.
+    fn held(&self, stiffness: &BlockStiffness) -> (Vec<f64>, Vec<f64>) {
         let displacement: Vec<f64> = self.prescribed.iter().map(|u| u.unwrap_or(0.0)).collect();
-        let mut force = f.to_vec();
-        if displacement.iter().any(|u| *u != 0.0) {
-            let reaction = stiffness.apply(&displacement);
-            force.iter_mut().zip(reaction).for_each(|(f, r)| *f -= r);
-        }
-        (displacement, force)
+        let moves = displacement.iter().any(|u| *u != 0.0);
+        let reaction = if moves { stiffness.apply(&displacement) } else { vec![0.0; displacement.len()] };
+        (displacement, reaction)
     }
 
     fn told(&self, method: &'static str, solution: &Solution) -> Solved {

@@ -35,9 +35,10 @@ impl Default for StaticSolver {
 }
 
 /// In the plane and in space: unknowns from which on the levels are faster for one load, and the unknowns whose factor is as dear as the
-/// iterations of one load more. A factor of a plane mesh fills less.
+/// iterations of one load more, loads being solved side by side. A factor of a plane mesh fills less. `docs/src/theory/multigrid.md`
+/// has the measurements, which end at 40 loads.
 const FROM: [usize; 2] = [50_000, 15_000];
-const PER_LOAD: [usize; 2] = [20_000, 2_000];
+const PER_LOAD: [usize; 2] = [1_250, 250];
 
 impl StaticSolver {
     /// Whether equations that iterations could not solve for that reason are factorised instead.

@@ -1,5 +1,6 @@
 //! Truths about the levels and what they solve.
 
+mod columns;
 mod definite;
 mod elastic;
 mod matrices;

@@ -37,33 +37,31 @@ impl Iterated {
         // Those of the body, and of a network.
         let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * supports)?;
         let assembly = start.elapsed().as_secs_f64();
-        let (mut iterated, mut answers) = (Iterated { systems: Vec::new(), system_of: Vec::new() }, Vec::new());
-        let mut setup = Vec::new();
-        for (i, (case, first)) in cases.iter().zip(shared(cases)).enumerate() {
-            if first == i {
-                let start = Instant::now();
-                let levels =
-                    Levels::new(stiffness.clone(), &mesh.points, &case.support).map_err(|e| e.at_key("mesh"))?;
-                let levels = levels.map_err(|_| not_definite(mesh))?;
-                if levels.prove().map_err(|e| e.at_key("mesh"))?.is_some() {
-                    return Err(not_definite(mesh));
-                }
-                iterated.systems.push(Arc::new(levels));
-                iterated.system_of.push(iterated.systems.len() - 1);
-                setup.push(start.elapsed().as_secs_f64());
-            } else {
-                iterated.system_of.push(iterated.system_of[first]);
-            }
-            let system = iterated.system_of[i];
+        let mut iterated = Iterated { systems: Vec::new(), system_of: vec![0; cases.len()] };
+        let mut answers: Vec<Option<BodyAnswer>> = cases.iter().map(|_| None).collect();
+        let mut done = 0;
+        for group in groups(cases) {
             let start = Instant::now();
-            let (u, solved) =
-                solution(&iterated.systems[system], case, solver, ("finite elements", i, cases.len()), progress)?;
-            let work = case.work(&u, || Some(product(&stiffness.apply(&u), &u)));
-            let seconds = assembly + setup[system] + start.elapsed().as_secs_f64();
-            answers.push(BodyAnswer { displacement: u, work, seconds, solved });
+            let support = &cases[group[0]].support;
+            let levels = Levels::new(stiffness.clone(), &mesh.points, support).map_err(|e| e.at_key("mesh"))?;
+            let levels = levels.map_err(|_| not_definite(mesh))?;
+            if levels.prove().map_err(|e| e.at_key("mesh"))?.is_some() {
+                return Err(not_definite(mesh));
+            }
+            let setup = start.elapsed().as_secs_f64();
+            let solutions = solutions(&levels, cases, &group, solver, ("finite elements", done), progress)?;
+            for (&i, Solution { displacement, solved, seconds }) in group.iter().zip(solutions) {
+                let work =
+                    cases[i].work(&displacement, || Some(product(&stiffness.apply(&displacement), &displacement)));
+                let seconds = assembly + setup + seconds;
+                answers[i] = Some(BodyAnswer { displacement, work, seconds, solved });
+                iterated.system_of[i] = iterated.systems.len();
+            }
+            done += group.len();
+            iterated.systems.push(Arc::new(levels));
         }
         progress(Event::stage("finite elements", PARTS * cases.len(), PARTS * cases.len()));
-        Ok((iterated, answers))
+        Ok((iterated, answers.into_iter().map(|answer| answer.expect("each load has a support")).collect()))
     }
 
     /// The answers of a network to all loads, and its stability under the support of the first; its energies are compared with those of
@@ -85,65 +83,93 @@ impl Iterated {
         let stiffness = BlockStiffness::of_network(network, &mesh.points, Some(shared));
         let assembly = start.elapsed().as_secs_f64();
         let other = (compared != moduli).then(|| BlockStiffness::of_body(mesh, compared, 1, 1)).transpose()?;
-        let (mut answers, mut first) = (Vec::new(), None);
-        let mut systems: Vec<(std::result::Result<Levels, Vec<f64>>, Standing, f64)> = Vec::new();
-        for (i, case) in cases.iter().enumerate() {
-            let index = self.system_of[i];
-            if index == systems.len() {
-                let start = Instant::now();
-                let levels =
-                    Levels::new(stiffness.clone(), &mesh.points, &case.support).map_err(|e| e.at_key("mesh"))?;
-                let seconds = start.elapsed().as_secs_f64();
-                let other = other.as_ref().map(|other| Levels::new(other.clone(), &mesh.points, &case.support));
-                let other = match other.transpose()? {
-                    Some(Err(_)) => return Err(not_definite(mesh)),
-                    Some(Ok(levels)) => Some(levels),
-                    None => None,
-                };
-                let body = other.as_ref().unwrap_or(&*self.systems[index]);
-                let found = compare_levels(levels.as_ref().map_err(|motion| &motion[..]), &stiffness, body)?;
-                systems.push((levels, found.standing, seconds));
-                first.get_or_insert(found);
-            }
-            let (levels, standing, setup) = &systems[index];
+        let mut answers: Vec<Option<NetworkAnswer>> = cases.iter().map(|_| None).collect();
+        let (mut first, mut done) = (None, 0);
+        for (system, group) in self.systems.iter().zip(groups(cases)) {
             let start = Instant::now();
-            let (mut displacement, mut work, mut how) = (None, None, None);
-            let found = match (levels, standing) {
-                (_, Standing::Singular) => None,
+            let support = &cases[group[0]].support;
+            let levels = Levels::new(stiffness.clone(), &mesh.points, support).map_err(|e| e.at_key("mesh"))?;
+            let setup = assembly + start.elapsed().as_secs_f64();
+            let other = other.as_ref().map(|other| Levels::new(other.clone(), &mesh.points, support));
+            let other = match other.transpose()? {
+                Some(Err(_)) => return Err(not_definite(mesh)),
+                Some(Ok(levels)) => Some(levels),
+                None => None,
+            };
+            let body = other.as_ref().unwrap_or(system);
+            let found = compare_levels(levels.as_ref().map_err(|motion| &motion[..]), &stiffness, body)?;
+            let standing = found.standing;
+            first.get_or_insert(found);
+            let solutions: Vec<Option<Solution>> = match (&levels, standing) {
+                (_, Standing::Singular) => group.iter().map(|_| None).collect(),
                 (Ok(levels), Standing::Stable | Standing::Soft) => {
-                    Some(solution(levels, case, solver, ("networks", i, cases.len()), progress)?)
+                    let found = solutions(levels, cases, &group, solver, ("networks", done), progress)?;
+                    found.into_iter().map(Some).collect()
                 }
                 // An equilibrium that is not stable; where it is not found, there is none to show.
                 (_, Standing::Indefinite | Standing::Stable | Standing::Soft) => {
-                    let found = self.systems[index].solve_other(&stiffness, &case.forces, solver);
-                    found.ok().filter(|(_, solved)| solved.residual <= SOLVED)
+                    let found = |i: &usize| {
+                        let start = Instant::now();
+                        let found = system.solve_other(&stiffness, &cases[*i].forces, solver).ok();
+                        let (displacement, solved) = found.filter(|(_, solved)| solved.residual <= SOLVED)?;
+                        Some(Solution { displacement, solved, seconds: start.elapsed().as_secs_f64() })
+                    };
+                    group.iter().map(found).collect()
                 }
             };
-            if let Some((u, solved)) = found {
-                work = case.work(&u, || Some(product(&stiffness.apply(&u), &u)));
-                (displacement, how) = (Some(u), Some(solved));
+            for (&i, found) in group.iter().zip(solutions) {
+                let (mut work, mut seconds) = (None, setup);
+                if let Some(Solution { displacement: u, seconds: own, .. }) = &found {
+                    work = cases[i].work(u, || Some(product(&stiffness.apply(u), u)));
+                    seconds += own;
+                }
+                let (displacement, solved) = found.map(|found| (found.displacement, found.solved)).unzip();
+                answers[i] = Some(NetworkAnswer { displacement, work, seconds, solved });
             }
-            let seconds = assembly + setup + start.elapsed().as_secs_f64();
-            answers.push(NetworkAnswer { displacement, work, seconds, solved: how });
+            done += group.len();
         }
         let stability = first.expect("there is a load");
-        Ok((answers, stability))
+        Ok((answers.into_iter().map(|answer| answer.expect("each load has a support")).collect(), stability))
     }
 }
 
-/// The displacements under a load, with word of how far they are; `(stage, load, loads)`.
-fn solution(
+/// The loads of each support, in the order in which the supports come.
+fn groups(cases: &[Case]) -> Vec<Vec<usize>> {
+    let first = shared(cases);
+    let of = |i: usize| (i..cases.len()).filter(|k| first[*k] == i).collect();
+    (0..cases.len()).filter(|i| first[*i] == *i).map(of).collect()
+}
+
+/// The displacements under a load, how they were found, and the share of this load in the time that its group took.
+struct Solution {
+    displacement: Vec<f64>,
+    solved: Solved,
+    seconds: f64,
+}
+
+/// The displacements under the loads of a group, side by side, with word of how far they are; `(stage, loads done before)`.
+fn solutions(
     levels: &Levels,
-    case: &Case,
+    cases: &[Case],
+    group: &[usize],
     solver: &StaticSolver,
-    (stage, load, loads): (&str, usize, usize),
+    (stage, done): (&str, usize),
     progress: &mut Progress,
-) -> Result<(Vec<f64>, Solved)> {
-    progress(Event::stage(stage, PARTS * load, PARTS * loads));
+) -> Result<Vec<Solution>> {
+    let all = PARTS * cases.len();
+    progress(Event::stage(stage, PARTS * done, all));
+    // The stage ends where its caller says so.
     let mut share = |part: f64| {
-        progress(Event::stage(stage, PARTS * load + (part * (PARTS - 1) as f64) as usize, PARTS * loads));
+        let now = PARTS * done + (part * (PARTS * group.len()) as f64) as usize;
+        progress(Event::stage(stage, now.min(all - 1), all));
     };
-    let (u, solved) = levels.solve(&case.forces, solver, &mut share).map_err(|e| e.at_key("mesh"))?;
-    check_residual(solved.residual, case)?;
-    Ok((u, solved))
+    let start = Instant::now();
+    let forces: Vec<&[f64]> = group.iter().map(|&i| &cases[i].forces[..]).collect();
+    let found = levels.solve_each(&forces, solver, &mut share).map_err(|e| e.at_key("mesh"))?;
+    let seconds = start.elapsed().as_secs_f64() / group.len() as f64;
+    let checked = |(&i, (displacement, solved)): (&usize, (Vec<f64>, Solved))| {
+        check_residual(solved.residual, &cases[i])?;
+        Ok(Solution { displacement, solved, seconds })
+    };
+    group.iter().zip(found).map(checked).collect()
 }

@@ -39,8 +39,8 @@ pub struct WholeBody<'a> {
 }
 
 /// As many loads are as dear as the solutions of a fit under a support, by which the way to solve equations is chosen: each step has some tens
-/// for each load with one factor.
-const LOADS: usize = 40;
+/// for each load, which a factor serves without refinement.
+const LOADS: usize = 200;
 
 impl<'a> WholeBody<'a> {
     /// A body at small deformation, without loads of a scene.
