@@ -13,14 +13,9 @@ use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
 
-pub fn weights() -> [Weight; 5] {
-    [
-        Weight::None,
-        Weight::OffDiagonal,
-        Weight::Modal(Higher::DEFAULT),
-        Weight::Modal(Higher::new(1.0).unwrap()),
-        Weight::Relative,
-    ]
+/// Every weight; of the modal ones the default and that of no weight.
+pub fn weights() -> Vec<Weight> {
+    Weight::all().chain([Weight::Modal(Higher::new(1.0).unwrap())]).collect()
 }
 
 /// Springs of an element that counts as large.

@@ -71,10 +71,7 @@ fn forces_and_tangents_are_those_of_differences() {
         }
     }
     // Those of exact networks are tested with them.
-    let own = |kind: &SpringKind| {
-        !matches!(kind, SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre)
-    };
-    for kind in SpringKind::all().filter(own) {
+    for kind in SpringKind::all().filter(|kind| kind.properties().in_element_files) {
         assert!(kinds.contains(&kind), "{kind:?}");
     }
 }

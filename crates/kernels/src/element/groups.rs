@@ -104,32 +104,16 @@ fn nodes_of(
         }
         (Some(NodeLists::Given(lists)), _) => lists,
         (None, kind) if kind.properties().content == Some(d) => return Ok(Vec::new()),
-        (None, SpringKind::Area) => {
-            return Err(Error::expected(
-                key("kind"),
-                "\"volume\" for the content of a solid, \"area\" with nodes or in a plane cell",
-                "\"area\"",
-            ));
-        }
-        (None, SpringKind::Volume) => {
-            return Err(Error::expected(
-                key("kind"),
-                "\"area\" for the content of a plane cell, \"volume\" in a solid",
-                "\"volume\"",
-            ));
-        }
-        (None, SpringKind::Length) => return Err(Error::expected(key("nodes"), "pairs of nodes", "none")),
-        (
-            None,
-            SpringKind::Angle
-            | SpringKind::Coupling
-            | SpringKind::Measure
-            | SpringKind::PointContent
-            | SpringKind::PointArea
-            | SpringKind::Patch
-            | SpringKind::Fibre,
-        ) => {
-            return Err(Error::expected(key("nodes"), "lists of nodes", "none"));
+        (None, kind) => {
+            let properties = kind.properties();
+            let (key, expected) = match properties.content {
+                Some(2) => ("kind", "\"volume\" for the content of a solid, \"area\" with nodes or in a plane cell"),
+                Some(_) => ("kind", "\"area\" for the content of a plane cell, \"volume\" in a solid"),
+                None if *properties.nodes.end() == 2 => ("nodes", "pairs of nodes"),
+                None => ("nodes", "lists of nodes"),
+            };
+            let found = if properties.content.is_some() { format!("\"{}\"", kind.name()) } else { "none".into() };
+            return Err(Error::expected(format!("springs[{i}].{key}"), expected, found));
         }
     };
     if lists.is_empty() {

@@ -87,10 +87,17 @@ impl Objective {
 
     /// Every objective with its default numbers; modal ones only if the element has motions beyond constant strain.
     pub fn all(higher_modes: bool) -> Vec<Objective> {
-        let entries = Weight::all().filter(|weight| higher_modes || !weight.needs_higher_modes());
-        let motions = MotionWeight::all().filter(|weight| higher_modes || !Weight::from(*weight).needs_higher_modes());
-        let norms = entries.map(Objective::Frobenius).chain(motions.map(Objective::Spectral));
-        norms.chain([Objective::Divergence(Balance::DEFAULT)]).collect()
+        let fits = |weight: &Weight| higher_modes || !weight.needs_higher_modes();
+        let named = |name: Name| match name {
+            Name::Frobenius => Weight::all().filter(fits).map(Objective::Frobenius).collect(),
+            Name::Spectral => {
+                MotionWeight::all().filter(|weight| fits(&(*weight).into())).map(Objective::Spectral).collect()
+            }
+            Name::Divergence => vec![Objective::Divergence(Balance::DEFAULT)],
+            // Short for the first.
+            Name::OffDiagonal | Name::Modal => Vec::new(),
+        };
+        Name::all().flat_map(named).collect()
     }
 
     /// The objective called `name`.
@@ -147,28 +154,29 @@ impl Objective {
 
     /// The shortest name: `offdiag` and `modal` for `frobenius` with that weight.
     pub fn name(&self) -> &'static str {
-        let name = match self {
-            Objective::Frobenius(Weight::None | Weight::Relative) => Name::Frobenius,
-            Objective::Frobenius(Weight::OffDiagonal) => Name::OffDiagonal,
-            Objective::Frobenius(Weight::Modal(_)) => Name::Modal,
-            Objective::Spectral(_) => Name::Spectral,
-            Objective::Divergence(_) => Name::Divergence,
-        };
-        name.name()
+        match self {
+            Objective::Frobenius(weight) if weight.names_objective() => weight.name(),
+            Objective::Frobenius(_) => Name::Frobenius.name(),
+            Objective::Spectral(_) => Name::Spectral.name(),
+            Objective::Divergence(_) => Name::Divergence.name(),
+        }
     }
 
     /// The name with its weight and numbers, such as `spectral modal 0.316`.
     pub fn title(&self) -> String {
         let name = self.name();
-        match self {
-            Objective::Frobenius(Weight::None | Weight::OffDiagonal) | Objective::Spectral(MotionWeight::None) => {
+        let weighted = |weight: Weight| {
+            if weight == Weight::None {
                 name.into()
+            } else if weight.name() == name {
+                weight.title()
+            } else {
+                format!("{name} {}", weight.title())
             }
-            Objective::Frobenius(Weight::Relative) | Objective::Spectral(MotionWeight::Relative) => {
-                format!("{name} relative")
-            }
-            Objective::Frobenius(Weight::Modal(higher)) => format!("{name} {higher}"),
-            Objective::Spectral(MotionWeight::Modal(higher)) => format!("{name} modal {higher}"),
+        };
+        match self {
+            Objective::Frobenius(weight) => weighted(*weight),
+            Objective::Spectral(weight) => weighted((*weight).into()),
             Objective::Divergence(balance) => format!("{name} {balance}"),
         }
     }

@@ -119,6 +119,22 @@ impl Weight {
         Ok(weight)
     }
 
+    /// Whether the name of the weight is short for the objective `frobenius` with it.
+    pub(super) fn names_objective(self) -> bool {
+        match self {
+            Weight::OffDiagonal | Weight::Modal(_) => true,
+            Weight::None | Weight::Relative => false,
+        }
+    }
+
+    /// The name with its number, such as `modal 0.316`.
+    pub(super) fn title(self) -> String {
+        match self.higher() {
+            Some(higher) => format!("{} {higher}", self.name()),
+            None => self.name().into(),
+        }
+    }
+
     /// Whether a cell takes microseconds instead of nanoseconds.
     pub(super) fn is_costly(self) -> bool {
         match self {
