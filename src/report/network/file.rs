@@ -7,11 +7,11 @@ use super::record::{
     NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord, SpringRecord,
     TimedForceRecord, TimedPullRecord,
 };
-use crate::dynamics::{Dampers, largest_square};
+use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
 use crate::material::{CellMap, State};
 use crate::mesh::Mesh;
-use crate::model::{MeasureSpring, Network, Support};
+use crate::model::{Elastic, MeasureSpring, Network, Support};
 use crate::report::fit_record::FitRecord;
 use crate::report::table::notes;
 use crate::springs::Law;
@@ -150,12 +150,18 @@ impl<'a> NetworkFile<'a> {
         let d = self.mesh.dimension;
         let held: Vec<bool> = (0..self.mesh.points.len()).map(|dof| support.is_fixed(dof)).collect();
         let is_sound = held.iter().enumerate().all(|(dof, held)| *held || masses[dof / d] > 0.0);
-        if !is_sound || self.network.check_size().is_err() {
+        if !is_sound {
             return None;
         }
         let masses: Vec<f64> = masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
-        let entries = self.network.stiffness(&self.mesh.points);
-        let square = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
+        let square = match self.network.blocks(&self.mesh.points) {
+            Some(blocks) => largest_square_of_blocks(&blocks, &masses, &held),
+            None => {
+                self.network.check_size().ok()?;
+                let entries = self.network.stiffness(&self.mesh.points);
+                largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held)
+            }
+        };
         Some(2.0 / square.sqrt()).filter(|step| step.is_finite())
     }
 

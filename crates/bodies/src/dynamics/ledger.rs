@@ -2,7 +2,9 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::pass::PIECE;
 use crate::scalar::Sum;
+use rayon::prelude::*;
 
 /// Energy and momentum at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,22 +91,40 @@ impl Ledger {
     pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64, is_damped: bool) {
         self.work.add(kinetic - self.kinetic);
         self.kinetic = kinetic;
-        for first in (0..way.len()).step_by(BLOCK) {
-            // Four sums of each block at a time, because the terms of one sum wait for each other.
-            let (mut work, mut dissipated) = ([0.0; 4], [0.0; 4]);
-            for dof in first..way.len().min(first + BLOCK) {
-                let now = acting(forces, held, dof);
-                work[dof % 4] += way[dof] * (self.acting[dof] + now) / 2.0;
-                self.acting[dof] = now;
-            }
-            if is_damped {
-                for dof in first..way.len().min(first + BLOCK) {
-                    dissipated[dof % 4] += way[dof] * (self.viscous[dof] + forces.viscous[dof]) / 2.0;
-                    self.viscous[dof] = forces.viscous[dof];
+        let piece = |at: usize, acted: &mut [f64], resisted: &mut [f64]| {
+            let (mut work, mut dissipated) = (Sum::default(), Sum::default());
+            let blocks = acted.chunks_mut(BLOCK).zip(resisted.chunks_mut(BLOCK));
+            for (first, (acted, resisted)) in (at * PIECE..).step_by(BLOCK).zip(blocks) {
+                // Four sums of each block at a time, because the terms of one sum wait for each other.
+                let (mut done, mut lost) = ([0.0; 4], [0.0; 4]);
+                for (i, acted) in acted.iter_mut().enumerate() {
+                    let now = acting(forces, held, first + i);
+                    done[i % 4] += way[first + i] * (*acted + now) / 2.0;
+                    *acted = now;
                 }
+                if is_damped {
+                    for (i, resisted) in resisted.iter_mut().enumerate() {
+                        let now = forces.viscous[first + i];
+                        lost[i % 4] += way[first + i] * (*resisted + now) / 2.0;
+                        *resisted = now;
+                    }
+                }
+                work.add(done.iter().sum());
+                dissipated.add(lost.iter().sum());
             }
-            self.work.add(work.iter().sum());
-            self.dissipated.add(dissipated.iter().sum());
+            [work.value(), dissipated.value()]
+        };
+        let (acted, resisted) = (&mut self.acting, &mut self.viscous);
+        let sums = match way.len() {
+            0..=PIECE => vec![piece(0, acted, resisted)],
+            _ => {
+                let pieces = (acted.par_chunks_mut(PIECE), resisted.par_chunks_mut(PIECE)).into_par_iter();
+                pieces.enumerate().map(|(at, (acted, resisted))| piece(at, acted, resisted)).collect()
+            }
+        };
+        for [work, dissipated] in sums {
+            self.work.add(work);
+            self.dissipated.add(dissipated);
         }
     }
 }
@@ -115,13 +135,21 @@ fn acting(forces: &Forces, held: &[bool], dof: usize) -> f64 {
 
 /// `½ vᵀ M v` of all degrees of freedom and of the held ones, J.
 pub(super) fn kinetic(mass: &[f64], held: &[bool], v: &[f64]) -> (f64, f64) {
-    let (mut all, mut still) = ([0.0; 4], [0.0; 4]);
-    for (dof, ((m, v), held)) in mass.iter().zip(v).zip(held).enumerate() {
-        let energy = m * v * v / 2.0;
-        all[dof % 4] += energy;
-        still[dof % 4] += if *held { energy } else { 0.0 };
+    let piece = |mass: &[f64], held: &[bool], v: &[f64]| {
+        let (mut all, mut still) = ([0.0; 4], [0.0; 4]);
+        for (dof, ((m, v), held)) in mass.iter().zip(v).zip(held).enumerate() {
+            let energy = m * v * v / 2.0;
+            all[dof % 4] += energy;
+            still[dof % 4] += if *held { energy } else { 0.0 };
+        }
+        (all.iter().sum::<f64>(), still.iter().sum::<f64>())
+    };
+    if v.len() <= PIECE {
+        return piece(mass, held, v);
     }
-    (all.iter().sum(), still.iter().sum())
+    let pieces = (mass.par_chunks(PIECE), held.par_chunks(PIECE), v.par_chunks(PIECE)).into_par_iter();
+    let sums: Vec<(f64, f64)> = pieces.map(|(mass, held, v)| piece(mass, held, v)).collect();
+    sums.iter().fold((0.0, 0.0), |(all, still), sum| (all + sum.0, still + sum.1))
 }
 
 /// `Σ m v` of points with `d` coordinates; `mass` is given by degree of freedom.

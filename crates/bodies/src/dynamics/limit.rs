@@ -2,12 +2,15 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use crate::model::BlockStiffness;
 use crate::solve::generator;
 use crate::springs::{dot, norm};
 use nalgebra::DMatrix;
 
 /// The number of steps of the Lanczos method.
 const STEPS: usize = 120;
+/// Degrees of freedom from which on not all vectors of the Lanczos method are kept.
+const LARGE: usize = 100_000;
 /// The largest eigenvalue is accepted if its residual is below this share of it.
 const FOUND: f64 = 1e-3;
 
@@ -56,7 +59,23 @@ pub fn largest_square(
     lanczos(n, apply).map_or(gershgorin, |bound| bound.min(gershgorin))
 }
 
-/// `θ + r`, or `None` if r stays large.
+/// The same for a stiffness in blocks.
+pub fn largest_square_of_blocks(stiffness: &BlockStiffness, masses: &[f64], held: &[bool]) -> f64 {
+    let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
+    let weights: Vec<f64> = masses.iter().zip(held).map(|(m, held)| if *held { 0.0 } else { 1.0 / m.sqrt() }).collect();
+    let discs = stiffness.absolute_sums(&weights);
+    let gershgorin = discs.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(0.0, f64::max);
+    let apply = |x: &[f64]| {
+        let mut whole = vec![0.0; held.len()];
+        free.iter().zip(x).for_each(|(&dof, x)| whole[dof] = x * weights[dof]);
+        let image = stiffness.apply(&whole);
+        free.iter().map(|&dof| image[dof] * weights[dof]).collect()
+    };
+    lanczos(free.len(), apply).map_or(gershgorin, |bound| bound.min(gershgorin))
+}
+
+/// `θ + r`, or `None` if r stays large. Of large models only the last two vectors are kept: the largest eigenvalue does not depend on the
+/// orthogonality of the others (Paige 1980).
 fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
     let mut random = generator();
     let mut next: Vec<f64> = (0..n).map(|_| random()).collect();
@@ -67,6 +86,9 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
         next.iter_mut().for_each(|x| *x /= size);
         let mut image = apply(&next);
         diagonal.push(dot(&image, &next));
+        if n > LARGE && basis.len() == 2 {
+            basis.remove(0);
+        }
         basis.push(next);
         for _ in 0..2 {
             for q in &basis {

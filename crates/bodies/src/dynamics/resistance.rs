@@ -3,6 +3,7 @@
 use super::damping::Damping;
 use super::equations::Equations;
 use super::motion::Motion;
+use super::pass;
 use super::rest::Rest;
 use super::solver::LinearSolver;
 use crate::error::Result;
@@ -28,12 +29,13 @@ pub(super) struct Resistance<'a> {
 }
 
 impl<'a> Resistance<'a> {
-    pub fn new(motion: &Motion<'a>, linear: bool) -> Result<Resistance<'a>> {
+    /// Of methods with equations to solve, or without.
+    pub fn new(motion: &Motion<'a>, linear: bool, has_equations: bool) -> Result<Resistance<'a>> {
         let d = motion.dimension();
         let mut resistance = Resistance {
             model: motion.model,
             points: motion.points,
-            rest: Rest::new(motion.model, motion.points)?,
+            rest: Rest::new(motion.model, motion.points, has_equations)?,
             linear,
             damping: motion.damping.clone(),
             gradients: Vec::new(),
@@ -70,7 +72,7 @@ impl<'a> Resistance<'a> {
     }
 
     fn place(&mut self, u: &[f64]) {
-        self.x.iter_mut().zip(self.points).zip(u).for_each(|((x, p), u)| *x = p + u);
+        pass::place(&mut self.x, self.points, u);
     }
 
     /// The gradient of the energy at the displacements u, N; false if there is none.
@@ -79,7 +81,7 @@ impl<'a> Resistance<'a> {
             return self.rest.refill(u, force).is_finite();
         }
         self.place(u);
-        self.model.forces(&self.x, force) && force.iter().fold(true, |sound, f| sound & f.is_finite())
+        self.model.forces(&self.x, force) && pass::all(force, f64::is_finite)
     }
 
     /// The same with the energy, J, and the values of the entries of the tangent, or of a nearby positive semidefinite
@@ -125,7 +127,7 @@ impl<'a> Resistance<'a> {
     /// The positions of the entries of K and then of those of the dampers.
     pub fn places(&self) -> Vec<(usize, usize)> {
         let dampers = self.damping.dampers.iter().flat_map(|dampers| dampers.places());
-        self.rest.entries.iter().map(|e| (e.row.max(e.col), e.row.min(e.col))).chain(dampers).collect()
+        self.rest.entries().iter().map(|e| (e.row.max(e.col), e.row.min(e.col))).chain(dampers).collect()
     }
 
     /// `A = c₂ M + c₁ C + K`.
@@ -134,7 +136,7 @@ impl<'a> Resistance<'a> {
         equations.set_diagonal(&|dof| share * self.mass[dof]);
         equations.add(0, 1.0, tangent);
         if self.damping.stiffness > 0.0 {
-            equations.add(0, c1 * self.damping.stiffness, &self.rest.values);
+            equations.add(0, c1 * self.damping.stiffness, self.rest.values());
         }
         if self.damping.dampers.is_some() {
             equations.add(tangent.len(), c1, &self.damper_entries);
@@ -143,8 +145,7 @@ impl<'a> Resistance<'a> {
 
     /// Upper bounds of the eigenvalues of `M⁻¹K`, rad²/s², and `M⁻¹C`, 1/s, at rest.
     pub fn largest(&self) -> [f64; 2] {
-        let entries = self.rest.entries.iter().map(|e| (e.row, e.col, e.val));
-        let square = super::largest_square(entries, &self.mass, &self.held);
+        let square = self.rest.largest_square(&self.mass, &self.held);
         let mut damping = self.damping.mass + self.damping.stiffness * square;
         if let Some(dampers) = &self.damping.dampers {
             let places: Vec<(usize, usize)> = dampers.places().collect();

@@ -8,6 +8,7 @@ use super::integrator::{Integrator, Past};
 use super::ledger::{self, Account, EnergyBalance, Forces, Ledger};
 use super::limit::longest_step;
 use super::motion::{Motion, Options};
+use super::pass::{Changed, Given, leap};
 use super::resistance::Resistance;
 use super::settle::{Step, StepOutcome, Target, Trial};
 use super::solver::LinearSolver;
@@ -53,13 +54,13 @@ impl<'a> Simulation<'a> {
     pub fn new(motion: Motion<'a>, options: Options) -> Result<Simulation<'a>> {
         options.check()?;
         motion.check()?;
-        let resistance = Resistance::new(&motion, options.linear)?;
-        let dofs = motion.points.len();
         let is_implicit = options.integrator != Integrator::SymplecticEuler;
+        let resistance = Resistance::new(&motion, options.linear, is_implicit)?;
+        let dofs = motion.points.len();
         let equations = if is_implicit { Some(resistance.equations(&motion, options.solver)?) } else { None };
         let free = equations.as_ref().map_or(0, |equations| equations.order().len());
-        let mut trial = Trial::new(dofs, free, resistance.rest.values.len());
-        trial.tangent.copy_from_slice(&resistance.rest.values);
+        let mut trial = Trial::new(dofs, free, resistance.rest.values().len());
+        trial.tangent.copy_from_slice(resistance.rest.values());
         let zero = || vec![0.0; dofs];
         let [z, y, delta, velocity, external] = std::array::from_fn(|_| zero());
         let inverse = resistance.mass.iter().zip(&resistance.held).map(|(m, held)| if *held { 0.0 } else { 1.0 / m });
@@ -183,7 +184,7 @@ impl<'a> Simulation<'a> {
         }
         let resistance = &self.resistance;
         let mut proof = resistance.equations(&self.motion, LinearSolver::Factor)?;
-        resistance.assemble(coefficients, &resistance.rest.values, proof.as_mut());
+        resistance.assemble(coefficients, resistance.rest.values(), proof.as_mut());
         match proof.prepare() {
             true if !is_prepared => {
                 let problem = "its equations have no incomplete factor, which conjugate gradients need";
@@ -196,7 +197,7 @@ impl<'a> Simulation<'a> {
     /// Prepares the matrix of a linear model, unless it is prepared already.
     fn factor(&mut self, coefficients: [f64; 2]) -> bool {
         let Some(equations) = self.equations.as_mut().filter(|_| self.factored != coefficients) else { return true };
-        self.resistance.assemble(coefficients, &self.resistance.rest.values, equations.as_mut());
+        self.resistance.assemble(coefficients, self.resistance.rest.values(), equations.as_mut());
         self.factored = coefficients;
         equations.prepare()
     }
@@ -262,14 +263,15 @@ impl<'a> Simulation<'a> {
         for ((dof, _), start) in driven.iter().zip(&mut self.target.delta) {
             *start = self.state.displacement[*dof];
         }
-        let loads = self.target.external.iter().zip(&self.trial.force).zip(&self.viscous).zip(&self.inverse);
-        let state = self.state.displacement.iter_mut().zip(&self.state.velocity);
-        let changes = self.way.iter_mut().zip(&mut self.before);
-        for (((u, v), (way, next)), (((f, elastic), viscous), inverse)) in state.zip(changes).zip(loads) {
-            *next = v + h * inverse * (f - elastic - viscous);
-            *way = h * *next;
-            *u += *way;
-        }
+        let (displacement, way, velocity) = (&mut self.state.displacement, &mut self.way, &mut self.before);
+        let given = Given {
+            velocity: &self.state.velocity,
+            external: &self.target.external,
+            elastic: &self.trial.force,
+            viscous: &self.viscous,
+            inverse: &self.inverse,
+        };
+        leap(h, Changed { displacement, way, velocity }, given);
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         for ((dof, curve), start) in driven.iter().zip(&self.target.delta) {
             // A driven point is on its curve to the last bit.

@@ -1,5 +1,7 @@
 //! Where a model in motion is.
 
+use super::pass;
+
 /// Displacements and velocities of a model at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionState {
@@ -14,8 +16,6 @@ pub struct MotionState {
 impl MotionState {
     /// Whether no displacement is larger than this, m, and every velocity is a number.
     pub fn is_within(&self, largest: f64) -> bool {
-        // Without an early end the compiler compares several numbers at a time.
-        let near = self.displacement.iter().fold(true, |near, u| near & (u.abs() <= largest));
-        self.velocity.iter().fold(near, |near, v| near & v.is_finite())
+        pass::all(&self.displacement, |u| u.abs() <= largest) && pass::all(&self.velocity, f64::is_finite)
     }
 }

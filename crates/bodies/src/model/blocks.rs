@@ -99,6 +99,28 @@ impl BlockStiffness {
             BlockStiffness::Space(matrix) => product(matrix, u),
         }
     }
+
+    /// `Σ_j |K_ij| w_j`, `[points · dimension]`.
+    pub fn absolute_sums(&self, w: &[f64]) -> Vec<f64> {
+        fn sums<const D: usize>(matrix: &BlockMatrix<D, D>, w: &[f64]) -> Vec<f64> {
+            let (pattern, w) = (matrix.pattern(), w.as_chunks::<D>().0);
+            let mut blocks = matrix.values().iter();
+            let row = |row: usize| {
+                let mut sum = [0.0; D];
+                for (&column, block) in pattern.row(row).iter().zip(&mut blocks) {
+                    for i in 0..D {
+                        sum[i] += (0..D).map(|j| block[i][j].abs() * w[column as usize][j]).sum::<f64>();
+                    }
+                }
+                sum
+            };
+            (0..matrix.rows()).flat_map(row).collect()
+        }
+        match self {
+            BlockStiffness::Plane(matrix) => sums(matrix, w),
+            BlockStiffness::Space(matrix) => sums(matrix, w),
+        }
+    }
 }
 
 /// The connectivity of each block of a mesh.

@@ -1,5 +1,6 @@
 //! Both models at large deformation: their energy, forces and tangent at given positions.
 
+use super::blocks::BlockStiffness;
 use super::network::Network;
 use super::system::{self, dofs};
 use super::{Entries, Response};
@@ -22,6 +23,11 @@ pub trait Elastic {
     /// Writes the forces alone, `[points × dimension]`, N, into `force`; false if there are none.
     fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
         self.respond(x).map(|response| force.copy_from_slice(&response.force)).is_some()
+    }
+
+    /// The tangent at x in blocks, without a list of entries, for models that can assemble it so.
+    fn blocks(&self, _x: &[f64]) -> Option<BlockStiffness> {
+        None
     }
 
     /// As [`Elastic::respond`], into existing memory: the forces, the values of the entries of the tangent, with the
@@ -169,6 +175,11 @@ impl Elastic for Network {
 
     fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
         self.pull(x, force)
+    }
+
+    fn blocks(&self, x: &[f64]) -> Option<BlockStiffness> {
+        let is_stored = self.dimension > 1 && x.len() / self.dimension < u32::MAX as usize;
+        is_stored.then(|| BlockStiffness::of_network(self, x, None))
     }
 
     fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {

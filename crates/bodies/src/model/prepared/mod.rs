@@ -6,14 +6,16 @@ mod edges;
 mod laws;
 mod part;
 mod simplices;
+mod sources;
 mod tables;
 mod tangents;
 
 use super::network::Network;
 use super::numbering::places;
-use super::{Elastic, Response};
+use super::{BlockStiffness, Elastic, Response};
 use part::{Part, Room, parts};
 use rayon::prelude::*;
+use sources::Sources;
 use std::sync::Mutex;
 
 /// The network with faster loops and the same results up to rounding. Springs on lengths, on contents of cells and of their
@@ -23,6 +25,7 @@ use std::sync::Mutex;
 pub struct PreparedNetwork<'a> {
     network: &'a Network,
     parts: Vec<Part>,
+    sources: Sources,
     /// The indices of the other springs that are evaluated without preparation.
     rest: Vec<usize>,
     rooms: Mutex<Vec<Room>>,
@@ -39,7 +42,8 @@ impl<'a> PreparedNetwork<'a> {
     fn new(network: &'a Network) -> PreparedNetwork<'a> {
         let order = order(network);
         let (parts, rest) = parts(network, &order);
-        PreparedNetwork { network, parts, rest, rooms: Mutex::default() }
+        let sources = Sources::new(&parts);
+        PreparedNetwork { network, parts, sources, rest, rooms: Mutex::default() }
     }
 }
 
@@ -87,10 +91,13 @@ impl Elastic for PreparedNetwork<'_> {
             [part] => pull((part, &mut rooms[0])),
             parts => parts.par_iter().zip(&mut rooms[..]).map(pull).reduce(|| true, |a, b| a & b),
         };
-        force.fill(0.0);
-        self.parts.iter().zip(&*rooms).for_each(|(part, room)| part.add(d, room, force));
+        self.sources.gather(d, rooms, force);
         sound &= self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force);
         sound
+    }
+
+    fn blocks(&self, x: &[f64]) -> Option<BlockStiffness> {
+        self.network.blocks(x)
     }
 
     fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {

@@ -110,23 +110,18 @@ impl Part {
         }
     }
 
-    /// Adds the forces that were worked out last.
-    pub fn add(&self, dimension: usize, room: &Room, force: &mut [f64]) {
-        match dimension {
-            1 => self.unpack::<1>(&room.force, force),
-            2 => self.unpack::<2>(&room.force, force),
-            _ => self.unpack::<3>(&room.force, force),
-        }
+    /// The points of its springs in the order of their rows.
+    pub fn points(&self) -> &[usize] {
+        &self.order
     }
+}
 
-    /// The forces of the rows are (z, x, y), which is the order of cross products without a last permutation.
-    fn unpack<const D: usize>(&self, sums: &[[f64; 4]], force: &mut [f64]) {
-        let points = force.as_chunks_mut::<D>().0;
-        for (sum, &point) in sums.iter().zip(&self.order) {
-            for k in 0..D {
-                points[point][k] += sum[(k + 1) % 3];
-            }
-        }
+impl Room {
+    /// The force on a row that was worked out last, as (z, x, y), which is the order of cross products without a last permutation, and an
+    /// unused number.
+    #[inline(always)]
+    pub fn force(&self, row: u32) -> &[f64; 4] {
+        &self.force[row as usize]
     }
 }
 

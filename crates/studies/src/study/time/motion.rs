@@ -5,8 +5,12 @@ use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Simu
 use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
-use crate::model::{Deformation, Elastic, LinearElastic, Network, RegionsBody, Support, check_body, finite_elements};
+use crate::model::{
+    BlockStiffness, Deformation, Elastic, LinearElastic, Network, RegionsBody, Support, check_body, finite_elements,
+    unheld_bodies,
+};
 use crate::scalar::{norm, scaled_norm};
+use crate::solve::{Levels, StaticSolver};
 use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
 };
@@ -35,6 +39,8 @@ pub struct Planned {
     pub watched: Vec<usize>,
     /// The steps at whose end a state is written.
     pub written: Vec<usize>,
+    /// How the networks are shown to be stable before they move.
+    pub solver: StaticSolver,
     /// Whether the states are needed after the motion.
     pub draws: bool,
 }
@@ -251,8 +257,17 @@ fn indefinite(name: &str, network: &Network) -> String {
 
 /// The growth rate of the fastest motion that releases energy, 1/s, to a tenth; `None` if there is none.
 ///
-/// `K + σ M` is positive definite for `σ > −ω²` of the lowest mode.
+/// `K + σ M` is positive definite for `σ > −ω²` of the lowest mode. Of a large network that cannot move as a rigid body, K itself is shown to
+/// be positive definite without a factor.
 fn growth(network: &Network, masses: &[f64], mesh: &Mesh, planned: &Planned) -> Result<Option<f64>> {
+    if planned.solver.iterates(mesh, 1) && unheld_bodies(mesh, &planned.support).is_empty() {
+        let blocks = BlockStiffness::of_network(network, &mesh.points, None);
+        let proof =
+            Levels::new(blocks, &mesh.points, &planned.support).map(|levels| levels.map(|levels| levels.prove()));
+        if matches!(proof, Ok(Ok(Ok(None)))) {
+            return Ok(None);
+        }
+    }
     network.check_size()?;
     let stiffness = network.stiffness(&mesh.points);
     let mut raised = Raised::new(stiffness, masses, &planned.support, mesh);

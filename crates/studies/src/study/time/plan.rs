@@ -87,6 +87,7 @@ fn planned(
         pulls: Vec::new(),
         watched: Vec::new(),
         written,
+        solver: scene.solver(),
         draws: scene.output().has_pictures(),
     };
     let mut prescribed_by: Vec<Option<usize>> = vec![None; mesh.points.len()];
