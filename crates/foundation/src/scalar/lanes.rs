@@ -74,6 +74,12 @@ pub fn widest<W: PackedWork>(work: W) -> W::Output {
     }
 }
 
+/// Runs `work`, on plain numbers, compiled for the widest registers of this machine.
+#[inline(always)]
+pub fn dispatched<R>(work: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(work)
+}
+
 impl<S: Simd> Lanes<S> {
     /// The same value in every lane.
     #[inline(always)]

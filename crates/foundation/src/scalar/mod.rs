@@ -16,7 +16,7 @@ mod sum;
 pub use coordinates::{Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
-pub use lanes::{Lanes, Packed, PackedWork, widest};
+pub use lanes::{Lanes, Packed, PackedWork, dispatched, widest};
 pub use norm::{distance, norm, scaled_norm};
 pub use sum::Sum;
 

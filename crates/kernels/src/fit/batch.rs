@@ -3,7 +3,7 @@
 //! Theory: page *Least squares* of the book.
 
 use super::closed::Closed;
-use super::constrained::solve_nonnegative;
+use super::constrained::{MANY, solve_nonnegative, solve_wide};
 use super::delicate::DelicateCells;
 use super::least_squares::off_diagonal_equations;
 use super::method::{Certificate, Method, Verdict};
@@ -11,6 +11,7 @@ use super::normal::{Normal, Rank};
 use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
 use super::settings::Fit;
+use super::wide::Wide;
 use crate::element::Element;
 use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, PackedWork, distance, widest};
@@ -174,12 +175,19 @@ impl<'a, T: Packed> Workspace<'a, T> {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
-        for (lane, constants) in constants.chunks_exact_mut(m).enumerate() {
-            if constants.iter().all(|k| *k >= 0.0) {
-                continue;
-            }
-            let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
-            let (k, rank) = solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)));
+        let is_bounded = |lane: &usize| constants[lane * m..][..m].iter().any(|k| !(*k >= 0.0));
+        let lanes: Vec<usize> = (0..constants.len() / m).filter(is_bounded).collect();
+        let has_many = equations.size() >= MANY;
+        let mut wides = if has_many { Wide::of_lanes(equations, &lanes) } else { Vec::new() };
+        for (i, &lane) in lanes.iter().enumerate() {
+            let constants = &mut constants[lane * m..][..m];
+            let (k, rank) = match wides.get_mut(i) {
+                Some(wide) => solve_wide(wide, (wide.size() == m).then_some(&*constants)),
+                None => {
+                    let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
+                    solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)))
+                }
+            };
             fit.spread(springs, constants, &k);
             tally.add(Verdict { certificate: None, rank, reached: true, delicate: false });
         }

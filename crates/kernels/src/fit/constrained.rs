@@ -5,6 +5,7 @@
 
 use super::dense::at_rounding;
 use super::normal::{Normal, Rank};
+use super::wide::Wide;
 use crate::scalar::{Real, Scalar};
 use clarabel::algebra::{CscMatrix, MatrixMathMut};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
@@ -63,39 +64,77 @@ pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Opti
     Some(is_optimal.then(|| k.into_iter().zip(&scale).map(|(k, scale)| k * scale).collect()))
 }
 
+/// Unknowns from which on sums are taken eight terms at a time.
+pub const MANY: usize = 24;
+
 fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
+    if normal.size() >= MANY {
+        return solve_wide(&mut Wide::of_lanes(normal, &[0])[0], None);
+    }
     let (scaled, scale) = normal.scaled();
-    let (mut k, rank) = match pivot_to(&scaled, f64::given()) {
-        Some(k) => (k, Rank::Full),
-        None => match interior_point(&scaled) {
-            Some(k) => (k, Rank::Deficient),
-            None => (vec![0.0; normal.size()], Rank::Unsolved),
-        },
-    };
+    let (mut k, rank) = decided(pivot_to(&scaled, f64::given()), || scaled.clone());
     k.iter_mut().zip(&scale).for_each(|(k, s)| *k *= s);
     (k, rank)
+}
+
+/// The optimum of many unknowns, from their values without bounds if these are known.
+pub fn solve_wide(wide: &mut Wide, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
+    let positive = free.map_or(vec![true; wide.size()], |free| free.iter().map(|k| *k >= 0.0).collect());
+    let tolerance = at_rounding::<f64>(OPTIMALITY) * wide.largest();
+    let ended = exchange(positive, |positive| {
+        let set: Vec<usize> = (0..positive.len()).filter(|&s| positive[s]).collect();
+        if !wide.solve(&set, f64::given()) {
+            return None;
+        }
+        let (k, slopes) = (wide.constants(), wide.slopes());
+        let is_wrong = |s: &usize| if positive[*s] { k[*s] < 0.0 } else { slopes[*s] < -tolerance };
+        Some((0..k.len()).filter(is_wrong).collect())
+    });
+    let (k, rank) = decided(ended.then(|| wide.constants().to_vec()), || wide.scaled());
+    (wide.unscaled(&k), rank)
+}
+
+/// What pivoting has found, or what the interior-point method decides.
+fn decided(pivoted: Option<Vec<f64>>, scaled: impl FnOnce() -> Normal) -> (Vec<f64>, Rank) {
+    if let Some(k) = pivoted {
+        return (k, Rank::Full);
+    }
+    let scaled = scaled();
+    match interior_point(&scaled) {
+        Some(k) => (k, Rank::Deficient),
+        None => (vec![0.0; scaled.size()], Rank::Unsolved),
+    }
 }
 
 /// Pivoting for input data with the relative error `rounding`.
 fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
     let m = normal.size();
     let tolerance = at_rounding::<T>(OPTIMALITY) * normal.rhs.iter().fold(0.0f64, |a, b| a.max(b.rounded().abs()));
-    let mut positive = vec![true; m];
-    let (mut fewest, mut patience) = (m + 1, 3);
-    for _ in 0..100 + 10 * m {
+    let mut k = Vec::new();
+    exchange(vec![true; m], |positive| {
         let set: Vec<usize> = (0..m).filter(|&s| positive[s]).collect();
         let mut free = normal.restricted(&set);
         if !free.solve_to(rounding) {
             return None;
         }
-        let mut k = vec![normal.rhs[0].zero(); m];
+        k = vec![normal.rhs[0].zero(); m];
         set.iter().zip(&free.rhs).for_each(|(&s, value)| k[s] = value.clone());
         let slope = normal.gradient(&k);
-        let wrong: Vec<usize> = (0..m)
-            .filter(|&s| if positive[s] { k[s].rounded() < 0.0 } else { slope[s].rounded() < -tolerance })
-            .collect();
+        let is_wrong = |s: &usize| if positive[*s] { k[*s].rounded() < 0.0 } else { slope[*s].rounded() < -tolerance };
+        Some((0..m).filter(is_wrong).collect())
+    })
+    .then_some(k)
+}
+
+/// Moves the unknowns that `wrong` names into the set of positive ones or out of it, until it names none; false if it knows none because
+/// the equations of a set are singular, or the exchanges do not end.
+fn exchange(mut positive: Vec<bool>, mut wrong: impl FnMut(&[bool]) -> Option<Vec<usize>>) -> bool {
+    let m = positive.len();
+    let (mut fewest, mut patience) = (m + 1, 3);
+    for _ in 0..100 + 10 * m {
+        let Some(wrong) = wrong(&positive) else { return false };
         if wrong.is_empty() {
-            return Some(k);
+            return true;
         }
         // Exchange all as long as that helps; then only the last one, which cannot cycle (Murty 1974).
         if wrong.len() < fewest {
@@ -106,7 +145,7 @@ fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
         let exchanged = if patience > 0 || wrong.len() < fewest { &wrong[..] } else { &wrong[wrong.len() - 1..] };
         exchanged.iter().for_each(|&s| positive[s] = !positive[s]);
     }
-    None
+    false
 }
 
 /// The same problem solved by Clarabel's interior-point method; `None` if it reports no solution.
@@ -141,7 +180,7 @@ mod tests {
             (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         };
         let mut bound = 0;
-        for m in (1..12).flat_map(|m| [m; 10]) {
+        for m in (1..12).flat_map(|m| [m; 10]).chain([24, 27, 40, 61]) {
             let g: Vec<f64> = (0..m * (m + 2)).map(|_| random()).collect();
             let rows: Vec<&[f64]> = g.chunks_exact(m + 2).collect();
             let dot = |s: usize, t: usize| rows[s].iter().zip(rows[t]).map(|(a, b)| a * b).sum::<f64>();

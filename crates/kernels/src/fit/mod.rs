@@ -48,6 +48,7 @@ mod spectral;
 mod tension;
 mod visit;
 mod weight;
+mod wide;
 
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};

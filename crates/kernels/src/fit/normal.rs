@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves errors of about m
 /// roundings. Pivots above this limit are used, and the digits are lost that the condition costs.
-const RANK: f64 = 1000.0;
+pub(super) const RANK: f64 = 1000.0;
 
 /// The matrix `M`, row by row, and `b`, of one element or one per lane. Only the lower triangle of `M` is read.
 #[derive(Debug, Clone)]
