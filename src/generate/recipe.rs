@@ -61,9 +61,9 @@ impl Recipe {
                 Err(Error::at("volume", format!("belongs to the objective \"exact\", found with \"{objective}\"")))
             }
             "frobenius" | "offdiag" | "modal" => {
-                match Objective::named(objective, Choices { higher, ..Choices::default() })? {
-                    Objective::Frobenius(weight) => Ok(Recipe::Frobenius(weight)),
-                    Objective::Spectral(_) | Objective::Divergence(_) => refused("is iterated"),
+                match Objective::named(objective, Choices { higher, ..Choices::default() })?.least_squares() {
+                    Some(weight) => Ok(Recipe::Frobenius(weight)),
+                    None => refused("is iterated"),
                 }
             }
             "spectral" => refused("is a semidefinite programme; \"modal\" and \"offdiag\" are direct"),

@@ -190,6 +190,24 @@ impl Objective {
         }
     }
 
+    /// The weight of an objective that is a sum of squares, whose optimum is that of linear equations; none for those that are iterated.
+    pub fn least_squares(&self) -> Option<Weight> {
+        match self {
+            Objective::Frobenius(weight) => Some(*weight),
+            Objective::Spectral(_) | Objective::Divergence(_) => None,
+        }
+    }
+
+    /// The name of the method that solves it, without tensions, with or without the bound k ≥ 0.
+    pub fn method_name(&self, nonnegative: bool) -> &'static str {
+        match self {
+            Objective::Frobenius(_) if nonnegative => "block principal pivoting",
+            Objective::Frobenius(_) => "normal equations",
+            Objective::Spectral(_) => "barrier",
+            Objective::Divergence(_) => "newton",
+        }
+    }
+
     /// The scale of the motions beyond constant strain, if the objective has one.
     pub fn higher(&self) -> Option<f64> {
         self.weight().and_then(Weight::higher).map(Higher::value)

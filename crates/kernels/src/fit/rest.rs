@@ -31,12 +31,12 @@ impl Rest {
             let expected = format!("\"mesh\" with {other}; \"free\" and \"zero\" go with {possible}");
             Err(Error::expected("rest", expected, format!("\"{}\"", self.name())))
         };
-        match (self, objective, solver) {
-            (Rest::Mesh, ..) | (_, Objective::Frobenius(_), Solver::Native) => Ok(()),
-            (_, Objective::Frobenius(_), Solver::General { .. }) => {
+        match (self, objective.least_squares(), solver) {
+            (Rest::Mesh, ..) | (_, Some(_), Solver::Native) => Ok(()),
+            (_, Some(_), Solver::General { .. }) => {
                 refuse(&format!("the solver \"{}\"", solver.name()), "the solver \"native\"")
             }
-            (_, Objective::Spectral(_) | Objective::Divergence(_), _) => {
+            (_, None, _) => {
                 let possible = "the objectives \"frobenius\", \"offdiag\" and \"modal\"";
                 refuse(&format!("the objective \"{}\"", objective.name()), possible)
             }

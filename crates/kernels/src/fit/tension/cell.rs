@@ -5,7 +5,6 @@ use super::problem::Problem;
 use super::unknowns::{Sizes, Unknown, unknowns};
 use super::view::{View, deformations};
 use crate::element::Element;
-use crate::fit::objective::Objective;
 use crate::fit::rest::Rest;
 use crate::fit::settings::Fit;
 use crate::fit::weight::Weight;
@@ -51,13 +50,9 @@ struct Spring {
 }
 
 impl<'a> Cells<'a> {
-    /// The objective of the fit must be a Frobenius norm.
+    /// The objective of the fit must be a sum of squares, as [`Rest::check`](crate::fit::Rest::check) asks.
     pub fn new(element: &Arc<Element>, springs: &'a Springs, fit: &Fit) -> Cells<'a> {
-        let weight = match fit.objective {
-            Objective::Frobenius(weight) => weight,
-            Objective::Spectral(weight) => weight.into(),
-            Objective::Divergence(_) => Weight::Relative,
-        };
+        let weight = fit.objective.weight().unwrap_or(Weight::Relative);
         Cells { springs, measures: springs.measures(element), fit: *fit, weight }
     }
 

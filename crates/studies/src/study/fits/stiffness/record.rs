@@ -31,19 +31,11 @@ pub struct StiffnessRecord {
 
 impl StiffnessRecord {
     pub(super) fn of(fit: &Fit) -> StiffnessRecord {
-        let solver = match (fit.solver, fit.objective, fit.nonnegative) {
-            (Solver::General { .. }, ..) => fit.solver.name(),
-            (Solver::Native, Objective::Frobenius(_), bounded) if fit.rest != Rest::Mesh => {
-                if bounded {
-                    "interior point"
-                } else {
-                    "orthogonal least squares"
-                }
-            }
-            (Solver::Native, Objective::Frobenius(_), false) => "normal equations",
-            (Solver::Native, Objective::Frobenius(_), true) => "block principal pivoting",
-            (Solver::Native, Objective::Spectral(_), _) => "barrier",
-            (Solver::Native, Objective::Divergence { .. }, _) => "newton",
+        let solver = match (fit.solver, fit.rest) {
+            (Solver::General { .. }, _) => fit.solver.name(),
+            (Solver::Native, Rest::Mesh) => fit.objective.method_name(fit.nonnegative),
+            (Solver::Native, _) if fit.nonnegative => "interior point",
+            (Solver::Native, _) => "orthogonal least squares",
         };
         StiffnessRecord {
             objective: fit.objective.name().into(),
