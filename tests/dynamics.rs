@@ -42,7 +42,7 @@ fn pair(constant: f64) -> (Network, Vec<f64>) {
 }
 
 /// A box of tetrahedra or hexahedra, `side` cells of 1 cm along each edge, 10 kPa; all springs, also those on the volume.
-fn cube(element: &str, side: usize) -> (Mesh, Network) {
+pub fn cube(element: &str, side: usize) -> (Mesh, Network) {
     let element = Arc::new(Element::load(element).unwrap());
     let spec = BoxMesh { element, size: vec![0.01 * side as f64; 3], cells: vec![side; 3], origin: vec![0.0; 3] };
     let mesh = spec.build().unwrap();
@@ -57,7 +57,7 @@ fn cube(element: &str, side: usize) -> (Mesh, Network) {
 }
 
 /// Velocities that follow no symmetry, m/s, the same on every machine.
-fn scattered(dofs: usize, size: f64) -> Vec<f64> {
+pub fn scattered(dofs: usize, size: f64) -> Vec<f64> {
     (0..dofs).map(|i| size * (12.9898 * (i + 1) as f64).sin()).collect()
 }
 

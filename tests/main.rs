@@ -23,6 +23,7 @@ mod elimination;
 mod energies;
 mod errors;
 mod exact;
+mod explicit;
 mod exports;
 mod extremes;
 mod fields;

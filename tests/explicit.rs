@@ -1,0 +1,113 @@
+//! Explicit motions of networks: K at rest in blocks is that of its entries, and large bodies move alike on any number of threads.
+
+use crate::dynamics::{cube, scattered};
+use springfit::dynamics::{Damping, Integrator, Motion, Options, Simulation, StepOutcome};
+use springfit::model::{BlockStiffness, Elastic, LengthSpring, Lumping, Network, Response, Support, lumped_masses};
+
+/// A network whose stiffness is known by its entries alone.
+struct Listed<'a>(&'a Network);
+
+impl Elastic for Listed<'_> {
+    fn respond(&self, x: &[f64]) -> Option<Response> {
+        self.0.respond(x)
+    }
+}
+
+fn explicit(step: f64) -> Options {
+    Options { step, integrator: Integrator::SymplecticEuler, ..Options::default() }
+}
+
+/// With a face held and damping in proportion to the stiffness, springs that rotate and springs that do not. Both ways add the same
+/// numbers in another order, 1e-16 of each, for 50 steps.
+#[test]
+fn blocks_move_a_network_as_its_entries_do() {
+    for (element, side) in [("tet4", 3), ("hex8", 3)] {
+        let (mesh, mut network) = cube(element, side);
+        network.lengths.push(LengthSpring { points: [0, mesh.point_count() - 1], constant: 3.0, rest: 0.0 });
+        let masses = lumped_masses(&mesh, 1000.0, 1.0, Lumping::Hrz);
+        let mut support = Support { prescribed: vec![None; mesh.points.len()] };
+        (0..mesh.points.len())
+            .filter(|dof| mesh.points[dof - dof % 3] == 0.0)
+            .for_each(|dof| support.prescribed[dof] = Some(0.0));
+        let damping = Damping { mass: 0.1, stiffness: 1e-4, dampers: None };
+        let listed = Listed(&network);
+        for linear in [false, true] {
+            let moved = |model: &dyn Elastic| {
+                let motion = Motion {
+                    support: support.clone(),
+                    damping: damping.clone(),
+                    ..Motion::free(model, &mesh.points, &masses)
+                };
+                let longest =
+                    Simulation::new(motion.clone(), Options { linear, ..explicit(1e-9) }).unwrap().longest_step();
+                let mut simulation = Simulation::new(motion, Options { linear, ..explicit(0.5 * longest) }).unwrap();
+                simulation.start(&vec![0.0; mesh.points.len()], &scattered(mesh.points.len(), 1e-2)).unwrap();
+                (0..50).for_each(|_| assert_eq!(simulation.step().outcome, StepOutcome::Converged));
+                (longest, simulation.state().clone())
+            };
+            let ((longest, blocks), (other, entries)) = (moved(&network), moved(&listed));
+            assert!((longest / other - 1.0).abs() < 1e-12, "{element}: {longest:e} s and {other:e} s");
+            let size = entries.displacement.iter().fold(0.0f64, |size, u| size.max(u.abs()));
+            let apart = blocks.displacement.iter().zip(&entries.displacement).map(|(a, b)| (a - b).abs());
+            assert!(size > 0.0 && apart.fold(0.0, f64::max) < 1e-11 * size, "{element}, linear {linear}");
+        }
+    }
+}
+
+/// 90 000 degrees of freedom, which passes share out to the threads; forces, motion and the account of energies.
+#[test]
+fn large_bodies_move_with_the_same_bits_on_any_number_of_threads() {
+    let side = 30;
+    let count = side * side * side;
+    let place = |i: usize, j: usize, k: usize| (i * side + j) * side + k;
+    let mut network = Network { dimension: 3, ..Network::default() };
+    let mut points = Vec::new();
+    for (i, j, k) in (0..count).map(|p| (p / side / side, p / side % side, p % side)) {
+        points.extend([i, j, k].map(|x| x as f64));
+        for (other, is_there) in
+            [(place(i + 1, j, k), i + 1 < side), (place(i, j + 1, k), j + 1 < side), (place(i, j, k + 1), k + 1 < side)]
+        {
+            if is_there {
+                network.lengths.push(LengthSpring { points: [place(i, j, k), other], constant: 1.0, rest: 1.0 });
+            }
+        }
+    }
+    assert!(points.len() > 65_536 && network.lengths.len() > 65_536);
+    let masses = vec![1.0; count];
+    let moved = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let prepared = network.prepared();
+            let damping = Damping { mass: 0.1, stiffness: 0.01, dampers: None };
+            let motion = Motion { damping, ..Motion::free(&prepared, &points, &masses) };
+            let mut simulation = Simulation::new(motion, explicit(0.1)).unwrap();
+            simulation.start(&vec![0.0; points.len()], &scattered(points.len(), 0.3)).unwrap();
+            (0..5).for_each(|_| assert_eq!(simulation.step().outcome, StepOutcome::Converged));
+            (simulation.longest_step(), simulation.state().clone(), simulation.account())
+        })
+    };
+    let first = moved(1);
+    let balance = first.2.balance.unwrap();
+    assert!(balance.dissipated > 0.0 && balance.drift.abs() < 0.05, "{balance:?}");
+    assert!([2, 3].map(moved).iter().all(|other| *other == first));
+}
+
+/// In blocks and as entries, K at rest has the same row sums of absolute values, by which the step is bounded.
+#[test]
+fn absolute_sums_are_those_of_the_entries() {
+    let (mesh, network) = cube("tet4", 3);
+    let n = mesh.points.len();
+    let weights: Vec<f64> = scattered(n, 1.0).iter().map(|w| 1.0 + w.abs()).collect();
+    let mut full = vec![0.0; n * n];
+    for entry in network.stiffness(&mesh.points) {
+        full[entry.row * n + entry.col] += entry.val;
+        if entry.row != entry.col {
+            full[entry.col * n + entry.row] += entry.val;
+        }
+    }
+    let sums = BlockStiffness::of_network(&network, &mesh.points, None).absolute_sums(&weights);
+    for (row, sum) in full.chunks_exact(n).zip(sums) {
+        let expected: f64 = row.iter().zip(&weights).map(|(k, w)| k.abs() * w).sum();
+        assert!((sum / expected - 1.0).abs() < 1e-13, "{sum} instead of {expected}");
+    }
+}
