@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-/// Degrees of freedom that one thread takes at a time; fewer stay on the calling thread, which a pass does not occupy for as long as
-/// another thread takes to wake.
+/// Degrees of freedom that one thread takes at a time. A shorter pass stays on the calling thread: to wake another would take longer.
 pub(super) const PIECE: usize = 1 << 16;
 
 /// Whether all numbers pass the test.
