@@ -82,6 +82,7 @@ mod searches;
 mod settings;
 mod shapes;
 mod shards;
+mod sides;
 mod small_loads;
 mod smooth_fills;
 mod springs;

@@ -1,6 +1,7 @@
 //! Network files: what is written is read again, explains itself, and is refused in one line where it is wrong.
 
 use crate::report::{LARGE, LINEAR};
+use springfit::element::{Element, SHIPPED};
 use springfit::model::{Elastic, displaced};
 use springfit::report::{
     FORMAT, MeasureKind, NETWORK_VERSION, NetworkFile, NetworkFormat, NetworkRecord, SpringRecord, network_json,
@@ -9,6 +10,7 @@ use springfit::report::{
 use springfit::springs::Law;
 use springfit::study::{Outcome, Scene, run};
 use springfit::symbolic::Scope;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -248,4 +250,52 @@ fn arrays_are_those_that_numpy_reads() {
     // Patches are not in these arrays.
     let error = format.write(&path, &NetworkFile::of(&outcome, &outcome.fits[1])).unwrap_err().to_string();
     assert!(error.contains("patch") && error.contains("volume = \"points\""), "{error}");
+}
+
+/// Of length springs those of all cells that have one there, of others that of its own.
+#[test]
+fn springs_name_the_groups_that_they_come_from() {
+    let mut others = 0;
+    for shipped in SHIPPED.iter() {
+        let element = Element::shipped(shipped).unwrap();
+        let d = element.dimension();
+        let [sizes, cells] = [vec!["1"; d].join(", "), vec!["2"; d].join(", ")];
+        let mesh = format!("box = {{ element = \"{}\", size = [{sizes}], cells = [{cells}] }}", shipped.name);
+        let fits = "[[fit]]\nobjective = \"exact\"\n[[fit]]\nobjective = \"frobenius\"\nnonnegative = true\n";
+        let law = "[[fit]]\nobjective = \"sampled\"\nlaw = \"neo-hookean\"\nforce = \"k1*s + k3*s^3\"\nshapes = { count = 20 }\n";
+        let law = if d == 3 && element.nodes() < 9 { law } else { "" };
+        let scene = format!("[mesh]\n{mesh}\n[material]\nyoung = 1e4\npoisson = 0.3\n{fits}{law}");
+        let Ok(scene) = Scene::parse(&scene, Path::new("scene.toml")) else { continue };
+        // Not every element fills a box.
+        let Ok(outcome) = run(&scene, &mut |_| {}) else { continue };
+        for fit in &outcome.fits {
+            let [block] = &outcome.mesh.blocks[..] else { panic!("one element") };
+            let (springs, network) = (&fit.springs[0], NetworkFile::of(&outcome, fit).record());
+            let every: Vec<usize> = (0..springs.nodes()).collect();
+            let pairs = springs.pairs().iter().map(|pair| pair.to_vec());
+            let functions = springs.functions().iter().map(|function| function.nodes.clone());
+            let own: Vec<Vec<usize>> = pairs.chain(functions).collect();
+            let mut expected: BTreeMap<(bool, Vec<usize>), BTreeSet<&str>> = BTreeMap::new();
+            for nodes in block.cells() {
+                for s in 0..springs.len() {
+                    let is_length = s < springs.pairs().len();
+                    let mut points: Vec<usize> = own.get(s).unwrap_or(&every).iter().map(|&a| nodes[a]).collect();
+                    points.sort_unstable();
+                    let name = &springs.names()[springs.groups()[s]];
+                    expected.entry((is_length, points)).or_default().insert(name);
+                }
+            }
+            for spring in &network.springs {
+                let mut points = spring.points.to_vec();
+                points.sort_unstable();
+                let is_length = spring.kind == "length";
+                others += usize::from(!is_length);
+                let found: BTreeSet<&str> = spring.groups.iter().map(|&g| &network.groups[g].group[..]).collect();
+                let known = &expected[&(is_length, points)];
+                let is_right = if is_length { found == *known } else { found.len() == 1 && found.is_subset(known) };
+                assert!(is_right, "{} {}: {found:?} of {known:?}", shipped.name, fit.fit.name);
+            }
+        }
+    }
+    assert!(others > 100, "{others}");
 }

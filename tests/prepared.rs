@@ -181,7 +181,7 @@ fn cube() -> Mesh {
 
 fn spring(measure: Measure, points: Vec<usize>, rest: f64) -> MeasureSpring {
     let kind = SpringKind::Measure;
-    MeasureSpring { kind, points, constant: 3.0, rest, measure, law: None, parameters: Vec::new() }
+    MeasureSpring { kind, points: points.into(), constant: 3.0, rest, measure, law: None, parameters: Vec::new() }
 }
 
 /// Angles, lengths with laws, contents of the same cell in other orders, and patches of unequal shares that count a cell often.

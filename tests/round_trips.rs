@@ -54,7 +54,7 @@ impl Written {
 
     /// Points, constant and rest of each spring.
     fn springs(&self) -> Vec<(Vec<usize>, f64, f64)> {
-        self.record.springs.iter().map(|s| (s.points.clone(), s.constant, s.rest)).collect()
+        self.record.springs.iter().map(|s| (s.points.to_vec(), s.constant, s.rest)).collect()
     }
 }
 
@@ -140,7 +140,7 @@ proptest! {
         let points = |text: &String| -> Vec<usize> { text.split(' ').map(|p| p.parse().unwrap()).collect() };
         let found: Vec<_> = columns["points"].iter().map(points).zip(numbers("constant")).zip(numbers("rest")).map(|((p, k), r)| (p, k, r)).collect();
         prop_assert_eq!(&found, &springs);
-        let kinds: Vec<&str> = written.record.springs.iter().map(|spring| spring.kind.as_str()).collect();
+        let kinds: Vec<&str> = written.record.springs.iter().map(|spring| &spring.kind[..]).collect();
         prop_assert_eq!(&columns["kind"], &kinds);
 
         // Arrays of NumPy have springs on lengths and on simplices, and points, masses and supports.
@@ -154,7 +154,7 @@ proptest! {
         };
         prop_assert_eq!(real("k"), of(|s| s.constant, true));
         prop_assert_eq!(real("rest"), of(|s| s.rest, true));
-        let ends: Vec<usize> = written.record.springs.iter().filter(is_length).flat_map(|s| s.points.clone()).collect();
+        let ends: Vec<usize> = written.record.springs.iter().filter(is_length).flat_map(|s| s.points.to_vec()).collect();
         prop_assert_eq!(whole("springs"), ends);
         let places: Vec<f64> = written.record.points.iter().flat_map(|x| [0, 1, 2].map(|k| if k < d { x[k] } else { 0.0 })).collect();
         prop_assert_eq!(real("points"), places.clone());

@@ -42,7 +42,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
         held: job.held_along(0),
         gravity: job.gravity,
         edges: job.parts.lengths.iter().map(|s| (s.points[0], s.points[1], s.constant, s.rest)).collect(),
-        volumes: job.parts.contents.iter().map(|s| (s.points.clone(), s.constant, s.rest)).collect(),
+        volumes: job.parts.contents.iter().map(|s| (s.points.to_vec(), s.constant, s.rest)).collect(),
         surface: network.surface.clone(),
     };
     let text = serde_json::to_vec(&body).expect("keys are text");

@@ -4,7 +4,8 @@ use super::file::NetworkFile;
 use crate::element::SpringKind;
 use crate::mesh::Mesh;
 use crate::model::{LengthSpring, MeasureSpring, Network};
-use serde::{Deserialize, Serialize};
+use crate::springs::Law;
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 /// One spring per line: `kind,points,constant,rest,unit`. Points count from 0 among those of the mesh, which has no points without a cell.
@@ -24,97 +25,126 @@ use std::io::{self, Write};
 /// # Errors
 /// The writer fails.
 pub fn network_csv(mesh: &Mesh, network: &Network, to: &mut dyn Write) -> io::Result<()> {
-    let numbers = |points: &[usize]| mesh.numbering.as_ref().map(|own| points.iter().map(|&p| own.nodes[p]).collect());
-    let lengths = network.lengths.iter().map(|spring| SpringRow::of_length(spring, numbers(&spring.points)));
-    let others =
-        network.others.iter().map(|spring| SpringRow::of_other(spring, spring.points.clone(), numbers(&spring.points)));
     let lawful = network.others.iter().any(|spring| spring.law.is_some());
-    let mut table = SpringTable::new(to, lawful, mesh.numbering.is_some())?;
-    lengths.chain(others).try_for_each(|row| table.write(&row))?;
+    let own = mesh.numbering.as_ref().map(|own| &own.nodes[..]);
+    let mut table = SpringTable::new(to, lawful, own.is_some())?;
+    let mut nodes = Vec::new();
+    let mut write = |row: SpringRow| {
+        nodes.clear();
+        nodes.extend(own.iter().flat_map(|own| row.points.iter().map(|&p| own[p])));
+        table.write(&row, &nodes)
+    };
+    network.lengths.iter().try_for_each(|spring| write(SpringRow::of_length(spring)))?;
+    network.others.iter().try_for_each(|spring| write(SpringRow::of_other(spring, &spring.points)))?;
     table.flush()
 }
 
-/// The columns of one spring.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct SpringRow {
-    kind: String,
-    points: String,
-    constant: String,
-    rest: String,
-    unit: String,
-    law: String,
-    parameters: String,
-    nodes: String,
+/// One spring, as a table has it.
+pub(super) struct SpringRow<'a> {
+    kind: SpringKind,
+    points: &'a [usize],
+    constant: f64,
+    rest: f64,
+    law: Option<(&'a Law, &'a [f64])>,
 }
 
-impl SpringRow {
-    /// The constant; NaN if it is no number.
-    pub fn constant(&self) -> f64 {
-        self.constant.parse().unwrap_or(f64::NAN)
-    }
-
-    pub fn of_length(spring: &LengthSpring, numbers: Option<Vec<u64>>) -> SpringRow {
-        let (kind, none) = (SpringKind::Length, String::new);
-        SpringRow::new(kind, &spring.points, [spring.constant, spring.rest], [none(), none()], numbers)
+impl<'a> SpringRow<'a> {
+    pub fn of_length(spring: &'a LengthSpring) -> SpringRow<'a> {
+        let LengthSpring { points, constant, rest } = spring;
+        SpringRow { kind: SpringKind::Length, points, constant: *constant, rest: *rest, law: None }
     }
 
     /// Of a spring on these points.
-    pub fn of_other(spring: &MeasureSpring, points: Vec<usize>, numbers: Option<Vec<u64>>) -> SpringRow {
-        let law = spring.law.as_deref().map(|law| {
-            let named = law.parameters.iter().zip(&spring.parameters).map(|(name, value)| format!("{name}={value:e}"));
-            [law.text.clone(), named.collect::<Vec<_>>().join(" ")]
-        });
-        SpringRow::new(spring.kind, &points, [spring.constant, spring.rest], law.unwrap_or_default(), numbers)
-    }
-
-    fn new(
-        kind: SpringKind,
-        points: &[usize],
-        [constant, rest]: [f64; 2],
-        [law, parameters]: [String; 2],
-        numbers: Option<Vec<u64>>,
-    ) -> SpringRow {
-        let joined = |numbers: Vec<String>| numbers.join(" ");
-        SpringRow {
-            kind: kind.name().into(),
-            points: joined(points.iter().map(usize::to_string).collect()),
-            constant: format!("{constant:e}"),
-            rest: format!("{rest:e}"),
-            unit: kind.properties().unit.into(),
-            law,
-            parameters,
-            nodes: joined(numbers.unwrap_or_default().iter().map(u64::to_string).collect()),
-        }
+    pub fn of_other(spring: &'a MeasureSpring, points: &'a [usize]) -> SpringRow<'a> {
+        let law = spring.law.as_deref().map(|law| (law, &spring.parameters[..]));
+        SpringRow { kind: spring.kind, points, constant: spring.constant, rest: spring.rest, law }
     }
 }
+
+/// The columns of a table with all of them; the constant is one of those that are always there.
+pub(super) const COLUMNS: [&str; 8] = ["kind", "points", "constant", "rest", "unit", "law", "parameters", "nodes"];
+const CONSTANT: usize = 2;
 
 /// A table of springs that is being written.
-pub(super) struct SpringTable<'a> {
-    table: csv::Writer<&'a mut dyn Write>,
+pub(super) struct SpringTable<W: Write> {
+    table: csv::Writer<W>,
     lawful: bool,
     numbered: bool,
+    field: String,
 }
 
-impl<'a> SpringTable<'a> {
+impl<W: Write> SpringTable<W> {
     /// With laws, and with the numbers of the points in the mesh file.
-    pub fn new(to: &'a mut dyn Write, lawful: bool, numbered: bool) -> io::Result<SpringTable<'a>> {
-        let mut table = csv::Writer::from_writer(to);
-        let mut header = vec!["kind", "points", "constant", "rest", "unit"];
-        header.extend(lawful.then_some(["law", "parameters"]).iter().flatten());
-        header.extend(numbered.then_some("nodes"));
-        table.write_record(&header)?;
-        Ok(SpringTable { table, lawful, numbered })
+    pub fn new(to: W, lawful: bool, numbered: bool) -> io::Result<SpringTable<W>> {
+        let mut table = SpringTable { lawful, numbered, ..SpringTable::bare(to) };
+        table.fields(COLUMNS.into_iter())?;
+        Ok(table)
     }
 
-    pub fn write(&mut self, row: &SpringRow) -> io::Result<()> {
-        let mut columns = vec![&row.kind, &row.points, &row.constant, &row.rest, &row.unit];
-        columns.extend(self.lawful.then_some([&row.law, &row.parameters]).iter().flatten());
-        columns.extend(self.numbered.then_some(&row.nodes));
-        Ok(self.table.write_record(columns)?)
+    /// With all columns and no header.
+    pub fn bare(to: W) -> SpringTable<W> {
+        SpringTable { table: csv::Writer::from_writer(to), lawful: true, numbered: true, field: String::new() }
+    }
+
+    /// Writes a spring whose points have the numbers `nodes` in the mesh file.
+    pub fn write(&mut self, row: &SpringRow, nodes: &[u64]) -> io::Result<()> {
+        self.table.write_field(row.kind.name())?;
+        self.joined(row.points.iter(), |text, point| write!(text, "{point}"))?;
+        for value in [row.constant, row.rest] {
+            self.joined([value].iter(), |text, value| write!(text, "{value:e}"))?;
+        }
+        self.table.write_field(row.kind.properties().unit)?;
+        if self.lawful {
+            self.table.write_field(row.law.map_or("", |(law, _)| &law.text))?;
+            let parameters = row.law.iter().flat_map(|(law, values)| law.parameters.iter().zip(values.iter()));
+            self.joined(parameters, |text, (name, value)| write!(text, "{name}={value:e}"))?;
+        }
+        if self.numbered {
+            self.joined(nodes.iter(), |text, node| write!(text, "{node}"))?;
+        }
+        Ok(self.table.write_record(None::<&[u8]>)?)
+    }
+
+    /// Writes a row of a table with all columns, and returns the constant of the spring, NaN if it is no number.
+    pub fn copy(&mut self, row: &csv::StringRecord) -> io::Result<f64> {
+        self.fields(row.iter())?;
+        Ok(row.get(CONSTANT).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN))
+    }
+
+    /// Writes those of all fields whose columns the table has.
+    fn fields<'a>(&mut self, all: impl Iterator<Item = &'a str>) -> io::Result<()> {
+        let has = |column: &str| match column {
+            "law" | "parameters" => self.lawful,
+            "nodes" => self.numbered,
+            _ => true,
+        };
+        let own = COLUMNS.into_iter().zip(all).filter(|(column, _)| has(column));
+        Ok(self.table.write_record(own.map(|(_, field)| field))?)
+    }
+
+    /// Writes a field of texts with spaces between them.
+    fn joined<T>(
+        &mut self,
+        values: impl Iterator<Item = T>,
+        write: impl Fn(&mut String, T) -> std::fmt::Result,
+    ) -> io::Result<()> {
+        self.field.clear();
+        for value in values {
+            if !self.field.is_empty() {
+                self.field.push(' ');
+            }
+            write(&mut self.field, value).map_err(io::Error::other)?;
+        }
+        Ok(self.table.write_field(&self.field)?)
     }
 
     pub fn flush(&mut self) -> io::Result<()> {
         self.table.flush()
+    }
+
+    /// What was written to, with all of it.
+    pub fn into_inner(self) -> io::Result<W> {
+        self.table.into_inner().map_err(csv::IntoInnerError::into_error)
     }
 }
 

@@ -10,7 +10,7 @@ use super::record::{
 use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
 use crate::material::{CellMap, State};
-use crate::mesh::Mesh;
+use crate::mesh::{CellBlock, Mesh};
 use crate::model::{Elastic, MeasureSpring, Network, Support};
 use crate::report::fit_record::FitRecord;
 use crate::report::table::notes;
@@ -35,8 +35,12 @@ pub(super) struct SpringList<'a> {
     network: &'a Network,
     measures: Vec<usize>,
     origins: Origins,
-    dampers: Vec<f64>,
+    /// `[springs]`; none without dampers.
+    dampers: Option<Vec<f64>>,
 }
+
+/// The points of each cell of a block.
+pub(super) struct CellList<'a>(&'a CellBlock);
 
 impl<'a> NetworkFile<'a> {
     /// The network of a fit of `outcome`.
@@ -70,14 +74,20 @@ impl<'a> NetworkFile<'a> {
 
     /// The record with all its springs.
     pub fn record(&self) -> NetworkRecord {
-        self.listed().with_all()
+        let (record, springs) = self.parted();
+        NetworkRecord { springs: springs.iter().map(SpringRecord::into_owned).collect(), ..record }
     }
 
-    /// The record whose springs are made while they are written.
-    pub(super) fn listed(&self) -> NetworkRecord<SpringList<'a>> {
+    /// The record without its springs, and the springs.
+    pub(super) fn parted(&self) -> (NetworkRecord, SpringList<'a>) {
+        self.listed().parted()
+    }
+
+    /// The record whose cells and springs are made while they are written.
+    pub(super) fn listed(&self) -> NetworkRecord<SpringList<'a>, CellList<'a>> {
         let measures = Measures::of(self.network);
         let springs = self.study.map_or(&[][..], |(_, fit)| &fit.springs);
-        let origins = Origins::of(self.mesh, springs);
+        let origins = Origins::of(self.mesh, self.network, springs);
         let (mesh, support) = (self.mesh, self.support());
         let d = mesh.dimension;
         let outcome = self.study.map(|(outcome, _)| outcome);
@@ -93,7 +103,7 @@ impl<'a> NetworkFile<'a> {
             numbering: mesh.numbering.as_ref().map(|numbering| numbering.title().into()),
             nodes: mesh.numbering.as_ref().map(|numbering| numbering.nodes.clone()),
             masses: self.masses().map(<[f64]>::to_vec),
-            cells: mesh.blocks.iter().map(CellBlockRecord::of).collect(),
+            cells: mesh.blocks.iter().map(CellList::record).collect(),
             surface: mesh.surface_triangles(),
             held: held(&support, d),
             loads: outcome
@@ -166,21 +176,18 @@ impl<'a> NetworkFile<'a> {
     }
 
     /// The coefficients of the dampers, `[springs]`.
-    fn dampers(&self) -> Vec<f64> {
-        let none = || vec![0.0; self.network.len()];
-        let motion = self.study.and_then(|(outcome, _)| outcome.motion.as_ref());
-        let (Some(motion), Some(masses)) = (motion, self.masses()) else { return none() };
-        let DampingRecipe::Ratio(ratio) = motion.recipe.damping else { return none() };
-        let support = &motion.support;
-        let found = Dampers::coefficients_of_ratio(self.network, &self.mesh.points, masses, support, ratio);
-        found.unwrap_or_else(|_| none())
+    fn dampers(&self) -> Option<Vec<f64>> {
+        let motion = self.study.and_then(|(outcome, _)| outcome.motion.as_ref())?;
+        let DampingRecipe::Ratio(ratio) = motion.recipe.damping else { return None };
+        let (masses, support) = (self.masses()?, &motion.support);
+        Dampers::coefficients_of_ratio(self.network, &self.mesh.points, masses, support, ratio).ok()
     }
 }
 
-impl NetworkRecord<SpringList<'_>> {
-    fn with_all(self) -> NetworkRecord {
-        NetworkRecord {
-            springs: self.springs.iter().collect(),
+impl<'a> NetworkRecord<SpringList<'a>, CellList<'a>> {
+    fn parted(self) -> (NetworkRecord, SpringList<'a>) {
+        let record = NetworkRecord {
+            springs: Vec::new(),
             format: self.format,
             version: self.version,
             provenance: self.provenance,
@@ -190,7 +197,7 @@ impl NetworkRecord<SpringList<'_>> {
             numbering: self.numbering,
             nodes: self.nodes,
             masses: self.masses,
-            cells: self.cells,
+            cells: self.cells.into_iter().map(CellBlockRecord::with_all).collect(),
             surface: self.surface,
             held: self.held,
             loads: self.loads,
@@ -201,48 +208,75 @@ impl NetworkRecord<SpringList<'_>> {
             groups: self.groups,
             measures: self.measures,
             notes: self.notes,
-        }
+        };
+        (record, self.springs)
     }
 }
 
 impl SpringList<'_> {
     /// The springs one after the other, as they are written.
-    pub fn iter(&self) -> impl Iterator<Item = SpringRecord> {
-        let count = self.network.lengths.len();
+    pub fn iter(&self) -> impl Iterator<Item = SpringRecord<'_>> {
         let lengths = self.network.lengths.iter().enumerate().map(|(s, spring)| SpringRecord {
             kind: SpringKind::Length.name().into(),
-            points: spring.points.to_vec(),
+            points: (&spring.points[..]).into(),
             constant: spring.constant,
             rest: spring.rest,
             measure: 0,
             law: None,
             parameters: BTreeMap::new(),
-            damper: self.dampers[s],
-            groups: self.origins.groups(SpringKind::Length, &spring.points),
+            damper: self.damper(s),
+            groups: self.origins.groups(s).into(),
         });
-        let others = self.network.others.iter().enumerate();
-        lengths.chain(others.map(move |(i, spring)| self.other(spring, self.measures[i], self.dampers[count + i])))
+        let others = (self.network.lengths.len()..).zip(self.network.others.iter().zip(&self.measures));
+        lengths.chain(others.map(|(s, (spring, measure))| self.other(s, spring, *measure)))
     }
 
-    fn other(&self, spring: &MeasureSpring, measure: usize, damper: f64) -> SpringRecord {
+    fn other<'s>(&'s self, s: usize, spring: &'s MeasureSpring, measure: usize) -> SpringRecord<'s> {
         let named = |law: &Law| law.parameters.iter().cloned().zip(spring.parameters.iter().copied()).collect();
         SpringRecord {
             kind: spring.kind.name().into(),
-            points: spring.points.clone(),
+            points: (&spring.points[..]).into(),
             constant: spring.constant,
             rest: spring.rest,
             measure,
-            law: spring.law.as_deref().map(|law| law.text.clone()),
+            law: spring.law.as_deref().map(|law| law.text.as_str().into()),
             parameters: spring.law.as_deref().map(named).unwrap_or_default(),
-            damper,
-            groups: self.origins.groups(spring.kind, &spring.points),
+            damper: self.damper(s),
+            groups: self.origins.groups(s).into(),
         }
+    }
+
+    fn damper(&self, s: usize) -> f64 {
+        self.dampers.as_ref().map_or(0.0, |dampers| dampers[s])
     }
 }
 
 impl Serialize for SpringList<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         to.collect_seq(self.iter())
+    }
+}
+
+impl CellList<'_> {
+    fn record(block: &CellBlock) -> CellBlockRecord<CellList<'_>> {
+        CellBlockRecord {
+            element: block.element.name.clone(),
+            vtk: block.element.formats.vtk.as_ref().map(|vtk| vtk.cell_type),
+            points: CellList(block),
+        }
+    }
+}
+
+impl Serialize for CellList<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(self.0.cells())
+    }
+}
+
+impl CellBlockRecord<CellList<'_>> {
+    fn with_all(self) -> CellBlockRecord {
+        let points = self.points.0.cells().map(<[usize]>::to_vec).collect();
+        CellBlockRecord { element: self.element, vtk: self.vtk, points }
     }
 }
 
@@ -266,16 +300,6 @@ fn damping(motion: Option<&MotionOutcome>) -> NetworkDampingRecord {
         Some(DampingRecipe::Ratio(ratio)) => (0.0, 0.0, ratio),
     };
     NetworkDampingRecord { mass, stiffness, ratio }
-}
-
-impl CellBlockRecord {
-    fn of(block: &crate::mesh::CellBlock) -> CellBlockRecord {
-        CellBlockRecord {
-            element: block.element.name.clone(),
-            vtk: block.element.formats.vtk.as_ref().map(|vtk| vtk.cell_type),
-            points: block.cells().map(<[usize]>::to_vec).collect(),
-        }
-    }
 }
 
 impl NodalLoadRecord {

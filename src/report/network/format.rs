@@ -29,8 +29,8 @@ pub const NETWORK_FORMATS: [NetworkFormat; 4] = [
     NetworkFormat {
         ending: "npz",
         write: |path, file| {
-            let record = file.record();
-            let parts = Parts::of(&record).map_err(|e| e.in_file(path))?;
+            let (record, springs) = file.parted();
+            let parts = Parts::of_springs(&record, springs.iter()).map_err(|e| e.in_file(path))?;
             write_with(path, |to| network_npz(&record, &parts, to))
         },
     },

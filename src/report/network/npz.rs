@@ -2,7 +2,7 @@
 
 use super::parts::Parts;
 use super::record::NetworkRecord;
-use std::io::{self, Cursor, Write};
+use std::io::{self, BufWriter, Cursor, Write};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -77,7 +77,7 @@ impl ArrayFile {
     /// # Errors
     /// The file is too large.
     pub fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
-        self.array(name, "<f8", shape, values.into_iter().flat_map(f64::to_le_bytes).collect())
+        self.array(name, "<f8", shape, values.into_iter().map(f64::to_le_bytes))
     }
 
     /// Adds an array of 32-bit whole numbers.
@@ -85,7 +85,7 @@ impl ArrayFile {
     /// # Errors
     /// The file is too large.
     pub fn whole(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = usize>) -> io::Result<()> {
-        self.array(name, "<i4", shape, values.into_iter().flat_map(|value| (value as i32).to_le_bytes()).collect())
+        self.array(name, "<i4", shape, values.into_iter().map(|value| (value as i32).to_le_bytes()))
     }
 
     /// The bytes of the file.
@@ -97,7 +97,13 @@ impl ArrayFile {
     }
 
     /// One file of version 1.0 of the format: a header that is a Python dictionary, padded to 64 bytes, and the numbers.
-    fn array(&mut self, name: &str, kind: &str, shape: &[usize], bytes: Vec<u8>) -> io::Result<()> {
+    fn array<const N: usize>(
+        &mut self,
+        name: &str,
+        kind: &str,
+        shape: &[usize],
+        values: impl Iterator<Item = [u8; N]>,
+    ) -> io::Result<()> {
         let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
         let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
         // The preamble has ten bytes, and the header ends with a new line.
@@ -110,6 +116,9 @@ impl ArrayFile {
         self.file.write_all(b"\x93NUMPY\x01\x00")?;
         self.file.write_all(&(header.len() as u16).to_le_bytes())?;
         self.file.write_all(header.as_bytes())?;
-        self.file.write_all(&bytes)
+        // The file computes a checksum at each call.
+        let mut buffer = BufWriter::new(&mut self.file);
+        values.into_iter().try_for_each(|value| buffer.write_all(&value))?;
+        buffer.flush()
     }
 }

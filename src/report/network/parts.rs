@@ -2,6 +2,8 @@
 
 use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord};
 use crate::error::{Error, ErrorKind, Result};
+use smallvec::SmallVec;
+use std::borrow::Borrow;
 
 /// A linear spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +22,7 @@ pub struct LengthPart {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContentPart {
     /// As many as dimensions, and one more; their content is positive in this order.
-    pub points: Vec<usize>,
+    pub points: SmallVec<[usize; 4]>,
     /// N/m⁵; in the plane N/m³.
     pub constant: f64,
     /// m³; in the plane m².
@@ -40,10 +42,19 @@ impl Parts {
     /// # Errors
     /// A spring has a law or measures something else; kind `Unsupported`, and the key is the place of the spring.
     pub fn of(network: &NetworkRecord) -> Result<Parts> {
+        Parts::of_springs(network, &network.springs)
+    }
+
+    /// Of springs that are not in the list of the record.
+    pub(super) fn of_springs<'a>(
+        network: &NetworkRecord,
+        springs: impl IntoIterator<Item = impl Borrow<SpringRecord<'a>>>,
+    ) -> Result<Parts> {
         let mut parts = Parts::default();
         let simplices: Vec<Option<(f64, bool)>> =
             network.measures.iter().map(|measure| simplex(measure, network.dimension)).collect();
-        for (i, spring) in network.springs.iter().enumerate() {
+        for (i, spring) in springs.into_iter().enumerate() {
+            let spring = spring.borrow();
             let measure = &network.measures[spring.measure];
             let refused = |found: String| {
                 let expected = "linear springs on lengths and on the contents of triangles or tetrahedra";
@@ -61,7 +72,7 @@ impl Parts {
                     damper: spring.damper,
                 }),
                 (MeasureKind::Content, Some((scale, is_turned))) => {
-                    let mut points = spring.points.clone();
+                    let mut points = SmallVec::from_slice(&spring.points);
                     if is_turned {
                         points.swap(0, 1);
                     }

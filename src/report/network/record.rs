@@ -4,6 +4,7 @@ use crate::report::fit_record::FitRecord;
 use crate::report::load_record::LoadRecord;
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// What the key `format` of a network file says.
@@ -15,7 +16,7 @@ pub const NETWORK_VERSION: u32 = 1;
 /// and springs are named by their places in the lists, from 0. Springs are last, because there are most of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct NetworkRecord<S = Vec<SpringRecord>> {
+pub struct NetworkRecord<S = Vec<SpringRecord<'static>>, C = Vec<Vec<usize>>> {
     /// `springfit network`.
     pub format: String,
     /// The version of the format.
@@ -35,7 +36,7 @@ pub struct NetworkRecord<S = Vec<SpringRecord>> {
     /// `[points]`, kg; null without a density.
     pub masses: Option<Vec<f64>>,
     /// The cells of the mesh, for each element.
-    pub cells: Vec<CellBlockRecord>,
+    pub cells: Vec<CellBlockRecord<C>>,
     /// Triangles between points on the boundary of a solid, counterclockwise as seen from outside; of a plane or surface its cells.
     pub surface: Vec<[usize; 3]>,
     /// The points that are held, with `[[fix]]` of the scene.
@@ -141,13 +142,13 @@ pub struct LoadErrorsRecord {
 /// The cells of one element.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CellBlockRecord {
+pub struct CellBlockRecord<C = Vec<Vec<usize>>> {
     /// The name of the element.
     pub element: String,
     /// The type of the cells in VTK; null if the element names none.
     pub vtk: Option<u32>,
     /// Points of each cell in the order of the element, `[cells][nodes]`.
-    pub points: Vec<Vec<usize>>,
+    pub points: C,
 }
 
 /// A point that is held in some directions.
@@ -305,11 +306,11 @@ pub struct ShareRecord {
 /// A spring: it has the energy `½ k (c − rest)²` and pulls with `k (c − rest) ∇c`, or with the force of its law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SpringRecord {
+pub struct SpringRecord<'a> {
     /// What the spring measures.
-    pub kind: String,
+    pub kind: Cow<'a, str>,
     /// The points of which it is a function, from 0.
-    pub points: Vec<usize>,
+    pub points: Cow<'a, [usize]>,
     /// In the unit of the kind; with a law the slope of its force at rest.
     pub constant: f64,
     /// In the unit of what is measured: m, m², m³ or rad.
@@ -317,13 +318,25 @@ pub struct SpringRecord {
     /// The place of its measure in `measures`.
     pub measure: usize,
     /// The force as an expression of `s = (c − c0)/c0`, `c`, `c0` (the rest) and parameters; null if it is linear.
-    pub law: Option<String>,
+    pub law: Option<Cow<'a, str>>,
     /// Of the law, by name.
     pub parameters: BTreeMap<String, f64>,
     /// The coefficient c_s of the damper beside it: the unit of `constant`, times s.
     pub damper: f64,
     /// Places in `groups`: of all cells that share the spring.
-    pub groups: Vec<usize>,
+    pub groups: Cow<'a, [usize]>,
+}
+
+impl SpringRecord<'_> {
+    pub(super) fn into_owned(self) -> SpringRecord<'static> {
+        SpringRecord {
+            kind: Cow::Owned(self.kind.into_owned()),
+            points: Cow::Owned(self.points.into_owned()),
+            law: self.law.map(|law| Cow::Owned(law.into_owned())),
+            groups: Cow::Owned(self.groups.into_owned()),
+            ..self
+        }
+    }
 }
 
 impl FitSummaryRecord {

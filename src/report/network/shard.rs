@@ -3,7 +3,7 @@
 //! A shard is a line of JSON, the shares of its cells in the springs between two points, sorted by the points, in records of 64 bytes, and
 //! a table of all other springs, which belong to one cell each.
 
-use super::csv::{SpringRow, SpringTable};
+use super::csv::{COLUMNS, SpringRow, SpringTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::write_with;
 use crate::model::{LengthShare, MeasureSpring, SharedSpring};
@@ -97,13 +97,14 @@ impl NetworkShard<'_> {
     pub fn write(&self, path: &Path) -> Result<()> {
         let (d, place) = (self.dimension, |p: usize| self.places.map_or(p, |places| places[p]));
         let numbers = |points: &[usize]| self.numbers.map(|own| points.iter().map(|&p| own[p]).collect::<Vec<u64>>());
-        let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        let failed = |e| Error::io("cannot be written", e).in_file(path);
+        let mut table = SpringTable::bare(Vec::new());
         for spring in self.others {
-            let points = spring.points.iter().map(|&p| place(p)).collect();
-            let written = table.serialize(SpringRow::of_other(spring, points, numbers(&spring.points)));
-            written.map_err(|e| Error::io("cannot be written", e.into()).in_file(path))?;
+            let points: Vec<usize> = spring.points.iter().map(|&p| place(p)).collect();
+            let nodes = numbers(&spring.points).unwrap_or_default();
+            table.write(&SpringRow::of_other(spring, &points), &nodes).map_err(failed)?;
         }
-        let others = table.into_inner().map_err(|e| Error::io("cannot be written", e.into_error()).in_file(path))?;
+        let others = table.into_inner().map_err(failed)?;
         let header = Header {
             format: FORMAT.into(),
             version: VERSION,
@@ -180,11 +181,18 @@ impl Source {
         Ok(Shares { source: self, file: BufReader::new(file), read: 0, last: [0, 0] })
     }
 
-    fn others(&self) -> io::Result<impl Iterator<Item = io::Result<SpringRow>> + use<>> {
+    /// The rows of the other springs, with all columns.
+    fn others(&self) -> io::Result<impl Iterator<Item = io::Result<csv::StringRecord>> + use<'_>> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(self.start + (self.header.shares * RECORD) as u64))?;
         let table = csv::ReaderBuilder::new().has_headers(false).from_reader(BufReader::new(file));
-        Ok(table.into_deserialize().map(|row| Ok(row?)))
+        let checked = |row: csv::Result<csv::StringRecord>| {
+            let row = row.map_err(|e| e.to_string())?;
+            let is_whole = row.len() == COLUMNS.len();
+            is_whole.then_some(row).ok_or_else(|| "a row has columns too few or too many".to_string())
+        };
+        let damaged = |problem| self.damaged(&format!("the table of springs is damaged: {problem}"));
+        Ok(table.into_records().map(move |row| checked(row).map_err(damaged)))
     }
 
     fn damaged(&self, what: &str) -> io::Error {
@@ -260,7 +268,6 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
     let mut sources = shards.iter().map(|path| Source::open(path)).collect::<Result<Vec<_>>>()?;
     sources.sort_by_key(|source| source.header.shard);
     let run = check(&sources)?.clone();
-    let numbered = |nodes: [u64; 2]| run.is_numbered.then(|| nodes.to_vec());
     let mut merged = Merged { springs: 0, negative: 0 };
     let may_be_steady = sources.iter().any(|source| source.header.has_slack);
     let written = write_with(output, |to| {
@@ -273,28 +280,29 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
         }
         let lawful = steady > 0 || sources.iter().any(|source| source.header.has_laws);
         let mut table = SpringTable::new(to, lawful, run.is_numbered)?;
-        let mut add = |row: &SpringRow, constant: f64| {
+        let mut count = |constant: f64| {
             merged.springs += 1;
             merged.negative += usize::from(constant < 0.0);
-            table.write(row)
         };
         each_sum(&sources, |sum| match sum.share.spring(sum.length, run.is_exact) {
-            SharedSpring::Length(spring) => add(&SpringRow::of_length(&spring, numbered(sum.nodes)), spring.constant),
+            SharedSpring::Length(spring) => {
+                count(spring.constant);
+                table.write(&SpringRow::of_length(&spring), &sum.nodes)
+            }
             SharedSpring::None | SharedSpring::Steady(_) => Ok(()),
         })?;
         if steady > 0 {
             each_sum(&sources, |sum| match sum.share.spring(sum.length, run.is_exact) {
                 SharedSpring::Steady(spring) => {
-                    let row = SpringRow::of_other(&spring, spring.points.clone(), numbered(sum.nodes));
-                    add(&row, spring.constant)
+                    count(spring.constant);
+                    table.write(&SpringRow::of_other(&spring, &spring.points), &sum.nodes)
                 }
                 SharedSpring::None | SharedSpring::Length(_) => Ok(()),
             })?;
         }
         for source in &sources {
             for row in source.others()? {
-                let row = row.map_err(|e| source.damaged(&format!("the table of springs is damaged: {e}")))?;
-                add(&row, row.constant())?;
+                count(table.copy(&row?)?);
             }
         }
         table.flush()

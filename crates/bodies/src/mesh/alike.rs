@@ -1,47 +1,100 @@
 //! Finds cells and sides that have the same points.
 
-/// Groups items by the set of their points; the items of a set keep their order.
-///
-/// `points(item)` writes the points of an item in any order.
-pub(super) struct Alike<T> {
-    /// A hash of the set, which does not depend on the order of its points, with the item.
-    items: Vec<(u64, T)>,
-}
+use super::mesh::{CellIndex, Mesh, SideIndex};
+use rayon::prelude::*;
 
-impl<T: Copy> Alike<T> {
-    pub fn of(items: impl Iterator<Item = T>, points: impl Fn(T, &mut Vec<usize>)) -> Alike<T> {
-        let mut set = Vec::new();
-        let mark = |item: T| {
-            set.clear();
-            points(item, &mut set);
-            (set.iter().fold(0u64, |sum, &p| sum.wrapping_add(scattered(p as u64))), item)
+impl Mesh {
+    /// Calls `visit` for each set of points with the sides that have it, in the order of the cells. The sets have no order.
+    pub(super) fn each_side_set(&self, mut visit: impl FnMut(&[SideIndex])) {
+        let sides: Vec<usize> = self.blocks.iter().map(|block| block.element.sides().len()).collect();
+        let counts = self.blocks.iter().zip(&sides).map(|(block, sides)| block.cells().len() * sides);
+        let (starts, count) = running_sums(counts);
+        let side = |item: usize| {
+            let block = starts.partition_point(|start| *start <= item) - 1;
+            let (cell, side) = ((item - starts[block]) / sides[block], (item - starts[block]) % sides[block]);
+            SideIndex { cell: CellIndex { block, cell }, side }
         };
-        let mut items: Vec<(u64, T)> = items.map(mark).collect();
-        // A stable sort keeps the order of items with the same hash.
-        items.sort_by_key(|(mark, _)| *mark);
-        Alike { items }
+        let points = |item: usize, set: &mut Vec<usize>| set.extend(self.side_points(&side(item)));
+        let mut own = Vec::new();
+        each_set(count, self.point_count(), points, |items| {
+            own.clear();
+            own.extend(items.iter().map(|&item| side(item)));
+            visit(&own);
+        });
     }
 
-    /// Calls `visit` for each set with its items.
-    pub fn each(&self, points: impl Fn(T, &mut Vec<usize>), mut visit: impl FnMut(&[T])) {
-        let mut sets: Vec<(Vec<usize>, Vec<T>)> = Vec::new();
-        for run in self.items.chunk_by(|a, b| a.0 == b.0) {
-            if let [(_, item)] = run {
-                visit(&[*item]);
-                continue;
-            }
-            // Different sets may have the same hash.
-            sets.clear();
-            for (_, item) in run {
-                let mut own = Vec::new();
-                points(*item, &mut own);
-                own.sort_unstable();
-                match sets.iter_mut().find(|(set, _)| *set == own) {
-                    Some((_, items)) => items.push(*item),
-                    None => sets.push((own, vec![*item])),
-                }
-            }
-            sets.iter().for_each(|(_, items)| visit(items));
+    /// Calls `visit` for each set of points with the cells that have it, in their order; point p counts as `place(p)`.
+    pub(super) fn each_cell_set(&self, place: impl Fn(usize) -> usize, mut visit: impl FnMut(&[CellIndex])) {
+        let (starts, count) = running_sums(self.blocks.iter().map(|block| block.cells().len()));
+        let cell = |item: usize| {
+            let block = starts.partition_point(|start| *start <= item) - 1;
+            CellIndex { block, cell: item - starts[block] }
+        };
+        let points =
+            |item: usize, set: &mut Vec<usize>| set.extend(self.cell_nodes(cell(item)).iter().map(|&p| place(p)));
+        let mut own = Vec::new();
+        each_set(count, self.point_count(), points, |items| {
+            own.clear();
+            own.extend(items.iter().map(|&item| cell(item)));
+            visit(&own);
+        });
+    }
+}
+
+/// The sum of the counts before each, and of all.
+fn running_sums(counts: impl Iterator<Item = usize>) -> (Vec<usize>, usize) {
+    let mut sum = 0;
+    let mut starts = Vec::new();
+    for count in counts {
+        starts.push(sum);
+        sum += count;
+    }
+    (starts, sum)
+}
+
+/// Calls `visit` for each set of points with the items of 0 … `count` − 1 that have it, ascending. `points(item)` writes the points of an
+/// item in any order; they are below `bound`.
+///
+/// Items are sorted as single numbers: the high bits are the lowest point, so that the items of a set are near each other in memory, then
+/// comes a hash of the set, which does not depend on the order of its points, and the low bits are the item.
+fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>), mut visit: impl FnMut(&[usize])) {
+    let of_item = usize::BITS - count.leading_zeros();
+    let of_hash = (u64::BITS - of_item).saturating_sub(usize::BITS - bound.leading_zeros()).max(1);
+    let mut set = Vec::new();
+    let key = |item: usize| {
+        set.clear();
+        points(item, &mut set);
+        let hash = set.iter().fold(0u64, |sum, &p| sum.wrapping_add(scattered(p as u64)));
+        let lowest = set.iter().copied().min().unwrap_or(0) as u64;
+        (lowest << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item as u64
+    };
+    let mut keys: Vec<u64> = (0..count).map(key).collect();
+    keys.par_sort_unstable();
+    let item = |key: &u64| (key & ((1 << of_item) - 1)) as usize;
+    let sorted = |item: usize, set: &mut Vec<usize>| {
+        set.clear();
+        points(item, set);
+        set.sort_unstable();
+    };
+    let [mut own, mut other, mut same, mut rest] = [const { Vec::new() }; 4];
+    for run in keys.chunk_by(|a, b| a >> of_item == b >> of_item) {
+        if let [key] = run {
+            visit(&[item(key)]);
+            continue;
+        }
+        // Different sets may have the same hash.
+        rest.clear();
+        rest.extend(run.iter().map(item));
+        while let Some(&first) = rest.first() {
+            sorted(first, &mut own);
+            same.clear();
+            rest.retain(|&item| {
+                sorted(item, &mut other);
+                let differs = own != other;
+                same.extend((!differs).then_some(item));
+                differs
+            });
+            visit(&same);
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Meshes from the arrays of another program.
 
-use super::alike::Alike;
-use super::mesh::{CellBlock, Group, Mesh, SideIndex, sorted};
+use super::mesh::{CellBlock, Group, Mesh, sorted};
 use super::numbering::{NumberOrigin, Numbering};
 use super::quality::Gate;
 use super::resolution::check_size;
@@ -119,9 +118,8 @@ impl Mesh {
 
     /// The points of each side that belongs to one cell alone.
     fn boundary(&self) -> Vec<Vec<usize>> {
-        let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
         let mut boundary = Vec::new();
-        Alike::of(self.side_indices(), points).each(points, |sides| {
+        self.each_side_set(|sides| {
             if let [index] = sides {
                 boundary.push(sorted(&self.side_nodes(index)));
             }

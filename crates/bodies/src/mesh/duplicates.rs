@@ -1,6 +1,5 @@
 //! Cells that repeat another cell.
 
-use super::alike::Alike;
 use super::mesh::{CellIndex, Mesh};
 use crate::error::{Error, Result};
 use std::collections::HashMap;
@@ -15,13 +14,13 @@ impl Mesh {
     /// # Errors
     /// There are such cells, and `skip` is not set.
     pub(super) fn settle_duplicates(&mut self, first: Option<&[usize]>, skip: bool) -> Result<()> {
-        let points = |at: CellIndex, set: &mut Vec<usize>| {
-            set.extend(self.cell_nodes(at).iter().map(|&p| first.map_or(p, |first| first[p])));
-        };
         let mut repeated: Vec<(CellIndex, CellIndex)> = Vec::new();
-        Alike::of(self.cell_indices(), points).each(points, |cells| {
-            repeated.extend(cells[1..].iter().map(|cell| (*cell, cells[0])));
-        });
+        self.each_cell_set(
+            |p| first.map_or(p, |first| first[p]),
+            |cells| {
+                repeated.extend(cells[1..].iter().map(|cell| (*cell, cells[0])));
+            },
+        );
         if repeated.is_empty() {
             return Ok(());
         }

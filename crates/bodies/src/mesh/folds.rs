@@ -1,6 +1,5 @@
 //! Cells that are folded over their neighbours.
 
-use super::alike::Alike;
 use super::mesh::{CellIndex, Mesh, SideIndex};
 use crate::springs::{distance, dot};
 use std::collections::HashMap;
@@ -14,11 +13,10 @@ impl Mesh {
     ///
     /// A cell may be numbered in the opposite order and lie correctly; then it is not among them.
     pub(super) fn folded(&self) -> Vec<CellIndex> {
-        let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
         // The neighbours of each cell, and whether the two overlap.
         let mut beside: HashMap<CellIndex, Vec<(CellIndex, bool)>> = HashMap::new();
         let mut any = false;
-        Alike::of(self.side_indices(), points).each(points, |sides| {
+        self.each_side_set(|sides| {
             for side in &sides[1..] {
                 let overlap = self.overlap(&sides[0], side);
                 any |= overlap;

@@ -1,7 +1,6 @@
 //! Hanging points: points on sides of cells to which they do not belong.
 
-use super::alike::Alike;
-use super::mesh::{CellIndex, Mesh, SideIndex};
+use super::mesh::{CellIndex, Mesh};
 use super::places::{Places, spatial};
 use crate::element::{Cell, Element};
 use crate::springs::{distance, dot};
@@ -80,9 +79,8 @@ impl Mesh {
             };
             return self.cell_indices().map(host).collect();
         }
-        let points = |index: SideIndex, set: &mut Vec<usize>| set.extend(self.side_nodes(&index));
         let mut hosts = Vec::new();
-        Alike::of(self.side_indices(), points).each(points, |sides| {
+        self.each_side_set(|sides| {
             if let [index] = sides {
                 let element = element(index.cell);
                 let side = element.cell.sides()[index.side];

@@ -153,9 +153,13 @@ impl Mesh {
     }
 
     /// The points of one side.
-    pub(super) fn side_nodes(&self, index: &SideIndex) -> Vec<usize> {
+    pub(super) fn side_points(&self, index: &SideIndex) -> impl Iterator<Item = usize> + '_ {
         let nodes = self.cell_nodes(index.cell);
-        self.blocks[index.cell.block].element.sides()[index.side].nodes.iter().map(|&a| nodes[a]).collect()
+        self.blocks[index.cell.block].element.sides()[index.side].nodes.iter().map(|&a| nodes[a])
+    }
+
+    pub(super) fn side_nodes(&self, index: &SideIndex) -> Vec<usize> {
+        self.side_points(index).collect()
     }
 
     pub(super) fn side_indices(&self) -> impl Iterator<Item = SideIndex> {

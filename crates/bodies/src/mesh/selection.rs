@@ -4,7 +4,6 @@ use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
 use crate::error::Result;
 use crate::named::unknown;
 use crate::symbolic::Predicate;
-use std::collections::HashMap;
 
 /// A part of a mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,37 +37,30 @@ impl Selection {
     /// # Errors
     /// There is no such group.
     pub fn sides(&self, mesh: &Mesh) -> Result<Vec<SideIndex>> {
-        let points = self.points(mesh)?;
-        // How often each side occurs, and where first: a side that occurs once is on the boundary.
-        let mut met: HashMap<Vec<usize>, (usize, SideIndex)> = HashMap::new();
-        let mut order = Vec::new();
-        for (block, cells) in mesh.blocks.iter().enumerate() {
-            for (cell, nodes) in cells.cells().enumerate() {
-                for (side, table) in cells.element.sides().iter().enumerate() {
-                    let inside = |&a: &usize| points.binary_search(&nodes[a]).is_ok();
-                    if !table.nodes.iter().all(inside) {
-                        continue;
-                    }
-                    let key = sorted(&table.nodes.iter().map(|&a| nodes[a]).collect::<Vec<_>>());
-                    let index = SideIndex { cell: CellIndex { block, cell }, side };
-                    met.entry(key.clone()).and_modify(|(count, _)| *count += 1).or_insert_with(|| {
-                        order.push(key);
-                        (1, index)
-                    });
+        let mut is_selected = vec![false; mesh.point_count()];
+        self.points(mesh)?.into_iter().for_each(|p| is_selected[p] = true);
+        let is_inside = |side: &SideIndex| mesh.side_points(side).all(|p| is_selected[p]);
+        if let Selection::Group(name) = self {
+            let mut listed = group(mesh, name)?.sides.clone();
+            listed.sort_unstable();
+            listed.dedup();
+            let mut found = vec![None; listed.len()];
+            for side in mesh.side_indices().filter(is_inside) {
+                if let Ok(place) = listed.binary_search(&sorted(&mesh.side_nodes(&side))) {
+                    found[place].get_or_insert(side);
                 }
             }
+            return Ok(found.into_iter().flatten().collect());
         }
-        Ok(match self {
-            Selection::Group(name) => {
-                let mut listed = group(mesh, name)?.sides.clone();
-                listed.sort_unstable();
-                listed.dedup();
-                listed.iter().filter_map(|key| met.get(key)).map(|(_, index)| *index).collect()
+        // A side of one cell is on the boundary.
+        let mut outer = Vec::new();
+        mesh.each_side_set(|sides| {
+            if let [side] = sides {
+                outer.extend(is_inside(side).then_some(*side));
             }
-            Selection::Where(_) | Selection::Everything => {
-                order.iter().map(|key| met[key]).filter(|(count, _)| *count == 1).map(|(_, index)| index).collect()
-            }
-        })
+        });
+        outer.sort_unstable_by_key(|side| (side.cell.block, side.cell.cell, side.side));
+        Ok(outer)
     }
 
     /// The selected cells.

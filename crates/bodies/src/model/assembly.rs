@@ -8,6 +8,7 @@ use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::{Force, FunctionSpring, Law, Measure, distance};
 use crate::stiffness::gather;
+use smallvec::SmallVec;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -19,13 +20,13 @@ impl Network {
         network.lengths = lengths;
         network.others = lawful(mesh, fits);
         network.others.extend(steady);
-        network.others.extend(mesh.blocks.iter().zip(fits).flat_map(|(block, fit)| others(mesh, block, fit)));
+        mesh.blocks.iter().zip(fits).for_each(|(block, fit)| add_others(mesh, block, fit, &mut network.others));
         network
     }
 }
 
-/// The springs of one block that are not on lengths; each belongs to one cell.
-fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> {
+/// Adds the springs of one block that are not on lengths; each belongs to one cell.
+fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<MeasureSpring>) {
     let (d, springs) = (mesh.dimension, &fit.springs);
     let (m, first) = (springs.len(), springs.pairs().len());
     let every: Vec<usize> = (0..springs.nodes()).collect();
@@ -44,12 +45,14 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
     let points = springs.points().iter().map(at_point);
     let content = springs.content().map(|kind| (kind, &every, of_cell(kind)));
     let kinds: Vec<(SpringKind, &Vec<usize>, Measure)> = functions.chain(areas).chain(points).chain(content).collect();
-    let mut all = Vec::new();
     if kinds.is_empty() {
-        return all;
+        return;
     }
     let places = fit.force.places(springs);
     let count = places[m];
+    let mut x = Vec::new();
+    // A list that grew would be copied, and more than twice as large for a moment.
+    all.reserve_exact(kinds.len() * fit.constants.len() / m);
     for (cell, (nodes, constants)) in block.cells().zip(fit.constants.chunks_exact(m)).enumerate() {
         for (s, (kind, own, measure)) in (first..).zip(&kinds) {
             let constant = constants[s];
@@ -62,8 +65,8 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             if is_idle {
                 continue;
             }
-            let points: Vec<usize> = own.iter().map(|&a| nodes[a]).collect();
-            let mut x = vec![0.0; points.len() * d];
+            let points: SmallVec<[usize; 4]> = own.iter().map(|&a| nodes[a]).collect();
+            x.resize(points.len() * d, 0.0);
             gather(&mesh.points, d, &points, &mut x);
             let now = measure.value(&x, d);
             let pull = match fit.force {
@@ -84,7 +87,6 @@ fn others(mesh: &Mesh, block: &CellBlock, fit: &CellFits) -> Vec<MeasureSpring> 
             all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law, parameters });
         }
     }
-    all
 }
 
 /// The length springs of the blocks with a force law. Springs between the same two points are added if the law is
@@ -114,7 +116,7 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
                 }
                 all.push(MeasureSpring {
                     kind: SpringKind::Length,
-                    points: points.to_vec(),
+                    points: points[..].into(),
                     constant: fit.constants[at],
                     rest: distance(mesh.point(points[0]), mesh.point(points[1])),
                     measure: Measure::Length,

@@ -172,7 +172,7 @@ impl EdgeDomain {
             let unit = Tabulation { weights: vec![1.0], ..Tabulation::clone(&self.table) };
             MeasureSpring {
                 kind: SpringKind::PointArea,
-                points: self.nodes.clone(),
+                points: self.nodes[..].into(),
                 constant: springs.areas,
                 rest: 0.0,
                 measure: Measure::Span(Arc::new(unit.along(&[axis(k + 1), axis(k + 2)]))),
@@ -183,7 +183,7 @@ impl EdgeDomain {
         let mut all: Vec<MeasureSpring> = if springs.areas == 0.0 { Vec::new() } else { (0..d).map(area).collect() };
         all.push(MeasureSpring {
             kind: SpringKind::PointContent,
-            points: self.nodes.clone(),
+            points: self.nodes[..].into(),
             constant: springs.constant,
             rest: springs.rest,
             measure: Measure::Span(self.table.clone()),

@@ -68,7 +68,7 @@ fn of_cells<'l>(
             let parameters = vec![volume * thickness];
             springs.push(MeasureSpring {
                 kind: SpringKind::Fibre,
-                points: nodes.to_vec(),
+                points: nodes.into(),
                 constant: law.slope(1.0, 1.0, &parameters),
                 rest: 1.0,
                 measure: Measure::Span(Arc::new(table)),

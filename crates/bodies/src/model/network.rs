@@ -8,6 +8,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{Law, Measure, distance, linear};
 use crate::stiffness::gather;
 use faer::sparse::Triplet;
+use smallvec::SmallVec;
 use std::sync::Arc;
 
 /// A linear spring between two points.
@@ -72,8 +73,8 @@ impl Along {
 pub struct MeasureSpring {
     /// The kind of spring.
     pub kind: SpringKind,
-    /// Its points, in the order of the measure.
-    pub points: Vec<usize>,
+    /// Its points, in the order of the measure; those of a tetrahedron are stored in the spring.
+    pub points: SmallVec<[usize; 4]>,
     /// The spring constant, in J divided by the square of the measure's unit: N/m³ for an area, N/m⁵ for a volume, N·m
     /// for an angle.
     pub constant: f64,
@@ -91,7 +92,7 @@ impl MeasureSpring {
     /// A spring that measures c at rest, with the slope k and the force T there, for which [`is_steady`] holds.
     pub(super) fn steady(
         kind: SpringKind,
-        points: Vec<usize>,
+        points: SmallVec<[usize; 4]>,
         measure: Measure,
         c: f64,
         [k, t]: [f64; 2],

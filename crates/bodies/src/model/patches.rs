@@ -74,7 +74,7 @@ pub fn patch_springs(
         let parameters = if law.is_some() { vec![lambda] } else { Vec::new() };
         MeasureSpring {
             kind: SpringKind::Patch,
-            points,
+            points: points.into(),
             constant: lambda / rest,
             rest,
             measure,

@@ -7,6 +7,7 @@ use crate::fit::CellFits;
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::{Force, Measure, distance};
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
 /// What cells give to the spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +57,7 @@ impl LengthShare {
             let numbers = [constant, -slack];
             return SharedSpring::Steady(MeasureSpring::steady(
                 kind,
-                points.to_vec(),
+                SmallVec::from_slice(&points),
                 Measure::Length,
                 length,
                 numbers,

@@ -74,10 +74,8 @@ pub fn element_errors<'a>(
         widest(batch).map_err(|(cell, fault)| cell_fault(element, i * CHUNK + cell, fault))
     };
     let chunks: Vec<Result<ElementErrors>> = connectivity.par_chunks(CHUNK * n).enumerate().map(chunk).collect();
-    let mut all = ElementErrors::default();
-    for errors in chunks {
-        all.extend(errors?);
-    }
+    let mut all = ElementErrors { frobenius: Vec::with_capacity(cells), spectral: Vec::with_capacity(cells) };
+    chunks.into_iter().try_for_each(|errors| errors.map(|errors| all.extend(errors)))?;
     Ok(all)
 }
 

@@ -114,8 +114,7 @@ impl Piece {
             }
         }
         for spring in whole.others.iter().filter(|spring| !matches!(spring.measure, Measure::Patch(_))) {
-            let points: Option<Vec<usize>> = spring.points.iter().map(place).collect();
-            if let Some(points) = points {
+            if let Some(points) = spring.points.iter().map(place).collect() {
                 shares.push(share(&spring.points));
                 network.others.push(MeasureSpring { points, ..spring.clone() });
             }
