@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const PATIENCE: usize = 60;
 /// Times that the residual is worked out anew from the solution.
 const RESTARTS: usize = 4;
-/// A residual of four roundings of `|A| |x|` is none: squared.
+/// The square of the share of `‖ |A| |x| ‖` below which a residual is rounding: four units.
 const ROUNDING: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 /// So many right hand sides take less time side by side than one after another.
 const WORTH: usize = 3;
@@ -42,8 +42,9 @@ struct Column {
     /// The least error, and its iteration.
     best: (f64, usize),
     lanczos: Lanczos,
-    /// Whether its search has ended until the residual is worked out anew, and for good.
+    /// Whether its search has ended until the residual is computed anew.
     rests: bool,
+    /// Whether its search has ended for good.
     is_done: bool,
 }
 
