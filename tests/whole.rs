@@ -419,8 +419,8 @@ fn compare_with_differences(problem: &dyn LeastSquares) {
     let v = waves(m, 1.0);
     let w: Vec<Vec<f64>> = at.residuals.iter().map(|r| waves(r.len(), 0.7)).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let forward: f64 = at.forward(&v).unwrap().iter().zip(&w).map(|(a, b)| dot(a, b)).sum();
-    let adjoint = dot(&v, &at.adjoint(&w).unwrap());
+    let forward: f64 = at.forward(&v, 1e-9).unwrap().iter().zip(&w).map(|(a, b)| dot(a, b)).sum();
+    let adjoint = dot(&v, &at.adjoint(&w, 1e-9).unwrap());
     assert!((forward - adjoint).abs() < 1e-8 * forward.abs(), "{forward} {adjoint}");
     let rho = 0.1;
     let (_, gradient) = at.objective(rho).unwrap();

@@ -3,7 +3,7 @@
 //! Theory: page *Whole-object fits* of the book.
 
 use super::displacements::Displacements;
-use super::linearized::LeastSquares;
+use super::linearized::{LeastSquares, PRODUCT};
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 
@@ -49,7 +49,7 @@ impl Determination {
         let at = problem.at(theta)?.ok_or_else(|| Error::expected("network", "a stable one", "one that is not"))?;
         let column = |p: usize| -> Result<Vec<f64>> {
             let unit: Vec<f64> = (0..m).map(|q| f64::from(u8::from(p == q))).collect();
-            Ok(at.forward(&unit)?.concat())
+            Ok(at.forward(&unit, PRODUCT)?.concat())
         };
         let columns = (0..m).map(|p| Ok(DVector::from_vec(column(p)?))).collect::<Result<Vec<DVector<f64>>>>()?;
         let seen = problem.observations();

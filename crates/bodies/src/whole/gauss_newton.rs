@@ -24,6 +24,8 @@ impl Default for GaussNewton {
     }
 }
 
+/// The relative error of the products of a step where equations are solved by iterations: well below the accuracy of the step.
+const STEP: f64 = 1e-3;
 /// The first radius of the trust region: the root mean square of a step in θ, which is a logarithm.
 const RADIUS: f64 = 1.0;
 /// A smaller radius ends the search.
@@ -49,8 +51,9 @@ impl GaussNewton {
         let root = (theta.len().max(1) as f64).sqrt();
         let mut radius = RADIUS * root;
         for _ in 0..iterations {
+            let path = self.path(&now, rho, &gradient, radius)?;
             let (lowered, found) = loop {
-                let (step, promised) = self.step(&now, rho, &gradient, radius)?;
+                let (step, promised) = path.within(radius);
                 // If the gradient is zero there is no direction to go.
                 if !(promised > 0.0) {
                     break (0.0, None);
@@ -85,35 +88,29 @@ impl GaussNewton {
         Ok(Descent { theta, objective })
     }
 
-    /// A step towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d` with `‖d‖ ≤ radius`, and the predicted decrease (Steihaug
-    /// 1983).
-    fn step(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> Result<(Vec<f64>, f64)> {
+    /// The way of conjugate gradients towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d`, until it is longer than the radius.
+    fn path(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> Result<StepPath> {
         let share = rho / gradient.len().max(1) as f64;
         let mut step = vec![0.0; gradient.len()];
         let mut residual: Vec<f64> = gradient.iter().map(|g| -0.5 * g).collect();
         let mut direction = residual.clone();
         let mut square = dot(&residual, &residual);
-        let (first, mut promised) = (square, 0.0);
+        let first = square;
+        let mut path = StepPath { size: gradient.len(), parts: Vec::new() };
         for _ in 0..self.products {
             if !(square > self.accuracy * self.accuracy * first) {
                 break;
             }
-            let moved = at.forward(&direction)?;
+            let moved = at.forward(&direction, STEP)?;
             let curvature = moved.iter().flatten().map(|r| r * r).sum::<f64>() + share * dot(&direction, &direction);
-            let mut length = square / curvature;
-            // The distance to the boundary of the trust region.
-            let (a, b, c) = (dot(&direction, &direction), dot(&step, &direction), dot(&step, &step) - radius * radius);
-            let edge = ((b * b - a * c).max(0.0).sqrt() - b) / a;
-            let ends = !(length < edge);
-            if ends {
-                length = edge;
-            }
-            promised += 2.0 * length * square - length * length * curvature;
-            step.iter_mut().zip(&direction).for_each(|(s, d)| *s += length * d);
+            let length = square / curvature;
+            let ends = !(length < edge(&step, &direction, radius));
+            path.parts.push(PathPart { direction: direction.clone(), length, square, curvature });
             if ends {
                 break;
             }
-            let back = at.adjoint(&moved)?;
+            step.iter_mut().zip(&direction).for_each(|(s, d)| *s += length * d);
+            let back = at.adjoint(&moved, STEP)?;
             for ((r, b), d) in residual.iter_mut().zip(&back).zip(&direction) {
                 *r -= length * (b + share * d);
             }
@@ -121,6 +118,47 @@ impl GaussNewton {
             direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + next / square * *d);
             square = next;
         }
-        Ok((step, promised))
+        Ok(path)
     }
+}
+
+/// The way of conjugate gradients from zero. Its distance from zero grows, and every point is the best within that distance that they
+/// reach (Steihaug 1983).
+struct StepPath {
+    size: usize,
+    parts: Vec<PathPart>,
+}
+
+/// A straight part of the way.
+struct PathPart {
+    direction: Vec<f64>,
+    /// In units of the direction.
+    length: f64,
+    /// Half of the slope against the direction where the part begins.
+    square: f64,
+    curvature: f64,
+}
+
+impl StepPath {
+    /// The last point with `‖d‖ ≤ radius`, and the predicted decrease.
+    fn within(&self, radius: f64) -> (Vec<f64>, f64) {
+        let (mut step, mut promised) = (vec![0.0; self.size], 0.0);
+        for PathPart { direction, length, square, curvature } in &self.parts {
+            let edge = edge(&step, direction, radius);
+            let ends = !(*length < edge);
+            let length = if ends { edge } else { *length };
+            promised += 2.0 * length * square - length * length * curvature;
+            step.iter_mut().zip(direction).for_each(|(s, d)| *s += length * d);
+            if ends {
+                break;
+            }
+        }
+        (step, promised)
+    }
+}
+
+/// The distance from a step along a direction to the boundary of the trust region, in units of the direction.
+fn edge(step: &[f64], direction: &[f64], radius: f64) -> f64 {
+    let (a, b, c) = (dot(direction, direction), dot(step, direction), dot(step, step) - radius * radius);
+    ((b * b - a * c).max(0.0).sqrt() - b) / a
 }

@@ -44,7 +44,7 @@ pub(super) struct Tangent {
     pub loads: Vec<(usize, Arc<PartVectors>)>,
 }
 
-/// The relative error of products with the Jacobian where equations are solved by iterations: far below the accuracy of a step.
+/// The relative error of a gradient where equations are solved by iterations.
 pub(super) const PRODUCT: f64 = 1e-5;
 
 impl Linearized<'_> {
@@ -53,11 +53,11 @@ impl Linearized<'_> {
         self.residuals.iter().flatten().map(|r| r * r).sum()
     }
 
-    /// The product `J v`.
+    /// The product `J v`, within a relative error where equations are solved by iterations.
     ///
     /// # Errors
     /// Iterations stall.
-    pub fn forward(&self, v: &[f64]) -> Result<Vec<Vec<f64>>> {
+    pub fn forward(&self, v: &[f64], tolerance: f64) -> Result<Vec<Vec<f64>>> {
         let change = self.unknowns.forward(&self.theta, v);
         let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
         for tangent in &self.tangents {
@@ -65,7 +65,7 @@ impl Linearized<'_> {
                 forces.sum(change.iter().map(|c| -c), self.scales[*load].len())
             };
             let forces: Vec<Vec<f64>> = tangent.loads.iter().map(force).collect();
-            let moves = tangent.equations.respond_all(&forces, PRODUCT)?;
+            let moves = tangent.equations.respond_all(&forces, tolerance)?;
             for ((load, _), mut u) in tangent.loads.iter().zip(moves) {
                 u.iter_mut().zip(&self.scales[*load]).for_each(|(u, s)| *u *= s);
                 all[*load] = u;
@@ -77,18 +77,18 @@ impl Linearized<'_> {
         Ok(all)
     }
 
-    /// The product `Jᵀ w`, by one adjoint solve per load.
+    /// The product `Jᵀ w`, by one adjoint solve per load, within a relative error where equations are solved by iterations.
     ///
     /// # Errors
     /// Iterations stall.
-    pub fn adjoint(&self, w: &[Vec<f64>]) -> Result<Vec<f64>> {
+    pub fn adjoint(&self, w: &[Vec<f64>], tolerance: f64) -> Result<Vec<f64>> {
         let mut total = vec![0.0; self.unknowns.springs()];
         for tangent in &self.tangents {
             let pull = |(load, _): &(usize, Arc<PartVectors>)| {
                 w[*load].iter().zip(&self.scales[*load]).map(|(w, s)| w * s).collect()
             };
             let pulls: Vec<Vec<f64>> = tangent.loads.iter().map(pull).collect();
-            let adjoints = tangent.equations.respond_all(&pulls, PRODUCT)?;
+            let adjoints = tangent.equations.respond_all(&pulls, tolerance)?;
             for ((_, forces), adjoint) in tangent.loads.iter().zip(&adjoints) {
                 total.iter_mut().zip(forces.along(adjoint)).for_each(|(t, along)| *t -= along);
             }
@@ -106,7 +106,7 @@ impl Linearized<'_> {
     pub fn objective(&self, rho: f64) -> Result<(f64, Vec<f64>)> {
         let share = rho / self.theta.len().max(1) as f64;
         let value = self.square() + share * self.theta.iter().map(|t| t * t).sum::<f64>();
-        let slope = self.adjoint(&self.residuals)?;
+        let slope = self.adjoint(&self.residuals, PRODUCT)?;
         Ok((value, slope.iter().zip(&self.theta).map(|(g, t)| 2.0 * (g + share * t)).collect()))
     }
 }
