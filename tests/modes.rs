@@ -2,10 +2,10 @@
 
 use crate::messages::reads;
 use nalgebra::DMatrix;
-use springfit::element::Element;
+use springfit::element::{Element, SHIPPED};
 use springfit::material::Material;
 use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{LengthSpring, Network, Support, finite_elements, masses};
+use springfit::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
 use springfit::solve::{Factor, Modes, System, lowest_modes};
 use springfit::study::Scene;
 use std::f64::consts::PI;
@@ -198,6 +198,110 @@ fn a_bar_swings_lengthwise_as_a_rod() {
     assert_near(modes.squares[mode].sqrt(), 2.0 * cells as f64 / length * angle.sin(), 1e-10);
     assert_near(modes.frequencies()[mode], 0.25 / length * (1.0 - angle * angle / 6.0), 1e-5);
     model.check(&modes, 1e-8);
+}
+
+/// With the consistent matrix the same bar has `ω² = 6 (E/ρh²) (1 − cos kh)/(2 + cos kh)` with `kL = π/2`: above the rod's, as
+/// lumped masses are below.
+#[test]
+fn a_bar_with_the_consistent_matrix_swings_as_linear_elements_do() {
+    let (length, cells) = (2.0, 8);
+    let mesh = bar([length, 0.8, 0.8], [cells, 3, 3]);
+    let model = Model::body(&mesh, 0.0);
+    let matrix = ConsistentMasses::of_mesh(&mesh, 1.0, 1.0).unwrap();
+    let modes = lowest_modes(&model.system, &model.factor, &matrix, 3, 10).unwrap();
+    let along = |shape: &Vec<f64>| {
+        matrix.product(shape, 3).unwrap().iter().zip(shape).step_by(3).map(|(f, u)| f * u).sum::<f64>()
+    };
+    let mode = modes.shapes.iter().position(|shape| along(shape) > 0.999).unwrap();
+    let h = length / cells as f64;
+    let cosine = (PI / 2.0 * h / length).cos();
+    assert_near(modes.squares[mode], 6.0 / (h * h) * (1.0 - cosine) / (2.0 + cosine), 1e-9);
+    let rod = (PI / 2.0 / length).powi(2);
+    assert!(
+        modes.squares[mode] > rod && model.modes(10).squares.iter().any(|square| (0.99 * rod..rod).contains(square))
+    );
+}
+
+/// `K φ = ω² M φ` with matrices between the consistent one and lumped masses, against dense matrices that are added up here; on all
+/// elements, whose boxes are bent.
+#[test]
+fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
+    let mut bodies = 0;
+    for file in SHIPPED {
+        let element = Arc::new(Element::shipped(file).unwrap());
+        let (name, d) = (element.name.to_string(), element.dimension());
+        let (size, cells) = (vec![1.0; d], vec![if element.nodes() > 10 { 1 } else { 2 }; d]);
+        let Ok(mut mesh) = (BoxMesh { element, size, cells, origin: vec![0.0; d] }).build() else { continue };
+        if d < 2 {
+            continue;
+        }
+        bodies += 1;
+        for x in mesh.points.chunks_exact_mut(d) {
+            x[0] *= 1.0 + 0.2 * x[1];
+            x[1] += 0.1 * x[0] * x[0];
+        }
+        let material = Material::for_body(d, 1.0, 0.3, None, None).unwrap();
+        let held: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
+        let mut support = Support::free(&mesh);
+        support.fix(&held, &(0..d).collect::<Vec<_>>(), d);
+        let lumped = springfit::model::lumped_masses(&mesh, 2.0, 1.0, springfit::model::Lumping::Hrz);
+        let model = Model::new(&finite_elements(&mesh, material.moduli()), &support, lumped.clone(), d);
+        let consistent = ConsistentMasses::of_mesh(&mesh, 2.0, 1.0).unwrap();
+        assert_near(consistent.total(), lumped.iter().sum(), 1e-12);
+        for share in [0.0, 0.3, 1.0] {
+            let matrix = consistent.blended(&lumped, share).unwrap();
+            let (free, n) = (model.system.free(), model.system.size());
+            let mut dense = DMatrix::zeros(n, n);
+            for (a, b, value) in matrix.entries() {
+                for k in 0..d {
+                    let place = |p: usize| free.binary_search(&(p * d + k)).ok();
+                    if let (Some(i), Some(j)) = (place(a), place(b)) {
+                        dense[(i, j)] += value;
+                    }
+                }
+            }
+            let inverse = dense.cholesky().unwrap().l().try_inverse().unwrap();
+            let columns: Vec<Vec<f64>> =
+                (0..n).map(|j| model.system.apply(inverse.row(j).transpose().as_slice())).collect();
+            let square = &inverse * DMatrix::from_fn(n, n, |i, j| columns[j][i]);
+            let mut squares: Vec<f64> = square.symmetric_eigenvalues().iter().copied().collect();
+            squares.sort_by(f64::total_cmp);
+            let count = 8.min(n);
+            let modes = lowest_modes(&model.system, &model.factor, &matrix, d, count).unwrap();
+            modes.squares.iter().zip(&squares).for_each(|(found, dense)| assert_near(*found, *dense, 1e-9));
+            for (i, a) in modes.shapes.iter().enumerate() {
+                let force = matrix.product(a, d).unwrap();
+                for (j, b) in modes.shapes.iter().enumerate() {
+                    let product: f64 = force.iter().zip(b).map(|(f, u)| f * u).sum();
+                    assert!(
+                        (product - f64::from(u8::from(i == j))).abs() < 1e-8,
+                        "{name}, {share}, {i}, {j}: {product}"
+                    );
+                }
+            }
+            if share == 1.0 {
+                modes.squares.iter().zip(&model.modes(count).squares).for_each(|(a, b)| assert_near(*a, *b, 1e-9));
+            }
+        }
+    }
+    assert!(bodies >= 10, "{bodies}");
+}
+
+#[test]
+fn faults_of_a_mass_matrix_are_named() {
+    let mesh = bar([1.0; 3], [1; 3]);
+    let matrix = ConsistentMasses::of_mesh(&mesh, 1.0, 1.0).unwrap();
+    let of = |found: springfit::error::Result<ConsistentMasses>| found.unwrap_err().to_string();
+    reads(&of(matrix.blended(&[1.0; 8], 1.5)), "share: … from 0 to 1, found 1.5").unwrap();
+    reads(&of(matrix.blended(&[1.0; 7], 0.5)), "masses: … 8, one for each point, found 7").unwrap();
+    reads(&of(matrix.blended(&[f64::NAN; 8], 0.5)), "masses: … point 1, found NaN").unwrap();
+    reads(&of(matrix.clone().scaled(-1.0)), "factor: … found -1").unwrap();
+    reads(&matrix.product(&[0.0; 5], 3).unwrap_err().to_string(), "vector: … 24 numbers, found 5").unwrap();
+    reads(&of(ConsistentMasses::of_mesh(&mesh, -1.0, 1.0)), "masses: … in cell 1 of block 1").unwrap();
+    let none = ConsistentMasses::of_mesh(&mesh, 0.0, 1.0).unwrap();
+    let model = Model::body(&mesh, 0.3);
+    let error = lowest_modes(&model.system, &model.factor, &none, 3, 1).unwrap_err();
+    reads(&error.to_string(), "masses: … a mass above zero at point … found 0").unwrap();
 }
 
 /// The condition of a slender bar is 1e10; its pairs stand, and the beam's first frequency

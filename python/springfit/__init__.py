@@ -13,7 +13,7 @@ from ._core import Element, SpringfitError, __version__, shipped_elements
 from .gradients import Gradient, SpringConstants
 from .material import Material
 from .mesh import Mesh
-from .network import Network, fit, sampled, stiffness, whole
+from .network import Network, fit, mass, sampled, stiffness, whole
 from .report import Report, run
 from .studies import compare, converge, stability
 from .sweep import sweep
@@ -31,6 +31,7 @@ __all__ = [
     "compare",
     "converge",
     "fit",
+    "mass",
     "run",
     "sampled",
     "shipped_elements",

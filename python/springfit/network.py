@@ -130,6 +130,27 @@ def stiffness(mesh: Mesh, material: Material):
     return _sparse(_core.finite_elements(mesh._core, material), mesh.points.size)
 
 
+def mass(mesh: Mesh, material: Material, share: float = 0.0, total: "float | None" = None):
+    """The mass matrix ``(1 - share) * M + share * diag(m)``, kg: a ``scipy.sparse.csr_matrix``, numbered as in :func:`stiffness`.
+
+    ``M_ab = ∫ ρ N_a N_b dV`` is the consistent matrix of the finite elements, and ``m`` its diagonal with the mass of each cell (HRZ).
+
+    Args:
+        share: From 0 to 1; whole-object fits report it as ``lumped_share``, fitted to frequencies.
+        total: The mass of the body, kg, where that of its mesh is another; whole-object fits report it as ``total``.
+
+    Raises:
+        SpringfitError: The material has no density, or a value is outside its range.
+    """
+    matrix = _sparse(_core.masses(mesh._core, material, share), mesh.points.size)
+    if total is None:
+        return matrix
+    if not 0.0 < total < float("inf"):
+        raise failure("total", "a mass above zero, kg", str(total))
+    # Each axis has the mass once.
+    return matrix * (total * mesh.points.shape[1] / matrix.sum())
+
+
 def _sparse(triplets, size: int):
     from scipy.sparse import csr_matrix
 

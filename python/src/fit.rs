@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
 use springfit::material::{Material, MaterialMap, Plane};
-use springfit::model::{self, Support};
+use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
 use springfit::study::{BodyConstants, Controls, Event, FitEntry, Reference, WholeBody, fit_mesh, point_masses};
 
 /// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²).
@@ -96,4 +96,23 @@ pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: Constants) -
     let entries = apart(py, || Ok(model::finite_elements(&mesh.0, material.of(mesh)?.moduli())));
     let entries = entries.map_err(|error| raised(py, error))?;
     Ok(crate::network::triplets(py, &entries, list))
+}
+
+/// The mass matrix `(1 − s) M_c + s diag(m)` of the shape functions and of the share s of lumped masses, in triplets that are to be added.
+#[pyfunction]
+pub fn masses<'py>(py: Python<'py>, mesh: &Mesh, material: Constants, share: f64) -> PyResult<Triplets<'py>> {
+    let matrix = apart(py, || {
+        let density = material.density.ok_or_else(|| Error::expected("density", "kg/m³", "none"))?;
+        let density = springfit::range::positive("density", density, "kg/m³")?;
+        let thickness = MaterialMap::from(material.of(mesh)?).thicknesses();
+        let lumped = lumped_masses(&mesh.0, density, thickness.clone(), Lumping::Hrz);
+        ConsistentMasses::of_mesh(&mesh.0, density, thickness)?.blended(&lumped, share)
+    });
+    let matrix = matrix.map_err(|error| raised(py, error))?;
+    let d = mesh.0.dimension;
+    let dofs = |p: usize| (0..d).map(move |k| (p * d + k) as i64);
+    let rows = matrix.entries().flat_map(|(a, ..)| dofs(a)).collect();
+    let columns = matrix.entries().flat_map(|(_, b, _)| dofs(b)).collect();
+    let values = matrix.entries().flat_map(|(.., value)| std::iter::repeat_n(value, d)).collect();
+    Ok((list(py, rows), list(py, columns), list(py, values)))
 }

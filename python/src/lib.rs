@@ -33,6 +33,7 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::masses, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::study_line, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_scene, module)?)?;

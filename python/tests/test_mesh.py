@@ -82,6 +82,31 @@ def test_stiffness_equals_scikit_fem(kind):
     order = basis.nodal_dofs.T.ravel()
     theirs = theirs[order][:, order]
     assert abs(ours - theirs).max() <= 1e-12 * abs(theirs).max()
+    from skfem.helpers import dot
+
+    density = 7.0
+    material = sf.Material(young, poisson, plane=plane, density=density)
+    # Exact for the products of shape functions.
+    fine = skfem.Basis(mesh, skfem.ElementVector(getattr(skfem, element)()), intorder=6)
+    theirs = skfem.BilinearForm(lambda u, v, w: density * dot(u, v)).assemble(fine)[order][:, order]
+    ours = sf.mass(ours_mesh, material)
+    assert abs(ours - theirs).max() <= 1e-12 * abs(theirs).max()
+    blend = sf.mass(ours_mesh, material, share=0.3, total=5.0)
+    volume = theirs.sum() / (density * mesh.dim())
+    assert np.isclose(blend.sum(), 5.0 * mesh.dim())
+    lumped = np.diag(sf.mass(ours_mesh, material, share=1.0).diagonal())
+    assert np.allclose(blend.toarray(), (0.7 * theirs.toarray() + 0.3 * lumped) * 5.0 / (density * volume), atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("key", "density", "keys"),
+    [("density", None, {}), ("density", -1.0, {}), ("share", 1.0, {"share": 1.5}), ("total", 1.0, {"total": 0.0})],
+)
+def test_mass_faults_are_named(key, density, keys):
+    mesh = sf.Mesh.box("tet4", [1.0, 1.0, 1.0], [1, 1, 1])
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.mass(mesh, sf.Material(1e4, 0.3, density=density), **keys)
+    assert error.value.key == key
 
 
 def test_trimesh_is_a_membrane():

@@ -8,6 +8,7 @@
 
 mod assembly;
 mod blocks;
+mod consistent;
 mod deformation;
 mod domains;
 mod elastic;
@@ -34,6 +35,7 @@ mod system;
 mod tension;
 
 pub use blocks::BlockStiffness;
+pub use consistent::ConsistentMasses;
 pub use deformation::Deformation;
 pub(crate) use domains::{EdgeDomain, edge_domains, network_of, parts as domain_parts};
 pub use domains::{edge_springs, has_edge_springs};

@@ -1,5 +1,6 @@
 //! Equations that are solved for many forces: with a factor, or by iterations with levels.
 
+use super::inertia::Masses;
 use super::levels::Levels;
 use super::linear::{Factor, System};
 use super::method::StaticSolver;
@@ -160,7 +161,7 @@ impl Equations {
     ///
     /// # Errors
     /// As there.
-    pub fn lowest_modes(&self, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+    pub fn lowest_modes<'a>(&self, masses: impl Into<Masses<'a>>, dimension: usize, count: usize) -> Result<Modes> {
         match self {
             Equations::Factored(system, factor) => lowest_modes(system, factor, masses, dimension, count),
             Equations::Iterated(levels, _) => levels.lowest_modes(masses, dimension, count),

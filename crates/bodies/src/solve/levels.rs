@@ -1,5 +1,6 @@
 //! Linear statics by conjugate gradients with smoothed-aggregation multigrid: for equations too large to be factorised.
 
+use super::inertia::Masses;
 use super::method::StaticSolver;
 use super::modes::{Modes, modes_of};
 use super::stability::{NOTHING, SOFT, Stability, Standing};
@@ -187,12 +188,12 @@ impl Levels {
         Ok((displacement, self.told("minres", &found)))
     }
 
-    /// The `count` lowest natural vibrations ([`super::lowest_modes`]), each product with the inverse by iterations; `masses` in kg,
-    /// `[points]`. The stiffness is known to be positive definite.
+    /// The `count` lowest natural vibrations ([`super::lowest_modes`]), each product with the inverse by iterations.
+    /// The stiffness is known to be positive definite.
     ///
     /// # Errors
     /// As there, and the iterations stall: kind `Limit`.
-    pub fn lowest_modes(&self, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+    pub fn lowest_modes<'a>(&self, masses: impl Into<Masses<'a>>, dimension: usize, count: usize) -> Result<Modes> {
         let free: Vec<usize> = (0..self.prescribed.len()).filter(|dof| self.prescribed[*dof].is_none()).collect();
         let spread = |x: &[f64]| {
             let mut all = vec![0.0; self.prescribed.len()];
@@ -213,7 +214,7 @@ impl Levels {
             columns.iter_mut().zip(found).for_each(|(x, found)| gather(&found, x));
             Ok(())
         };
-        modes_of(&free, apply, solve, masses, dimension, count)
+        modes_of(&free, apply, solve, masses.into(), dimension, count)
     }
 
     /// The given displacements, and the forces that these cause.

@@ -6,6 +6,7 @@
 mod cholesky;
 mod equations;
 mod expectation;
+mod inertia;
 mod internal;
 mod levels;
 mod linear;
@@ -18,6 +19,7 @@ mod stability;
 pub(crate) use cholesky::elimination_order;
 pub use equations::Equations;
 pub use expectation::{FactorCost, dense_rate, factor_cost};
+pub use inertia::Masses;
 pub use levels::{Levels, Solved, compare_levels};
 pub use linear::{Factor, System};
 pub use method::{StaticMethod, StaticSolver};

@@ -1,7 +1,8 @@
-//! Natural vibrations of a model with masses lumped at its points.
+//! Natural vibrations of a model.
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::inertia::{MassRoot, Masses};
 use super::linear::{Factor, System};
 use crate::error::{Error, ErrorKind, Result};
 use nalgebra::{DMatrix, DVector};
@@ -39,17 +40,23 @@ impl Modes {
     }
 }
 
-/// The `count` lowest modes of `system`, whose matrix K has the factor `factor`; `masses` in kg, `[points]`. The result
-/// is reproducible to the last bit.
+/// The `count` lowest modes of `system`, whose matrix K has the factor `factor`, with masses at the points, `[points]`, kg, or with
+/// [`ConsistentMasses`](crate::model::ConsistentMasses). The result is reproducible to the last bit.
 ///
-/// They are the largest eigenvalues `θ = 1/ω²` of `A = M^½ K⁻¹ M^½`, with `φ = M^(−½) y`. Each mode is verified with K:
+/// They are the largest eigenvalues `θ = 1/ω²` of `A = G K⁻¹ Gᵀ`, where `M = GᵀG`, with `φ = K⁻¹ Gᵀ y/θ`. Each mode is verified with K:
 /// `√(rᵀ K⁻¹ r/φᵀ K φ)` of its residual `r = K φ − ω² M φ` bounds the relative distance of ω² from an eigenvalue
 /// (Weinstein's bound in the energy norm; the Euclidean norm of r is dominated by the rounding of stiff motions).
 ///
 /// # Errors
 /// K is not positive definite; there are fewer free degrees of freedom than modes; a point that may move has no mass;
 /// or the uncertainty of an ω² exceeds 1e-6.
-pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension: usize, count: usize) -> Result<Modes> {
+pub fn lowest_modes<'a>(
+    system: &System,
+    factor: &Factor,
+    masses: impl Into<Masses<'a>>,
+    dimension: usize,
+    count: usize,
+) -> Result<Modes> {
     if !factor.is_positive_definite() {
         let error = Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance");
         return Err(error.of_kind(ErrorKind::Infeasible));
@@ -58,7 +65,7 @@ pub fn lowest_modes(system: &System, factor: &Factor, masses: &[f64], dimension:
         factor.solve(x);
         Ok(())
     };
-    modes_of(system.free(), |x| system.apply(x), solve, masses, dimension, count)
+    modes_of(system.free(), |x| system.apply(x), solve, masses.into(), dimension, count)
 }
 
 /// [`lowest_modes`] of a stiffness on the degrees of freedom `free`, positive definite, as its product and what solves with it,
@@ -70,7 +77,7 @@ pub(super) fn modes_of(
     free: &[usize],
     apply: impl Fn(&[f64]) -> Vec<f64>,
     solve: impl Fn(&mut [f64]) -> Result<()>,
-    masses: &[f64],
+    masses: Masses,
     dimension: usize,
     count: usize,
 ) -> Result<Modes> {
@@ -78,23 +85,19 @@ pub(super) fn modes_of(
     if count > n {
         return Err(Error::expected("modes", format!("at most {n}, the free degrees of freedom"), count));
     }
-    let points = || free.iter().map(|dof| dof / dimension);
-    if let Some(p) = points().find(|&p| !(masses[p] > 0.0 && masses[p].is_finite())) {
-        return Err(Error::expected("masses", format!("a mass above zero at point {}", p + 1), masses[p]));
-    }
-    let root = DVector::from_iterator(n, points().map(|p| masses[p].sqrt()));
-    let weigh = |block: &mut DMatrix<f64>| block.column_iter_mut().for_each(|mut y| y.component_mul_assign(&root));
+    let root = MassRoot::new(masses, free, dimension)?;
     let operator = |block: &mut DMatrix<f64>| {
-        weigh(block);
-        solve(block.as_mut_slice())?;
-        weigh(block);
+        let mut x = root.transposed(block);
+        solve(x.as_mut_slice())?;
+        *block = root.product(&x);
         Ok(())
     };
     let mut modes = Modes { squares: Vec::with_capacity(count), shapes: Vec::with_capacity(count) };
-    for (theta, y) in largest_eigenpairs(n, count, operator)? {
-        let (square, phi) = (1.0 / theta, y.component_div(&root));
-        let force = DVector::from_vec(apply(phi.as_slice()));
-        let residual = &force - y.component_mul(&root) * square;
+    for (theta, y) in largest_eigenpairs(root.rows(), count, operator)? {
+        let square = 1.0 / theta;
+        let phi = root.shape(&y, theta, &solve)?;
+        let force = DMatrix::from_vec(n, 1, apply(phi.as_slice()));
+        let residual = &force - root.transposed(&root.product(&phi)) * square;
         let mut off = residual.clone();
         solve(off.as_mut_slice())?;
         let error = (residual.dot(&off).abs() / phi.dot(&force)).sqrt();
@@ -104,10 +107,8 @@ pub(super) fn modes_of(
             let error = Error::expected("modes", format!("squared frequencies to {TOLERANCE:.0e}"), found);
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
-        let mut shape = vec![0.0; masses.len() * dimension];
-        free.iter().zip(&phi).for_each(|(&dof, &x)| shape[dof] = x);
         modes.squares.push(square);
-        modes.shapes.push(shape);
+        modes.shapes.push(root.spread(phi.as_slice()));
     }
     Ok(modes)
 }
@@ -126,7 +127,7 @@ fn largest_eigenpairs(
     n: usize,
     count: usize,
     apply: impl Fn(&mut DMatrix<f64>) -> Result<()>,
-) -> Result<Vec<(f64, DVector<f64>)>> {
+) -> Result<Vec<(f64, DMatrix<f64>)>> {
     let width = (count + SPARE).min(n);
     if count == 0 {
         return Ok(Vec::new());
@@ -177,7 +178,7 @@ fn largest_eigenpairs(
             block = orthonormal(&basis, DMatrix::from_columns(&residuals));
         }
         if is_found || round == ROUNDS || block.is_empty() {
-            return Ok((0..count).map(|k| (theta[k], vectors.column(k).into_owned())).collect());
+            return Ok((0..count).map(|k| (theta[k], vectors.columns(k, 1).into_owned())).collect());
         }
     }
 }

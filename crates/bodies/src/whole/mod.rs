@@ -10,6 +10,7 @@
 
 mod balance;
 mod balanced;
+mod blend;
 mod carriers;
 mod covariance;
 mod descent;
@@ -30,6 +31,7 @@ mod unknowns;
 
 pub use balance::ResidualForces;
 pub use balanced::Balanced;
+pub use blend::fit_mass_share;
 pub use covariance::{Determination, MOST_ESTIMATED, NINETY_FIVE};
 pub use displacements::{Displacements, Errors};
 pub use fit::{WholeFit, fit_whole};

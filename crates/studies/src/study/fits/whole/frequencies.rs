@@ -6,10 +6,10 @@ use super::recipe::WholeRecipe;
 use super::targets::Held;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
-use crate::model::{Lumping, Moments, Network, lumped_masses};
-use crate::solve::Equations;
+use crate::model::{ConsistentMasses, Lumping, Moments, Network, lumped_masses};
+use crate::solve::{Equations, Masses};
 use crate::study::progress::{Event, Progress};
-use crate::whole::{Frequencies, Vibrations, fit_masses};
+use crate::whole::{Frequencies, Vibrations, fit_mass_share, fit_masses};
 
 impl WholeBody<'_> {
     /// The `count` lowest frequencies of the body, as ω².
@@ -50,11 +50,12 @@ impl WholeBody<'_> {
         let (density, d) = (self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0)), mesh.dimension);
         let thickness = self.material.thicknesses();
         let lumped = lumped_masses(mesh, density.clone(), thickness.clone(), Lumping::Hrz);
+        let at = |e: Error| Error::at("masses", e.problem()).of_kind(e.kind());
+        let consistent = ConsistentMasses::of_mesh(mesh, density.clone(), thickness.clone()).map_err(at)?;
         let moments = match self.fine {
             Some(fine) => fine.moments(),
             None => Moments::of_body(mesh, density, thickness),
         };
-        let at = |e: Error| Error::at("masses", e.problem()).of_kind(e.kind());
         let supports = self.all_supports(recipe)?;
         let (mut of_supports, mut wanted, mut others) = (Vec::new(), Vec::new(), Vec::new());
         for (done, (held, part)) in supports.iter().enumerate() {
@@ -73,15 +74,22 @@ impl WholeBody<'_> {
             of_supports.push((held, *part, squares, vibrations.equations));
         }
         let found = fit_masses(&mesh.points, d, &lumped, &moments, (&wanted, &others)).map_err(at)?;
+        // The mesh of a curved body has another mass.
+        let scale = moments.mass / consistent.total();
+        let (consistent, scaled) =
+            (consistent.scaled(scale).map_err(at)?, lumped.iter().map(|m| scale * m).collect::<Vec<_>>());
+        let share = fit_mass_share(&consistent, &scaled, d, &wanted).map_err(at)?;
+        let matrix = consistent.blended(&scaled, share).map_err(at)?;
         let frequencies = |(held, part, squares, equations): &(_, SupportPart, Vec<f64>, Equations)| {
             let held: &&Held = held;
             let body = self.equations("masses", &held.support)?;
             let models = [
-                ("finite elements", &body, &lumped),
-                ("fitted", equations, &lumped),
-                ("fitted masses", equations, &found.masses),
+                ("finite elements", &body, Masses::from(&lumped)),
+                ("fitted", equations, Masses::from(&lumped)),
+                ("fitted masses", equations, Masses::from(&found.masses)),
+                ("mass matrix", equations, Masses::from(&matrix)),
             ];
-            let model = |(model, equations, masses): (&'static str, &Equations, &Vec<f64>)| {
+            let model = |(model, equations, masses): (&'static str, &Equations, Masses)| {
                 let modes = equations.lowest_modes(masses, d, squares.len()).map_err(at)?;
                 let errors: Vec<f64> = modes.squares.iter().zip(squares).map(|(a, b)| (a / b).sqrt() - 1.0).collect();
                 let rms = |errors: &[f64]| (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
@@ -98,6 +106,7 @@ impl WholeBody<'_> {
             regularization: found.regularization,
             second_error,
             change: found.change,
+            share,
             total: moments.mass,
             curve: found.curve,
             supports: of_supports.iter().map(frequencies).collect::<Result<_>>()?,

@@ -61,6 +61,8 @@ pub struct FittedMasses {
     pub change: f64,
     /// Their sum, kg.
     pub total: f64,
+    /// The share s of lumped masses in the mass matrix `(1 − s) M_c + s diag(m)` that was fitted to the same frequencies.
+    pub share: f64,
     /// The stages of its path.
     pub curve: Vec<MassStage>,
     /// The errors of frequencies under each support.
@@ -346,7 +348,12 @@ impl FittedMasses {
                 models.join(", ")
             )
         };
-        std::iter::once(first).chain(self.supports.iter().map(support)).collect()
+        let matrix = format!(
+            "mass matrix for programs that have one: {:.3} of the consistent one and {:.3} of lumped masses",
+            1.0 - self.share,
+            self.share
+        );
+        [first, matrix].into_iter().chain(self.supports.iter().map(support)).collect()
     }
 }
 

@@ -104,6 +104,9 @@ pub struct FittedMassesRecord {
     pub largest_change: f64,
     /// Their sum, kg.
     pub total: f64,
+    /// The share of lumped masses in the mass matrix; the rest is the consistent one.
+    #[serde(default)]
+    pub lumped_share: f64,
     /// ρ, and the root mean square errors of the frequencies that were fitted and that chose ρ.
     pub curve: Vec<MassStageRecord>,
     /// The errors of frequencies under each support.
@@ -129,7 +132,7 @@ pub struct SupportFrequenciesRecord {
     /// Whether they chose the regularization without being fitted.
     #[serde(default)]
     pub chooses: bool,
-    /// The finite elements of the mesh and the network with lumped masses, and the network with fitted ones.
+    /// The finite elements of the mesh and the network with lumped masses, and the network with fitted ones and with the mass matrix.
     pub models: Vec<ModelFrequenciesRecord>,
 }
 
@@ -164,6 +167,7 @@ impl FittedMassesRecord {
             second_moment_error: found.second_error,
             largest_change: found.change,
             total: found.total,
+            lumped_share: found.share,
             curve: found.curve.iter().map(stage).collect(),
             supports: found.supports.iter().map(support).collect(),
         }
