@@ -201,7 +201,7 @@ fn a_bar_swings_lengthwise_as_a_rod() {
 }
 
 /// With the consistent matrix the same bar has `ω² = 6 (E/ρh²) (1 − cos kh)/(2 + cos kh)` with `kL = π/2`: above the rod's, as
-/// lumped masses are below.
+/// that of lumped masses is below.
 #[test]
 fn a_bar_with_the_consistent_matrix_swings_as_linear_elements_do() {
     let (length, cells) = (2.0, 8);
