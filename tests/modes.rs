@@ -217,6 +217,10 @@ fn a_bar_with_the_consistent_matrix_swings_as_linear_elements_do() {
     let cosine = (PI / 2.0 * h / length).cos();
     assert_near(modes.squares[mode], 6.0 / (h * h) * (1.0 - cosine) / (2.0 + cosine), 1e-9);
     let rod = (PI / 2.0 / length).powi(2);
+    // The errors k²h²/24 of both cancel halfway (Goudreau and Taylor 1973): k⁴h⁴/240 is left.
+    let half = matrix.blended(&model.masses, 0.5).unwrap();
+    let halfway = lowest_modes(&model.system, &model.factor, &half, 3, 10).unwrap();
+    assert!(halfway.squares.iter().any(|square| (square / rod - 1.0).abs() < 1e-5), "{:?} {rod}", halfway.squares);
     assert!(
         modes.squares[mode] > rod && model.modes(10).squares.iter().any(|square| (0.99 * rod..rod).contains(square))
     );
