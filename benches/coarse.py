@@ -60,6 +60,8 @@ other_supports = [["right"]]""",
     "both ends alone": 'supports = [["left", "right"]]',
 }
 MODELS = ["finite elements", "exact patches", "exact edges patches", "fitted"]
+# What is fitted to frequencies.
+MASSES = ["fitted masses", "mass matrix"]
 
 
 def shape(kind):
@@ -138,11 +140,11 @@ def rows(report):
             f" ({'; '.join(worse)})" if worse else ""
         )
     for (name, support, seen), found in vibrating.items():
-        models = {m: [next(row for row in held["models"] if row["model"] == m) for held in found] for m in (MODELS[0], "fitted masses", "mass matrix")}
+        models = {m: [next(row for row in held["models"] if row["model"] == m) for held in found] for m in (MODELS[0], *MASSES)}
         cells = [
             f"{100 * geometric_mean([row['first'] for row in of]):.2f} / {100 * geometric_mean([row['next'] for row in of]):.2f}" for of in models.values()
         ]
-        gains = [geometric_mean([body["next"] / own["next"] for body, own in zip(models[MODELS[0]], models[of])]) for of in ("fitted masses", "mass matrix")]
+        gains = [geometric_mean([body["next"] / own["next"] for body, own in zip(models[MODELS[0]], models[of])]) for of in MASSES]
         yield f"{name} | {support}{seen} | frequencies 1 to 6 / 7 to 12: {cells[0]} | | {cells[1]} | {cells[2]} | {' and '.join(f'{gain:.1f}' for gain in gains)} | "
 
 

@@ -208,7 +208,7 @@ fn loads_that_a_fit_has_made_worse_are_listed() {
 }
 
 /// Frequencies after those that the masses were fitted to err at most 0.4 times as much as those of the finite elements of the mesh (0.34 here), and those that
-/// were fitted at most a third. With a mass matrix, of one unknown, both err far less. Mass and centre are those of the finer body, worked out here from its size, and
+/// were fitted at most a third. With a mass matrix, which has one unknown, they err at most a fifth and a tenth as much. Mass and centre are those of the finer body, worked out here from its size, and
 /// second moments its own or those of lumped masses.
 #[test]
 fn masses_give_the_frequencies_of_a_finer_body() {

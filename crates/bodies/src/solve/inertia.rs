@@ -59,7 +59,7 @@ pub(super) struct MassRoot<'a> {
     masses: Masses<'a>,
     free: &'a [usize],
     dimension: usize,
-    /// Of lumped masses, `[free]`.
+    /// The roots of the diagonal of M, `[free]`: G itself where masses are lumped.
     diagonal: Vec<f64>,
 }
 

@@ -88,7 +88,7 @@ impl GaussNewton {
         Ok(Descent { theta, objective })
     }
 
-    /// The way of conjugate gradients towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d`, until it is longer than the radius.
+    /// The path of conjugate gradients towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d`, up to the part that leaves the radius.
     fn path(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> Result<StepPath> {
         let share = rho / gradient.len().max(1) as f64;
         let mut step = vec![0.0; gradient.len()];
@@ -122,14 +122,13 @@ impl GaussNewton {
     }
 }
 
-/// The way of conjugate gradients from zero. Its distance from zero grows, and every point is the best within that distance that they
-/// reach (Steihaug 1983).
+/// The path of conjugate gradients from zero. The distance from zero grows along it, and the objective falls (Steihaug 1983).
 struct StepPath {
     size: usize,
     parts: Vec<PathPart>,
 }
 
-/// A straight part of the way.
+/// A straight part of the path.
 struct PathPart {
     direction: Vec<f64>,
     /// In units of the direction.

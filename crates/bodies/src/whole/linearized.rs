@@ -44,7 +44,7 @@ pub(super) struct Tangent {
     pub loads: Vec<(usize, Arc<PartVectors>)>,
 }
 
-/// The relative error of a gradient where equations are solved by iterations.
+/// The relative error of gradients and of columns of J where equations are solved by iterations.
 pub(super) const PRODUCT: f64 = 1e-5;
 
 impl Linearized<'_> {
