@@ -151,6 +151,32 @@ fn nonnegative_constants_satisfy_the_optimality_conditions() {
     assert!(bound > 100, "the bound was hardly ever active");
 }
 
+/// Cells that are fitted side by side in lanes, some of which have no constant to bound: to the last bit what each gives alone.
+#[test]
+fn bounded_constants_do_not_depend_on_the_cells_beside() {
+    let mut bound = 0;
+    for element in elements() {
+        let mut random = Random(12);
+        let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
+        let (cells, nodes) = (11, element.nodes());
+        let points: Vec<f64> = (0..cells).flat_map(|_| distorted(&element, &mut random)).collect();
+        let connectivity: Vec<usize> = (0..cells * nodes).collect();
+        let moduli = materials(element.dimension())[0].moduli();
+        for springs in [None, Some(&every[..])].map(|names| Springs::select(&element, names).unwrap()) {
+            let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::None)) };
+            let of = |connectivity: &[usize]| {
+                fit_cells(&element, &springs, &points, connectivity, moduli, &fit, &mut |_| {}).unwrap().constants
+            };
+            let together = of(&connectivity);
+            for (own, nodes) in together.chunks_exact(springs.len()).zip(connectivity.chunks_exact(nodes)) {
+                assert_eq!(own, of(nodes), "{} with {} springs", element.name, springs.len());
+            }
+            bound += usize::from(springs.len() > LARGE && together.contains(&0.0));
+        }
+    }
+    assert!(bound > 5, "the bound was active in {bound} elements with many springs");
+}
+
 #[test]
 fn tied_constants_are_equal_and_optimal_in_sum() {
     for case in cases(5) {

@@ -171,12 +171,19 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
+        let is_bounded = |lane: &usize| constants[lane * m..][..m].iter().any(|k| !(*k >= 0.0));
+        let lanes: Vec<usize> = (0..constants.len() / m).filter(is_bounded).collect();
+        if closed.bound(springs, &lanes) {
+            for s in 0..m {
+                let k = closed.constant(springs, s).as_slice();
+                lanes.iter().for_each(|&lane| constants[lane * m + s] = k[lane]);
+            }
+            return true;
+        }
         let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, hooke) else {
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
-        let is_bounded = |lane: &usize| constants[lane * m..][..m].iter().any(|k| !(*k >= 0.0));
-        let lanes: Vec<usize> = (0..constants.len() / m).filter(is_bounded).collect();
         let has_many = equations.size() >= MANY;
         let mut wides = if has_many { Wide::of_lanes(equations, &lanes) } else { Vec::new() };
         for (i, &lane) in lanes.iter().enumerate() {

@@ -10,7 +10,7 @@ use super::sizes::of_size;
 use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
 use crate::material::Hooke;
-use crate::scalar::Real;
+use crate::scalar::{Packed, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -153,5 +153,13 @@ impl<T: Real> Closed<T> {
             }
             Steps::Springs | Steps::Groups => Some(&self.kept),
         }
+    }
+}
+
+impl<T: Packed> Closed<T> {
+    /// Replaces the constants of these lanes, after [`Closed::solve`], by the optimum under `k ≥ 0`. False, with nothing changed, where the
+    /// equations of the nodes are not those that are solved, or the iterations for it do not end.
+    pub fn bound(&mut self, springs: &Springs, lanes: &[usize]) -> bool {
+        self.steps == Steps::Nodes && self.nodal.bound(springs, &mut self.normal.rhs, lanes)
     }
 }

@@ -64,6 +64,11 @@ pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Opti
     Some(is_optimal.then(|| k.into_iter().zip(&scale).map(|(k, scale)| k * scale).collect()))
 }
 
+/// By how much `M k − b` may be below zero in the scaling with equal diagonal entries, where `largest` is the largest |b|.
+pub fn slope_tolerance(largest: f64) -> f64 {
+    at_rounding::<f64>(OPTIMALITY) * largest
+}
+
 /// Unknowns from which on sums are taken eight terms at a time.
 pub const MANY: usize = 24;
 
@@ -80,7 +85,7 @@ fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
 /// The optimum of many unknowns, from their values without bounds if these are known.
 pub fn solve_wide(wide: &mut Wide, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
     let positive = free.map_or(vec![true; wide.size()], |free| free.iter().map(|k| *k >= 0.0).collect());
-    let tolerance = at_rounding::<f64>(OPTIMALITY) * wide.largest();
+    let tolerance = slope_tolerance(wide.largest());
     let ended = exchange(positive, |positive| {
         let set: Vec<usize> = (0..positive.len()).filter(|&s| positive[s]).collect();
         if !wide.solve(&set, f64::given()) {
@@ -126,26 +131,48 @@ fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
     .then_some(k)
 }
 
-/// Moves the unknowns that `wrong` names into the set of positive ones or out of it, until it names none; false if it knows none because
-/// the equations of a set are singular, or the exchanges do not end.
-fn exchange(mut positive: Vec<bool>, mut wrong: impl FnMut(&[bool]) -> Option<Vec<usize>>) -> bool {
-    let m = positive.len();
-    let (mut fewest, mut patience) = (m + 1, 3);
-    for _ in 0..100 + 10 * m {
-        let Some(wrong) = wrong(&positive) else { return false };
-        if wrong.is_empty() {
-            return true;
-        }
-        // Exchange all as long as that helps; then only the last one, which cannot cycle (Murty 1974).
-        if wrong.len() < fewest {
-            (fewest, patience) = (wrong.len(), 3);
-        } else if patience > 0 {
-            patience -= 1;
-        }
-        let exchanged = if patience > 0 || wrong.len() < fewest { &wrong[..] } else { &wrong[wrong.len() - 1..] };
-        exchanged.iter().for_each(|&s| positive[s] = !positive[s]);
+/// The assumption which constants are positive, and the exchanges that improve it.
+pub struct Exchanges {
+    pub positive: Vec<bool>,
+    fewest: usize,
+    patience: u32,
+    left: usize,
+}
+
+impl Exchanges {
+    pub fn new(positive: Vec<bool>) -> Exchanges {
+        let m = positive.len();
+        Exchanges { positive, fewest: m + 1, patience: 3, left: 100 + 10 * m }
     }
-    false
+
+    /// Moves those of the unknowns `wrong`, at least one, that it returns into the set of positive ones or out of it; None if there were too many
+    /// exchanges.
+    pub fn exchange<'a>(&mut self, wrong: &'a [usize]) -> Option<&'a [usize]> {
+        self.left = self.left.checked_sub(1)?;
+        // Exchange all as long as that helps; then only the last one, which cannot cycle (Murty 1974).
+        if wrong.len() < self.fewest {
+            (self.fewest, self.patience) = (wrong.len(), 3);
+        } else if self.patience > 0 {
+            self.patience -= 1;
+        }
+        let exchanged = if self.patience > 0 || wrong.len() < self.fewest { wrong } else { &wrong[wrong.len() - 1..] };
+        exchanged.iter().for_each(|&s| self.positive[s] = !self.positive[s]);
+        Some(exchanged)
+    }
+}
+
+/// Exchanges what `wrong` names until it names none; false if it knows none because the equations of a set are singular, or the exchanges do
+/// not end.
+fn exchange(positive: Vec<bool>, mut wrong: impl FnMut(&[bool]) -> Option<Vec<usize>>) -> bool {
+    let mut exchanges = Exchanges::new(positive);
+    loop {
+        match wrong(&exchanges.positive) {
+            None => return false,
+            Some(wrong) if wrong.is_empty() => return true,
+            Some(wrong) if exchanges.exchange(&wrong).is_none() => return false,
+            Some(_) => {}
+        }
+    }
 }
 
 /// The same problem solved by Clarabel's interior-point method; `None` if it reports no solution.

@@ -8,6 +8,7 @@
 //! *Sampled fits* of the book.
 
 mod batch;
+mod bounded;
 mod bounded_divergence;
 mod cells;
 mod closed;

@@ -7,12 +7,13 @@
 //!
 //! Theory: page *Least squares* of the book.
 
+use super::bounded::{Product, bound};
 use super::dense::solve as substitute;
 use super::edge_cell::EdgeCell;
 use super::normal::Normal;
 use super::weight::ClosedWeight;
 use crate::material::Hooke;
-use crate::scalar::Scalar;
+use crate::scalar::{Packed, Scalar};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -23,6 +24,8 @@ pub struct Nodal<T> {
     small: Normal<T>,
     /// `V`, `[springs × d(d+1)/2]`: the entries, which are equal at both ends.
     entries: Vec<T>,
+    /// The right-hand side b.
+    energies: Vec<T>,
     /// The row of the content in M, and then its image `A⁻¹ c`.
     border: Vec<T>,
     image: Vec<T>,
@@ -30,7 +33,7 @@ pub struct Nodal<T> {
 
 impl<T> Default for Nodal<T> {
     fn default() -> Nodal<T> {
-        Nodal { small: Normal::default(), entries: Vec::new(), border: Vec::new(), image: Vec::new() }
+        Nodal { small: Normal::default(), entries: vec![], energies: vec![], border: vec![], image: vec![] }
     }
 }
 
@@ -80,6 +83,7 @@ impl<T: Scalar> Nodal<T> {
         if springs.content.is_some() {
             cell.content(ClosedWeight::None, &mut self.border, rhs);
         }
+        self.energies.clone_from(rhs);
         self.set_entries(&cell);
         self.set_small::<D>(springs, &zero);
         // k = A⁻¹ b of the length springs alone.
@@ -190,6 +194,90 @@ impl<T: Scalar> Nodal<T> {
                 }
             }
             *b = b.clone().scaled(&half);
+        }
+    }
+}
+
+/// Products with `M = 2I + V W Vᵀ`, whose eigenvalues are between 2 and four times the springs of a node, for length springs; scaled so that the
+/// diagonal entry of the content is 4 as well.
+pub struct NodalProduct<'a, T> {
+    springs: &'a Springs,
+    entries: &'a [T],
+    /// The row of the content, empty without a spring on it.
+    border: Vec<T>,
+    scale: Vec<T>,
+    /// `W Vᵀ` of a vector, `[nodes × d(d+1)/2]`.
+    sums: Vec<T>,
+}
+
+impl<T: Packed> Nodal<T> {
+    /// Replaces the constants of these lanes, after [`Nodal::solve`], by the optimum under `k ≥ 0`; false if the iterations for it do not end.
+    pub fn bound(&self, springs: &Springs, k: &mut [T], lanes: &[usize]) -> bool {
+        let zero = k[0].zero();
+        let (mut scale, mut border) = (vec![zero.one(); springs.len()], Vec::new());
+        if let (Some(_), Some((entry, row))) = (springs.content, self.border.split_last()) {
+            let content = zero.constant(&2.0) / &entry.clone().sqrt();
+            border = row.iter().map(|c| c.clone() * &content).collect();
+            scale[row.len()] = content;
+        }
+        let sums = vec![zero; self.small.size()];
+        bound(NodalProduct { springs, entries: &self.entries, border, scale, sums }, &self.energies, k, lanes)
+    }
+}
+
+impl<T: Packed> Product<T> for NodalProduct<'_, T> {
+    fn scale(&self) -> &[T] {
+        &self.scale
+    }
+
+    #[inline(always)]
+    fn multiply(&mut self, vector: &[T], image: &mut [T]) {
+        match self.springs.dimension {
+            2 => self.multiply_in::<3>(vector, image),
+            _ => self.multiply_in::<6>(vector, image),
+        }
+    }
+}
+
+impl<T: Packed> NodalProduct<'_, T> {
+    /// W is the number of entries of a node: (1,1), (2,1), (2,2), (3,1), …
+    #[inline(always)]
+    fn multiply_in<const W: usize>(&mut self, vector: &[T], image: &mut [T]) {
+        let NodalProduct { springs, entries, border, sums, .. } = self;
+        sums.fill(vector[0].zero());
+        let (sums, entries) = (sums.as_chunks_mut::<W>().0, entries.as_chunks::<W>().0);
+        for ((v, p), pair) in entries.iter().zip(vector).zip(&springs.pairs) {
+            for &a in pair {
+                for (sum, v) in sums[a].iter_mut().zip(v) {
+                    *sum = sum.clone().plus_product(v, p);
+                }
+            }
+        }
+        for sums in sums.iter_mut() {
+            for (entry, sum) in sums.iter_mut().enumerate() {
+                if !matches!(entry, 0 | 2 | 5) {
+                    *sum = sum.clone() + &sum.clone();
+                }
+            }
+        }
+        for (((v, p), pair), image) in entries.iter().zip(vector).zip(&springs.pairs).zip(&mut *image) {
+            let mut sum = p.clone() + p;
+            for &a in pair {
+                for (y, v) in sums[a].iter().zip(v) {
+                    sum = sum.plus_product(v, y);
+                }
+            }
+            *image = sum;
+        }
+        if springs.content.is_some() {
+            let last = border.len();
+            let content = &vector[last];
+            let mut sum = content.clone().scaled(&T::exact(4.0));
+            for ((c, p), image) in border.iter().zip(vector).zip(image.iter_mut()) {
+                *image = image.clone().plus_product(c, content);
+                sum = sum.plus_product(c, p);
+            }
+            image[last] = sum;
         }
     }
 }
