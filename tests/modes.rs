@@ -350,6 +350,10 @@ fn faults_are_named() {
     reads(&massless.error(1), "masses: … point 3, found 0").unwrap();
     let negative = Model { masses: vec![0.0, -2.5, 1.0], ..Model::chain(&[1.0, 1.0], &row) };
     reads(&negative.error(1), "masses: … point 2, found -2.5").unwrap();
+    let few = Model { masses: vec![1.0, 1.0], ..Model::chain(&[1.0, 1.0], &row) };
+    reads(&few.error(1), "masses: … at least 3 points, found 2").unwrap();
+    let flat = Model { dimension: 0, ..Model::chain(&[1.0, 1.0], &row) };
+    reads(&flat.error(1), "dimension: … 1, 2 or 3, found 0").unwrap();
     let indefinite = Model::chain(&[1.0, -0.2], &row);
     reads(&indefinite.error(1), "stiffness: … found motions that meet no resistance").unwrap();
 }

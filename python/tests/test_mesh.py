@@ -57,11 +57,11 @@ def test_meshio_reads_the_groups_of_gmsh(scenes):
         assert {tuple(p) for p in other.points[other.groups[name]]} == places
 
 
-@pytest.mark.parametrize("kind", ["MeshTri1", "MeshQuad1", "MeshTet1", "MeshHex1"])
-def test_stiffness_equals_scikit_fem(kind):
-    skfem = pytest.importorskip("skfem")
-    from skfem.models.elasticity import lame_parameters, linear_elasticity
+KINDS = {"MeshTri1": "ElementTriP1", "MeshQuad1": "ElementQuad1", "MeshTet1": "ElementTetP1", "MeshHex1": "ElementHex1"}
 
+
+def jittered(skfem, kind):
+    """A mesh of scikit-fem whose inner points are moved, the bases of displacements on it for an order of integration, ours, and its plane state."""
     rng = np.random.default_rng(1)
     mesh = getattr(skfem, kind)().refined(2)
     # No cell is a box; those of planes and bricks stay what they are.
@@ -69,26 +69,43 @@ def test_stiffness_equals_scikit_fem(kind):
     p = mesh.p.copy()
     p[:, inner] += 0.04 * rng.uniform(-1, 1, p[:, inner].shape)
     mesh = getattr(skfem, kind)(p, mesh.t)
-    element = {"MeshTri1": "ElementTriP1", "MeshQuad1": "ElementQuad1", "MeshTet1": "ElementTetP1", "MeshHex1": "ElementHex1"}[kind]
-    # The same rule: two points along each direction of a brick.
-    basis = skfem.Basis(mesh, skfem.ElementVector(getattr(skfem, element)()), intorder=3)
-    young, poisson = 1e4, 0.3
-    lam, mu = lame_parameters(young, poisson)
-    theirs = linear_elasticity(lam, mu).assemble(basis)
-    ours_mesh = sf.Mesh.from_skfem(mesh)
-    plane = "strain" if mesh.dim() == 2 else None
-    ours = sf.stiffness(ours_mesh, sf.Material(young, poisson, plane=plane))
-    # Both number degrees of freedom node by node.
+
+    def basis(order):
+        return skfem.Basis(mesh, skfem.ElementVector(getattr(skfem, KINDS[kind])()), intorder=order)
+
+    return mesh, basis, sf.Mesh.from_skfem(mesh), "strain" if mesh.dim() == 2 else None
+
+
+def node_by_node(basis, matrix):
+    """A matrix of scikit-fem in our order of the degrees of freedom."""
     order = basis.nodal_dofs.T.ravel()
-    theirs = theirs[order][:, order]
+    return matrix[order][:, order]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_stiffness_equals_scikit_fem(kind):
+    skfem = pytest.importorskip("skfem")
+    from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+    _, basis, ours_mesh, plane = jittered(skfem, kind)
+    # The same rule: two points along each direction of a brick.
+    basis = basis(3)
+    theirs = node_by_node(basis, linear_elasticity(*lame_parameters(1e4, 0.3)).assemble(basis))
+    ours = sf.stiffness(ours_mesh, sf.Material(1e4, 0.3, plane=plane))
     assert abs(ours - theirs).max() <= 1e-12 * abs(theirs).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_masses_equal_scikit_fem(kind):
+    skfem = pytest.importorskip("skfem")
     from skfem.helpers import dot
 
+    mesh, basis, ours_mesh, plane = jittered(skfem, kind)
     density = 7.0
-    material = sf.Material(young, poisson, plane=plane, density=density)
+    material = sf.Material(1e4, 0.3, plane=plane, density=density)
     # Exact for the products of shape functions.
-    fine = skfem.Basis(mesh, skfem.ElementVector(getattr(skfem, element)()), intorder=6)
-    theirs = skfem.BilinearForm(lambda u, v, w: density * dot(u, v)).assemble(fine)[order][:, order]
+    basis = basis(6)
+    theirs = node_by_node(basis, skfem.BilinearForm(lambda u, v, w: density * dot(u, v)).assemble(basis))
     ours = sf.mass(ours_mesh, material)
     assert abs(ours - theirs).max() <= 1e-12 * abs(theirs).max()
     blend = sf.mass(ours_mesh, material, share=0.3, total=5.0)

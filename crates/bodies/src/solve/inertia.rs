@@ -65,9 +65,16 @@ pub(super) struct MassRoot<'a> {
 
 impl<'a> MassRoot<'a> {
     /// # Errors
-    /// A point that may move has no mass.
+    /// There are fewer masses than points with these degrees of freedom, or a point that may move has no mass.
     pub fn new(masses: Masses<'a>, free: &'a [usize], dimension: usize) -> Result<MassRoot<'a>> {
+        if !(1..=3).contains(&dimension) {
+            return Err(Error::expected("dimension", "1, 2 or 3", dimension));
+        }
         let of_points = masses.diagonal();
+        let least = free.iter().max().map_or(0, |dof| dof / dimension + 1);
+        if of_points.len() < least {
+            return Err(Error::expected("masses", format!("one for each of at least {least} points"), of_points.len()));
+        }
         let points = || free.iter().map(|dof| dof / dimension);
         if let Some(p) = points().find(|&p| !(of_points[p] > 0.0 && of_points[p].is_finite())) {
             return Err(Error::expected("masses", format!("a mass above zero at point {}", p + 1), of_points[p]));

@@ -48,8 +48,8 @@ impl Modes {
 /// (Weinstein's bound in the energy norm; the Euclidean norm of r is dominated by the rounding of stiff motions).
 ///
 /// # Errors
-/// K is not positive definite; there are fewer free degrees of freedom than modes; a point that may move has no mass;
-/// or the uncertainty of an ω² exceeds 1e-6.
+/// K is not positive definite; there are fewer free degrees of freedom than modes; there are fewer masses than points, or a point that
+/// may move has none; or the uncertainty of an ω² exceeds 1e-6.
 pub fn lowest_modes<'a>(
     system: &System,
     factor: &Factor,

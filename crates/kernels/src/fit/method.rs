@@ -10,15 +10,12 @@ use super::normal::{Normal, Rank};
 use super::objective::Objective;
 use super::reduction::Reduced;
 use super::settings::Fit;
-use super::spectral::{EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
+use super::spectral::{AMBIGUOUS, EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
 use super::weight::{MotionWeight, Route};
 use crate::material::Hooke;
 use crate::scalar::Real;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
-
-/// If the curvature of the barrier (see [`Spectral`]) is below this, the optimum may not be unique.
-const AMBIGUOUS: f64 = 1e6;
 
 /// If a motion is softer than this, relative to the stiffest motion, the squares in the normal equations have lost half
 /// of the digits of `f64`.
@@ -118,7 +115,9 @@ impl<T: Real> Method<T> {
                 let products = vec![any.zero(); m * m.max(reduced.order)];
                 Solver::LeastSquares { normal: Normal::default(), products }
             }
-            Objective::Spectral(_) => Solver::Spectral(Box::new(Spectral::like(any, &reduced, fit.nonnegative))),
+            Objective::Spectral(_) => {
+                Solver::Spectral(Box::new(Spectral::like(any, &reduced, fit.nonnegative, fit.gap)))
+            }
             Objective::Divergence(balance) => {
                 Solver::Divergence(Divergence::like(any, &reduced, balance, fit.nonnegative))
             }

@@ -34,6 +34,8 @@ use side::ShiftedMatrix;
 pub const GAP: f64 = 1e-8;
 /// Below this fraction of ‖R‖, rounding in R itself hides t.
 pub const EXACT: f64 = 1e-6;
+/// If the curvature of the barrier (see [`Spectral`]) is below this, the optimum may not be unique.
+pub const AMBIGUOUS: f64 = 1e6;
 /// The largest number of steps.
 const STEPS: usize = 120;
 /// How often a step is halved within one iteration.
@@ -59,6 +61,8 @@ pub struct Spectral<T> {
     /// about one, and an unknown that does has more than a million.
     pub curvature: T,
     nonnegative: bool,
+    /// The gap at which the fit may end, without a refinement.
+    gap: f64,
     e: Vec<T>,
     a: ShiftedMatrix<T>,
     b: ShiftedMatrix<T>,
@@ -68,7 +72,8 @@ pub struct Spectral<T> {
     pivots: Vec<T>,
     newton: Vec<T>,
     tangent: Vec<T>,
-    /// The eigenvalues of E at the end, on the diagonal, and its eigenvectors, row by row.
+    /// The eigenvalues of E at the end, on the diagonal, and its eigenvectors, row by row, if a lane has not reached the gap or may have
+    /// several optima.
     eigenvalues: Vec<T>,
     eigenvectors: Vec<T>,
     /// The factors of the Gram matrix of the matrices of the unknowns.
@@ -78,7 +83,7 @@ pub struct Spectral<T> {
 }
 
 impl<T: Real> Spectral<T> {
-    pub fn like(any: &T, reduced: &Reduced<T>, nonnegative: bool) -> Spectral<T> {
+    pub fn like(any: &T, reduced: &Reduced<T>, nonnegative: bool, gap: f64) -> Spectral<T> {
         let (p, m, c) = (reduced.order, reduced.unknowns.len(), reduced.scales.len());
         let zero = any.zero();
         let room = |size: usize| vec![zero.clone(); size];
@@ -88,6 +93,7 @@ impl<T: Real> Spectral<T> {
             bound: zero.clone(),
             curvature: zero.clone(),
             nonnegative,
+            gap,
             e: room(p * p),
             a: ShiftedMatrix::new(&zero, p, m),
             b: ShiftedMatrix::new(&zero, p, m),
@@ -212,7 +218,10 @@ impl<T: Real> Spectral<T> {
             #[inline(always)]
             || self.bound(reduced, &mu),
         );
-        if T::epsilon() >= T::given() {
+        let enough = self.value.greatest(&one.constant(&EXACT)).scaled(&self.gap);
+        let is_enough = enough.exceeds(&(self.value.clone() - &self.bound));
+        let is_unique = self.nonnegative || self.curvature.exceeds(&one.constant(&AMBIGUOUS));
+        if T::epsilon() >= T::given() && !(is_enough && is_unique) {
             reduced.residual(&self.kappa, &mut self.eigenvalues);
             mirror(&mut self.eigenvalues, reduced.order);
             eigenvectors(&mut self.eigenvalues, reduced.order, &mut self.eigenvectors);
