@@ -23,8 +23,8 @@ pub trait Product<T> {
     fn multiply(&mut self, vector: &[T], image: &mut [T]);
 }
 
-/// Replaces the constants of these lanes, the optimum without bounds, by the optimum under `k ≥ 0`. False, with nothing changed, if iterations
-/// or exchanges do not end.
+/// Replaces the constants of these lanes, the optimum without bounds, by the optimum under `k ≥ 0`. False, with nothing changed, if the
+/// iterations or the exchanges do not end.
 pub fn bound<T: Packed>(product: impl Product<T>, rhs: &[T], k: &mut [T], lanes: &[usize]) -> bool {
     let any = k[0].zero();
     any.vectorize(

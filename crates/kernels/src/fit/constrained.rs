@@ -145,8 +145,7 @@ impl Exchanges {
         Exchanges { positive, fewest: m + 1, patience: 3, left: 100 + 10 * m }
     }
 
-    /// Moves those of the unknowns `wrong`, at least one, that it returns into the set of positive ones or out of it; None if there were too many
-    /// exchanges.
+    /// Exchanges unknowns of `wrong`, which names at least one, and returns them; None after too many exchanges.
     pub fn exchange<'a>(&mut self, wrong: &'a [usize]) -> Option<&'a [usize]> {
         self.left = self.left.checked_sub(1)?;
         // Exchange all as long as that helps; then only the last one, which cannot cycle (Murty 1974).
@@ -161,8 +160,8 @@ impl Exchanges {
     }
 }
 
-/// Exchanges what `wrong` names until it names none; false if it knows none because the equations of a set are singular, or the exchanges do
-/// not end.
+/// Exchanges what `wrong` names until it names none; false if the equations of a set are singular, for which `wrong` returns None, or if the
+/// exchanges do not end.
 fn exchange(positive: Vec<bool>, mut wrong: impl FnMut(&[bool]) -> Option<Vec<usize>>) -> bool {
     let mut exchanges = Exchanges::new(positive);
     loop {

@@ -44,6 +44,8 @@ const SHORTER: usize = 4;
 const FLOOR: f64 = 1e-14;
 /// A step keeps at least this share of the distance to the boundary that the path would keep.
 const KEPT: f64 = 0.3;
+/// A step that would lower μ by more than this share nearly always leaves the domain: its half is tried first.
+const FAR: f64 = 0.95;
 /// Newton steps at a fixed μ have stalled if the squared decrement stays above the first number, and above the second
 /// number times the previous one.
 const STALLED: [f64; 2] = [1.5, 0.9];
@@ -210,7 +212,9 @@ impl<T: Real> Spectral<T> {
                 step[i] = inside.choose(&along, &step[i]);
             }
             reduction = inside.choose(&done.choose(&zero, &remaining), &reduction);
-            let whole = if self.nonnegative { one.least(&room_below(&self.kappa, &step[..c])) } else { one.clone() };
+            let far = remaining - &one.constant(&FAR);
+            let whole = far.choose(&one.constant(&0.5), &one);
+            let whole = if self.nonnegative { whole.least(&room_below(&self.kappa, &step[..c])) } else { whole };
             alpha = inside.choose(&whole, &alpha.clone().scaled(&0.5));
         }
         self.measure_curvature();
