@@ -49,7 +49,7 @@ impl Modes {
 ///
 /// # Errors
 /// K is not positive definite; there are fewer free degrees of freedom than modes; there are fewer masses than points, or a point that
-/// may move has none; or the uncertainty of an ω² exceeds 1e-6.
+/// may move has none; the dimension is not 1, 2 or 3; or the uncertainty of an ω² exceeds 1e-6.
 pub fn lowest_modes<'a>(
     system: &System,
     factor: &Factor,

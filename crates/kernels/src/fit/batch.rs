@@ -162,22 +162,14 @@ impl<'a, T: Packed> Workspace<'a, T> {
             return false;
         }
         let m = springs.len();
-        for s in 0..m {
-            let k = closed.constant(springs, s).as_slice();
-            for (cell, k) in (0..constants.len() / m).zip(k) {
-                constants[cell * m + s] = *k;
-            }
-        }
+        write(closed, springs, constants);
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
         let is_bounded = |lane: &usize| constants[lane * m..][..m].iter().any(|k| !(*k >= 0.0));
         let lanes: Vec<usize> = (0..constants.len() / m).filter(is_bounded).collect();
         if closed.bound(springs, &lanes) {
-            for s in 0..m {
-                let k = closed.constant(springs, s).as_slice();
-                lanes.iter().for_each(|&lane| constants[lane * m + s] = k[lane]);
-            }
+            write(closed, springs, constants);
             return true;
         }
         let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, hooke) else {
@@ -271,6 +263,18 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 .for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
         }
         regular
+    }
+}
+
+/// Writes the constants of each lane, `[cells × springs]`.
+#[inline(always)]
+fn write<T: Packed>(closed: &Closed<T>, springs: &Springs, constants: &mut [f64]) {
+    let m = springs.len();
+    for s in 0..m {
+        let k = closed.constant(springs, s).as_slice();
+        for (cell, k) in (0..constants.len() / m).zip(k) {
+            constants[cell * m + s] = *k;
+        }
     }
 }
 

@@ -79,8 +79,6 @@ pub struct Method<T> {
     reduced: Reduced<T>,
     weight: MotionWeight,
     nonnegative: bool,
-    /// The gap at which a spectral fit may end.
-    gap: f64,
     /// Whether springs measure functions.
     measures: bool,
     solver: Solver<T>,
@@ -123,7 +121,7 @@ impl<T: Real> Method<T> {
             }
         };
         let measures = !springs.functions.is_empty();
-        Some(Method { reduced, weight, nonnegative: fit.nonnegative, gap: fit.gap, measures, solver })
+        Some(Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver })
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
@@ -306,7 +304,7 @@ impl<T: Real> Method<T> {
                 let kappa = solver.kappa.iter().map(&lane).collect();
                 let mut optimum = Optimum { kappa, value: lane(&solver.value), bound: lane(&solver.bound) };
                 // Half of the digits is enough in numbers of more digits than `f64`.
-                let is_enough = optimum.value - optimum.bound <= self.gap * optimum.value.max(EXACT);
+                let is_enough = optimum.value - optimum.bound <= solver.gap * optimum.value.max(EXACT);
                 let refines = T::epsilon() >= T::given() && !is_enough;
                 // A nonnegative optimum stays in the middle of the optima, away from the bounds.
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;

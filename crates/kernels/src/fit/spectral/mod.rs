@@ -64,7 +64,7 @@ pub struct Spectral<T> {
     pub curvature: T,
     nonnegative: bool,
     /// The gap at which the fit may end, without a refinement.
-    gap: f64,
+    pub gap: f64,
     e: Vec<T>,
     a: ShiftedMatrix<T>,
     b: ShiftedMatrix<T>,
