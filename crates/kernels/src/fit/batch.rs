@@ -168,7 +168,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         let is_bounded = |lane: &usize| constants[lane * m..][..m].iter().any(|k| !(*k >= 0.0));
         let lanes: Vec<usize> = (0..constants.len() / m).filter(is_bounded).collect();
-        if closed.bound(springs, &lanes) {
+        if closed.bound(springs, &self.packing.x, &self.geometry, hooke, &lanes) {
             write(closed, springs, constants);
             return true;
         }

@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Least squares* of the book.
 
+use super::bounded::{Factors, bound};
 use super::least_squares::{equations, normal_equations};
 use super::nodal::{Nodal, is_shorter};
 use super::normal::Normal;
@@ -14,6 +15,10 @@ use crate::scalar::{Packed, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
+/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond the first number conjugate gradients from the
+/// equations of the nodes are faster, and beyond the second, without those, one lane after the other.
+const MOST_FACTORED: [usize; 2] = [60, 120];
+
 /// How the equations of a fit are solved, with the working memory.
 #[derive(Debug, Clone)]
 pub struct Closed<T> {
@@ -25,6 +30,7 @@ pub struct Closed<T> {
     tied: Normal<T>,
     /// The equations before elimination, if constants are bounded.
     kept: Normal<T>,
+    factors: Factors<T>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +63,7 @@ impl<T: Real> Closed<T> {
             normal: Normal::default(),
             tied: Normal::default(),
             kept: Normal::default(),
+            factors: Factors::default(),
         })
     }
 
@@ -157,9 +164,27 @@ impl<T: Real> Closed<T> {
 }
 
 impl<T: Packed> Closed<T> {
-    /// Replaces the constants of these lanes, after [`Closed::solve`], by the optimum under `k ≥ 0`. False, with nothing changed, where the
-    /// equations of the nodes are not those that are solved, or the iterations for it do not end.
-    pub fn bound(&mut self, springs: &Springs, lanes: &[usize]) -> bool {
-        self.steps == Steps::Nodes && self.nodal.bound(springs, &mut self.normal.rhs, lanes)
+    /// Replaces the constants of these lanes, after [`Closed::solve`], by the optimum under `k ≥ 0`. False, with nothing changed, where each
+    /// constant has an equation of its own, or the search does not end.
+    pub fn bound(
+        &mut self,
+        springs: &Springs,
+        x: &[T],
+        geometry: &Geometry<T>,
+        hooke: &Hooke<T>,
+        lanes: &[usize],
+    ) -> bool {
+        match self.steps {
+            Steps::Decoupled => return false,
+            Steps::Nodes if springs.len() > MOST_FACTORED[0] => {
+                return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
+            }
+            Steps::Nodes => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
+            Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED[1] => return false,
+            Steps::Springs | Steps::Groups => {}
+        }
+        let k = if self.steps == Steps::Groups { &mut self.tied.rhs } else { &mut self.normal.rhs };
+        self.factors.set(&self.kept);
+        bound(&mut self.factors, &self.kept.rhs, k, lanes)
     }
 }

@@ -9,7 +9,7 @@
 //! Theory: page *The divergence* of the book.
 
 use super::dense::{
-    add_outers, at_rounding, factorize, inner, invert, least_pivot, room_below, row_products, solve, tie, trace,
+    add_outers, at_rounding, factorize, inner, invert, least_pivot, longest_step, row_products, solve, tie, trace,
 };
 use super::objective::Balance;
 use super::reduction::Reduced;
@@ -22,6 +22,8 @@ const STEPS: usize = 1000;
 const FLOOR: f64 = 1e-14;
 /// The squared Newton decrement at which the next step leaves an error of 1e-10, relative to the scale of the problem.
 const CLOSE: f64 = 1e-10;
+/// A step goes at most this share of the way to where the first κ would be zero.
+const TOWARDS_ZERO: f64 = 0.9;
 /// The weight of the barrier that keeps constants positive, at the start and at the end.
 const BARRIER: [f64; 2] = [1e-1, 1e-9];
 
@@ -172,7 +174,7 @@ impl<T: Real> Divergence<T> {
             let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
             let mut length = (one.constant(&0.25) - &decrement).choose(&one, &length);
             if self.nonnegative {
-                length = length.least(&room_below(&self.kappa, &self.trial));
+                length = length.least(&longest_step(&self.kappa, &self.trial).scaled(&TOWARDS_ZERO));
             }
             let moving = self.reached.choose(&zero, &inside.choose(&length, &one));
             for i in 0..c {

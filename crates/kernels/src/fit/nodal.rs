@@ -7,7 +7,7 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::bounded::{Product, bound};
+use super::bounded::{Gradients, Product, bound};
 use super::dense::solve as substitute;
 use super::edge_cell::EdgeCell;
 use super::normal::Normal;
@@ -221,7 +221,8 @@ impl<T: Packed> Nodal<T> {
             scale[row.len()] = content;
         }
         let sums = vec![zero; self.small.size()];
-        bound(NodalProduct { springs, entries: &self.entries, border, scale, sums }, &self.energies, k, lanes)
+        let product = NodalProduct { springs, entries: &self.entries, border, scale, sums };
+        bound(&mut Gradients::new(product), &self.energies, k, lanes)
     }
 }
 

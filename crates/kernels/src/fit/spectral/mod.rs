@@ -22,7 +22,8 @@ pub use problem::{Optimum, Problem};
 pub use refinement::refine;
 
 use super::dense::{
-    at_half, at_rounding, factorize, inner, least_pivot, mirror, room_below, row_products, solve, tie, trace,
+    at_half, at_rounding, factorize, inner, least_pivot, longest_step, mirror, row_products, solve, solve_both, tie,
+    trace,
 };
 use super::jacobi::eigenvectors;
 use super::reduction::Reduced;
@@ -46,6 +47,8 @@ const FLOOR: f64 = 1e-14;
 const KEPT: f64 = 0.3;
 /// A step that would lower μ by more than this share nearly always leaves the domain: its half is tried first.
 const FAR: f64 = 0.95;
+/// A step goes at most this share of the way to where the first κ would be zero.
+const TOWARDS_ZERO: f64 = 0.5;
 /// Newton steps at a fixed μ have stalled if the squared decrement stays above the first number, and above the second
 /// number times the previous one.
 const STALLED: [f64; 2] = [1.5, 0.9];
@@ -214,7 +217,10 @@ impl<T: Real> Spectral<T> {
             reduction = inside.choose(&done.choose(&zero, &remaining), &reduction);
             let far = remaining - &one.constant(&FAR);
             let whole = far.choose(&one.constant(&0.5), &one);
-            let whole = if self.nonnegative { whole.least(&room_below(&self.kappa, &step[..c])) } else { whole };
+            let whole = match self.nonnegative {
+                true => whole.least(&longest_step(&self.kappa, &step[..c]).scaled(&TOWARDS_ZERO)),
+                false => whole,
+            };
             alpha = inside.choose(&whole, &alpha.clone().scaled(&0.5));
         }
         self.measure_curvature();
@@ -348,8 +354,7 @@ impl<T: Real> Spectral<T> {
             self.tangent[i] = if i == c { zero.one() } else { zero.clone() };
         }
         factorize(&mut self.hessian, c + 1, at_rounding::<T>(FLOOR), &mut self.pivots);
-        solve(&self.hessian, c + 1, &self.pivots, &mut self.newton);
-        solve(&self.hessian, c + 1, &self.pivots, &mut self.tangent);
+        solve_both(&self.hessian, c + 1, &self.pivots, [&mut self.newton, &mut self.tangent]);
         let square = inner(&self.newton, &self.gradient).negated();
         let (mixed, bend) = (self.newton[c].clone(), self.tangent[c].clone());
         let pull = zero.one() / &*mu;
