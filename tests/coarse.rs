@@ -277,3 +277,33 @@ fn masses_that_cannot_be_fitted_are_named() {
     let error = of("masses = 100", "density = 1000").unwrap_err().to_string();
     assert!(error.contains("masses") && error.contains("free degrees of freedom"), "{error}");
 }
+
+/// A finer mesh whose content is another is of another body; a small difference is a note.
+#[test]
+fn finer_meshes_of_other_bodies_are_refused() {
+    let of = |size: &str, cells: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let other = format!("mesh = {{ box = {{ element = \"quad4\", size = {size}, cells = {cells} }} }}");
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"quad4\", size = [4, 1], cells = [8, 2] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+             plane = \"strain\"\n[reference]\n{other}\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\n\
+             traction = [1, 0]\n[[fit]]\nobjective = \"exact\"\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        let mut notes = Vec::new();
+        let found = run(&Scene::load(&path).unwrap(), &mut |event| {
+            if let springfit::study::Event::Note(words) = event {
+                notes.push(words.to_string());
+            }
+        });
+        found.map(|_| notes.join("\n"))
+    };
+    for size in ["[4, 1.5]", "[4, 0.5]"] {
+        let error = of(size, "[16, 4]").unwrap_err().to_string();
+        assert!(error.contains("reference.mesh: expected a mesh of the same body, of 4.0000e0 m²"), "{error}");
+    }
+    assert_eq!(of("[4, 1]", "[16, 4]").unwrap(), "");
+    assert!(of("[4, 1.1]", "[16, 4]").unwrap().contains("has 4.0000e0 m² +10.0 %"));
+    assert!(of("[4, 1]", "[4, 1]").unwrap().contains("fewer points than the mesh: 10 for 27"));
+}

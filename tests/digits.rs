@@ -1,5 +1,6 @@
 //! Digits that ill-conditioned problems keep: contrast, bounded and tied constants on flat shapes, springs on functions.
 
+use crate::shapes::{Random, distorted};
 use springfit::dynamics::{LinearSolver, Motion, Options, Simulation};
 use springfit::element::Element;
 use springfit::error::ErrorKind;
@@ -7,7 +8,7 @@ use springfit::fit::{
     Balance, Fit, Higher, MotionWeight, Objective, Weight, bounded_constants, constants_of_kind, distance_from_optimum,
     fit_cells, fit_element,
 };
-use springfit::material::{Material, Moduli};
+use springfit::material::{Material, Moduli, Plane};
 use springfit::model::{LengthSpring, Network, Support};
 use springfit::scalar::{DoubleDouble, Real};
 use springfit::solve::System;
@@ -222,5 +223,28 @@ fn functions_of_pairs_of_doubles_have_thirty_digits() {
 fn agrees<T: Differentiable>(jet: &Jet<T>, plain: &Jet, text: &str) {
     for (a, b) in jet.gradient.iter().chain(&jet.hessian).zip(plain.gradient.iter().chain(&plain.hessian)) {
         assert!((a.rounded() - b).abs() < 1e-9 * (1.0 + b.abs()), "{text}: {:e} {b:e}", a.rounded());
+    }
+}
+
+/// Rounding hides the optimum of the relative weight from 1 : 30 on; double-double numbers find and prove it.
+#[test]
+fn optima_of_needles_are_proved() {
+    let mut random = Random(5);
+    for name in ["tri3", "quad4", "tet4", "wedge6"] {
+        let element = Element::load(name).unwrap();
+        let (d, springs) = (element.dimension(), Springs::select(&element, None).unwrap());
+        let moduli = Material::for_body(d, 1e4, 0.3, (d == 2).then_some(Plane::Strain), None).unwrap().moduli();
+        for aspect in [30.0, 100.0, 300.0, 1000.0] {
+            let stretched =
+                |x: Vec<f64>| x.into_iter().enumerate().map(move |(i, x)| if i % d == 0 { aspect * x } else { x });
+            let x: Vec<f64> = (0..16).flat_map(|_| stretched(distorted(&element, &mut random))).collect();
+            let cells: Vec<usize> = (0..16 * element.nodes()).collect();
+            for weight in [MotionWeight::None, MotionWeight::Modal(Higher::DEFAULT), MotionWeight::Relative] {
+                let fit = Fit::new(Objective::Spectral(weight));
+                let fits = fit_cells(&element, &springs, &x, &cells, moduli, &fit, &mut |_| {}).unwrap();
+                assert_eq!(fits.unreached, 0, "{name} 1 : {aspect} {weight:?}");
+                assert!(fits.certificates.iter().all(|c| c.gap() <= 1e-8), "{name} 1 : {aspect} {weight:?}");
+            }
+        }
     }
 }

@@ -105,14 +105,8 @@ impl World {
         sigmas
     }
 
-    /// The moduli that a network of `size` cells across finds with these keys, and a finer mesh of `finer` cells across.
-    fn find(
-        &self,
-        size: usize,
-        finer: Option<usize>,
-        sigmas: Option<&[f64]>,
-        keys: &str,
-    ) -> springfit::error::Result<Outcome> {
+    /// A scene in which a network of `size` cells across finds moduli with these keys, and a finer mesh of `finer` cells across.
+    fn scene(&self, size: usize, finer: Option<usize>, sigmas: Option<&[f64]>, keys: &str) -> String {
         let folder = self.folder.path();
         std::fs::write(folder.join("own.inp"), block(size)).unwrap();
         let reference = finer.map_or(String::new(), |finer| {
@@ -127,7 +121,17 @@ impl World {
             write!(text, "\n[[load]]\nname = \"{name}\"\n{load}\nmeasured = {{ file = \"{name}.csv\"{sigma} }}\n")
                 .unwrap();
         }
-        outcome(folder, "own.toml", &text)
+        text
+    }
+
+    fn find(
+        &self,
+        size: usize,
+        finer: Option<usize>,
+        sigmas: Option<&[f64]>,
+        keys: &str,
+    ) -> springfit::error::Result<Outcome> {
+        outcome(self.folder.path(), "own.toml", &self.scene(size, finer, sigmas, keys))
     }
 }
 
@@ -141,6 +145,16 @@ fn on_surface(x: &[f64]) -> bool {
 
 /// Of how many of these seeds the 95 % intervals hold the truth, of each modulus; and the largest error of a modulus.
 fn coverage(world: &World, (size, finer): (usize, Option<usize>), noise: f64, surface: bool, seeds: u64) -> (f64, f64) {
+    coverage_with(world, (size, finer), (noise, surface), "", seeds)
+}
+
+fn coverage_with(
+    world: &World,
+    (size, finer): (usize, Option<usize>),
+    (noise, surface): (f64, bool),
+    keys: &str,
+    seeds: u64,
+) -> (f64, f64) {
     let (mut held, mut all, mut worst) = (0, 0, 0.0f64);
     for seed in 0..seeds {
         let sigmas = world.measure(size, (noise, seed), |x| !surface || on_surface(x));
@@ -148,7 +162,7 @@ fn coverage(world: &World, (size, finer): (usize, Option<usize>), noise: f64, su
             size,
             finer,
             Some(&sigmas).filter(|_| noise > 0.0).map(|s| &s[..]),
-            "unknowns = \"region-young\"",
+            &format!("unknowns = \"region-young\"\n{keys}"),
         );
         let found = found.unwrap();
         for modulus in &moduli(&found).all {
@@ -163,7 +177,7 @@ fn coverage(world: &World, (size, finer): (usize, Option<usize>), noise: f64, su
     }
     let share = held as f64 / all as f64;
     println!(
-        "{size} cells, finer {finer:?}, noise {noise}, surface {surface}: {:.0} %, moduli within {:.2} %",
+        "{size} cells, finer {finer:?}, noise {noise}, surface {surface} {keys}: {:.0} %, moduli within {:.2} %",
         100.0 * share,
         100.0 * worst
     );
@@ -201,6 +215,46 @@ fn intervals_hold_the_truth_on_the_same_mesh() {
 #[test]
 fn intervals_hold_the_truth_on_a_coarse_network() {
     on_a_coarse_network(4);
+}
+
+/// A large ρ holds the moduli near the start: the intervals have how far.
+#[test]
+fn intervals_hold_the_truth_whatever_the_regularization_is() {
+    let world = World::new(3);
+    for keys in ["validate = \"discrepancy\"", "regularization = 1.0", "regularization = 0.01"] {
+        let (share, worst) = coverage_with(&world, (3, None), (0.05, false), keys, 10);
+        assert!(share >= 0.8 && worst > 0.01, "{keys}: {share} {worst}");
+    }
+}
+
+/// A body without groups, whose halves are entries of `[[material]]`.
+#[test]
+fn regions_of_the_material_have_moduli_of_their_own() {
+    let world = World::new(3);
+    world.measure(3, (0.0, 1), |_| true);
+    let parts = "[[material]]\nwhere = \"z > 0.999\"\nyoung = 1e4\npoisson = 0.3\n\n[[material]]\n";
+    for keys in ["unknowns = \"region-young\"", "unknowns = \"region-moduli\""] {
+        let text = world.scene(3, None, None, keys).replace("[material]\n", parts);
+        let text =
+            text.replace("file = \"own.inp\"", "box = { element = \"hex8\", size = [1, 1, 2], cells = [3, 3, 6] }");
+        let found = outcome(world.folder.path(), "parts.toml", &text).unwrap();
+        for modulus in &moduli(&found).all {
+            let truth = TRUTH[usize::from(modulus.name.contains("z > 0.999"))];
+            assert!((modulus.factor / truth - 1.0).abs() < 1e-3, "{keys}: {modulus:?}");
+        }
+        assert_eq!(moduli(&found).all.len(), if keys.contains("moduli") { 4 } else { 2 }, "{keys}");
+    }
+}
+
+/// Displacements of the finer body are no data beside measured ones.
+#[test]
+fn loads_without_measured_displacements_are_refused_beside_others() {
+    let world = World::new(2);
+    world.measure(2, (0.0, 1), |_| true);
+    let text = world.scene(2, Some(4), None, "unknowns = \"region-young\"");
+    let text = text.replace("measured = { file = \"shear.csv\" }\n", "");
+    let error = outcome(world.folder.path(), "mixed.toml", &text).unwrap_err().to_string();
+    assert!(error.contains("fit[0].loads") && error.contains("shear, which has none"), "{error}");
 }
 
 #[test]

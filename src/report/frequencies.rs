@@ -40,7 +40,10 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
     let note = |model: &FrequencyOutcome| {
         model.found.as_ref().err().map(|why| format!("{}: no natural frequencies: {why}", model.name))
     };
-    outcome.frequencies.iter().filter_map(note).collect()
+    let has_finer = outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.is_of_finer));
+    let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
+    let compared = (has_finer && outcome.frequencies.len() > 1).then(|| words.to_string());
+    outcome.frequencies.iter().filter_map(note).chain(compared).collect()
 }
 
 /// The natural frequencies of a model in `report.json`.

@@ -229,8 +229,9 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
     let measured = outcome.loads.iter().filter_map(|load| {
         let measured = load.measured?;
         let error = measured.error.map_or("-".into(), |e| format!("%e_rms / %e_max {:.2} / {:.2}", e.rms, e.max));
+        let by = if measured.is_of_finer { "of the finer body" } else { "measured" };
         Some(format!(
-            "errors under {} are relative to the displacements measured at {} points; finite elements: {error}",
+            "errors under {} are relative to the displacements {by} at {} points; finite elements: {error}",
             load.name, measured.points
         ))
     });

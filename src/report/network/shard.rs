@@ -1,7 +1,7 @@
 //! Springs of some of the cells of a body, in files that are merged into one network.
 //!
 //! A shard is a line of JSON, the shares of its cells in the springs between two points, sorted by the points, in records of 64 bytes, and
-//! a table of all other springs, which belong to one cell each.
+//! a table of all other springs, which belong to one cell each, and the CRC-32 of all that.
 
 use super::csv::{COLUMNS, SpringRow, SpringTable};
 use crate::error::{Error, ErrorKind, Result};
@@ -9,17 +9,20 @@ use crate::file::write_with;
 use crate::model::{LengthShare, MeasureSpring, SharedSpring};
 use crate::report::shard::Shard;
 use crate::springs::distance;
+use flate2::{CrcReader, CrcWriter};
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 const FORMAT: &str = "springfit shard";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes of a share.
 const RECORD: usize = 64;
+/// Bytes of the checksum.
+const CHECKSUM: u64 = 4;
 /// The longest first line that is read, bytes.
 const LONGEST: u64 = 1_000_000;
 /// The most files that are open at the same time.
@@ -117,7 +120,8 @@ impl NetworkShard<'_> {
             has_slack: self.shares.iter().any(|share| share.slack != 0.0),
         };
         write_with(path, |to| {
-            serde_json::to_writer(&mut *to, &header)?;
+            let mut to = CrcWriter::new(to);
+            serde_json::to_writer(&mut to, &header)?;
             to.write_all(b"\n")?;
             let at = |p: usize| &self.points[p * d..(p + 1) * d];
             for share in self.shares {
@@ -129,7 +133,9 @@ impl NetworkShard<'_> {
                 values.into_iter().try_for_each(|value| to.write_all(&value.to_le_bytes()))?;
                 nodes.into_iter().try_for_each(|number| to.write_all(&number.to_le_bytes()))?;
             }
-            to.write_all(&others)
+            to.write_all(&others)?;
+            let checksum = to.crc().sum();
+            to.into_inner().write_all(&checksum.to_le_bytes())
         })
     }
 }
@@ -164,7 +170,10 @@ impl Source {
         if header.format != FORMAT || header.version != VERSION {
             return Err(wrong(format!("\"{}\" of version {}", header.format, header.version)));
         }
-        let expected = (header.shares as u128) * RECORD as u128 + header.others as u128 + line.len() as u128;
+        let expected = (header.shares as u128) * RECORD as u128
+            + header.others as u128
+            + line.len() as u128
+            + u128::from(CHECKSUM);
         let found = file.get_ref().metadata().map_err(failed)?.len();
         if u128::from(found) != expected {
             return Err(wrong(format!("one of {found} bytes in place of {expected}")));
@@ -172,7 +181,22 @@ impl Source {
         if !(1..=header.count).contains(&header.shard) {
             return Err(wrong(format!("shard {} of {}", header.shard, header.count)));
         }
-        Ok(Source { path: path.to_path_buf(), start: line.len() as u64, header })
+        let source = Source { path: path.to_path_buf(), start: line.len() as u64, header };
+        match source.is_whole(found).map_err(failed)? {
+            true => Ok(source),
+            false => Err(wrong("one that is damaged: its checksum is not that of its contents".into())),
+        }
+    }
+
+    /// Whether the checksum at the end of a file of this length is that of what is before it.
+    fn is_whole(&self, length: u64) -> io::Result<bool> {
+        let mut file = BufReader::new(File::open(&self.path)?);
+        let mut contents = CrcReader::new(file.by_ref().take(length - CHECKSUM));
+        io::copy(&mut contents, &mut io::sink())?;
+        let sum = contents.crc().sum();
+        let mut stated = [0; CHECKSUM as usize];
+        file.read_exact(&mut stated)?;
+        Ok(stated == sum.to_le_bytes())
     }
 
     fn shares(&self) -> io::Result<Shares<'_>> {
@@ -185,7 +209,8 @@ impl Source {
     fn others(&self) -> io::Result<impl Iterator<Item = io::Result<csv::StringRecord>> + use<'_>> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(self.start + (self.header.shares * RECORD) as u64))?;
-        let table = csv::ReaderBuilder::new().has_headers(false).from_reader(BufReader::new(file));
+        let rows = BufReader::new(file.take(self.header.others as u64));
+        let table = csv::ReaderBuilder::new().has_headers(false).from_reader(rows);
         let checked = |row: csv::Result<csv::StringRecord>| {
             let row = row.map_err(|e| e.to_string())?;
             let is_whole = row.len() == COLUMNS.len();

@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
+use super::regions::BodyRegions;
 use crate::error::Result;
 use crate::fit::{CellFits, DomainSprings, ExactDomains, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use crate::material::{CellMap, Material, MaterialMap};
@@ -69,7 +70,7 @@ impl Carriers {
     /// The body has no such network.
     pub fn new(
         mesh: &Mesh,
-        material: &MaterialMap,
+        (material, regions): (&MaterialMap, &BodyRegions),
         fit: &ExactFit,
         held: &[bool],
     ) -> Result<(Carriers, Vec<MeasureSpring>)> {
@@ -88,7 +89,7 @@ impl Carriers {
                 let share = if patched { HALF } else { 1.0 };
                 Carriers::cells(mesh, (materials, &shear), &ExactFit { volume, ..*fit }, share)?
             }
-            ShearSprings::Edges => Carriers::domains(mesh, material, &shear, fit)?,
+            ShearSprings::Edges => Carriers::domains(mesh, (material, regions), &shear, fit)?,
         };
         Ok((carriers, patches))
     }
@@ -117,17 +118,22 @@ impl Carriers {
         Ok(Carriers::Cells(fits))
     }
 
-    fn domains(mesh: &Mesh, material: &MaterialMap, shear: &CellMap<Material>, fit: &ExactFit) -> Result<Carriers> {
+    fn domains(
+        mesh: &Mesh,
+        (material, regions): (&MaterialMap, &BodyRegions),
+        shear: &CellMap<Material>,
+        fit: &ExactFit,
+    ) -> Result<Carriers> {
         let (block, springs) = domain_parts(mesh, material, fit)?;
         let of_shear = ExactDomains::new(fit, shear.block(0).values())?;
         let is_uniform = matches!(shear, CellMap::Uniform(_));
-        let regions = &mesh.regions()[0];
+        let region = |cell: usize| regions.names(CellIndex { block: 0, cell });
         let domains = edge_domains(mesh, block, material);
         let of_domain = |(index, domain): (usize, &EdgeDomain)| {
             let mut cells = domain.cells.clone();
-            cells.sort_by_key(|(cell, _)| &regions[*cell]);
+            cells.sort_by_key(|(cell, _)| region(*cell));
             let mut parts = Vec::new();
-            for own in cells.chunk_by(|a, b| regions[a.0] == regions[b.0]) {
+            for own in cells.chunk_by(|a, b| region(a.0) == region(b.0)) {
                 let cell = own[0].0;
                 let shares: Vec<(usize, f64)> =
                     own.iter().map(|(cell, share)| (if is_uniform { 0 } else { *cell }, *share)).collect();

@@ -25,6 +25,9 @@ pub const NINETY_FIVE: f64 = 1.96;
 pub struct Determination {
     /// The standard deviation of each unknown θ, a logarithm; `None` if the displacements do not determine it.
     pub deviations: Vec<Option<f64>>,
+    /// The step of each unknown to the optimum without ρ, by linearisation; zero where the displacements do not determine it. This is how far ρ
+    /// holds the unknowns near the start.
+    pub shifts: Vec<f64>,
     /// The standard deviation of a residual: the relative error of a displacement, with that of one load as its unit.
     pub residual: f64,
     /// Combinations that the displacements hardly see, or not at all, each by its unknowns: those whose 95 % intervals reach beyond the
@@ -85,6 +88,15 @@ impl Determination {
             }
             Some(size * variance.sqrt() / norms[p])
         };
+        let residuals = DVector::from_vec(at.residuals.concat());
+        let slopes: Vec<f64> =
+            (0..m).map(|p| if is_seen(p) { columns[p].dot(&residuals) / norms[p] } else { 0.0 }).collect();
+        let slopes = DVector::from_vec(slopes);
+        let mut shifts = vec![0.0; m];
+        for (value, vector) in pairs().filter(|(value, _)| **value > UNSEEN * UNSEEN) {
+            let along = vector.dot(&slopes) / value;
+            (0..m).filter(|&p| is_seen(p)).for_each(|p| shifts[p] -= along * vector[p] / norms[p]);
+        }
         let mut weak: Vec<Vec<usize>> = (0..m).filter(|&p| !is_seen(p)).map(|p| vec![p]).collect();
         for (value, vector) in pairs() {
             let own: Vec<usize> = (0..m).filter(|&p| is_seen(p) && vector[p].abs() > PART).collect();
@@ -93,6 +105,6 @@ impl Determination {
                 weak.push(own);
             }
         }
-        Ok(Determination { deviations: (0..m).map(deviation).collect(), residual, weak })
+        Ok(Determination { deviations: (0..m).map(deviation).collect(), shifts, residual, weak })
     }
 }

@@ -8,6 +8,7 @@
 
 use super::carriers::{Carriers, Modulus, Part};
 use super::parts::{PartVectors, Places};
+use super::regions::BodyRegions;
 use super::unknowns::Unknowns;
 use crate::error::Result;
 use crate::fit::{ExactFit, ShearSprings, VolumeSprings};
@@ -23,7 +24,7 @@ use std::sync::Arc;
 pub enum ModuliSharing {
     /// All cells of the body; all patches.
     Body,
-    /// The cells that belong to the same physical groups; all patches.
+    /// The cells of the same region, see [`BodyRegions`]; all patches.
     Region,
     /// The same with one factor on both moduli, so that Poisson's ratio stays; all patches.
     RegionYoung,
@@ -35,6 +36,7 @@ pub enum ModuliSharing {
 #[derive(Debug, Clone)]
 pub struct ModuliParts<'a> {
     mesh: &'a Mesh,
+    regions: Arc<BodyRegions>,
     carriers: Carriers,
     /// The springs of the patches.
     patches: Vec<MeasureSpring>,
@@ -62,7 +64,8 @@ impl<'a> ModuliParts<'a> {
         let material = material.into();
         material.check(&mesh.blocks.iter().map(|block| block.cells().len()).collect::<Vec<_>>())?;
         let fit = ExactFit { shear, volume, ..ExactFit::default() };
-        let (carriers, patches) = Carriers::new(mesh, &material, &fit, held)?;
+        let regions = Arc::new(BodyRegions::of(mesh, &material));
+        let (carriers, patches) = Carriers::new(mesh, (&material, &regions), &fit, held)?;
         let (d, mut places, mut tangents, mut parts) = (mesh.dimension, Places::new(), Vec::new(), Vec::new());
         for of_part in carriers.tangents(mesh) {
             places.push(dofs(&of_part.nodes, d));
@@ -77,7 +80,7 @@ impl<'a> ModuliParts<'a> {
             parts.push(Part::Patch(index));
         }
         let (places, tangents, factors) = (Arc::new(places), Arc::new(tangents), vec![1.0; parts.len()]);
-        Ok(ModuliParts { mesh, carriers, patches, places, tangents, parts, factors })
+        Ok(ModuliParts { mesh, regions, carriers, patches, places, tangents, parts, factors })
     }
 
     /// The unknowns that cells share in this way.
@@ -91,12 +94,11 @@ impl<'a> ModuliParts<'a> {
     }
 
     fn shared(&self, sharing: ModuliSharing) -> (Unknowns, Vec<String>) {
-        let regions = self.mesh.regions();
-        let groups = |cell: CellIndex| regions[cell.block][cell.cell].clone();
+        let groups = |cell: CellIndex| self.regions.names(cell);
         let label = |part: &Part| match (sharing, self.cell(*part)) {
-            (ModuliSharing::Element, _) => (self.modulus(*part), Vec::new(), self.place(*part)),
-            (_, None) => (None, Vec::new(), [0; 2]),
-            (ModuliSharing::Body, Some(_)) => (self.modulus(*part), Vec::new(), [0; 2]),
+            (ModuliSharing::Element, _) => (self.modulus(*part), &[][..], self.place(*part)),
+            (_, None) => (None, &[][..], [0; 2]),
+            (ModuliSharing::Body, Some(_)) => (self.modulus(*part), &[][..], [0; 2]),
             (ModuliSharing::RegionYoung, Some(cell)) => (Some(Modulus::Shear), groups(cell), [0; 2]),
             (ModuliSharing::Region, Some(cell)) => (self.modulus(*part), groups(cell), [0; 2]),
         };
@@ -112,7 +114,7 @@ impl<'a> ModuliParts<'a> {
             let name = match (sharing, self.cell(*part)) {
                 (ModuliSharing::Element, _) => format!("{modulus} of {}", self.place_name(*part)),
                 (_, None) => "lambda of patches".into(),
-                (_, Some(_)) => in_region(modulus, &label.1),
+                (_, Some(_)) => in_region(modulus, label.1),
             };
             *known.entry(label).or_insert_with(|| {
                 names.push(name);
@@ -162,18 +164,17 @@ impl<'a> ModuliParts<'a> {
         }
     }
 
-    /// The factors on μ and λ of the cells that belong to the same groups, with these of the parts.
+    /// The factors on μ and λ of the cells of each region, with these of the parts.
     pub(super) fn region_factors(&self, factors: &[f64]) -> BTreeMap<Vec<String>, [f64; 2]> {
-        let regions = self.mesh.regions();
         let mut found = BTreeMap::new();
         for ((part, own), factor) in self.parts.iter().zip(&self.factors).zip(factors) {
             let (Some(cell), Some(modulus)) = (self.cell(*part), self.modulus(*part)) else { continue };
-            let groups = regions[cell.block][cell.cell].iter().map(|name| name.to_string()).collect();
+            let region = self.regions.names(cell).to_vec();
             let place = match modulus {
                 Modulus::Shear => 0,
                 Modulus::Volume => 1,
             };
-            found.entry(groups).or_insert([1.0; 2])[place] = own * factor;
+            found.entry(region).or_insert([1.0; 2])[place] = own * factor;
         }
         found
     }
@@ -264,6 +265,6 @@ impl<'a> ModuliParts<'a> {
 }
 
 /// `mu of tumour`, or `mu` of cells in no group.
-fn in_region(modulus: &str, groups: &[&str]) -> String {
+fn in_region(modulus: &str, groups: &[String]) -> String {
     if groups.is_empty() { modulus.into() } else { format!("{modulus} of {}", groups.join(", ")) }
 }

@@ -335,11 +335,12 @@ impl<T: Real> Method<T> {
                     let rows: Vec<f64> = self.reduced.rows().iter().map(&lane).collect();
                     verdict.reached =
                         settle(&rows, self.reduced.order, &self.reduced.unknowns, solver.balance, &mut kappa);
-                    verdict.delicate |= !verdict.reached;
                 }
                 kappa
             }
         };
+        // More digits may reach it.
+        verdict.delicate |= !verdict.reached;
         for (constant, &unknown) in constants.iter_mut().zip(&self.reduced.unknowns) {
             *constant = kappa[unknown] * lane(&self.reduced.scales[unknown]);
         }

@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::Mesh;
-use crate::model::masses;
+use crate::model::{Lumping, lumped_masses, masses};
 use crate::range;
 
 /// The row sums of the mass matrix for a `density` in kg/m³, of all cells or of each, `[points]`, kg.
@@ -26,4 +26,12 @@ pub fn point_masses(
             Err(Error::expected("density", "one with which the body has a mass", found).of_kind(ErrorKind::Infeasible))
         }
     }
+}
+
+/// The row sums of the mass matrix or, if one of them is not positive, the masses of the HRZ method, `[points]`, kg; zero without a density.
+pub fn inertial_masses(mesh: &Mesh, material: &MaterialMap) -> Vec<f64> {
+    let density = material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
+    let lumped = |lumping| lumped_masses(mesh, &density, material.thicknesses(), lumping);
+    let sums = lumped(Lumping::RowSum);
+    if sums.iter().all(|m| *m > 0.0) { sums } else { lumped(Lumping::Hrz) }
 }

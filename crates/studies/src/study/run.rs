@@ -5,7 +5,7 @@ use super::checkpoint::Controls;
 use super::fits::{Finer, Reference, WholeBody};
 use super::fitting::fit_mesh;
 use super::forecast::Forecast;
-use super::masses::point_masses;
+use super::masses::{inertial_masses, point_masses};
 use super::moduli::moduli_of_body;
 use super::outcome::{BodyLoad, Outcome};
 use super::progress::{Event, Progress};
@@ -47,7 +47,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
     let plan = TimePlan::of(scene, &mesh, material, &support)?;
     let in_scene = |e: Error| e.placed(|e| e.in_file(scene.path()));
-    let fine = FineBody::of(scene, &mesh)?;
+    let fine = FineBody::of(scene, &mesh, progress)?;
     if let Some(fine) = &fine {
         fine.measure(scene, &mut cases, progress)?;
     }
@@ -72,7 +72,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
     whole.fine = fine.as_ref().map(|fine| fine as &dyn Finer);
-    whole.masses = masses.as_deref();
+    let inertial = masses.is_some().then(|| inertial_masses(&mesh, material));
+    whole.masses = inertial.as_deref();
     whole.solver = scene.solver();
     whole.know(body.iter().flat_map(|body| body.held(&cases)));
     let held = held_points(&mesh, &support, &cases);

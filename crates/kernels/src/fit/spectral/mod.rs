@@ -125,12 +125,24 @@ impl<T: Real> Spectral<T> {
         let any = self.value.clone();
         any.vectorize(
             #[inline(always)]
-            || self.follow_path(reduced),
+            || self.follow_path(reduced, FAR),
         );
+        // Numbers of more digits are for what is difficult: steps of other lengths may reach the end.
+        if T::epsilon() < T::given() && !self.is_within(GAP) {
+            self.follow_path(reduced, 1.0);
+        }
     }
 
+    /// Whether every lane has reached the gap.
     #[inline(always)]
-    fn follow_path(&mut self, reduced: &Reduced<T>) {
+    fn is_within(&self, gap: f64) -> bool {
+        let enough = self.value.greatest(&self.value.constant(&EXACT)).scaled(&gap);
+        enough.exceeds(&(self.value.clone() - &self.bound))
+    }
+
+    /// Beyond the share `far` of μ, the half of a step is tried first.
+    #[inline(always)]
+    fn follow_path(&mut self, reduced: &Reduced<T>, far: f64) {
         let (p, c) = (reduced.order, self.kappa.len());
         let zero = self.value.zero();
         let one = zero.one();
@@ -215,8 +227,8 @@ impl<T: Real> Spectral<T> {
                 step[i] = inside.choose(&along, &step[i]);
             }
             reduction = inside.choose(&done.choose(&zero, &remaining), &reduction);
-            let far = remaining - &one.constant(&FAR);
-            let whole = far.choose(&one.constant(&0.5), &one);
+            let beyond = remaining - &one.constant(&far);
+            let whole = beyond.choose(&one.constant(&0.5), &one);
             let whole = match self.nonnegative {
                 true => whole.least(&longest_step(&self.kappa, &step[..c]).scaled(&TOWARDS_ZERO)),
                 false => whole,
@@ -228,10 +240,8 @@ impl<T: Real> Spectral<T> {
             #[inline(always)]
             || self.bound(reduced, &mu),
         );
-        let enough = self.value.greatest(&one.constant(&EXACT)).scaled(&self.gap);
-        let is_enough = enough.exceeds(&(self.value.clone() - &self.bound));
         let is_unique = self.nonnegative || self.curvature.exceeds(&one.constant(&AMBIGUOUS));
-        if T::epsilon() >= T::given() && !(is_enough && is_unique) {
+        if T::epsilon() >= T::given() && !(self.is_within(self.gap) && is_unique) {
             reduced.residual(&self.kappa, &mut self.eigenvalues);
             mirror(&mut self.eigenvalues, reduced.order);
             eigenvectors(&mut self.eigenvalues, reduced.order, &mut self.eigenvectors);

@@ -56,6 +56,6 @@ impl Case {
     pub fn measured(&self, fem: &[f64], dimension: usize) -> Option<Measured> {
         let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
         let points = self.measured.as_ref()?.displacements.chunks_exact(dimension).filter(known).count();
-        Some(Measured { points, error: self.error(fem, fem, dimension) })
+        Some(Measured { points, is_of_finer: !self.is_measured, error: self.error(fem, fem, dimension) })
     }
 }

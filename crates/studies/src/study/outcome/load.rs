@@ -33,6 +33,8 @@ pub struct BodyLoad {
 pub struct Measured {
     /// The number of points at which at least one component is known.
     pub points: usize,
+    /// Whether the displacements are those of a finer body, and no measurement.
+    pub is_of_finer: bool,
     /// The error of the finite elements; `None` if no measured point moves.
     pub error: Option<DisplacementError>,
 }

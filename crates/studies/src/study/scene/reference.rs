@@ -26,8 +26,8 @@ impl ReferenceEntry {
             (Some(times), None) if (1..=MOST).contains(&times) => Ok(()),
             (Some(times), None) => Err(Error::expected("refine", format!("a number from 1 to {MOST}"), times)),
             (None, Some(mesh)) => mesh.check(),
-            (Some(_), Some(_)) => Err(Error::expected("reference", "one of \"refine\", \"mesh\"", "both")),
-            (None, None) => Err(Error::expected("reference", "one of \"refine\", \"mesh\"", "none")),
+            (Some(_), Some(_)) => Err(Error::new("expected one of \"refine\", \"mesh\", found both")),
+            (None, None) => Err(Error::new("expected one of \"refine\", \"mesh\", found none")),
         }
     }
 

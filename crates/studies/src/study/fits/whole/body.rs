@@ -142,7 +142,7 @@ impl<'a> WholeBody<'a> {
             // An error about the checkpoint must not discard the result.
             progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
         }
-        let (found, wanted, mesh) = match found.stands && self.is_corrected(recipe, &wanted) {
+        let (found, wanted, mesh) = match found.stands && self.is_corrected(recipe, &wanted)? {
             true => {
                 let corrected = self.corrected(recipe, (&object, &wanted), found, progress)?;
                 (corrected.found, corrected.wanted, corrected.deviations)

@@ -6,7 +6,7 @@ use super::body::WholeBody;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::VolumeSprings;
-use crate::study::progress::Progress;
+use crate::study::progress::{Event, Progress};
 use crate::whole::{Object, Target, Wanted, WholeFit, fit_whole};
 
 /// Corrections at most.
@@ -24,11 +24,22 @@ pub(super) struct Corrected {
 }
 
 impl WholeBody<'_> {
-    /// Whether the unknowns are few moduli, all loads of the fit are measured, and there is a finer body.
-    pub(super) fn is_corrected(&self, recipe: &WholeRecipe, wanted: &Wanted) -> bool {
-        self.fine.is_some()
-            && recipe.is_of_few_moduli()
-            && wanted.trained.iter().all(|target| self.measured(target).is_some())
+    /// Whether the unknowns are few moduli, the loads of the fit are measured, and there is a finer body.
+    ///
+    /// # Errors
+    /// Some loads are measured and some are not: the displacements of the finer body, with the moduli at the start, are no data.
+    pub(super) fn is_corrected(&self, recipe: &WholeRecipe, wanted: &Wanted) -> Result<bool> {
+        if self.fine.is_none() || !recipe.is_of_few_moduli() {
+            return Ok(false);
+        }
+        match wanted.trained.iter().find(|target| self.measured(target).is_none()) {
+            None => Ok(true),
+            Some(other) if wanted.trained.iter().any(|target| self.measured(target).is_some()) => {
+                let expected = "loads with measured displacements alone, where moduli are found from some and there is [reference]";
+                Err(Error::expected("loads", expected, format!("{}, which has none", other.name)))
+            }
+            Some(_) => Ok(false),
+        }
     }
 
     /// The number of the load of the scene whose measured displacements these are.
@@ -84,6 +95,12 @@ impl WholeBody<'_> {
                 );
                 return Err(Error::at("unknowns", problem));
             }
+        }
+        if !(step < SETTLED || now.found.cancelled) {
+            let change = 100.0 * step;
+            let words =
+                format!("moduli still change by {change:.2} % after {ROUNDS} corrections; intervals have this change");
+            progress(Event::Note(&words));
         }
         // The error of the finer mesh, if errors fall like the square of the size of the cells.
         let rest = (fine.coarseness(self.mesh).powi(2) - 1.0).max(1.0);

@@ -16,6 +16,8 @@ use crate::whole::{Target, varied_loads};
 const LOADS: usize = 30;
 /// Added to the seed of the recipe, so that the loads are others than those of the fit and of its validation.
 const SEED: u64 = 1000;
+/// Errors below this are those of rounding.
+const ROUNDING: f64 = 1e-6;
 /// A load is worse than with the finite elements of the mesh if its error is this many times as large.
 const WORSE: f64 = 1.1;
 /// The exact networks beside which a fit is compared.
@@ -111,7 +113,7 @@ fn model_error(model: &str, found: Option<(&Equations, &[f64])>, targets: &[Targ
 /// The loads whose errors are worse than those of the finite elements of the mesh.
 fn worse_loads(targets: &[Target], of_body: &[f64], errors: &[f64]) -> Vec<WorseLoad> {
     let pairs = targets.iter().zip(of_body.iter().zip(errors));
-    let worse = pairs.filter(|(_, (body, error))| **error > WORSE * **body);
+    let worse = pairs.filter(|(_, (body, error))| **error > (WORSE * **body).max(ROUNDING));
     worse
         .map(|(target, (body, error))| WorseLoad { load: target.name.clone(), finite_elements: *body, fitted: *error })
         .collect()

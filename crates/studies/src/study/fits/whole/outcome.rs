@@ -374,7 +374,7 @@ impl FoundModuli {
         };
         let weak = (!self.weak.is_empty()).then(|| {
             let weak = self.weak.join("; or of ");
-            format!("the displacements hardly see {weak}: what is found of it is mostly where the fit started{prior}")
+            format!("the displacements hardly see {weak}: intervals reach beyond the factor 2{prior}")
         });
         let misfit = self.misfit.map(|misfit| {
             let told = if misfit > MISFIT { ": the model does not explain these displacements" } else { "" };
