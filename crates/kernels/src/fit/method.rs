@@ -230,7 +230,7 @@ impl<T: Real> Method<T> {
         certificate.rounding = certificate.size * self.rounding(constants);
         let unit = f64::EPSILON * certificate.size;
         let most = 4.0 * self.reduced.order as f64 * unit;
-        let (reached, mut excess) = (certificate.value, certificate.rounding.clamp(unit, most));
+        let (reached, mut excess) = (certificate.value, certificate.rounding.max(unit).min(most));
         for _ in 0..TRIALS {
             certificate.value = reached + excess;
             if self.distance_from_optimum(constants, certificate.value).is_some() {
