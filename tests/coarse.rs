@@ -307,3 +307,21 @@ fn finer_meshes_of_other_bodies_are_refused() {
     assert!(of("[4, 1.1]", "[16, 4]").unwrap().contains("has 4.0000e0 m² +10.0 %"));
     assert!(of("[4, 1]", "[4, 1]").unwrap().contains("fewer points than the mesh: 10 for 27"));
 }
+
+/// The functions of pyramids have no value at the apex, which is a point of the finer mesh as well.
+#[test]
+fn pyramids_have_finer_bodies() {
+    for element in ["pyramid5", "pyramid13"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"{element}\", size = [1, 1, 2], cells = [2, 2, 4] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+             [reference]\nrefine = 1\n[[fix]]\ngroup = \"zmin\"\n[[load]]\nname = \"pull\"\ngroup = \"zmax\"\n\
+             traction = [0, 0, 100]\n[[fit]]\nobjective = \"exact\"\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        let found = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+        let error = found.loads[0].measured.unwrap().error.unwrap();
+        assert!(error.rms < 20.0, "{element}: {error:?}");
+    }
+}

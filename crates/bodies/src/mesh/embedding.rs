@@ -119,7 +119,7 @@ impl Bins {
             near.iter().map(|&index| (self.boxes[index].least(&place), &self.boxes[index])).collect();
         near.sort_by_key(|(least, _)| *least);
         let mut best: Option<(usize, CellIndex, Vec<f64>)> = None;
-        for (least, of) in near {
+        for &(least, of) in &near {
             let found = best.as_ref().map_or(MULTIPLES.len(), |best| best.0);
             if found == 0 {
                 break;
@@ -133,10 +133,21 @@ impl Bins {
                 best = Some((multiple, of.cell, at));
             }
         }
-        let (multiple, cell, at) = best?;
-        let functions = &mesh.blocks[cell.block].element.functions.values;
-        let values = mesh.cell_nodes(cell).iter().zip(functions).map(|(a, n)| (*a, n.evaluate(&at)));
-        Some((values.filter(|(_, n)| n.abs() > 1e-14).collect(), multiple == 0))
+        let row = |(multiple, cell, at): (usize, CellIndex, Vec<f64>)| {
+            let functions = &mesh.blocks[cell.block].element.functions.values;
+            let values = mesh.cell_nodes(cell).iter().zip(functions).map(|(a, n)| (*a, n.evaluate(&at)));
+            // One that is not finite is kept.
+            let row: Vec<(usize, f64)> = values.filter(|(_, n)| !(n.abs() <= 1e-14)).collect();
+            row.iter().all(|(_, n)| n.is_finite()).then_some((row, multiple == 0))
+        };
+        let found = best.and_then(row);
+        // The functions of pyramids have no value at the apex.
+        if !matches!(found, Some((_, true)))
+            && let Some(node) = near.iter().find_map(|(_, of)| of.node_at(mesh, &place))
+        {
+            return Some((vec![(node, 1.0)], true));
+        }
+        found
     }
 }
 
@@ -155,6 +166,8 @@ struct CellBox {
     is_straight: bool,
 }
 
+/// The distance of a point from a node that it is, relative to the size of a box.
+const SAME: f64 = 1e-9;
 /// The rounding of a place relative to the size of a box.
 const SLACK: f64 = 1e-6;
 
@@ -168,6 +181,12 @@ impl CellBox {
         let centre = std::array::from_fn(|k| points.iter().map(|x| x[k]).sum::<f64>() / points.len() as f64);
         let is_straight = element.cell.is_simplex() && element.nodes() == element.cell.corners().len();
         CellBox { cell, ends: [low, high], centre, is_straight }
+    }
+
+    /// The node of the cell at x.
+    fn node_at(&self, mesh: &Mesh, x: &[f64; 3]) -> Option<usize> {
+        let near = SAME * distance(&self.ends[0], &self.ends[1]);
+        mesh.cell_nodes(self.cell).iter().copied().find(|&p| distance(&spatial(mesh.point(p)), x) <= near)
     }
 
     /// The lower (0) or upper (1) corner of a box that also has the points that may lie outside the cell.
