@@ -11,9 +11,9 @@ use springfit::solve::{Equations, Newton, System, lowest_modes};
 use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
-    Balanced, DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares, ModuliParts,
-    ModuliSharing, NodalLoad, Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted, Weighing,
-    WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads, varied_loads,
+    Balanced, BodyRegions, DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares,
+    ModuliParts, ModuliSharing, NodalLoad, Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted,
+    Weighing, WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads, varied_loads,
 };
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -128,10 +128,11 @@ fn derivatives_are_those_of_differences() {
     targets[1].weights.iter_mut().step_by(3).for_each(|w| *w = 0.0);
     targets[2].weight = 2.0;
     let frequencies = body.frequencies(3);
+    let regions = BodyRegions::of(&body.mesh, &MaterialMap::from(body.material));
     for unknowns in [
         Unknowns::per_spring(&network),
         Unknowns::per_group(&body.mesh, &fits, &network).unwrap(),
-        Unknowns::per_region(&body.mesh, &CellMap::Uniform(0), &fits, &network).unwrap(),
+        Unknowns::per_region(&body.mesh, &regions, &fits, &network).unwrap(),
         Unknowns::per_element(&body.mesh, &fits, &network).unwrap(),
     ] {
         let object = Object::new(&network, &body.mesh.points, unknowns, None).unwrap();

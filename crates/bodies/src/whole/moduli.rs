@@ -134,7 +134,7 @@ impl<'a> ModuliParts<'a> {
         }
     }
 
-    /// A cell whose groups are those of all cells of a part; `None` for the patches, which all groups share.
+    /// A cell whose region is that of all cells of a part; `None` for the patches, which all regions share.
     fn cell(&self, part: Part) -> Option<CellIndex> {
         match (part, &self.carriers) {
             (Part::Cell(_, cell), _) => Some(cell),

@@ -2,9 +2,9 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
+use super::regions::BodyRegions;
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
-use crate::material::CellMap;
 use crate::mesh::{CellIndex, Mesh};
 use crate::model::Network;
 use crate::springs::Force;
@@ -42,17 +42,12 @@ impl Unknowns {
         Unknowns::labelled(mesh, fits, network, name)
     }
 
-    /// One unknown for each spring group in each region of the mesh, which consists of the cells that belong to the
-    /// same physical groups and have the same number in `region`.
+    /// One unknown for each spring group in each region.
     ///
     /// # Errors
     /// Those of [`Unknowns::per_element`].
-    pub fn per_region(mesh: &Mesh, region: &CellMap<usize>, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
-        let regions = mesh.regions();
-        Unknowns::labelled(mesh, fits, network, |cell, spring| {
-            let region = *region.at(cell.block, cell.cell);
-            (region, regions[cell.block][cell.cell].clone(), group(&fits[cell.block], spring))
-        })
+    pub fn per_region(mesh: &Mesh, regions: &BodyRegions, fits: &[CellFits], network: &Network) -> Result<Unknowns> {
+        Unknowns::labelled(mesh, fits, network, |cell, spring| (regions.names(cell), group(&fits[cell.block], spring)))
     }
 
     /// One unknown for each spring of each element, before springs between the same two points are added.

@@ -6,7 +6,8 @@ use crate::error::Result;
 use crate::fit::{CellFits, ShearSprings, VolumeSprings};
 use crate::model::Network;
 use crate::whole::{
-    Displacements, ModuliParts, ModuliSharing, Object, Unknowns, Validation, Wanted, WholeSettings, fit_whole,
+    BodyRegions, Displacements, ModuliParts, ModuliSharing, Object, Unknowns, Validation, Wanted, WholeSettings,
+    fit_whole,
 };
 
 impl WholeBody<'_> {
@@ -14,7 +15,10 @@ impl WholeBody<'_> {
     pub(super) fn springs(&self, recipe: &WholeRecipe, fits: &[CellFits], network: &Network) -> Result<Object<'_>> {
         let unknowns = match recipe.unknowns {
             Sharing::Group => Unknowns::per_group(self.mesh, fits, network)?,
-            Sharing::Region => Unknowns::per_region(self.mesh, self.material.region(), fits, network)?,
+            Sharing::Region => {
+                let regions = BodyRegions::of(self.mesh, &self.material);
+                Unknowns::per_region(self.mesh, &regions, fits, network)?
+            }
             Sharing::Element => Unknowns::per_element(self.mesh, fits, network)?,
             Sharing::Spring | Sharing::Moduli | Sharing::RegionModuli | Sharing::RegionYoung | Sharing::BodyModuli => {
                 Unknowns::per_spring(network)
