@@ -312,6 +312,11 @@ fn the_noise_chooses_the_regularization() {
         assert_eq!(ratio <= 1.0, stage.regularization <= rho, "{rho} {:?}", whole.curve);
     }
     assert!(rho < 10.0 && whole.curve.last().unwrap().regularization < rho, "{rho}");
+    // A stated noise that is far too small: no rho reaches it.
+    let sigmas: Vec<f64> = sigmas.iter().map(|sigma| 1e-3 * sigma).collect();
+    let found = world.find(3, None, Some(&sigmas), "unknowns = \"moduli\"\nvalidate = \"discrepancy\"").unwrap();
+    let notes = report::notes(&found);
+    assert!(notes.iter().any(|note| note.contains("no rho that was tried reaches the noise")), "{notes:?}");
 }
 
 /// Noise that is larger than the data, noise of some loads only, and noise that is needed and not given.

@@ -1,7 +1,7 @@
 //! The loads of a whole-object fit, and its result.
 
 use super::recipe::{Start, WholeRecipe};
-use crate::whole::{Errors, MassStage, Stage, Target, Wanted, WholeFit};
+use crate::whole::{Errors, MassStage, Stage, Target, Validation, Wanted, WholeFit};
 
 /// The loads of a whole-object fit, and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +27,8 @@ pub struct WholeOutcome {
     pub limited: bool,
     /// The stages of the path, one for each ρ.
     pub curve: Vec<Stage>,
+    /// How many times as large as the noise the residuals are, if the noise chose ρ.
+    pub excess: Option<f64>,
     /// With leave-one-out validation the geometric mean of the relative errors after each stage.
     pub left_out: Vec<f64>,
     /// The number of steps.
@@ -222,7 +224,10 @@ impl WholeOutcome {
             let after = after.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
             name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
         };
+        let chosen = found.curve.iter().find(|stage| Some(stage.regularization) == found.regularization);
+        let excess = chosen.filter(|_| wanted.validation == Validation::Discrepancy).and_then(|stage| stage.validated);
         WholeOutcome {
+            excess,
             loads: recipe.loads.words(),
             validated: recipe.validation.words(),
             regularization: found.regularization,
@@ -279,10 +284,13 @@ impl WholeOutcome {
             0 => done,
             count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
         };
-        let ended = match (self.cancelled, self.limited) {
-            (true, _) => "; it was ended early",
-            (_, true) => "; a better rho exceeds the range that is allowed",
-            _ => "",
+        let ended = match (self.cancelled, self.limited, self.excess) {
+            (true, ..) => "; it was ended early".into(),
+            (_, true, _) => "; a better rho exceeds the range that is allowed".into(),
+            (.., Some(excess)) if excess > 1.0 => {
+                format!("; no rho that was tried reaches the noise: residuals are {excess:.2} times as large")
+            }
+            _ => String::new(),
         };
         let percent = |error: Option<f64>| error.map_or("-".into(), |error| format!("{:.2}", 100.0 * error));
         let held_out = self.held_out.iter().map(|held_out| {
