@@ -15,7 +15,7 @@ const UNSEEN: f64 = 1e-7;
 const PART: f64 = 0.05;
 
 /// The factor that the 95 % interval of a weak combination of unknowns exceeds on either side.
-const WEAK: f64 = 2.0;
+pub const WEAK: f64 = 2.0;
 /// Deviations on either side that hold 95 % of a normal distribution.
 pub const NINETY_FIVE: f64 = 1.96;
 
@@ -89,9 +89,8 @@ impl Determination {
             Some(size * variance.sqrt() / norms[p])
         };
         let residuals = DVector::from_vec(at.residuals.concat());
-        let slopes: Vec<f64> =
-            (0..m).map(|p| if is_seen(p) { columns[p].dot(&residuals) / norms[p] } else { 0.0 }).collect();
-        let slopes = DVector::from_vec(slopes);
+        let slope = |p: usize, _| if is_seen(p) { columns[p].dot(&residuals) / norms[p] } else { 0.0 };
+        let slopes = DVector::from_fn(m, slope);
         let mut shifts = vec![0.0; m];
         for (value, vector) in pairs().filter(|(value, _)| **value > UNSEEN * UNSEEN) {
             let along = vector.dot(&slopes) / value;

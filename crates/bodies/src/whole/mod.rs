@@ -33,7 +33,7 @@ mod unknowns;
 pub use balance::ResidualForces;
 pub use balanced::Balanced;
 pub use blend::fit_mass_share;
-pub use covariance::{Determination, MOST_ESTIMATED, NINETY_FIVE};
+pub use covariance::{Determination, MOST_ESTIMATED, NINETY_FIVE, WEAK};
 pub use displacements::{Displacements, Errors};
 pub use fit::{WholeFit, fit_whole};
 pub use gauss_newton::GaussNewton;

@@ -15,9 +15,10 @@ use crate::scalar::{Packed, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond the first number conjugate gradients from the
-/// equations of the nodes are faster, and beyond the second, without those, one lane after the other.
-const MOST_FACTORED: [usize; 2] = [60, 120];
+/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond it one lane after the other is faster,
+const MOST_FACTORED: usize = 120;
+/// and beyond this number conjugate gradients, where the equations of the nodes are solved.
+const MOST_FACTORED_WITH_NODES: usize = 60;
 
 /// How the equations of a fit are solved, with the working memory.
 #[derive(Debug, Clone)]
@@ -165,7 +166,7 @@ impl<T: Real> Closed<T> {
 
 impl<T: Packed> Closed<T> {
     /// Replaces the constants of these lanes, after [`Closed::solve`], by the optimum under `k ≥ 0`. False, with nothing changed, where each
-    /// constant has an equation of its own, or the search does not end.
+    /// constant has an equation of its own, there are too many of them, or the search does not end.
     pub fn bound(
         &mut self,
         springs: &Springs,
@@ -176,11 +177,11 @@ impl<T: Packed> Closed<T> {
     ) -> bool {
         match self.steps {
             Steps::Decoupled => return false,
-            Steps::Nodes if springs.len() > MOST_FACTORED[0] => {
+            Steps::Nodes if springs.len() > MOST_FACTORED_WITH_NODES => {
                 return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
             }
             Steps::Nodes => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
-            Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED[1] => return false,
+            Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED => return false,
             Steps::Springs | Steps::Groups => {}
         }
         let k = if self.steps == Steps::Groups { &mut self.tied.rhs } else { &mut self.normal.rhs };

@@ -114,6 +114,11 @@ impl MaterialMap {
         self.density.as_ref()
     }
 
+    /// The density of each cell, kg/m³; zero if none is given.
+    pub fn densities(&self) -> CellMap<f64> {
+        self.density.clone().unwrap_or(CellMap::Uniform(0.0))
+    }
+
     /// The material of all cells, if they have the same.
     pub fn uniform(&self) -> Option<Material> {
         self.materials.as_ref()?.uniform().copied()

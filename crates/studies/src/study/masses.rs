@@ -28,10 +28,10 @@ pub fn point_masses(
     }
 }
 
-/// The row sums of the mass matrix or, if one of them is not positive, the masses of the HRZ method, `[points]`, kg; zero without a density.
-pub fn inertial_masses(mesh: &Mesh, material: &MaterialMap) -> Vec<f64> {
-    let density = material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
-    let lumped = |lumping| lumped_masses(mesh, &density, material.thicknesses(), lumping);
-    let sums = lumped(Lumping::RowSum);
-    if sums.iter().all(|m| *m > 0.0) { sums } else { lumped(Lumping::Hrz) }
+/// The row sums of the mass matrix or, if one of them is not positive, the masses of the HRZ method, `[points]`, kg.
+pub fn inertial_masses(mesh: &Mesh, material: &MaterialMap, sums: Vec<f64>) -> Vec<f64> {
+    match sums.iter().all(|m| *m > 0.0) {
+        true => sums,
+        false => lumped_masses(mesh, material.densities(), material.thicknesses(), Lumping::Hrz),
+    }
 }

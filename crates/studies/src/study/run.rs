@@ -61,7 +61,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         LinearBody::solve(&mesh, &material.moduli(), &cases, scene.solver(), progress).map_err(in_scene)
     };
     // Only fits to the whole object need the displacements of the body.
-    let needed = large.is_none() && scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
+    let fits_whole = scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
+    let needed = large.is_none() && fits_whole;
     let body = if needed { Some(linear(progress)?) } else { None };
     let mut whole = WholeBody::new(&mesh, material, &support, controls);
     whole.cases = &cases;
@@ -72,7 +73,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
     whole.fine = fine.as_ref().map(|fine| fine as &dyn Finer);
-    let inertial = masses.is_some().then(|| inertial_masses(&mesh, material));
+    let inertial = masses.clone().filter(|_| fits_whole).map(|sums| inertial_masses(&mesh, material, sums));
     whole.masses = inertial.as_deref();
     whole.solver = scene.solver();
     whole.know(body.iter().flat_map(|body| body.held(&cases)));

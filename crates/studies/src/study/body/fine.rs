@@ -208,7 +208,7 @@ impl Finer for FineBody {
         if let Some((_, squares)) = known().iter().find(|(own, squares)| own == support && squares.len() == count) {
             return Ok(squares.clone());
         }
-        let density = self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
+        let density = self.material.densities();
         let masses = lumped_masses(&self.mesh, density, self.material.thicknesses(), Lumping::Hrz);
         let equations = self.equations(support, VIBRATING * count)?;
         let squares = equations.lowest_modes(&masses, self.mesh.dimension, count)?.squares;
@@ -262,7 +262,7 @@ impl Finer for FineBody {
     }
 
     fn moments(&self) -> Moments {
-        let density = self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
+        let density = self.material.densities();
         Moments::of_body(&self.mesh, density, self.material.thicknesses())
     }
 }

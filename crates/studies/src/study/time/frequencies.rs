@@ -2,9 +2,10 @@
 
 use super::raised::{RELEASE, Raised};
 use crate::error::{Error, Result};
-use crate::material::CellMap;
 use crate::mesh::Mesh;
-use crate::model::{BlockStiffness, Entries, Support, check_body, finite_elements, lumped_masses, unheld_bodies};
+use crate::model::{
+    BlockStiffness, Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies,
+};
 use crate::solve::{Levels, System, lowest_modes};
 use crate::study::masses::inertial_masses;
 use crate::study::outcome::{FrequencyOutcome, Outcome};
@@ -26,12 +27,10 @@ pub fn natural_frequencies(
     progress: &mut Progress,
 ) -> Result<Vec<FrequencyOutcome>> {
     let (mesh, material) = (&outcome.mesh, &outcome.material);
+    let lumped = |lumping| lumped_masses(mesh, material.densities(), material.thicknesses(), lumping);
     let masses = match scene.motion() {
-        Some(motion) => {
-            let density = material.density().cloned().unwrap_or(CellMap::Uniform(0.0));
-            lumped_masses(mesh, density, material.thicknesses(), motion.lumping)
-        }
-        None => inertial_masses(mesh, material),
+        Some(motion) => lumped(motion.lumping),
+        None => inertial_masses(mesh, material, lumped(Lumping::RowSum)),
     };
     let count = scene.output().frequencies;
     let rigid: usize = unheld_bodies(mesh, support).iter().map(|body| body.motions).sum();

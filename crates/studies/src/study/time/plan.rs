@@ -4,7 +4,7 @@ use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
-use crate::material::{CellMap, EnergyMap, MaterialMap};
+use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
 use crate::range;
@@ -82,7 +82,7 @@ fn planned(
         recipe: recipe.clone(),
         support: fixed.clone(),
         drive: Drive::default().gravity(&recipe.gravity),
-        masses: lumped_masses(mesh, densities(material), material.thicknesses(), recipe.lumping),
+        masses: lumped_masses(mesh, material.densities(), material.thicknesses(), recipe.lumping),
         forces: Vec::new(),
         pulls: Vec::new(),
         watched: Vec::new(),
@@ -111,11 +111,6 @@ fn planned(
         ));
     }
     Ok(planned)
-}
-
-/// The density of each cell; zero without one.
-fn densities(material: &MaterialMap) -> CellMap<f64> {
-    material.density().cloned().unwrap_or(CellMap::Uniform(0.0))
 }
 
 fn entries(key: &str, d: usize, found: usize) -> Error {

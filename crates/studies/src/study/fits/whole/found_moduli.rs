@@ -4,12 +4,9 @@ use super::outcome::{FoundModuli, FoundModulus};
 use super::recipe::WholeRecipe;
 use crate::error::Result;
 use crate::whole::{
-    Determination, Displacements, ModuliSharing, NINETY_FIVE, Object, Validation, Wanted, WholeFit, WholeSettings,
-    fit_whole,
+    Determination, Displacements, ModuliSharing, NINETY_FIVE, Object, Validation, WEAK, Wanted, WholeFit,
+    WholeSettings, fit_whole,
 };
-
-/// The factor on either side that the interval of a modulus exceeds which the displacements hardly see.
-const HARDLY_SEEN: f64 = 2.0;
 
 /// The step to the optimum without ρ from which on linearisation is not enough to know that optimum.
 const NEAR: f64 = 0.02;
@@ -56,7 +53,7 @@ pub(super) fn found_moduli(
     weak.dedup();
     for (p, modulus) in all.iter().enumerate() {
         let is_listed = known.iter().any(|known| known.weak.iter().any(|together| together.contains(&p)));
-        if !is_listed && reach(p).is_some_and(|reach| reach > HARDLY_SEEN.ln()) {
+        if !is_listed && reach(p).is_some_and(|reach| reach > WEAK.ln()) {
             weak.push(modulus.name.clone());
         }
     }

@@ -5,7 +5,6 @@ use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies, Support
 use super::recipe::WholeRecipe;
 use super::targets::Held;
 use crate::error::{Error, Result};
-use crate::material::CellMap;
 use crate::model::{ConsistentMasses, Lumping, Moments, Network, lumped_masses};
 use crate::solve::{Equations, Masses};
 use crate::study::progress::{Event, Progress};
@@ -47,7 +46,7 @@ impl WholeBody<'_> {
         progress: &mut Progress,
     ) -> Result<FittedMasses> {
         let (mesh, count) = (self.mesh, recipe.masses);
-        let (density, d) = (self.material.density().cloned().unwrap_or(CellMap::Uniform(0.0)), mesh.dimension);
+        let (density, d) = (self.material.densities(), mesh.dimension);
         let thickness = self.material.thicknesses();
         let lumped = lumped_masses(mesh, density.clone(), thickness.clone(), Lumping::Hrz);
         let at = |e: Error| Error::at("masses", e.problem()).of_kind(e.kind());
