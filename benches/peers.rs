@@ -168,7 +168,7 @@ fn steps(folder: &Path) -> Row {
     let count = 300;
     c_loop::write(&case, count, &network);
     let (c, _) = c_loop::c_loop(&program, &network, &folder.join("result"));
-    let ([own, _], _) = c_loop::springfit(&case, count, false);
+    let ([own, _], _) = c_loop::springfit::<f64>(&case, count, false);
     let figures = |seconds: f64, name: &str| {
         let total = 1000.0 * seconds;
         Figures { processor: total, wall: f64::NAN, number: f64::NAN, name: name.into() }

@@ -41,15 +41,17 @@ fn pair(constant: f64) -> (Network, Vec<f64>) {
     (network, vec![0.0, 0.0, 1.0, 0.0])
 }
 
-/// A box of tetrahedra or hexahedra, `side` cells of 1 cm along each edge, 10 kPa; all springs, also those on the volume.
+/// A square or a cube of `side` cells of 1 cm along each edge, 10 kPa; all springs, also those on the volume.
 pub fn cube(element: &str, side: usize) -> (Mesh, Network) {
     let element = Arc::new(Element::load(element).unwrap());
-    let spec = BoxMesh { element, size: vec![0.01 * side as f64; 3], cells: vec![side; 3], origin: vec![0.0; 3] };
+    let d = element.dimension();
+    let spec = BoxMesh { element, size: vec![0.01 * side as f64; d], cells: vec![side; d], origin: vec![0.0; d] };
     let mesh = spec.build().unwrap();
     let block = &mesh.blocks[0];
     let every: Vec<String> = block.element.springs.iter().map(|group| group.name.clone()).collect();
     let springs = Springs::select(&block.element, Some(&every)).unwrap();
-    let moduli = Material::new(10e3, 0.3, springfit::material::State::Solid).unwrap().moduli();
+    let state = if d == 3 { State::Solid } else { State::PlaneStress { thickness: 1.0 } };
+    let moduli = Material::new(10e3, 0.3, state).unwrap().moduli();
     let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::Modal(Higher::DEFAULT))) };
     let fits = fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &fit, &mut |_| {});
     let network = Network::assemble(&mesh, &[fits.unwrap()]);

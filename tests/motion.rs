@@ -329,7 +329,7 @@ fn wrong_keys_are_told() {
             "linear = true",
             "lineal = true",
             ":17: motion.lineal: unknown field \"lineal\", expected one of \"duration\", \"step\", \"integrator\", \
-             \"iterations\", \"tolerance\", \"linear\", \"account\", \"solver\", \"remainder\", \"mass\", \"gravity\", \"damping\", \
+             \"iterations\", \"tolerance\", \"linear\", \"account\", \"precision\", \"solver\", \"remainder\", \"mass\", \"gravity\", \"damping\", \
              \"every\", \"watch\", \"finite_elements\", \"pull\", \"force\"",
         ),
         ("linear = true", "linear = true\niterations = 3", "motion.iterations: … found with linear = true"),
@@ -338,6 +338,17 @@ fn wrong_keys_are_told() {
             "integrator = \"newmark\"\nlinear = true",
             "integrator = \"symplectic-euler\"\nsolver = \"factor\"",
             "motion.solver: … found with integrator = \"symplectic-euler\"",
+        ),
+        ("linear = true", "precision = \"half\"", "motion.precision: … found \"half\""),
+        (
+            "linear = true",
+            "precision = \"single\"",
+            "motion.precision: … \"symplectic-euler\" … found with integrator = \"newmark\"",
+        ),
+        (
+            "integrator = \"newmark\"\nlinear = true",
+            "integrator = \"symplectic-euler\"\nlinear = true\nprecision = \"single\"",
+            "motion.precision: … found with linear = true",
         ),
         ("linear = true", "linear = true\nremainder = 0.1", "motion.remainder: … solver = \"conjugate-gradients\""),
         (
@@ -440,6 +451,30 @@ fn an_explicit_step_beyond_its_limit_is_refused_with_the_limit() {
         "{line}"
     );
     assert!(!folder.path().join("out").exists());
+}
+
+/// Rounded to 6e-8 of the body, which is ten times as large as its motion; 500 steps. Without an account the state is rounded as well,
+/// and work is not summed.
+#[test]
+fn single_precision_moves_a_scene_as_double_precision() {
+    let moved = |keys: &str| {
+        let keys = format!("integrator = \"symplectic-euler\"\n{keys}");
+        let text = edited(BLOCK, "integrator = \"newmark\"\nlinear = true", &keys);
+        outcome(&edited(&text, "step = 0.001", "step = 0.0001")).motion.unwrap()
+    };
+    let double = moved("");
+    for (keys, has_balance) in [("precision = \"single\"", false), ("precision = \"single\"\naccount = true", true)] {
+        let single = moved(keys);
+        assert!(single.recipe.title().ends_with("in single precision"));
+        let [a, b] = [&double, &single].map(|motion| &motion.models[1]);
+        assert!(b.ending == MotionEnding::Complete && b.records.len() == a.records.len());
+        let size = a.records.iter().flat_map(|record| &record.watched).fold(0.0f64, |size, u| size.max(u.abs()));
+        for (a, b) in a.records.iter().zip(&b.records) {
+            a.watched.iter().zip(&b.watched).for_each(|(a, b)| assert_near(*a, *b, 1e-5 * size));
+            assert_near(a.account.elastic, b.account.elastic, 1e-4 * a.account.elastic);
+            assert_eq!(b.account.balance.is_some(), has_balance);
+        }
+    }
 }
 
 /// A force is asked for until the end, not after it.

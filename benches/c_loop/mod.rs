@@ -6,7 +6,7 @@ use springfit::element::Element;
 use springfit::fit::{ExactEnergy, ExactFit, fit_exact};
 use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{LengthSpring, Network, masses};
+use springfit::model::{LengthSpring, Network, Precision, masses};
 use springfit::springs::Measure;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -85,9 +85,9 @@ pub fn write(case: &Case, steps: usize, to: &Path) {
     std::fs::write(to, data).expect("the folder can be written");
 }
 
-/// Seconds per step of the simulation, and where the points are at the end.
-pub fn springfit(case: &Case, steps: usize, account: bool) -> ([f64; 2], Vec<f64>) {
-    let prepared = case.network.prepared();
+/// Seconds per step of the simulation with forces in these numbers, and where the points are at the end.
+pub fn springfit<N: Precision>(case: &Case, steps: usize, account: bool) -> ([f64; 2], Vec<f64>) {
+    let prepared = case.network.prepared_in::<N>();
     let motion = Motion::free(&prepared, &case.points, &case.masses);
     let options = Options { step: case.step, integrator: Integrator::SymplecticEuler, account, ..Options::default() };
     let mut simulation = Simulation::new(motion, options).expect("the model is sound");

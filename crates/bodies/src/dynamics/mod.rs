@@ -19,6 +19,7 @@ mod motion;
 mod pass;
 mod resistance;
 mod rest;
+mod rows;
 mod settle;
 mod simulation;
 mod solver;

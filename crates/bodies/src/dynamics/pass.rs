@@ -1,14 +1,15 @@
 //! Passes over the degrees of freedom: on all threads where there are many, with the same bits on any number of them.
 
+use crate::scalar::Coordinate;
 use rayon::prelude::*;
 
 /// Degrees of freedom that one thread takes at a time. A shorter pass stays on the calling thread: to wake another would take longer.
 pub(super) const PIECE: usize = 1 << 16;
 
 /// Whether all numbers pass the test.
-pub(super) fn all(numbers: &[f64], test: impl Fn(f64) -> bool + Sync) -> bool {
+pub(super) fn all<N: Coordinate>(numbers: &[N], test: impl Fn(N) -> bool + Sync) -> bool {
     // Without an early end the compiler tests several numbers at a time.
-    let piece = |numbers: &[f64]| numbers.iter().fold(true, |all, x| all & test(*x));
+    let piece = |numbers: &[N]| numbers.iter().fold(true, |all, x| all & test(*x));
     match numbers.len() {
         0..=PIECE => piece(numbers),
         _ => numbers.par_chunks(PIECE).map(piece).reduce(|| true, |a, b| a & b),

@@ -45,6 +45,13 @@ pub struct Step {
     pub solver_iterations: usize,
 }
 
+impl Step {
+    /// Of a step without equations.
+    pub(super) fn explicit(outcome: StepOutcome) -> Step {
+        Step { outcome, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
+    }
+}
+
 /// The unknown of a step, Δ = x − x_n, and the data at its end; all `[points · dimension]`.
 #[derive(Debug)]
 pub(super) struct Target {

@@ -15,7 +15,7 @@ pub struct MotionState {
 
 impl MotionState {
     /// Whether no displacement is larger than this, m, and every velocity is a number.
-    pub fn is_within(&self, largest: f64) -> bool {
+    pub(super) fn is_within(&self, largest: f64) -> bool {
         pass::all(&self.displacement, |u| u.abs() <= largest) && pass::all(&self.velocity, f64::is_finite)
     }
 }

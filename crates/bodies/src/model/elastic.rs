@@ -2,6 +2,7 @@
 
 use super::blocks::BlockStiffness;
 use super::network::Network;
+use super::rows::Rows;
 use super::system::{self, dofs};
 use super::{Entries, Response};
 use crate::material::{Energy, EnergyMap, State};
@@ -27,6 +28,11 @@ pub trait Elastic {
 
     /// The tangent at x in blocks, without a list of entries, for models that can assemble it so.
     fn blocks(&self, _x: &[f64]) -> Option<BlockStiffness> {
+        None
+    }
+
+    /// The network with its points and forces in rows of its own numbers, if this model is one, for explicit steps without an account.
+    fn rows(&self) -> Option<Rows<'_>> {
         None
     }
 

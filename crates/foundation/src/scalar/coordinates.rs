@@ -3,19 +3,29 @@
 //! Such loops read and write points at scattered places. With one cell per SIMD lane, every number would be gathered
 //! and scattered one by one; with one point per register it is loaded and stored at once.
 
-#[cfg(target_arch = "x86_64")]
-use pulp::{Simd, WithSimd, cast, x86::V3};
-#[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::__m256d;
+use num_traits::Float;
+use std::fmt::Debug;
+
+/// The numbers that coordinates have: `f64`, or `f32` with half the digits in half the memory.
+pub trait Coordinate: Float + Default + Debug + Send + Sync + 'static {
+    /// The nearest number to x.
+    fn of(x: f64) -> Self;
+
+    /// The same number with the digits of an `f64`.
+    fn wide(self) -> f64;
+
+    /// Runs `work` with one register per point if the machine has AVX2, and with arrays otherwise.
+    fn with_coordinates<W: CoordinatesWork<Self>>(work: W) -> W::Output;
+}
 
 /// A vector of three coordinates and one unused entry. Where a method makes a new vector, `self` only selects the kind
 /// of register.
-pub trait Coordinates: Copy {
+pub trait Coordinates<N: Coordinate = f64>: Copy {
     /// Reads four numbers.
-    fn load(self, from: &[f64; 4]) -> Self;
+    fn load(self, from: &[N; 4]) -> Self;
 
     /// Writes four numbers.
-    fn store(self, to: &mut [f64; 4]);
+    fn store(self, to: &mut [N; 4]);
 
     /// `self + other`.
     fn plus(self, other: Self) -> Self;
@@ -23,11 +33,14 @@ pub trait Coordinates: Copy {
     /// `self − other`.
     fn minus(self, other: Self) -> Self;
 
+    /// The product of each coordinate with that of the other.
+    fn times(self, other: Self) -> Self;
+
     /// `factor · self`.
-    fn scaled(self, factor: f64) -> Self;
+    fn scaled(self, factor: N) -> Self;
 
     /// `self + factor · other`.
-    fn plus_scaled(self, factor: f64, other: Self) -> Self;
+    fn plus_scaled(self, factor: N, other: Self) -> Self;
 
     /// The cyclic permutation `(y, z, x)` of `(x, y, z)`, from which cross products are built.
     fn turned(self) -> Self;
@@ -36,151 +49,72 @@ pub trait Coordinates: Copy {
     fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self;
 
     /// The scalar product `x x' + y y' + z z'`.
-    fn dot(self, other: Self) -> f64;
+    fn dot(self, other: Self) -> N;
 }
 
 /// A computation that is written once for every kind of register.
-pub trait CoordinatesWork {
+pub trait CoordinatesWork<N: Coordinate = f64> {
     /// What the computation returns.
     type Output;
 
     /// Runs the computation. `zero` selects the kind of register.
-    fn run<C: Coordinates>(self, zero: C) -> Self::Output;
+    fn run<C: Coordinates<N>>(self, zero: C) -> Self::Output;
 }
 
 /// Runs `work` with one register per point if the machine has AVX2, and with arrays otherwise.
-pub fn with_coordinates<W: CoordinatesWork>(work: W) -> W::Output {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = V3::try_new() {
-        return Simd::vectorize(simd, Wide(simd, work));
-    }
-    work.run([0.0; 4])
-}
-
-#[cfg(target_arch = "x86_64")]
-struct Wide<W>(V3, W);
-
-#[cfg(target_arch = "x86_64")]
-impl<W: CoordinatesWork> WithSimd for Wide<W> {
-    type Output = W::Output;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> W::Output {
-        self.1.run(Register { simd: self.0, values: self.0.splat_f64x4(0.0) })
-    }
-}
-
-/// Uses explicit instructions: from operations on the entries of an array the compiler forms pairs and shuffles between
-/// them.
-#[cfg(target_arch = "x86_64")]
-#[derive(Clone, Copy)]
-struct Register {
-    simd: V3,
-    values: pulp::f64x4,
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Register {
-    #[inline(always)]
-    fn of(self, values: pulp::f64x4) -> Register {
-        Register { simd: self.simd, values }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Coordinates for Register {
-    #[inline(always)]
-    fn load(self, from: &[f64; 4]) -> Register {
-        self.of(cast(*from))
-    }
-
-    #[inline(always)]
-    fn store(self, to: &mut [f64; 4]) {
-        *to = cast(self.values);
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Register) -> Register {
-        self.of(self.simd.add_f64x4(self.values, other.values))
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Register) -> Register {
-        self.of(self.simd.sub_f64x4(self.values, other.values))
-    }
-
-    #[inline(always)]
-    fn scaled(self, factor: f64) -> Register {
-        self.of(self.simd.mul_f64x4(self.values, self.simd.splat_f64x4(factor)))
-    }
-
-    #[inline(always)]
-    fn plus_scaled(self, factor: f64, other: Register) -> Register {
-        self.of(self.simd.mul_add_f64x4(self.simd.splat_f64x4(factor), other.values, self.values))
-    }
-
-    #[inline(always)]
-    fn turned(self) -> Register {
-        let values: __m256d = cast(self.values);
-        self.of(cast(self.simd.avx2._mm256_permute4x64_pd::<0b11_00_10_01>(values)))
-    }
-
-    #[inline(always)]
-    fn difference_of_products(self, b: Register, c: Register, d: Register) -> Register {
-        self.of(self.simd.mul_sub_f64x4(self.values, b.values, self.simd.mul_f64x4(c.values, d.values)))
-    }
-
-    #[inline(always)]
-    fn dot(self, other: Register) -> f64 {
-        let products: [f64; 4] = cast(self.simd.mul_f64x4(self.values, other.values));
-        products[0] + products[1] + products[2]
-    }
+pub fn with_coordinates<N: Coordinate, W: CoordinatesWork<N>>(work: W) -> W::Output {
+    N::with_coordinates(work)
 }
 
 /// For machines without such registers.
-impl Coordinates for [f64; 4] {
+impl<N: Coordinate> Coordinates<N> for [N; 4] {
     #[inline(always)]
-    fn load(self, from: &[f64; 4]) -> [f64; 4] {
+    fn load(self, from: &[N; 4]) -> [N; 4] {
         *from
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [f64; 4]) {
+    fn store(self, to: &mut [N; 4]) {
         *to = self;
     }
 
     #[inline(always)]
-    fn plus(self, other: [f64; 4]) -> [f64; 4] {
+    fn plus(self, other: [N; 4]) -> [N; 4] {
         std::array::from_fn(|k| self[k] + other[k])
     }
 
     #[inline(always)]
-    fn minus(self, other: [f64; 4]) -> [f64; 4] {
+    fn minus(self, other: [N; 4]) -> [N; 4] {
         std::array::from_fn(|k| self[k] - other[k])
     }
 
     #[inline(always)]
-    fn scaled(self, factor: f64) -> [f64; 4] {
+    fn times(self, other: [N; 4]) -> [N; 4] {
+        std::array::from_fn(|k| self[k] * other[k])
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: N) -> [N; 4] {
         self.map(|x| x * factor)
     }
 
     #[inline(always)]
-    fn plus_scaled(self, factor: f64, other: [f64; 4]) -> [f64; 4] {
+    fn plus_scaled(self, factor: N, other: [N; 4]) -> [N; 4] {
         std::array::from_fn(|k| self[k] + factor * other[k])
     }
 
     #[inline(always)]
-    fn turned(self) -> [f64; 4] {
+    fn turned(self) -> [N; 4] {
         [self[1], self[2], self[0], self[3]]
     }
 
     #[inline(always)]
-    fn difference_of_products(self, b: [f64; 4], c: [f64; 4], d: [f64; 4]) -> [f64; 4] {
+    fn difference_of_products(self, b: [N; 4], c: [N; 4], d: [N; 4]) -> [N; 4] {
         std::array::from_fn(|k| self[k] * b[k] - c[k] * d[k])
     }
 
     #[inline(always)]
-    fn dot(self, other: [f64; 4]) -> f64 {
+    fn dot(self, other: [N; 4]) -> N {
         self[0] * other[0] + self[1] * other[1] + self[2] * other[2]
     }
 }

@@ -11,9 +11,10 @@ mod double_double;
 mod dual;
 mod lanes;
 mod norm;
+mod registers;
 mod sum;
 
-pub use coordinates::{Coordinates, CoordinatesWork, with_coordinates};
+pub use coordinates::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use lanes::{Lanes, Packed, PackedWork, dispatched, widest};

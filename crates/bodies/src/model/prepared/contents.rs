@@ -1,5 +1,6 @@
 //! Springs on the content of cells by their quadrature, and of single points of it: hexahedra and other cells whose content is no
-//! single determinant, membranes and fibres. Cells are evaluated side by side, one per lane.
+//! single determinant, membranes and fibres. Cells are evaluated side by side, one per lane, in `f64` whatever the numbers of the
+//! positions are.
 //!
 //! With the tangents `t_l = Σ_a x_a ∂N_a/∂ξ_l`, completed by the remaining axes in a cell that fills its space, the content per
 //! weight is `c = t_1 · (t_2 × t_3)`, and `∂c/∂t_1 = t_2 × t_3`, and cyclically; that of a curve is `‖t_1‖`, that of a surface
@@ -9,7 +10,7 @@ use super::laws::{Lawful, Laws, LawsRoom};
 use super::tables::{Cells, Tables, merged};
 use super::tangents::{content, slopes};
 use crate::model::network::{MeasureSpring, Network};
-use crate::scalar::{Packed, PackedWork, widest};
+use crate::scalar::{Coordinate, Packed, PackedWork, widest};
 use crate::springs::Measure;
 
 /// A spring on the whole content of a cell, `Σ_q w_q c_q`.
@@ -43,14 +44,6 @@ pub struct ContentsRoom {
 }
 
 impl Contents {
-    /// Whether a spring is measured by quadrature.
-    pub fn have(spring: &MeasureSpring) -> bool {
-        match &spring.measure {
-            Measure::Content(_) | Measure::PointContent(..) | Measure::Span(_) => true,
-            Measure::Length | Measure::Patch(_) | Measure::Function(_) => false,
-        }
-    }
-
     pub fn new(network: &Network, springs: &[usize], place: &[usize]) -> Contents {
         let mut tables = Tables::default();
         let mut found = Vec::new();
@@ -99,13 +92,13 @@ impl Contents {
     }
 
     /// Adds the forces of the rows, as (z, x, y); false if a spring has none.
-    pub fn pull(
+    pub fn pull<N: Coordinate>(
         &self,
         space: usize,
         others: &[MeasureSpring],
-        x: &[[f64; 4]],
+        x: &[[N; 4]],
         room: &mut ContentsRoom,
-        force: &mut [[f64; 4]],
+        force: &mut [[N; 4]],
     ) -> bool {
         if self.tables.is_empty() {
             return true;
@@ -131,6 +124,14 @@ impl Contents {
             cells.visit(space, Pulls { cells, x, tensions, force });
         }
         sound
+    }
+}
+
+/// Whether a spring is measured by quadrature.
+pub fn is_measured_by_quadrature(spring: &MeasureSpring) -> bool {
+    match &spring.measure {
+        Measure::Content(_) | Measure::PointContent(..) | Measure::Span(_) => true,
+        Measure::Length | Measure::Patch(_) | Measure::Function(_) => false,
     }
 }
 
@@ -161,14 +162,14 @@ impl Cells {
 
     /// The nodes of cell number `first + lane`; lanes beyond the last cell repeat the first.
     #[inline(always)]
-    fn gather<T: Packed>(&self, x: &[[f64; 4]], nodes: &mut [[T; 3]], first: usize, count: usize) {
+    fn gather<T: Packed, N: Coordinate>(&self, x: &[[N; 4]], nodes: &mut [[T; 3]], first: usize, count: usize) {
         for lane in 0..T::COUNT {
             let cell = first + if lane < count { lane } else { 0 };
             let rows = &self.rows[cell * self.nodes..(cell + 1) * self.nodes];
             for (node, row) in nodes.iter_mut().zip(rows) {
                 let x = &x[*row as usize];
                 for k in 0..3 {
-                    node[k].as_mut_slice()[lane] = x[k];
+                    node[k].as_mut_slice()[lane] = x[k].wide();
                 }
             }
         }
@@ -226,13 +227,13 @@ impl<V: Visit, const D: usize, const S: usize> PackedWork for Batches<'_, V, D, 
 }
 
 /// Writes c of every point.
-struct Measures<'a> {
+struct Measures<'a, N> {
     cells: &'a Cells,
-    x: &'a [[f64; 4]],
+    x: &'a [[N; 4]],
     contents: &'a mut [f64],
 }
 
-impl Visit for Measures<'_> {
+impl<N: Coordinate> Visit for Measures<'_, N> {
     #[inline(always)]
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
@@ -253,14 +254,14 @@ impl Visit for Measures<'_> {
 }
 
 /// Adds `T ∇c` of every point.
-struct Pulls<'a> {
+struct Pulls<'a, N> {
     cells: &'a Cells,
-    x: &'a [[f64; 4]],
+    x: &'a [[N; 4]],
     tensions: &'a [f64],
-    force: &'a mut [[f64; 4]],
+    force: &'a mut [[N; 4]],
 }
 
-impl Visit for Pulls<'_> {
+impl<N: Coordinate> Visit for Pulls<'_, N> {
     #[inline(always)]
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
@@ -297,7 +298,7 @@ impl Visit for Pulls<'_> {
             for (own, row) in forces.iter().zip(rows) {
                 let at = &mut self.force[*row as usize];
                 for k in 0..S {
-                    at[(k + 1) % 3] += own[k].as_slice()[lane];
+                    at[(k + 1) % 3] = at[(k + 1) % 3] + N::of(own[k].as_slice()[lane]);
                 }
             }
         }

@@ -12,7 +12,9 @@ mod tangents;
 
 use super::network::Network;
 use super::numbering::places;
+use super::rows::{Precision, RowForces, Rows};
 use super::{BlockStiffness, Elastic, Response};
+use crate::scalar::Coordinate;
 use part::{Part, Room, parts};
 use rayon::prelude::*;
 use sources::Sources;
@@ -21,29 +23,68 @@ use std::sync::Mutex;
 /// The network with faster loops and the same results up to rounding. Springs on lengths, on contents of cells and of their
 /// quadrature points, on fibres, and on patches of simplices are evaluated in a fraction of the time; a large network is evaluated in parts
 /// on all threads, with the same bits on any number of them. It owns the memory of one evaluation; others at the same time take their own.
+///
+/// N are the numbers of its forces: with `f32` they are rounded to 6·10⁻⁸ of what its springs would pull if they measured from zero.
 #[derive(Debug)]
-pub struct PreparedNetwork<'a> {
+pub struct PreparedNetwork<'a, N = f64> {
     network: &'a Network,
-    parts: Vec<Part>,
+    parts: Vec<Part<N>>,
     sources: Sources,
     /// The indices of the other springs that are evaluated without preparation.
     rest: Vec<usize>,
-    rooms: Mutex<Vec<Room>>,
+    rooms: Mutex<Vec<Room<N>>>,
 }
 
 impl Network {
     /// Sorts the springs for [`Elastic::forces`]; this costs about as much as a hundred evaluations.
     pub fn prepared(&self) -> PreparedNetwork<'_> {
-        PreparedNetwork::new(self)
+        self.prepared_in()
+    }
+
+    /// The same in numbers of this kind.
+    pub fn prepared_in<N: Precision>(&self) -> PreparedNetwork<'_, N> {
+        let (parts, rest) = parts(self, &order(self));
+        let sources = Sources::new(&parts);
+        PreparedNetwork { network: self, parts, sources, rest, rooms: Mutex::default() }
     }
 }
 
-impl<'a> PreparedNetwork<'a> {
-    fn new(network: &'a Network) -> PreparedNetwork<'a> {
-        let order = order(network);
-        let (parts, rest) = parts(network, &order);
-        let sources = Sources::new(&parts);
-        PreparedNetwork { network, parts, sources, rest, rooms: Mutex::default() }
+impl<N: Coordinate> PreparedNetwork<'_, N> {
+    /// Evaluates the parts with the points at these positions; false if a spring has no force.
+    fn pull(&self, position: impl Fn(usize) -> [N; 4] + Sync, rooms: &mut [Room<N>]) -> bool {
+        let (d, others) = (self.network.dimension, &self.network.others);
+        let pull = |(part, room): (&Part<N>, &mut Room<N>)| part.pull(d, others, &position, room);
+        match &self.parts[..] {
+            [part] => pull((part, &mut rooms[0])),
+            parts => parts.par_iter().zip(rooms).map(pull).reduce(|| true, |a, b| a & b),
+        }
+    }
+
+    /// Calls `evaluate` with memory for the parts.
+    fn with_rooms<T>(&self, evaluate: impl FnOnce(&mut [Room<N>]) -> T) -> T {
+        let mut kept = self.rooms.try_lock();
+        let mut own = Vec::new();
+        // A thread that waited here could hold up the parts of the evaluation that it waits for.
+        let rooms = kept.as_deref_mut().unwrap_or(&mut own);
+        rooms.resize_with(self.parts.len(), Room::default);
+        evaluate(rooms)
+    }
+
+    /// The forces of the prepared springs.
+    fn forces_in<const D: usize>(&self, x: &[f64], force: &mut [f64]) -> bool {
+        let points = x.as_chunks::<D>().0;
+        let position = |point: usize| {
+            let mut row = [N::zero(); 4];
+            (0..D).for_each(|k| row[k] = N::of(points[point][k]));
+            row
+        };
+        self.with_rooms(|rooms| {
+            let sound = self.pull(position, rooms);
+            self.sources.gather(rooms, force.as_chunks_mut::<D>().0, |point, sum| {
+                (0..D).for_each(|k| point[k] = sum[(k + 1) % 3].wide());
+            });
+            sound
+        })
     }
 }
 
@@ -69,7 +110,23 @@ fn order(network: &Network) -> Vec<usize> {
     order
 }
 
-impl Elastic for PreparedNetwork<'_> {
+impl<N: Coordinate> RowForces<N> for PreparedNetwork<'_, N> {
+    fn pull_rows(&self, x: &[[N; 4]], force: &mut [[N; 4]]) -> bool {
+        self.with_rooms(|rooms| match &self.parts[..] {
+            // No row has to be moved.
+            [part] if part.is_all_of(x.len()) => {
+                part.pull_rows(self.network.dimension, &self.network.others, x, force, rooms[0].work())
+            }
+            _ => {
+                let sound = self.pull(|point| x[point], rooms);
+                self.sources.gather(rooms, force, |point, sum| *point = sum);
+                sound
+            }
+        })
+    }
+}
+
+impl<N: Precision> Elastic for PreparedNetwork<'_, N> {
     fn respond(&self, x: &[f64]) -> Option<Response> {
         self.network.respond(x)
     }
@@ -79,21 +136,17 @@ impl Elastic for PreparedNetwork<'_> {
     }
 
     fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
-        let others = &self.network.others;
-        let mut kept = self.rooms.try_lock();
-        let mut own = Vec::new();
-        // A thread that waited here could hold up the parts of the evaluation that it waits for.
-        let rooms = kept.as_deref_mut().unwrap_or(&mut own);
-        rooms.resize_with(self.parts.len(), Room::default);
-        let d = self.network.dimension;
-        let pull = |(part, room): (&Part, &mut Room)| part.pull(d, others, x, room);
-        let mut sound = match &self.parts[..] {
-            [part] => pull((part, &mut rooms[0])),
-            parts => parts.par_iter().zip(&mut rooms[..]).map(pull).reduce(|| true, |a, b| a & b),
+        let sound = match self.network.dimension {
+            1 => self.forces_in::<1>(x, force),
+            2 => self.forces_in::<2>(x, force),
+            _ => self.forces_in::<3>(x, force),
         };
-        self.sources.gather(d, rooms, force);
-        sound &= self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force);
-        sound
+        let others = &self.network.others;
+        sound & self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force)
+    }
+
+    fn rows(&self) -> Option<Rows<'_>> {
+        self.rest.is_empty().then(|| N::rows(self))
     }
 
     fn blocks(&self, x: &[f64]) -> Option<BlockStiffness> {

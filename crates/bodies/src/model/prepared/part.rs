@@ -1,38 +1,47 @@
 //! Springs of neighbouring points, which are evaluated on one thread.
 
-use super::contents::{Contents, ContentsRoom};
-use super::edges::{Bars, Edges};
-use super::simplices::{Simplices, Tensions};
+use super::contents::{Contents, ContentsRoom, is_measured_by_quadrature};
+use super::edges::{Bars, Edges, is_bar};
+use super::simplices::{Simplices, Tensions, measures_simplices};
 use crate::model::network::{LengthSpring, MeasureSpring, Network};
-use crate::scalar::{Coordinates, CoordinatesWork, with_coordinates};
+use crate::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 
 /// The number of springs of a part: long enough that threads need not wait for small pieces of work, and near each other in memory.
 const SPRINGS: usize = 1 << 14;
 
 /// Some springs of a network, sorted by kind.
 #[derive(Debug)]
-pub struct Part {
+pub struct Part<N> {
     /// The points of the springs in the order of their rows.
     order: Vec<usize>,
-    edges: Edges,
-    bars: Bars,
-    simplices: Simplices,
+    /// Whether the rows are all points as they are numbered.
+    is_in_order: bool,
+    edges: Edges<N>,
+    bars: Bars<N>,
+    simplices: Simplices<N>,
     contents: Contents,
 }
 
 /// What an evaluation of a part needs.
 #[derive(Debug, Default)]
-pub struct Room {
+pub struct Room<N> {
     /// The positions of the rows, with one unused number each.
-    x: Vec<[f64; 4]>,
-    force: Vec<[f64; 4]>,
+    x: Vec<[N; 4]>,
+    /// The forces on the rows as (z, x, y), which is the order of cross products without a last permutation, and an unused number.
+    force: Vec<[N; 4]>,
+    work: Work,
+}
+
+/// What an evaluation computes before the forces.
+#[derive(Debug, Default)]
+pub struct Work {
     tensions: Tensions,
     contents: ContentsRoom,
 }
 
 /// The parts of a network whose points are in this order, and the indices of its other springs that no part evaluates. They depend on
 /// the network alone, so that sums do.
-pub fn parts(network: &Network, order: &[usize]) -> (Vec<Part>, Vec<usize>) {
+pub fn parts<N: Coordinate>(network: &Network, order: &[usize]) -> (Vec<Part<N>>, Vec<usize>) {
     let count = order.iter().max().map_or(0, |last| last + 1);
     let mut place = vec![usize::MAX; count];
     order.iter().enumerate().for_each(|(row, &point)| place[point] = row);
@@ -60,9 +69,9 @@ pub fn parts(network: &Network, order: &[usize]) -> (Vec<Part>, Vec<usize>) {
     for (s, spring) in network.others.iter().enumerate() {
         let draft = &mut drafts[part_of[first(&spring.points)]];
         let kind = match spring {
-            spring if Simplices::have(spring, network.dimension) => &mut draft.cells,
-            spring if Bars::has(spring) => &mut draft.bars,
-            spring if Contents::have(spring) => &mut draft.contents,
+            spring if measures_simplices(spring, network.dimension) => &mut draft.cells,
+            spring if is_bar(spring) => &mut draft.bars,
+            spring if is_measured_by_quadrature(spring) => &mut draft.contents,
             _ => &mut rest,
         };
         kind.push(s);
@@ -82,7 +91,7 @@ struct Draft<'a> {
 
 impl Draft<'_> {
     /// `place` is the row of each point in the whole network.
-    fn finish(self, network: &Network, place: &[usize]) -> Part {
+    fn finish<N: Coordinate>(self, network: &Network, place: &[usize]) -> Part<N> {
         let Draft { lengths, cells, bars, contents } = self;
         let others = [&cells, &bars, &contents].into_iter().flatten().flat_map(|s| &network.others[*s].points);
         let mut order: Vec<usize> = lengths.iter().flat_map(|spring| &spring.points).chain(others).copied().collect();
@@ -95,18 +104,41 @@ impl Draft<'_> {
             bars: Bars::new(&lengths, &network.others, &bars, &own),
             simplices: Simplices::new(network, &cells, &own),
             contents: Contents::new(network, &contents, &own),
+            is_in_order: order.iter().copied().eq(0..order.len()),
             order,
         }
     }
 }
 
-impl Part {
-    /// Works the forces out with the points of the network at x; false if a spring has none.
-    pub fn pull(&self, dimension: usize, others: &[MeasureSpring], x: &[f64], room: &mut Room) -> bool {
+impl<N: Coordinate> Part<N> {
+    /// Works the forces on its rows out with the points at these positions; false if a spring has none.
+    pub fn pull(
+        &self,
+        dimension: usize,
+        others: &[MeasureSpring],
+        position: impl Fn(usize) -> [N; 4],
+        room: &mut Room<N>,
+    ) -> bool {
+        let Room { x, force, work } = room;
+        x.clear();
+        x.extend(self.order.iter().map(|&point| position(point)));
+        force.resize(x.len(), [N::zero(); 4]);
+        self.pull_rows(dimension, others, x, force, work)
+    }
+
+    /// The same with the positions of the rows; writes the forces on them.
+    pub fn pull_rows(
+        &self,
+        dimension: usize,
+        others: &[MeasureSpring],
+        x: &[[N; 4]],
+        force: &mut [[N; 4]],
+        work: &mut Work,
+    ) -> bool {
         match dimension {
-            1 => with_coordinates(Pull::<1> { part: self, others, x, room }),
-            2 => with_coordinates(Pull::<2> { part: self, others, x, room }),
-            _ => with_coordinates(Pull::<3> { part: self, others, x, room }),
+            1 => with_coordinates(Pull::<N, 1> { part: self, others, x, force, work }),
+            2 => with_coordinates(Pull::<N, 2> { part: self, others, x, force, work }),
+            _ => with_coordinates(Pull::<N, 3> { part: self, others, x, force, work }),
         }
     }
 
@@ -114,47 +146,45 @@ impl Part {
     pub fn points(&self) -> &[usize] {
         &self.order
     }
+
+    /// Whether its rows are this number of points as they are numbered.
+    pub fn is_all_of(&self, points: usize) -> bool {
+        self.is_in_order && self.order.len() == points
+    }
 }
 
-impl Room {
-    /// The force on a row that was worked out last, as (z, x, y), which is the order of cross products without a last permutation, and an
-    /// unused number.
+impl<N: Coordinate> Room<N> {
+    /// The force on a row that was worked out last, as (z, x, y), and an unused number.
     #[inline(always)]
-    pub fn force(&self, row: u32) -> &[f64; 4] {
+    pub fn force(&self, row: u32) -> &[N; 4] {
         &self.force[row as usize]
+    }
+
+    /// Memory for evaluations whose positions and forces are elsewhere.
+    pub fn work(&mut self) -> &mut Work {
+        &mut self.work
     }
 }
 
 /// One evaluation.
-struct Pull<'a, const D: usize> {
-    part: &'a Part,
+struct Pull<'a, N, const D: usize> {
+    part: &'a Part<N>,
     others: &'a [MeasureSpring],
-    x: &'a [f64],
-    room: &'a mut Room,
+    x: &'a [[N; 4]],
+    force: &'a mut [[N; 4]],
+    work: &'a mut Work,
 }
 
-impl<const D: usize> CoordinatesWork for Pull<'_, D> {
+impl<N: Coordinate, const D: usize> CoordinatesWork<N> for Pull<'_, N, D> {
     type Output = bool;
 
     #[inline(always)]
-    fn run<C: Coordinates>(self, zero: C) -> bool {
-        let Pull { part, others, x, room } = self;
-        let Room { x: rows, force: sums, tensions, contents } = room;
-        rows.resize(part.order.len(), [0.0; 4]);
-        sums.resize(part.order.len(), [0.0; 4]);
-        pack::<D>(&part.order, x, rows);
-        part.edges.pull(zero, rows, sums);
-        let mut sound = part.bars.pull(zero, others, rows, sums);
-        sound &= part.simplices.pull::<C, D>(zero, others, rows, tensions, sums);
-        sound &= part.contents.pull(D, others, rows, contents, sums);
+    fn run<C: Coordinates<N>>(self, zero: C) -> bool {
+        let Pull { part, others, x, force, work } = self;
+        part.edges.pull(zero, x, force);
+        let mut sound = part.bars.pull(zero, others, x, force);
+        sound &= part.simplices.pull::<C, D>(zero, others, x, &mut work.tensions, force);
+        sound &= part.contents.pull(D, others, x, &mut work.contents, force);
         sound
-    }
-}
-
-#[inline(always)]
-fn pack<const D: usize>(order: &[usize], x: &[f64], rows: &mut [[f64; 4]]) {
-    let points = x.as_chunks::<D>().0;
-    for (row, &point) in rows.iter_mut().zip(order) {
-        row[..D].copy_from_slice(&points[point]);
     }
 }

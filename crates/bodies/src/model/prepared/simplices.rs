@@ -6,16 +6,16 @@
 
 use super::laws::{Lawful, Laws, LawsRoom};
 use crate::model::network::{MeasureSpring, Network};
-use crate::scalar::Coordinates;
+use crate::scalar::{Coordinate, Coordinates};
 use crate::springs::Measure;
 use std::collections::HashMap;
 
 /// The nodes of a cell, completed by zeros, and its linear springs, which pull with `slope · det − pull` along `∇det`.
 #[derive(Debug, Clone, Copy)]
-struct Simplex {
+struct Simplex<N> {
     nodes: [u32; 4],
-    slope: f64,
-    pull: f64,
+    slope: N,
+    pull: N,
 }
 
 /// The patches that share a cell.
@@ -27,10 +27,10 @@ struct Membership {
     share: f64,
 }
 
-/// The cells of a network, each once.
-#[derive(Debug, Default)]
-pub struct Simplices {
-    cells: Vec<Simplex>,
+/// The cells of a network, each once. Laws and the contents of patches are computed with the digits of an `f64`.
+#[derive(Debug)]
+pub struct Simplices<N> {
+    cells: Vec<Simplex<N>>,
     laws: Laws,
     /// `[cells]`, or empty if there are no patches.
     memberships: Vec<Membership>,
@@ -48,12 +48,13 @@ pub struct Tensions {
     laws: LawsRoom,
 }
 
-impl Simplices {
+impl<N: Coordinate> Simplices<N> {
     /// The cells that these springs measure, in an order in which neighbouring rows follow each other.
-    pub fn new(network: &Network, springs: &[usize], place: &[usize]) -> Simplices {
+    pub fn new(network: &Network, springs: &[usize], place: &[usize]) -> Simplices<N> {
         let mut all = Builder {
             nodes: network.dimension + 1,
-            simplices: Simplices::default(),
+            cells: Vec::new(),
+            patches: Vec::new(),
             known: HashMap::new(),
             shares: Vec::new(),
             lawful: Vec::new(),
@@ -68,8 +69,8 @@ impl Simplices {
             match &spring.measure {
                 Measure::Patch(patch) => {
                     let scale = scale(&Measure::Content(patch.element.clone()), network.dimension);
-                    let index = all.simplices.patches.len() as u32;
-                    all.simplices.patches.push(s);
+                    let index = all.patches.len() as u32;
+                    all.patches.push(s);
                     for (nodes, share) in &patch.cells {
                         let nodes = rows(&mut nodes.iter().map(|&place| spring.points[place]));
                         all.share(nodes, index, share * scale);
@@ -81,7 +82,7 @@ impl Simplices {
                     if spring.law.is_some() {
                         all.lawful.push(Lawful { cell, scale, spring: s });
                     } else {
-                        let simplex = &mut all.simplices.cells[cell];
+                        let simplex = &mut all.cells[cell];
                         simplex.slope += spring.constant * scale * scale;
                         simplex.pull += spring.constant * scale * spring.rest;
                     }
@@ -91,59 +92,44 @@ impl Simplices {
         all.finish(network)
     }
 
-    /// Whether a spring measures the content of a simplex in a space of its own dimension, or of a patch of such
-    /// simplices.
-    pub fn have(spring: &MeasureSpring, dimension: usize) -> bool {
-        match &spring.measure {
-            Measure::Content(element) | Measure::PointContent(element, _) => {
-                element.dimension() == dimension && spring.points.len() == dimension + 1
-            }
-            Measure::Patch(patch) => {
-                patch.element.dimension() == dimension
-                    && patch.cells.iter().all(|(nodes, _)| nodes.len() == dimension + 1)
-            }
-            Measure::Length | Measure::Span(_) | Measure::Function(_) => false,
-        }
-    }
-
     /// Adds the forces of the rows, as (z, x, y); false if a spring has none.
     #[inline(always)]
-    pub fn pull<C: Coordinates, const D: usize>(
+    pub fn pull<C: Coordinates<N>, const D: usize>(
         &self,
         zero: C,
         others: &[MeasureSpring],
-        x: &[[f64; 4]],
+        x: &[[N; 4]],
         tensions: &mut Tensions,
-        force: &mut [[f64; 4]],
+        force: &mut [[N; 4]],
     ) -> bool {
         let force = &mut force[..x.len()];
         if self.laws.is_empty() && self.patches.is_empty() {
-            return pull::<C, D>(zero, &self.cells, |_| 0.0, x, force);
+            return pull::<N, C, D>(zero, &self.cells, |_| N::zero(), x, force);
         }
         tensions.cells.clear();
         tensions.cells.resize(self.cells.len(), 0.0);
         let mut sound = self.pull_patches::<C, D>(zero, others, x, tensions);
-        let determinant = |cell: usize| self.cells[cell].determinant::<C, D>(zero, x);
+        let determinant = |cell: usize| self.cells[cell].determinant::<C, D>(zero, x).wide();
         sound &= self.laws.pull(determinant, &mut tensions.laws, &mut tensions.cells);
         let cells = &tensions.cells[..self.cells.len()];
-        sound & pull::<C, D>(zero, &self.cells, |cell| cells[cell], x, force)
+        sound & pull::<N, C, D>(zero, &self.cells, |cell| N::of(cells[cell]), x, force)
     }
 
     /// The tensions of the patches along `∇det` of their cells: first the content of every patch is computed, then its
     /// tension.
     #[inline(always)]
-    fn pull_patches<C: Coordinates, const D: usize>(
+    fn pull_patches<C: Coordinates<N>, const D: usize>(
         &self,
         zero: C,
         others: &[MeasureSpring],
-        x: &[[f64; 4]],
+        x: &[[N; 4]],
         tensions: &mut Tensions,
     ) -> bool {
         let Tensions { cells, patches, .. } = tensions;
         patches.clear();
         patches.resize(self.patches.len() + 1, 0.0);
         for (cell, membership) in self.cells.iter().zip(&self.memberships) {
-            let part = membership.share * cell.determinant::<C, D>(zero, x);
+            let part = membership.share * cell.determinant::<C, D>(zero, x).wide();
             for a in 0..=D {
                 patches[membership.patches[a] as usize] += part;
             }
@@ -165,6 +151,19 @@ impl Simplices {
     }
 }
 
+/// Whether a spring measures the content of a simplex in a space of its own dimension, or of a patch of such simplices.
+pub fn measures_simplices(spring: &MeasureSpring, dimension: usize) -> bool {
+    match &spring.measure {
+        Measure::Content(element) | Measure::PointContent(element, _) => {
+            element.dimension() == dimension && spring.points.len() == dimension + 1
+        }
+        Measure::Patch(patch) => {
+            patch.element.dimension() == dimension && patch.cells.iter().all(|(nodes, _)| nodes.len() == dimension + 1)
+        }
+        Measure::Length | Measure::Span(_) | Measure::Function(_) => false,
+    }
+}
+
 /// The factor c. Because the content is linear in each edge, it is the content of the cell whose edges are the axes.
 fn scale(measure: &Measure, dimension: usize) -> f64 {
     let mut x = vec![0.0; (dimension + 1) * dimension];
@@ -172,23 +171,27 @@ fn scale(measure: &Measure, dimension: usize) -> f64 {
     measure.value(&x, dimension)
 }
 
-const AXES: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+/// The unit vector of an axis.
+#[inline(always)]
+fn axis<N: Coordinate>(axis: usize) -> [N; 4] {
+    std::array::from_fn(|k| if k == axis { N::one() } else { N::zero() })
+}
 
-impl Simplex {
+impl<N: Coordinate> Simplex<N> {
     /// The three edges, and the same edges with permuted coordinates.
     #[inline(always)]
-    fn edges<C: Coordinates, const D: usize>(&self, zero: C, x: &[[f64; 4]]) -> ([C; 3], [C; 3]) {
+    fn edges<C: Coordinates<N>, const D: usize>(&self, zero: C, x: &[[N; 4]]) -> ([C; 3], [C; 3]) {
         let first = zero.load(&x[self.nodes[0] as usize]);
         let (mut edges, mut turned) = ([zero; 3], [zero; 3]);
         for a in 0..3 {
-            edges[a] = if a < D { zero.load(&x[self.nodes[a + 1] as usize]).minus(first) } else { zero.load(&AXES[a]) };
+            edges[a] = if a < D { zero.load(&x[self.nodes[a + 1] as usize]).minus(first) } else { zero.load(&axis(a)) };
             turned[a] = edges[a].turned();
         }
         (edges, turned)
     }
 
     #[inline(always)]
-    fn determinant<C: Coordinates, const D: usize>(&self, zero: C, x: &[[f64; 4]]) -> f64 {
+    fn determinant<C: Coordinates<N>, const D: usize>(&self, zero: C, x: &[[N; 4]]) -> N {
         let (e, t) = self.edges::<C, D>(zero, x);
         t[0].turned().dot(cross((e[1], t[1]), (e[2], t[2])))
     }
@@ -196,18 +199,18 @@ impl Simplex {
 
 /// `a × b` as (z, x, y), from vectors and their permutations.
 #[inline(always)]
-fn cross<C: Coordinates>((a, turned_a): (C, C), (b, turned_b): (C, C)) -> C {
+fn cross<N: Coordinate, C: Coordinates<N>>((a, turned_a): (C, C), (b, turned_b): (C, C)) -> C {
     a.difference_of_products(turned_b, turned_a, b)
 }
 
 /// Adds `T ∇det` of every cell, `T = slope · det − pull + tension(cell)`.
 #[inline(always)]
-fn pull<C: Coordinates, const D: usize>(
+fn pull<N: Coordinate, C: Coordinates<N>, const D: usize>(
     zero: C,
-    cells: &[Simplex],
-    tension: impl Fn(usize) -> f64,
-    x: &[[f64; 4]],
-    force: &mut [[f64; 4]],
+    cells: &[Simplex<N>],
+    tension: impl Fn(usize) -> N,
+    x: &[[N; 4]],
+    force: &mut [[N; 4]],
 ) -> bool {
     let mut sound = true;
     for (cell, simplex) in cells.iter().enumerate() {
@@ -237,7 +240,8 @@ fn pull<C: Coordinates, const D: usize>(
 struct Builder {
     /// The number of nodes of a cell.
     nodes: usize,
-    simplices: Simplices,
+    cells: Vec<Simplex<f64>>,
+    patches: Vec<usize>,
     known: HashMap<[u32; 4], usize>,
     /// For each cell its patches and their common share, times c.
     shares: Vec<(Vec<u32>, f64)>,
@@ -253,8 +257,8 @@ impl Builder {
     }
 
     fn add(&mut self, nodes: [u32; 4]) -> usize {
-        let cell = self.simplices.cells.len();
-        self.simplices.cells.push(Simplex { nodes, slope: 0.0, pull: 0.0 });
+        let cell = self.cells.len();
+        self.cells.push(Simplex { nodes, slope: 0.0, pull: 0.0 });
         self.shares.push((Vec::new(), 0.0));
         self.known.insert(nodes, cell);
         cell
@@ -271,29 +275,28 @@ impl Builder {
         self.shares[cell].1 = share;
     }
 
-    fn finish(self, network: &Network) -> Simplices {
-        let Builder { nodes, mut simplices, shares, mut lawful, .. } = self;
-        let none = simplices.patches.len() as u32;
-        if none > 0 {
-            let membership = |(own, share): &(Vec<u32>, f64)| {
-                let mut patches = [none; 4];
-                patches.iter_mut().zip(own).for_each(|(patch, own)| *patch = *own);
-                Membership { patches, share: *share }
-            };
-            simplices.memberships = shares.iter().map(membership).collect();
-        }
-        let lowest = |cell: &Simplex| cell.nodes[..nodes].iter().copied().min();
-        let mut order: Vec<usize> = (0..simplices.cells.len()).collect();
-        order.sort_by_key(|&cell| lowest(&simplices.cells[cell]));
+    fn finish<N: Coordinate>(self, network: &Network) -> Simplices<N> {
+        let Builder { nodes, cells, patches, shares, mut lawful, .. } = self;
+        let mut order: Vec<usize> = (0..cells.len()).collect();
+        order.sort_by_key(|&cell| cells[cell].nodes[..nodes].iter().copied().min());
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(at, &cell)| place[cell] = at);
-        simplices.cells = order.iter().map(|&cell| simplices.cells[cell]).collect();
-        if none > 0 {
-            simplices.memberships = order.iter().map(|&cell| simplices.memberships[cell]).collect();
-        }
         lawful.iter_mut().for_each(|lawful| lawful.cell = place[lawful.cell]);
         lawful.sort_by_key(|lawful| lawful.cell);
-        simplices.laws = Laws::new(network, &lawful);
-        simplices
+        let rounded =
+            |Simplex { nodes, slope, pull }: Simplex<f64>| Simplex { nodes, slope: N::of(slope), pull: N::of(pull) };
+        let none = patches.len() as u32;
+        let membership = |(own, share): &(Vec<u32>, f64)| {
+            let mut patches = [none; 4];
+            patches.iter_mut().zip(own).for_each(|(patch, own)| *patch = *own);
+            Membership { patches, share: *share }
+        };
+        let shared = if none > 0 { &order[..] } else { &[] };
+        Simplices {
+            cells: order.iter().map(|&cell| rounded(cells[cell])).collect(),
+            laws: Laws::new(network, &lawful),
+            memberships: shared.iter().map(|&cell| membership(&shares[cell])).collect(),
+            patches,
+        }
     }
 }

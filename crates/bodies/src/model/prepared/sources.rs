@@ -1,6 +1,7 @@
 //! The parts whose springs pull at each point.
 
 use super::part::{Part, Room};
+use crate::scalar::Coordinate;
 use rayon::prelude::*;
 
 /// Points whose forces one thread adds at a time.
@@ -16,7 +17,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    pub fn new(parts: &[Part]) -> Sources {
+    pub fn new<N: Coordinate>(parts: &[Part<N>]) -> Sources {
         let points = || parts.iter().flat_map(Part::points).copied();
         let mut starts = vec![0; points().max().map_or(0, |last| last + 1) + 1];
         points().for_each(|point| starts[point + 1] += 1);
@@ -31,25 +32,23 @@ impl Sources {
         Sources { starts, rows }
     }
 
-    /// The sum of the forces that the parts worked out last, at each point, `[points · dimension]`.
-    pub fn gather(&self, dimension: usize, rooms: &[Room], force: &mut [f64]) {
-        match dimension {
-            1 => self.gather_in::<1>(rooms, force),
-            2 => self.gather_in::<2>(rooms, force),
-            _ => self.gather_in::<3>(rooms, force),
-        }
-    }
-
-    fn gather_in<const D: usize>(&self, rooms: &[Room], force: &mut [f64]) {
-        let (points, beyond) = force.as_chunks_mut::<D>().0.split_at_mut(self.starts.len() - 1);
-        beyond.fill([0.0; D]);
-        let piece = |(points, starts): (&mut [[f64; D]], &[u32])| {
+    /// Writes the sum of the forces that the parts worked out last at each point, as (z, x, y) and an unused number.
+    pub fn gather<N: Coordinate, F: Send>(
+        &self,
+        rooms: &[Room<N>],
+        force: &mut [F],
+        write: impl Fn(&mut F, [N; 4]) + Sync,
+    ) {
+        let (points, beyond) = force.split_at_mut(self.starts.len() - 1);
+        beyond.iter_mut().for_each(|point| write(point, [N::zero(); 4]));
+        let piece = |(points, starts): (&mut [F], &[u32])| {
             for (point, ends) in points.iter_mut().zip(starts.windows(2)) {
-                *point = [0.0; D];
+                let mut sum = [N::zero(); 4];
                 for &[part, row] in &self.rows[ends[0] as usize..ends[1] as usize] {
                     let force = rooms[part as usize].force(row);
-                    (0..D).for_each(|k| point[k] += force[(k + 1) % 3]);
+                    (0..4).for_each(|k| sum[k] = sum[k] + force[k]);
                 }
+                write(point, sum);
             }
         };
         match rooms {

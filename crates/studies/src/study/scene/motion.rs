@@ -19,6 +19,8 @@ use serde::Deserialize;
 pub struct MotionRecipe {
     /// The time step, the method and the solver.
     pub options: Options,
+    /// The numbers of the networks' forces.
+    pub precision: ForcePrecision,
     /// The duration, s.
     pub duration: f64,
     /// The number of steps; the last one reaches the end.
@@ -40,6 +42,21 @@ pub struct MotionRecipe {
     /// The forces.
     pub forces: Vec<AppliedForce>,
 }
+
+/// The numbers in which networks compute their forces, and, without an account, positions and velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ForcePrecision {
+    /// `f64`.
+    #[default]
+    Double,
+    /// `f32`.
+    Single,
+}
+
+crate::named!(ForcePrecision {
+    "double" => Double,
+    "single" => Single,
+});
 
 /// The damping of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +104,8 @@ pub struct MotionEntry {
     #[serde(default)]
     linear: bool,
     account: Option<bool>,
+    #[schemars(extend("enum" = ForcePrecision::NAMES))]
+    precision: Option<String>,
     #[schemars(extend("enum" = LinearSolver::NAMES))]
     solver: Option<String>,
     remainder: Option<f64>,
@@ -149,7 +168,11 @@ impl MotionRecipe {
     /// The motion in words.
     pub fn title(&self) -> String {
         let (step, name) = (self.options.step, self.options.integrator.name());
-        format!("{:?} s in {} steps of {step:?} s by {name}", self.duration, self.steps)
+        let precision = match self.precision {
+            ForcePrecision::Double => "",
+            ForcePrecision::Single => " in single precision",
+        };
+        format!("{:?} s in {} steps of {step:?} s by {name}{precision}", self.duration, self.steps)
     }
 
     /// The steps at whose end a state is written: the first one at or after each multiple of `every`, and the last
@@ -228,9 +251,24 @@ impl MotionEntry {
             solver: self.solver.as_deref(),
             remainder: self.remainder,
         };
-        let options = Options { step, account: self.account.unwrap_or(true), ..method.check()? };
+        let precision =
+            choice("precision", self.precision.as_deref(), ForcePrecision::default(), ForcePrecision::named)?;
+        let account = self.account.unwrap_or(precision == ForcePrecision::Double);
+        let options = Options { step, account, ..method.check()? };
+        let foreign = match (options.integrator, options.linear) {
+            (Integrator::SymplecticEuler, false) => None,
+            (Integrator::SymplecticEuler, true) => Some("linear = true".to_string()),
+            (integrator, _) => Some(format!("integrator = \"{}\"", integrator.name())),
+        };
+        if let (ForcePrecision::Single, Some(foreign)) = (precision, foreign) {
+            let problem = format!(
+                "\"single\" belongs to integrator = \"symplectic-euler\" with springs that rotate, found with {foreign}"
+            );
+            return Err(Error::at("precision", problem));
+        }
         Ok(MotionRecipe {
             options,
+            precision,
             duration,
             steps: steps as usize,
             every,

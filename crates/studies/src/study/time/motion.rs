@@ -15,7 +15,7 @@ use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
 };
 use crate::study::progress::{Event, Progress};
-use crate::study::scene::{DampingRecipe, MotionRecipe};
+use crate::study::scene::{DampingRecipe, ForcePrecision, MotionRecipe};
 use std::time::Instant;
 
 /// A displacement of this multiple of the body's size means that the motion has diverged.
@@ -97,9 +97,12 @@ pub fn move_models(
         let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
         let options = planned.recipe.options;
-        let model = fit.network.prepared();
+        let model: Box<dyn Elastic> = match planned.recipe.precision {
+            ForcePrecision::Double => Box::new(fit.network.prepared()),
+            ForcePrecision::Single => Box::new(fit.network.prepared_in::<f32>()),
+        };
         let (mut made, states) =
-            run.follow((&fit.fit.name, growth, masses), &model, damping, options, keeps, progress)?;
+            run.follow((&fit.fit.name, growth, masses), &*model, damping, options, keeps, progress)?;
         made.fit = Some(i);
         // None if the finite elements do not move, or an error is not finite.
         let errors = |states: &[Vec<f64>]| -> Vec<Option<f64>> {
@@ -115,7 +118,7 @@ pub fn move_models(
             let linear = Options { linear: true, ..options };
             let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
             let name = format!("{} without turning", fit.fit.name);
-            let (linear, states) = run.follow((&name, growth, masses), &model, damping, linear, true, progress)?;
+            let (linear, states) = run.follow((&name, growth, masses), &*model, damping, linear, true, progress)?;
             let complete = linear.ending == MotionEnding::Complete;
             let errors: Option<Vec<f64>> = errors(&states).into_iter().collect();
             made.linear_error = errors.and_then(|errors| mean_and_largest(&errors)).filter(|_| complete);
@@ -209,7 +212,7 @@ impl Run<'_> {
                     StepOutcome::Stalled => (made.steps, made.unsolved) = (made.steps + 1, made.unsolved + 1),
                     StepOutcome::Converged | StepOutcome::Linearized => made.steps += 1,
                 }
-                if !simulation.state().is_within(AWAY * extent) {
+                if !simulation.is_within(AWAY * extent) {
                     made.ending = MotionEnding::RanAway;
                 }
             }

@@ -2,14 +2,16 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+mod explicit;
+
 use super::drive::Curve;
 use super::equations::Equations;
 use super::integrator::{Integrator, Past};
 use super::ledger::{self, Account, EnergyBalance, Forces, Ledger};
 use super::limit::longest_step;
 use super::motion::{Motion, Options};
-use super::pass::{Changed, Given, leap};
 use super::resistance::Resistance;
+use super::rows::{RowMotion, row_motion};
 use super::settle::{Step, StepOutcome, Target, Trial};
 use super::solver::LinearSolver;
 use super::state::MotionState;
@@ -42,6 +44,9 @@ pub struct Simulation<'a> {
     /// 1/m of the degrees of freedom that are not held, zero of the others, 1/kg.
     inverse: Vec<f64>,
     ledger: Option<Ledger>,
+    /// The motion of a prepared network whose state stays in rows, and whether `state` is an earlier one.
+    rows: Option<Box<dyn RowMotion + 'a>>,
+    is_behind: bool,
 }
 
 impl<'a> Simulation<'a> {
@@ -79,6 +84,8 @@ impl<'a> Simulation<'a> {
             is_current: false,
             viscous: zero(),
             ledger: None,
+            rows: None,
+            is_behind: false,
             motion,
             options,
         };
@@ -94,6 +101,9 @@ impl<'a> Simulation<'a> {
         } else if options.linear && !simulation.is_definite(options.integrator.coefficients(options.step, true))? {
             let expected = "a step short enough for a model that releases energy as it moves";
             return Err(unstable(expected.into()));
+        }
+        if !is_implicit && !options.account && !options.linear && !simulation.resistance.is_damped() {
+            simulation.rows = row_motion(&simulation.motion, options.step, &simulation.inverse);
         }
         simulation.start(&zero(), &zero())?;
         Ok(simulation)
@@ -112,6 +122,7 @@ impl<'a> Simulation<'a> {
             }
         }
         self.steps = 0;
+        self.is_behind = false;
         self.ledger = None;
         self.state = MotionState { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
         for (dof, prescribed) in self.motion.support.prescribed.iter().enumerate() {
@@ -125,7 +136,12 @@ impl<'a> Simulation<'a> {
             // One-sided difference: a curve need not be defined before time zero.
             self.state.velocity[*dof] = (4.0 * curve.at(h / 2.0) - 3.0 * curve.at(0.0) - curve.at(h)) / h;
         }
-        if !self.refresh() {
+        let mut has_forces = self.refresh();
+        if let Some(rows) = &mut self.rows {
+            rows.load(&self.target.external);
+            has_forces &= rows.start(&self.state);
+        }
+        if !has_forces {
             let error = Error::expected("displacement", "a shape where the model has a response", "none");
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
@@ -148,11 +164,6 @@ impl<'a> Simulation<'a> {
     fn refresh(&mut self) -> bool {
         self.motion.drive.forces_at(self.state.time, &self.resistance.mass, &mut self.target.external);
         self.resist()
-    }
-
-    /// The same after an explicit step; loads that do not change are kept.
-    fn refresh_changed(&mut self) -> bool {
-        if self.motion.drive.is_steady() { self.resist() } else { self.refresh() }
     }
 
     /// Computes elastic and damping forces of the state; false if the model has none. Without damping they stay zero.
@@ -210,13 +221,22 @@ impl<'a> Simulation<'a> {
     }
 
     /// The current state.
-    pub fn state(&self) -> &MotionState {
+    pub fn state(&mut self) -> &MotionState {
+        if let Some(rows) = self.rows.as_ref().filter(|_| self.is_behind) {
+            rows.write(&mut self.state);
+            self.is_behind = false;
+        }
         &self.state
     }
 
+    /// Whether no displacement is larger than this, m, and every velocity is a number.
+    pub fn is_within(&self, largest: f64) -> bool {
+        self.rows.as_ref().map_or_else(|| self.state.is_within(largest), |rows| rows.is_within(largest))
+    }
+
     /// The current positions, `[points × dimension]`, m.
-    pub fn positions(&self) -> Vec<f64> {
-        displaced(self.motion.points, &self.state.displacement)
+    pub fn positions(&mut self) -> Vec<f64> {
+        displaced(self.motion.points, &self.state().displacement)
     }
 
     /// Advances by one step.
@@ -253,50 +273,6 @@ impl<'a> Simulation<'a> {
         self.state.time = time;
         self.book();
         step
-    }
-
-    /// A step of symplectic Euler, `v ← v + h M⁻¹ (f − C v − F)`, `u ← u + h v`, in one pass over the degrees of freedom.
-    fn leap(&mut self) -> Step {
-        let h = self.options.step;
-        let time = (self.steps + 1) as f64 * h;
-        let driven = &self.motion.drive.displacements;
-        for ((dof, _), start) in driven.iter().zip(&mut self.target.delta) {
-            *start = self.state.displacement[*dof];
-        }
-        let (displacement, way, velocity) = (&mut self.state.displacement, &mut self.way, &mut self.before);
-        let given = Given {
-            velocity: &self.state.velocity,
-            external: &self.target.external,
-            elastic: &self.trial.force,
-            viscous: &self.viscous,
-            inverse: &self.inverse,
-        };
-        leap(h, Changed { displacement, way, velocity }, given);
-        std::mem::swap(&mut self.before, &mut self.state.velocity);
-        for ((dof, curve), start) in driven.iter().zip(&self.target.delta) {
-            // A driven point is on its curve to the last bit.
-            self.state.displacement[*dof] = curve.at(time);
-            self.state.velocity[*dof] = rate(curve, time, h);
-            self.way[*dof] = curve.at(time) - start;
-        }
-        (self.steps, self.state.time) = (self.steps + 1, time);
-        let step =
-            Step { outcome: StepOutcome::Converged, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
-        if !self.refresh_changed() {
-            return self.step_back(step);
-        }
-        self.book();
-        step
-    }
-
-    /// Restores the state before an explicit step.
-    fn step_back(&mut self, step: Step) -> Step {
-        self.steps -= 1;
-        self.state.time = self.steps as f64 * self.options.step;
-        self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
-        std::mem::swap(&mut self.before, &mut self.state.velocity);
-        self.refresh();
-        Step { outcome: StepOutcome::NoResponse, ..step }
     }
 
     /// Solves for the end of an implicit step.
@@ -366,6 +342,7 @@ impl<'a> Simulation<'a> {
 
     /// Energy and momentum of the current state.
     pub fn account(&mut self) -> Account {
+        self.state();
         let d = self.motion.dimension();
         let (kinetic, _) = self.kinetic();
         let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);

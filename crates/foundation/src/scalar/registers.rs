@@ -1,0 +1,149 @@
+//! Four coordinates in a register of the machine, one kind for each kind of number.
+
+use super::coordinates::{Coordinate, CoordinatesWork};
+
+#[cfg(target_arch = "x86_64")]
+use {
+    super::coordinates::Coordinates,
+    pulp::{Simd, WithSimd, cast, f32x4, f64x4, x86::V3},
+    std::arch::x86_64::{__m128, __m256d},
+};
+
+/// Uses explicit instructions: from operations on the entries of an array the compiler forms pairs and shuffles between
+/// them.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+struct Register<V> {
+    simd: V3,
+    values: V,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<V> Register<V> {
+    #[inline(always)]
+    fn of(self, values: V) -> Register<V> {
+        Register { simd: self.simd, values }
+    }
+}
+
+/// Registers of one kind of number: its vector, its instructions, and the one that turns a vector of the machine.
+macro_rules! registers {
+    (
+        $number:ty, $work:ident, $vector:ty, $splat:ident, $add:ident, $sub:ident, $mul:ident, $mul_add:ident, $mul_sub:ident,
+        $set:ident.$turn:ident($machine:ty)
+    ) => {
+        impl Coordinate for $number {
+            #[inline(always)]
+            fn of(x: f64) -> $number {
+                x as $number
+            }
+
+            #[inline(always)]
+            fn wide(self) -> f64 {
+                self.into()
+            }
+
+            fn with_coordinates<W: CoordinatesWork<$number>>(work: W) -> W::Output {
+                #[cfg(target_arch = "x86_64")]
+                if let Some(simd) = V3::try_new() {
+                    return Simd::vectorize(simd, $work(simd, work));
+                }
+                work.run([0.0; 4])
+            }
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        struct $work<W>(V3, W);
+
+        #[cfg(target_arch = "x86_64")]
+        impl<W: CoordinatesWork<$number>> WithSimd for $work<W> {
+            type Output = W::Output;
+
+            #[inline(always)]
+            fn with_simd<S: Simd>(self, _: S) -> W::Output {
+                let $work(simd, work) = self;
+                work.run(Register { simd, values: simd.$splat(0.0) })
+            }
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        impl Coordinates<$number> for Register<$vector> {
+            #[inline(always)]
+            fn load(self, from: &[$number; 4]) -> Self {
+                self.of(cast(*from))
+            }
+
+            #[inline(always)]
+            fn store(self, to: &mut [$number; 4]) {
+                *to = cast(self.values);
+            }
+
+            #[inline(always)]
+            fn plus(self, other: Self) -> Self {
+                self.of(self.simd.$add(self.values, other.values))
+            }
+
+            #[inline(always)]
+            fn minus(self, other: Self) -> Self {
+                self.of(self.simd.$sub(self.values, other.values))
+            }
+
+            #[inline(always)]
+            fn times(self, other: Self) -> Self {
+                self.of(self.simd.$mul(self.values, other.values))
+            }
+
+            #[inline(always)]
+            fn scaled(self, factor: $number) -> Self {
+                self.of(self.simd.$mul(self.values, self.simd.$splat(factor)))
+            }
+
+            #[inline(always)]
+            fn plus_scaled(self, factor: $number, other: Self) -> Self {
+                self.of(self.simd.$mul_add(self.simd.$splat(factor), other.values, self.values))
+            }
+
+            #[inline(always)]
+            fn turned(self) -> Self {
+                let values: $machine = cast(self.values);
+                self.of(cast(self.simd.$set.$turn::<0b11_00_10_01>(values)))
+            }
+
+            #[inline(always)]
+            fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self {
+                self.of(self.simd.$mul_sub(self.values, b.values, self.simd.$mul(c.values, d.values)))
+            }
+
+            #[inline(always)]
+            fn dot(self, other: Self) -> $number {
+                let products: [$number; 4] = cast(self.simd.$mul(self.values, other.values));
+                products[0] + products[1] + products[2]
+            }
+        }
+    };
+}
+
+registers!(
+    f64,
+    OnF64,
+    f64x4,
+    splat_f64x4,
+    add_f64x4,
+    sub_f64x4,
+    mul_f64x4,
+    mul_add_f64x4,
+    mul_sub_f64x4,
+    avx2._mm256_permute4x64_pd(__m256d)
+);
+registers!(
+    f32,
+    OnF32,
+    f32x4,
+    splat_f32x4,
+    add_f32x4,
+    sub_f32x4,
+    mul_f32x4,
+    mul_add_f32x4,
+    mul_sub_f32x4,
+    avx._mm_permute_ps(__m128)
+);
