@@ -278,6 +278,19 @@ fn masses_that_cannot_be_fitted_are_named() {
     assert!(error.contains("masses") && error.contains("free degrees of freedom"), "{error}");
 }
 
+/// A support that holds all points leaves nothing to fit.
+#[test]
+fn supports_that_hold_all_points_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let text = scene("hex8", "exact", "supports = [[\"xmin\"], [\"xmin\", \"xmax\"]]");
+    let (before, rest) = text.split_once("cells = [").unwrap();
+    let (_, after) = rest.split_once(',').unwrap();
+    std::fs::write(&path, format!("{before}cells = [1,{after}")).unwrap();
+    let error = Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {})).unwrap_err().to_string();
+    assert!(error.contains("fit[1].supports[1]: expected groups that leave points free to move"), "{error}");
+}
+
 /// A finer mesh whose content is another is of another body; a small difference is a note.
 #[test]
 fn finer_meshes_of_other_bodies_are_refused() {

@@ -3,7 +3,7 @@
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit::report;
-use springfit::study::{FoundModuli, Outcome, Scene, run};
+use springfit::study::{FoundModuli, ModuliSearch, Outcome, Scene, run};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -243,6 +243,68 @@ fn regions_of_the_material_have_moduli_of_their_own() {
             assert!((modulus.factor / truth - 1.0).abs() < 1e-3, "{keys}: {modulus:?}");
         }
         assert_eq!(moduli(&found).all.len(), if keys.contains("moduli") { 4 } else { 2 }, "{keys}");
+    }
+}
+
+/// A search that ends at its largest number of steps says so, and its intervals reach to the optimum where the truth is.
+#[test]
+fn a_search_that_ends_before_its_optimum_says_so() {
+    let world = World::new(3);
+    let sigmas = world.measure(3, (0.01, 4), |_| true);
+    let find = |keys: &str| {
+        let found = world.find(3, None, Some(&sigmas), &format!("unknowns = \"region-young\"\n{keys}")).unwrap();
+        let says = report::notes(&found).iter().any(|note| note.contains("ended at its largest number of iterations"));
+        (moduli(&found).clone(), says)
+    };
+    let (whole, says) = find("");
+    assert!(whole.search == ModuliSearch::Finished && !says);
+    for keys in ["iterations = 1", "solver = \"l-bfgs\"\niterations = 2"] {
+        let (found, says) = find(keys);
+        assert!(found.search == ModuliSearch::Ended && says, "{keys}: {found:?}");
+        for (own, best) in found.all.iter().zip(&whole.all) {
+            let ([low, high], [least, most]) = (own.interval.unwrap(), best.interval.unwrap());
+            assert!(low <= 1.001 * least && high >= 0.999 * most, "{keys}: {own:?} {best:?}");
+        }
+    }
+}
+
+/// Factors that four digits after the point would hide, or fill a line with.
+#[test]
+fn factors_far_from_one_are_legible() {
+    let world = World::new(2);
+    world.measure(2, (0.0, 1), |_| true);
+    let scene = world.scene(2, None, None, "unknowns = \"region-young\"");
+    for (young, lower) in [("1e9", "1.000e-5"), ("0.1", "1.000e5")] {
+        let text = scene.replace("young   = 1e4", &format!("young   = {young}"));
+        let found = outcome(world.folder.path(), "far.toml", &text).unwrap();
+        let notes = report::notes(&found);
+        assert!(notes.iter().any(|note| note.contains(&format!("E of lower x {lower} ("))), "{notes:?}");
+    }
+}
+
+/// The finite elements of the guessed moduli are no reference for networks of the measured body.
+#[test]
+fn measured_bodies_are_not_compared_with_the_guess() {
+    let world = World::new(4);
+    world.measure(2, (0.0, 1), |_| true);
+    let keys = "unknowns = \"region-young\"";
+    let found = world.find(2, Some(4), None, keys).unwrap();
+    assert!(found.fits[0].kind.whole().unwrap().held_out.is_empty());
+    let text = world.scene(2, None, None, &format!("{keys}\nmasses = 2"));
+    let text = text.replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
+    let error = outcome(world.folder.path(), "masses.toml", &text).unwrap_err().to_string();
+    assert!(error.contains("fit[0].masses: expected none where displacements are measured"), "{error}");
+}
+
+/// What is measured belongs to points of the scene's mesh, of which a finer mesh has its own.
+#[test]
+fn measured_points_need_not_be_points_of_the_finer_mesh() {
+    let world = World::new(6);
+    world.measure(2, (0.0, 1), |_| true);
+    let found = world.find(2, Some(3), None, "unknowns = \"region-young\"").unwrap();
+    for (modulus, truth) in moduli(&found).all.iter().zip(TRUTH) {
+        let [low, high] = modulus.interval.unwrap();
+        assert!(low <= truth && truth <= high, "{modulus:?}");
     }
 }
 

@@ -953,6 +953,23 @@ fn fits_of_nothing_end() {
     assert!(report::notes(&outcome).iter().any(|note| note.contains("the start is not stable under each of them")));
 }
 
+/// A requested ρ is used whatever its range is, and the fit knows if that is beyond the allowed one.
+#[test]
+fn a_range_beyond_the_allowed_one_is_known() {
+    let body = Body::new(&load("cube_tet"), "fixed");
+    let (network, trained) = moved_by_another(&body);
+    // From equal constants, whose range is 1.
+    let network = network.scaled(&network.lengths.iter().map(|spring| 1.0 / spring.constant).collect::<Vec<f64>>());
+    let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
+    let wanted = Wanted { trained, ..Wanted::default() };
+    let fit = |range: f64| {
+        let regularizations = vec![1e-3];
+        quietly(&object, &wanted, &WholeSettings { regularizations, iterations: 5, range, ..WholeSettings::default() })
+    };
+    let found = fit(1e9);
+    assert!(found.range > 1.1 && !found.exceeds && fit(0.99 * found.range).exceeds);
+}
+
 /// A seed gives the same loads, another one others.
 #[test]
 fn random_loads_repeat() {

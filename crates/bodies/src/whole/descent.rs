@@ -2,7 +2,7 @@
 
 use super::linearized::LeastSquares;
 use crate::error::{Error, Result};
-use argmin::core::{CostFunction, Executor, Gradient, IterState};
+use argmin::core::{CostFunction, Executor, Gradient, IterState, State, TerminationReason};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use std::cell::RefCell;
@@ -13,6 +13,8 @@ pub(super) struct Descent {
     pub theta: Vec<f64>,
     /// The objective at the start and at each lower point; empty if the network is unstable at the start.
     pub objective: Vec<f64>,
+    /// Whether it ended by itself, and not at its largest number of steps.
+    pub is_finished: bool,
 }
 
 /// The objective for argmin, which requests value and gradient separately; the last point is stored for both.
@@ -98,10 +100,12 @@ pub(super) fn lbfgs(
     let configure = |state: IterState<_, _, _, _, _, f64>| state.param(theta.to_vec()).max_iters(iterations as u64);
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), memory);
     // If a line search fails, the search ends at the present point.
-    let _ = Executor::new(&objective, solver).configure(configure).ctrlc(false).run();
+    let ended = Executor::new(&objective, solver).configure(configure).ctrlc(false).run();
+    let reason = ended.ok().and_then(|end| end.state().get_termination_reason().cloned());
+    let is_finished = reason != Some(TerminationReason::MaxItersReached);
     let known = objective.known.into_inner();
     match known.error {
         Some(error) => Err(error),
-        None => Ok(Descent { theta: known.best.1, objective: known.lowered }),
+        None => Ok(Descent { theta: known.best.1, objective: known.lowered, is_finished }),
     }
 }

@@ -29,6 +29,8 @@ pub struct WholeFit {
     pub range: f64,
     /// Whether a better ρ was rejected because this ratio would have been too large.
     pub limited: bool,
+    /// Whether this ratio is larger than the one that is allowed where ρ is chosen, and than that of the start.
+    pub exceeds: bool,
     /// The stages of the path, one for each ρ.
     pub curve: Vec<Stage>,
     /// With leave-one-out validation the geometric mean of the relative errors after each stage.
@@ -56,8 +58,11 @@ pub fn fit_whole(
     if let Some(snapshot) = &from {
         snapshot.check(m, stages)?;
     }
-    if wanted.trained.is_empty() || stages == 0 {
-        return Err(Error::expected("loads", "loads that act on a free point, and regularizations", "none"));
+    if wanted.trained.is_empty() {
+        return Err(Error::expected("loads", "loads that act on a free point", "none"));
+    }
+    if stages == 0 {
+        return Err(Error::expected("regularization", "at least one", "none"));
     }
     let problem = Displacements::new(object, wanted.trained.iter().collect(), wanted.frequencies.as_ref())?;
     let judge = Displacements::new(object, wanted.validation.loads().iter().collect(), None)
@@ -74,6 +79,7 @@ pub fn fit_whole(
         steps: 0,
         change: 1.0,
         limited: false,
+        exceeds: false,
         curve: Vec::new(),
         left_out: Vec::new(),
         stands: false,
@@ -109,6 +115,7 @@ pub fn fit_whole(
     }
     watch(Some(&snapshot));
     found.network = object.network(&best.theta);
+    found.exceeds = object.range(&best.theta) > settings.range.max(found.range);
     found.range = object.range(&best.theta);
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
     problem.forget();

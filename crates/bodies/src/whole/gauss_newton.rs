@@ -45,11 +45,14 @@ impl GaussNewton {
         visit: &mut dyn FnMut(&[f64], f64) -> bool,
     ) -> Result<Descent> {
         let mut theta = theta.to_vec();
-        let Some(mut now) = problem.at(&theta)? else { return Ok(Descent { theta, objective: Vec::new() }) };
+        let Some(mut now) = problem.at(&theta)? else {
+            return Ok(Descent { theta, objective: Vec::new(), is_finished: true });
+        };
         let (mut value, mut gradient) = now.objective(rho)?;
         let mut objective = vec![value];
         let root = (theta.len().max(1) as f64).sqrt();
         let mut radius = RADIUS * root;
+        let mut is_finished = false;
         for _ in 0..iterations {
             let path = self.path(&now, rho, &gradient, radius)?;
             let (lowered, found) = loop {
@@ -76,16 +79,20 @@ impl GaussNewton {
                     None => {}
                 }
             };
-            let Some((tried, next)) = found else { break };
+            let Some((tried, next)) = found else {
+                is_finished = true;
+                break;
+            };
             (theta, now) = (tried, next);
             let enough = lowered <= self.decrease * value;
             (value, gradient) = now.objective(rho)?;
             objective.push(value);
+            is_finished = enough;
             if !visit(&theta, value) || enough {
                 break;
             }
         }
-        Ok(Descent { theta, objective })
+        Ok(Descent { theta, objective, is_finished })
     }
 
     /// The path of conjugate gradients towards the minimum of `gᵀd + dᵀ(JᵀJ + ρ/m)d`, up to the part that leaves the radius.

@@ -41,6 +41,9 @@ pub struct Stage {
     pub change: f64,
     /// Whether it was rejected because of its range of constants.
     pub rejected: bool,
+    /// Whether its search ended by itself, and not at the largest number of steps.
+    #[serde(default)]
+    pub is_finished: bool,
     /// The objective at its start and after each step, of the residuals that were minimised last.
     #[serde(default)]
     pub objective: Vec<f64>,
@@ -127,7 +130,8 @@ impl Path<'_> {
             };
             problem.forget();
             judge.forget();
-            let Descent { theta, mut objective } = self.stage(problem, stage, &snapshot.theta, &mut visit)?;
+            let Descent { theta, mut objective, is_finished } =
+                self.stage(problem, stage, &snapshot.theta, &mut visit)?;
             // JSON has no infinity.
             objective.retain(|value| value.is_finite());
             let error = match self.wanted.validation {
@@ -161,6 +165,7 @@ impl Path<'_> {
                 trained: problem.errors(&theta)?.and_then(|errors| root_mean_square(&errors.loads)),
                 change: root_mean_square(&theta).unwrap_or(0.0),
                 rejected: wide,
+                is_finished,
                 objective,
             });
             let left_out = std::mem::take(&mut snapshot.left_out);

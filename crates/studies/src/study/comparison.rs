@@ -1,6 +1,6 @@
 //! Error against run time: objectives and solvers side by side, on random shapes of an element or on a scene.
 
-use super::body::load_cases;
+use super::body::applied_cases;
 use super::checkpoint::Controls;
 use super::fits::{ExactRecipe, NamedFit, Recipe, WholeBody};
 use super::moduli::{EffectiveModuli, Lattice};
@@ -176,7 +176,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
     // Generated loads are linear, and require supports that hold the body without those of the scene.
     let material = &scene.material_of(&mesh)?;
-    let support = load_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
+    let support = applied_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
     let controls = Controls::default();
     let body = WholeBody::new(&mesh, material, &support, &controls);
     let held = match body.equations("loads", &support) {

@@ -54,10 +54,11 @@ pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,
     FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
-    ModelFrequencies, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord, PublishedRecord, Recipe,
-    Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts, Sharing, SpreadRecord,
-    Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome, TensionRecord,
-    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
+    ModelFrequencies, ModuliSearch, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord,
+    PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts,
+    Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task,
+    TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe,
+    WholeRecord, WorseLoad,
 };
 pub use fitting::fit_mesh;
 pub use forecast::{ExpectedStage, Forecast};

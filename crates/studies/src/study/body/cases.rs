@@ -33,11 +33,25 @@ pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     Ok(fixed)
 }
 
-/// The support of the `[[fix]]` entries, and the load cases.
+/// The support of the `[[fix]]` entries, and the load cases with the displacements that were measured at points of the mesh.
+///
+/// # Errors
+/// Those of [`applied_cases`], and of a file of displacements.
+pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<(Support, Vec<Case>)> {
+    let (fixed, mut cases) = applied_cases(scene, mesh, material)?;
+    for (i, (load, case)) in scene.loads().iter().zip(&mut cases).enumerate() {
+        let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh)).transpose();
+        let at = |e: Error| scene.at(&format!("load[{i}]"), e.under("measured"));
+        case.measured = measured.map_err(|e| e.placed(at))?;
+    }
+    Ok((fixed, cases))
+}
+
+/// The support of the `[[fix]]` entries, and the load cases on the scene's mesh or a finer one, without measured displacements.
 ///
 /// # Errors
 /// A part of the mesh is empty or unknown, a load has the wrong number of entries, or a body is not held.
-pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<(Support, Vec<Case>)> {
+pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<(Support, Vec<Case>)> {
     let fixed = held(scene, mesh)?;
     let (mut cases, thicknesses) = (Vec::new(), material.thicknesses());
     // The mass per content of each cell.
@@ -61,10 +75,9 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
             );
             return Err(Error::expected("fix", expected, found).of_kind(ErrorKind::Infeasible).in_file(scene.path()));
         }
-        let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh));
-        let measured = measured.transpose().map_err(|e| e.placed(|e| at(e.under("measured"))))?;
         let is_prescribed = matches!(load.single(), Some((_, Action::Displacement(_))));
-        let (is_measured, noise) = (measured.is_some(), load.measured.as_ref().and_then(|entry| entry.sigma));
+        let (is_measured, noise) = (load.measured.is_some(), load.measured.as_ref().and_then(|entry| entry.sigma));
+        let measured = None;
         if let Some(sigma) = noise.filter(|sigma| !(*sigma > 0.0 && sigma.is_finite())) {
             let expected = "a standard deviation above zero, m";
             return Err(at(Error::expected("sigma", expected, sigma).under("measured")));

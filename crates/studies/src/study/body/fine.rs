@@ -2,7 +2,7 @@
 
 use super::answer::{check_residual, not_definite};
 use super::case::Case;
-use super::cases::{held, load_cases};
+use super::cases::{applied_cases, held};
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
 use crate::memory;
@@ -93,7 +93,7 @@ impl FineBody {
     /// # Errors
     /// The finer body has no solution under a load.
     pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
-        let (_, own) = load_cases(scene, &self.mesh, &self.material)?;
+        let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
         let found = self.displacements(&own, progress).map_err(|e| e.placed(|e| scene.at("reference", e)))?;
         for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
             if !case.is_prescribed {

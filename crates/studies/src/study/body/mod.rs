@@ -11,7 +11,7 @@ mod large;
 mod linear;
 
 pub use case::Case;
-pub use cases::load_cases;
+pub use cases::{applied_cases, load_cases};
 pub use fine::FineBody;
 pub use gauge::Gauged;
 pub use large::LargeBody;

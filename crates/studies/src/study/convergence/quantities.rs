@@ -6,7 +6,7 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Action, nodal_forces};
 use crate::scalar::Sum;
-use crate::study::body::load_cases;
+use crate::study::body::applied_cases;
 use crate::study::metrics::product;
 use crate::study::scene::{LoadCase, Part, Scene};
 
@@ -26,7 +26,7 @@ impl Quantities {
     /// # Errors
     /// Those of a run of the scene.
     pub fn of(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<Vec<Quantities>> {
-        let (_, cases) = load_cases(scene, mesh, material)?;
+        let (_, cases) = applied_cases(scene, mesh, material)?;
         let weigh = |load: &LoadCase| -> Result<Option<Vec<f64>>> {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
             let (unit, part) = match load.single() {

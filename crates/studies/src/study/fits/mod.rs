@@ -32,6 +32,6 @@ pub use spread::SpreadRecord;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
 pub use whole::{
     Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, ModelError,
-    ModelFrequencies, RESERVED, RegionFactors, Sharing, Start, SupportFrequencies, SupportPart, ValidationRecipe,
-    WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
+    ModelFrequencies, ModuliSearch, RESERVED, RegionFactors, Sharing, Start, SupportFrequencies, SupportPart,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
 };

@@ -43,7 +43,7 @@ impl WholeBody<'_> {
     }
 
     /// The number of the load of the scene whose measured displacements these are.
-    fn measured(&self, target: &Target) -> Option<usize> {
+    pub(super) fn measured(&self, target: &Target) -> Option<usize> {
         self.cases.iter().position(|case| case.is_measured && case.name == target.name)
     }
 

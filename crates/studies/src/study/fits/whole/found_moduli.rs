@@ -1,11 +1,11 @@
 //! The moduli that a whole-object fit has found, with their intervals.
 
-use super::outcome::{FoundModuli, FoundModulus};
+use super::moduli::{FoundModuli, FoundModulus, ModuliSearch};
 use super::recipe::WholeRecipe;
 use crate::error::Result;
 use crate::whole::{
-    Determination, Displacements, ModuliSharing, NINETY_FIVE, Object, Validation, WEAK, Wanted, WholeFit,
-    WholeSettings, fit_whole,
+    Best, Determination, Displacements, ModuliSharing, NINETY_FIVE, Object, Snapshot, Validation, WEAK, Wanted,
+    WholeFit, WholeSettings, fit_whole,
 };
 
 /// The step to the optimum without ρ from which on linearisation is not enough to know that optimum.
@@ -25,18 +25,32 @@ pub(super) fn found_moduli(
     let names = object.modulus_names(sharing);
     let factors = object.modulus_factors(&found.theta).unwrap_or_default();
     let problem = Displacements::new(object, wanted.trained.iter().collect(), None)?;
-    let free = |known: &Determination| -> Result<Vec<f64>> {
-        if found.cancelled || known.shifts.iter().all(|shift| shift.abs() < NEAR) {
-            return Ok(known.shifts.clone());
-        }
-        let wanted = Wanted { validation: Validation::None, ..wanted.clone() };
-        let settings = WholeSettings { regularizations: vec![0.0], ..recipe.settings.clone() };
-        let free = fit_whole(object, &wanted, &settings, None, &mut |_| true)?;
-        Ok(free.theta.iter().zip(&found.theta).map(|(free, own)| free - own).collect())
-    };
+    let is_near = |shifts: &[f64]| shifts.iter().all(|shift| shift.abs() < NEAR);
     // Too many unknowns are not tried, and fewer displacements than unknowns determine none of them.
-    let known = Determination::of(&problem, &found.theta, wanted.noise).ok();
-    let shifts = known.as_ref().map(free).transpose()?.unwrap_or_default();
+    let mut known = Determination::of(&problem, &found.theta, wanted.noise).ok();
+    let misfit = known.as_ref().zip(wanted.noise).map(|(known, noise)| known.residual / noise);
+    let mut shifts = known.as_ref().map_or_else(Vec::new, |known| known.shifts.clone());
+    let mut search = ModuliSearch::Finished;
+    if !found.cancelled && !is_near(&shifts) {
+        // By the default method from where the fit has ended: it is the fit that may have ended early, by its own method and limit.
+        let free = Wanted { validation: Validation::None, ..wanted.clone() };
+        let settings = WholeSettings { regularizations: vec![0.0], ..WholeSettings::default() };
+        let best = Best { error: None, theta: found.theta.clone(), stage: None };
+        let (theta, curve, left_out) = (found.theta.clone(), Vec::new(), Vec::new());
+        let from = Snapshot { stage: 0, theta, best, curve, left_out };
+        let free = fit_whole(object, &free, &settings, Some(from), &mut |_| true)?;
+        // What the displacements say there, where they would put the moduli; the last part of the way is linear.
+        known = Determination::of(&problem, &free.theta, wanted.noise).ok();
+        let rest = known.as_ref().map_or_else(|| vec![f64::INFINITY; shifts.len()], |known| known.shifts.clone());
+        let is_optimal = is_near(&rest);
+        shifts = free.theta.iter().zip(&found.theta).zip(&rest).map(|((free, own), rest)| free + rest - own).collect();
+        let chosen = found.curve.iter().find(|stage| Some(stage.regularization) == found.regularization);
+        search = match (is_optimal, chosen.is_none_or(|stage| stage.is_finished)) {
+            (false, _) => ModuliSearch::Lost,
+            (true, false) => ModuliSearch::Ended,
+            (true, true) => ModuliSearch::Finished,
+        };
+    }
     let reach = |p: usize| {
         let noise = known.as_ref()?.deviations[p]?;
         Some(NINETY_FIVE * noise.hypot(mesh.get(p).copied().unwrap_or(0.0)))
@@ -57,6 +71,5 @@ pub(super) fn found_moduli(
             weak.push(modulus.name.clone());
         }
     }
-    let misfit = known.as_ref().zip(wanted.noise).map(|(known, noise)| known.residual / noise);
-    Ok(FoundModuli { all, weak, misfit })
+    Ok(FoundModuli { all, weak, misfit, search })
 }

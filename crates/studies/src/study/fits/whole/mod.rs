@@ -10,6 +10,7 @@ mod fitting;
 mod found_moduli;
 mod frequencies;
 mod held_out;
+mod moduli;
 mod objects;
 mod outcome;
 mod recipe;
@@ -19,9 +20,10 @@ mod targets;
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
 pub use finer::{Answers, Finer, RegionFactors};
+pub use moduli::{FoundModuli, FoundModulus, ModuliSearch};
 pub use outcome::{
-    FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, ModelError, ModelFrequencies, SupportFrequencies,
-    SupportPart, WholeOutcome, WorseLoad,
+    FittedLoad, FittedMasses, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, SupportPart, WholeOutcome,
+    WorseLoad,
 };
 pub use recipe::{LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeRecipe};
 pub use record::{WholeOutcomeRecord, WholeRecord};

@@ -1,5 +1,6 @@
 //! The loads of a whole-object fit, and its result.
 
+use super::moduli::FoundModuli;
 use super::recipe::{Start, WholeRecipe};
 use crate::whole::{Errors, MassStage, Stage, Target, Validation, Wanted, WholeFit};
 
@@ -25,6 +26,8 @@ pub struct WholeOutcome {
     pub range: f64,
     /// Whether a better ρ was rejected because this ratio would have been too large.
     pub limited: bool,
+    /// Whether the ratio is larger than the one that is allowed where ρ is chosen.
+    pub exceeds: bool,
     /// The stages of the path, one for each ρ.
     pub curve: Vec<Stage>,
     /// How many times as large as the noise the residuals are, if the noise chose ρ.
@@ -173,37 +176,8 @@ pub struct ModelError {
     pub seconds_per_step: Option<f64>,
 }
 
-/// What displacements say of moduli.
-#[derive(Debug, Clone, PartialEq, Default)]
-#[non_exhaustive]
-pub struct FoundModuli {
-    /// The moduli.
-    pub all: Vec<FoundModulus>,
-    /// The moduli that the displacements hardly see, or not at all: one alone, or several whose combination they do not see.
-    pub weak: Vec<String>,
-    /// How many times as large as the stated noise the residuals are, where it is stated.
-    pub misfit: Option<f64>,
-}
-
-/// The factor on a modulus.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct FoundModulus {
-    /// The modulus and the region, such as `mu of tumour`.
-    pub name: String,
-    /// The factor on that of the material.
-    pub factor: f64,
-    /// The ends of the 95 % interval of the factor; `None` if the displacements do not determine it.
-    pub interval: Option<[f64; 2]>,
-    /// The standard deviation of its logarithm that the meshes cause, which is in the interval; `None` without a finer body.
-    pub mesh: Option<f64>,
-}
-
 /// A relative error under a load from which on a fit has not enough unknowns of the right kind.
 const CAPACITY: f64 = 0.2;
-/// Residuals of this multiple of the noise are more than noise.
-const MISFIT: f64 = 1.5;
-
 /// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -237,6 +211,7 @@ impl WholeOutcome {
             change: found.change,
             range: found.range,
             limited: found.limited,
+            exceeds: found.exceeds,
             curve: found.curve.clone(),
             left_out: found.left_out.clone(),
             steps: found.steps,
@@ -286,6 +261,7 @@ impl WholeOutcome {
         };
         let ended = match (self.cancelled, self.limited, self.excess) {
             (true, ..) => "; it was ended early".into(),
+            _ if self.exceeds => "; the range is larger than the one that is allowed where rho is chosen".into(),
             (_, true, _) => "; a better rho exceeds the range that is allowed".into(),
             (.., Some(excess)) if excess > 1.0 => {
                 format!("; no rho that was tried reaches the noise: residuals are {excess:.2} times as large")
@@ -362,32 +338,5 @@ impl FittedMasses {
             self.share
         );
         [first, matrix].into_iter().chain(self.supports.iter().map(support)).collect()
-    }
-}
-
-impl FoundModuli {
-    fn notes(&self) -> Vec<String> {
-        let Some(first) = self.all.first() else { return Vec::new() };
-        let one = |modulus: &FoundModulus| match modulus.interval {
-            Some([low, high]) => format!("{} x {:.4} ({low:.4} to {high:.4})", modulus.name, modulus.factor),
-            None => format!("{} x {:.4} (not determined by these displacements)", modulus.name, modulus.factor),
-        };
-        let list: Vec<String> = self.all.iter().map(one).collect();
-        let mesh = if first.mesh.is_some() { "with" } else { "without" };
-        let found =
-            format!("moduli relative to the material, 95 % intervals {mesh} errors of the mesh: {}", list.join(", "));
-        let prior = match self.all.iter().any(|modulus| modulus.name.starts_with("lambda")) {
-            true => "; unknowns = \"region-young\" keeps Poisson's ratio",
-            false => "",
-        };
-        let weak = (!self.weak.is_empty()).then(|| {
-            let weak = self.weak.join("; or of ");
-            format!("the displacements hardly see {weak}: intervals reach beyond the factor 2{prior}")
-        });
-        let misfit = self.misfit.map(|misfit| {
-            let told = if misfit > MISFIT { ": the model does not explain these displacements" } else { "" };
-            format!("residuals are {misfit:.2} times the stated noise{told}")
-        });
-        [Some(found), weak, misfit].into_iter().flatten().collect()
     }
 }

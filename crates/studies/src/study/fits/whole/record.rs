@@ -1,8 +1,8 @@
 //! The settings and errors of a whole-object fit in a report.
 
+use super::moduli::FoundModulus;
 use super::outcome::{
-    FittedLoad, FittedMasses, FoundModulus, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome,
-    WorseLoad,
+    FittedLoad, FittedMasses, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome, WorseLoad,
 };
 use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
@@ -280,6 +280,9 @@ pub struct StageRecord {
     pub change: f64,
     /// Whether it was rejected because of the range of its constants.
     pub rejected: bool,
+    /// Whether its search ended by itself, and not at `iterations`.
+    #[serde(default)]
+    pub finished: bool,
     /// The objective at the start of the stage and after each step, of the residuals that were minimised last.
     #[serde(default)]
     pub objective: Vec<f64>,
@@ -343,6 +346,7 @@ impl WholeOutcomeRecord {
             trained: stage.trained,
             change: stage.change,
             rejected: stage.rejected,
+            finished: stage.is_finished,
             objective: stage.objective.clone(),
         };
         let [before, after] = [0, 1].map(|i| outcome.frequencies[i].iter().map(|error| finite(*error)).collect());

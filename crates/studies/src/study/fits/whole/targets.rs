@@ -253,6 +253,9 @@ fn held_by(mesh: &Mesh, groups: &[String]) -> Result<Support> {
         })?;
         support.fix(&group.points, &directions, mesh.dimension);
     }
+    if support.prescribed.iter().all(Option::is_some) {
+        return Err(Error::new("expected groups that leave points free to move, found all points held"));
+    }
     if let Some(body) = unheld_bodies(mesh, &support).first() {
         let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
         return Err(Error::new(format!("expected groups that hold every body, found {found}")));

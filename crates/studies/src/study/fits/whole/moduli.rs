@@ -1,0 +1,93 @@
+//! The moduli of the body or of its regions that a fit has found.
+
+/// Residuals of this multiple of the noise are more than noise.
+const MISFIT: f64 = 1.5;
+
+/// What displacements say of moduli.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct FoundModuli {
+    /// The moduli.
+    pub all: Vec<FoundModulus>,
+    /// The moduli that the displacements hardly see, or not at all: one alone, or several whose combination they do not see.
+    pub weak: Vec<String>,
+    /// How many times as large as the stated noise the residuals are, where it is stated.
+    pub misfit: Option<f64>,
+    /// How the search for them ended.
+    pub search: ModuliSearch,
+}
+
+/// How the search for moduli ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ModuliSearch {
+    /// At the optimum with its ρ.
+    #[default]
+    Finished,
+    /// At the largest number of steps before the optimum, which the intervals reach.
+    Ended,
+    /// Neither the fit nor a search without ρ from there has reached an optimum.
+    Lost,
+}
+
+/// The factor on a modulus.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FoundModulus {
+    /// The modulus and the region, such as `mu of tumour`.
+    pub name: String,
+    /// The factor on that of the material.
+    pub factor: f64,
+    /// The ends of the 95 % interval of the factor; `None` if the displacements do not determine it.
+    pub interval: Option<[f64; 2]>,
+    /// The standard deviation of its logarithm that the meshes cause, which is in the interval; `None` without a finer body.
+    pub mesh: Option<f64>,
+}
+
+impl FoundModuli {
+    /// Notes for the reader, one sentence each.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let Some(first) = self.all.first() else { return Vec::new() };
+        let one = |modulus: &FoundModulus| {
+            let told = match modulus.interval {
+                Some([low, high]) => format!("{} to {}", factor(low), factor(high)),
+                None => "not determined by these displacements".into(),
+            };
+            format!("{} x {} ({told})", modulus.name, factor(modulus.factor))
+        };
+        let list: Vec<String> = self.all.iter().map(one).collect();
+        let mesh = if first.mesh.is_some() { "with" } else { "without" };
+        let found =
+            format!("moduli relative to the material, 95 % intervals {mesh} errors of the mesh: {}", list.join(", "));
+        let prior = match self.all.iter().any(|modulus| modulus.name.starts_with("lambda")) {
+            true => "; unknowns = \"region-young\" keeps Poisson's ratio",
+            false => "",
+        };
+        let weak = (!self.weak.is_empty()).then(|| {
+            let weak = self.weak.join("; or of ");
+            format!("the displacements hardly see {weak}: intervals reach beyond the factor 2{prior}")
+        });
+        let misfit = self.misfit.map(|misfit| {
+            let told = if misfit > MISFIT { ": the model does not explain these displacements" } else { "" };
+            format!("residuals are {misfit:.2} times the stated noise{told}")
+        });
+        let search = match self.search {
+            ModuliSearch::Finished => None,
+            ModuliSearch::Ended => Some(
+                "the search for the moduli ended at its largest number of iterations, before the optimum that the intervals reach: \
+                 the factors are not the best ones; more iterations, or solver = \"gauss-newton\", find them",
+            ),
+            ModuliSearch::Lost => Some(
+                "the search for the moduli has found no optimum: neither the factors nor their intervals are to be trusted",
+            ),
+        };
+        [Some(found), search.map(String::from), weak, misfit].into_iter().flatten().collect()
+    }
+}
+
+/// A factor with four digits after the point, or four in all where these would hide it.
+fn factor(value: f64) -> String {
+    match value {
+        0.01..1e4 => format!("{value:.4}"),
+        _ => format!("{value:.3e}"),
+    }
+}
