@@ -241,7 +241,7 @@ fn measures_have_the_derivatives_of_differences() {
         let d = element.dimension();
         let flat = Arc::new(element.clone());
         let x = valid(&element, &mut random);
-        let q = element.tabulation.points() - 1;
+        let q = element.tabulation.points() as u32 - 1;
         check(&Measure::PointContent(flat.clone(), q), &x, d, &element.name);
         if d == 3 {
             let material = Material::new(1.0, 0.3, State::Solid).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::report::{LARGE, LINEAR};
 use springfit::element::{Element, SHIPPED};
-use springfit::model::{Elastic, displaced};
+use springfit::model::{Elastic, MeasureSpring, displaced};
 use springfit::report::{
     FORMAT, MeasureKind, NETWORK_VERSION, NetworkFile, NetworkFormat, NetworkRecord, SpringRecord, network_json,
     network_schema, points_csv, read_network,
@@ -298,4 +298,34 @@ fn springs_name_the_groups_that_they_come_from() {
         }
     }
     assert!(others > 100, "{others}");
+}
+
+/// A body has about as many springs on contents as cells, and their size decides the memory of a fit: five words for the points, two for
+/// the measure, and one each for constant, rest, law and kind, with words of eight bytes.
+#[test]
+fn a_spring_on_a_tetrahedron_has_88_bytes_and_nothing_on_the_heap() {
+    assert!(size_of::<MeasureSpring>() <= 88);
+    let outcome = outcome(TETRAHEDRA);
+    let springs = &outcome.fits[0].network.others;
+    assert!(springs.len() == outcome.mesh.cell_count());
+    assert!(springs.iter().all(|spring| !spring.points.spilled() && spring.law.is_none()));
+}
+
+/// A ZIP file has sizes before its contents, which a pipe cannot get afterwards.
+#[cfg(unix)]
+#[test]
+fn arrays_go_through_a_pipe_as_they_go_to_a_file() {
+    let folder = TempDir::new().unwrap();
+    let [path, pipe] = ["network.npz", "pipe.npz"].map(|name| folder.path().join(name));
+    let outcome = outcome(TETRAHEDRA);
+    let format = NetworkFormat::of(&path).unwrap();
+    let file = NetworkFile::of(&outcome, &outcome.fits[0]);
+    format.write(&path, &file).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let read = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || fs::read(pipe).unwrap()
+    });
+    format.write(&pipe, &file).unwrap();
+    assert!(read.join().unwrap() == fs::read(&path).unwrap());
 }

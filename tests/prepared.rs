@@ -8,7 +8,7 @@ use springfit::fit::{
 };
 use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, edge_springs, patch_springs};
+use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
 use springfit::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 use springfit::springs::{Law, Measure, Patch, Springs};
 use springfit::stiffness::Geometry;
@@ -181,7 +181,7 @@ fn cube() -> Mesh {
 
 fn spring(measure: Measure, points: Vec<usize>, rest: f64) -> MeasureSpring {
     let kind = SpringKind::Measure;
-    MeasureSpring { kind, points: points.into(), constant: 3.0, rest, measure, law: None, parameters: Vec::new() }
+    MeasureSpring { kind, points: points.into(), constant: 3.0, rest, measure, law: None }
 }
 
 /// Angles, lengths with laws, contents of the same cell in other orders, and patches of unequal shares that count a cell often.
@@ -192,9 +192,9 @@ fn springs_of_any_kind_are_kept() {
     let mut network = classical(&mesh, Material::new(1e1, 0.3, State::Solid).unwrap());
     let angle = Measure::of_kind(SpringKind::Angle, 3, 3).unwrap();
     network.others.push(spring(Measure::Function(Arc::new(angle)), vec![3, 0, 7], 0.4));
-    let law = Some(Arc::new(Law::parse("k*s + m*s^3").unwrap()));
-    let lawful =
-        MeasureSpring { law: law.clone(), parameters: vec![2.0, 5.0], ..spring(Measure::Length, vec![5, 2], 0.4) };
+    let law = Arc::new(Law::parse("k*s + m*s^3").unwrap());
+    let law = Some(Box::new(SpringLaw::new(law, &[2.0, 5.0])));
+    let lawful = MeasureSpring { law: law.clone(), ..spring(Measure::Length, vec![5, 2], 0.4) };
     network.others.push(lawful);
     let CellBlock { element, connectivity, .. } = &mesh.blocks[0];
     let cell = |c: usize| connectivity[4 * c..4 * c + 4].to_vec();
@@ -202,8 +202,7 @@ fn springs_of_any_kind_are_kept() {
     let content = Measure::Content(element.clone());
     for (points, rest) in [(cell(1), 0.02), (cell(1), 0.03), (turned(1), 0.01), (cell(5), 0.0)] {
         network.others.push(spring(content.clone(), points.clone(), rest));
-        let parameters = vec![2.0, 5.0];
-        network.others.push(MeasureSpring { law: law.clone(), parameters, ..spring(content.clone(), points, 0.05) });
+        network.others.push(MeasureSpring { law: law.clone(), ..spring(content.clone(), points, 0.05) });
     }
     for (count, share) in [(3, 0.25), (5, 0.25), (7, 0.7), (2, -0.1), (6, 0.25), (9, 0.25), (8, 0.25)] {
         let mut points: Vec<usize> = (0..count).flat_map(cell).collect();

@@ -53,7 +53,7 @@ pub fn write(case: &Case, steps: usize, to: &Path) {
             Measure::Content(element) => (1.0 / 6.0, element.nodes() == 8),
             Measure::PointContent(element, q) => {
                 table.clone_from(&element.tabulation.gradients);
-                (element.tabulation.point_weight(*q), element.nodes() == 8)
+                (element.tabulation.point_weight(*q as usize), element.nodes() == 8)
             }
             other => panic!("the C program has no {other:?}"),
         };

@@ -102,7 +102,7 @@ impl Network {
     fn others<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let mut lists: BTreeMap<(&str, usize, Option<&str>), Vec<&MeasureSpring>> = BTreeMap::new();
         for spring in &self.network().others {
-            let law = spring.law.as_deref().map(|law| &law.text[..]);
+            let law = spring.law.as_deref().map(|own| &own.law.text[..]);
             lists.entry((spring.kind.name(), spring.points.len(), law)).or_default().push(spring);
         }
         lists.into_values().map(|springs| record(py, &springs, self.mesh.dimension)).collect()
@@ -270,13 +270,14 @@ fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyResul
     record.set_item("constants", list(py, springs.iter().map(|s| s.constant).collect()))?;
     record.set_item("rest", list(py, springs.iter().map(|s| s.rest).collect()))?;
     if let Some(law) = &springs[0].law {
-        record.set_item("law", &law.text)?;
-        for (i, name) in law.parameters.iter().enumerate() {
-            record.set_item(name, list(py, springs.iter().map(|s| s.parameters[i]).collect()))?;
+        record.set_item("law", &law.law.text)?;
+        for (i, name) in law.law.parameters.iter().enumerate() {
+            let values = springs.iter().flat_map(|s| &s.law).map(|own| own.parameters[i]);
+            record.set_item(name, list(py, values.collect()))?;
         }
     }
     let of_point = |spring: &MeasureSpring| match &spring.measure {
-        Measure::PointContent(element, q) => Some((element.tabulation.clone(), *q)),
+        Measure::PointContent(element, q) => Some((element.tabulation.clone(), *q as usize)),
         Measure::Span(table) => Some((springfit::element::Tabulation::clone(table), 0)),
         _ => None,
     };

@@ -181,7 +181,7 @@ impl Fit {
         let mesh = self.options.mesh(&self.mesh)?;
         let material = constants.material(&mesh).map_err(Error::of_option)?;
         let assumed = assumed(&mesh, constants.thickness, constants.area);
-        let support = self.support(&mesh)?;
+        let support = whole.then(|| self.support(&mesh)).transpose()?;
         let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
         if self.explain {
             let title = self.mesh.display().to_string();
@@ -197,7 +197,7 @@ impl Fit {
         if whole {
             end_early(&controls);
         }
-        let body = whole.then(|| WholeBody::new(&mesh, material, &support, &controls));
+        let body = support.as_ref().map(|support| WholeBody::new(&mesh, material, support, &controls));
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
         let fit = fit.map_err(|e| e.placed(of_option))?;

@@ -4,6 +4,7 @@ use super::job::Job;
 use super::target::{Content, NamedFile, Target, content_dampers};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
+use std::io::Cursor;
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -17,16 +18,16 @@ pub const TARGET: Target = Target {
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let mut network = network.clone();
     network.gravity = gravity.map(<[f64]>::to_vec).or(network.gravity);
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     network_npz(&network, &Parts::of(&network)?, &mut bytes).expect("a Vec grows");
-    Ok(vec![("network.npz", Content::Bytes(bytes))])
+    Ok(vec![("network.npz", Content::Bytes(bytes.into_inner()))])
 }
 
 /// The arrays of a job, with its gravity.
 pub fn arrays(job: &Job) -> Vec<u8> {
     let d = job.network.dimension;
     let network = NetworkRecord { gravity: Some(job.gravity[..d].to_vec()), ..job.network.clone() };
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     network_npz(&network, &job.parts, &mut bytes).expect("a Vec grows");
-    bytes
+    bytes.into_inner()
 }

@@ -4,7 +4,7 @@ use super::job::{Holds, Job, Tension};
 use super::target::{Content, NamedFile, Target, dampers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{ArrayFile, LengthPart, NetworkRecord};
-use std::io;
+use std::io::{self, Cursor};
 
 /// The stiffness of a spring is a logarithm, and its force is divided by its rest length.
 const HOLDS: Holds =
@@ -64,7 +64,7 @@ fn arrays(job: &Job) -> io::Result<Vec<u8>> {
     // The force is exp(Y) (l/L − 1).
     let stiffness = || springs.iter().map(|s| s.constant * s.rest);
     let substeps = (FRAME / (0.5 * job.step)).ceil().max(1.0);
-    let mut file = ArrayFile::default();
+    let mut file = ArrayFile::new(Cursor::new(Vec::new()));
     file.real("init_vertices", &[count, 3], order.iter().flat_map(place))?;
     file.whole("init_springs", &[springs.len(), 2], springs.iter().flat_map(|s| s.points.map(|p| places[p])))?;
     file.real("init_rest_lengths", &[springs.len()], springs.iter().map(|s| s.rest))?;
@@ -82,7 +82,7 @@ fn arrays(job: &Job) -> io::Result<Vec<u8>> {
     file.whole("num_substeps", &[], [substeps as usize])?;
     file.whole("reverse_z", &[], [usize::from(job.gravity[2] > 0.0)])?;
     file.real("shift", &[3], [0.0, 0.0, shift])?;
-    file.finish()
+    Ok(file.finish()?.into_inner())
 }
 
 /// What is added to z so that the body is its own height above the ground, which is at z = 0 and cannot be left out.

@@ -56,7 +56,7 @@ impl<'a> SpringRow<'a> {
 
     /// Of a spring on these points.
     pub fn of_other(spring: &'a MeasureSpring, points: &'a [usize]) -> SpringRow<'a> {
-        let law = spring.law.as_deref().map(|law| (law, &spring.parameters[..]));
+        let law = spring.law.as_deref().map(|own| (&*own.law, &own.parameters[..]));
         SpringRow { kind: spring.kind, points, constant: spring.constant, rest: spring.rest, law }
     }
 }

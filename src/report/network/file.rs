@@ -11,10 +11,9 @@ use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
 use crate::material::{CellMap, State};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::{Elastic, MeasureSpring, Network, Support};
+use crate::model::{Elastic, MeasureSpring, Network, SpringLaw, Support};
 use crate::report::fit_record::FitRecord;
 use crate::report::table::notes;
-use crate::springs::Law;
 use crate::study::{BodyLoad, DampingRecipe, FitOutcome, MotionOutcome, Outcome};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -33,7 +32,7 @@ pub struct NetworkFile<'a> {
 /// The springs of a network; their records are made while they are written.
 pub(super) struct SpringList<'a> {
     network: &'a Network,
-    measures: Vec<usize>,
+    measures: Vec<u32>,
     origins: Origins,
     /// `[springs]`; none without dampers.
     dampers: Option<Vec<f64>>,
@@ -228,18 +227,18 @@ impl SpringList<'_> {
             groups: self.origins.groups(s).into(),
         });
         let others = (self.network.lengths.len()..).zip(self.network.others.iter().zip(&self.measures));
-        lengths.chain(others.map(|(s, (spring, measure))| self.other(s, spring, *measure)))
+        lengths.chain(others.map(|(s, (spring, measure))| self.other(s, spring, *measure as usize)))
     }
 
     fn other<'s>(&'s self, s: usize, spring: &'s MeasureSpring, measure: usize) -> SpringRecord<'s> {
-        let named = |law: &Law| law.parameters.iter().cloned().zip(spring.parameters.iter().copied()).collect();
+        let named = |own: &SpringLaw| own.law.parameters.iter().cloned().zip(own.parameters.iter().copied()).collect();
         SpringRecord {
             kind: spring.kind.name().into(),
             points: (&spring.points[..]).into(),
             constant: spring.constant,
             rest: spring.rest,
             measure,
-            law: spring.law.as_deref().map(|law| law.text.as_str().into()),
+            law: spring.law.as_deref().map(|own| own.law.text.as_str().into()),
             parameters: spring.law.as_deref().map(named).unwrap_or_default(),
             damper: self.damper(s),
             groups: self.origins.groups(s).into(),

@@ -3,10 +3,10 @@
 use super::csv::network_csv;
 use super::file::NetworkFile;
 use super::json::network_json;
-use super::npz::network_npz;
+use super::npz::arrays_of;
 use super::parts::Parts;
 use crate::error::{Error, ErrorKind, Result};
-use crate::file::write_with;
+use crate::file::{write_seekable, write_with};
 use crate::mesh::vtk;
 use crate::report::pictures::network_grid;
 use std::path::Path;
@@ -29,9 +29,11 @@ pub const NETWORK_FORMATS: [NetworkFormat; 4] = [
     NetworkFormat {
         ending: "npz",
         write: |path, file| {
-            let (record, springs) = file.parted();
-            let parts = Parts::of_springs(&record, springs.iter()).map_err(|e| e.in_file(path))?;
-            write_with(path, |to| network_npz(&record, &parts, to))
+            let record = file.listed();
+            let parts = Parts::with_room(file.network).with_springs(&record, record.springs.iter());
+            let parts = parts.map_err(|e| e.in_file(path))?;
+            let cells = || file.mesh.blocks.iter().flat_map(|block| block.cells());
+            write_seekable(path, |to| arrays_of(&record, cells, &parts, to))
         },
     },
 ];

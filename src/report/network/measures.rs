@@ -12,14 +12,14 @@ pub struct Measures {
     /// The measures.
     pub records: Vec<MeasureRecord>,
     /// `[springs that are not on lengths alone]`.
-    pub places: Vec<usize>,
+    pub places: Vec<u32>,
 }
 
 /// What makes measures equal: shared tables and expressions.
 #[derive(PartialEq, Eq, Hash)]
 enum Identity {
     Cell(usize),
-    Point(usize, usize),
+    Point(usize, u32),
     Shared(usize),
 }
 
@@ -38,7 +38,7 @@ impl Measures {
             if place == next {
                 records.push(record(&spring.measure, spring.points.len(), network.dimension));
             }
-            place
+            place as u32
         };
         let places = network.others.iter().map(place).collect();
         Measures { records, places }
@@ -69,8 +69,8 @@ fn record(measure: &Measure, points: usize, dimension: usize) -> MeasureRecord {
         Measure::Length => plain(MeasureKind::Length),
         Measure::Content(element) => content(Some(&element.name), cell_terms(&element.tabulation), whole()),
         Measure::PointContent(element, q) => {
-            let table = &element.tabulation;
-            content(Some(&element.name), vec![term(table, *q, table.point_weight(*q))], whole())
+            let (table, q) = (&element.tabulation, *q as usize);
+            content(Some(&element.name), vec![term(table, q, table.point_weight(q))], whole())
         }
         Measure::Span(table) => content(None, vec![term(table, 0, table.point_weight(0))], whole()),
         Measure::Patch(patch) => {

@@ -2,7 +2,7 @@
 
 use super::parts::Parts;
 use super::record::NetworkRecord;
-use std::io::{self, BufWriter, Cursor, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -24,7 +24,18 @@ use zip::write::SimpleFileOptions;
 ///
 /// # Errors
 /// The writer fails.
-pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -> io::Result<()> {
+pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: impl Write + Seek) -> io::Result<()> {
+    let cells = || network.cells.iter().flat_map(|block| &block.points).map(Vec::as_slice);
+    arrays_of(network, cells, parts, to)
+}
+
+/// As [`network_npz`], with `cells` in place of those of the record.
+pub(super) fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
+    network: &NetworkRecord<S, C>,
+    cells: impl Fn() -> I,
+    parts: &Parts,
+    to: impl Write + Seek,
+) -> io::Result<()> {
     let d = network.dimension;
     let spatial = |x: &[f64]| [0, 1, 2].map(|k| x.get(k).copied().unwrap_or(0.0));
     let free = vec![[f64::NAN; 3]; network.points.len()];
@@ -34,9 +45,9 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -
         held
     });
     let fixed = network.held.iter().filter(|given| given.displacement.iter().all(Option::is_some));
-    let simplices = network.cells.iter().flat_map(|block| &block.points).filter(|points| points.len() == d + 1);
+    let simplices = || cells().filter(|points| points.len() == d + 1);
     let corners = d + 1;
-    let mut file = ArrayFile::default();
+    let mut file = ArrayFile::new(to);
     file.real("points", &[network.points.len(), 3], network.points.iter().flat_map(|x| spatial(x)))?;
     let masses = network.masses.iter().flatten();
     file.real("masses", &[masses.clone().count()], masses.copied())?;
@@ -49,7 +60,7 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -
     file.whole("volumes", &[contents.len(), corners], contents.iter().flat_map(|s| s.points.iter().copied()))?;
     file.real("k_volume", &[contents.len()], contents.iter().map(|s| s.constant))?;
     file.real("rest_volume", &[contents.len()], contents.iter().map(|s| s.rest))?;
-    file.whole("tets", &[simplices.clone().count(), corners], simplices.flatten().copied())?;
+    file.whole("tets", &[simplices().count(), corners], simplices().flatten().copied())?;
     file.whole("surface", &[network.surface.len(), 3], network.surface.iter().flatten().copied())?;
     file.whole("fixed", &[fixed.clone().count()], fixed.map(|given| given.point))?;
     file.real("held", &[network.points.len(), 3], held.into_iter().flatten())?;
@@ -57,25 +68,24 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: &mut dyn Write) -
     file.real("gravity", &[3], spatial(gravity))?;
     file.real("damping", &[], [network.damping.mass])?;
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
-    to.write_all(&file.finish()?)
+    file.finish().map(drop)
 }
 
 /// A file of arrays of NumPy that is being made.
-pub struct ArrayFile {
-    file: ZipWriter<Cursor<Vec<u8>>>,
+pub struct ArrayFile<W: Write + Seek> {
+    file: ZipWriter<W>,
 }
 
-impl Default for ArrayFile {
-    fn default() -> ArrayFile {
-        ArrayFile { file: ZipWriter::new(Cursor::new(Vec::new())) }
+impl<W: Write + Seek> ArrayFile<W> {
+    /// A file without arrays, which is written while they are added.
+    pub fn new(to: W) -> ArrayFile<W> {
+        ArrayFile { file: ZipWriter::new(to) }
     }
-}
 
-impl ArrayFile {
     /// Adds an array of 64-bit reals.
     ///
     /// # Errors
-    /// The file is too large.
+    /// The file is too large, or the writer fails.
     pub fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
         self.array(name, "<f8", shape, values.into_iter().map(f64::to_le_bytes))
     }
@@ -83,17 +93,17 @@ impl ArrayFile {
     /// Adds an array of 32-bit whole numbers.
     ///
     /// # Errors
-    /// The file is too large.
+    /// The file is too large, or the writer fails.
     pub fn whole(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = usize>) -> io::Result<()> {
         self.array(name, "<i4", shape, values.into_iter().map(|value| (value as i32).to_le_bytes()))
     }
 
-    /// The bytes of the file.
+    /// Writes the list of the arrays, and returns what was written to.
     ///
     /// # Errors
-    /// The file is too large.
-    pub fn finish(self) -> io::Result<Vec<u8>> {
-        Ok(self.file.finish()?.into_inner())
+    /// The file is too large, or the writer fails.
+    pub fn finish(self) -> io::Result<W> {
+        Ok(self.file.finish()?)
     }
 
     /// One file of version 1.0 of the format: a header that is a Python dictionary, padded to 64 bytes, and the numbers.

@@ -2,6 +2,7 @@
 
 use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord};
 use crate::error::{Error, ErrorKind, Result};
+use crate::model::Network;
 use smallvec::SmallVec;
 use std::borrow::Borrow;
 
@@ -42,15 +43,20 @@ impl Parts {
     /// # Errors
     /// A spring has a law or measures something else; kind `Unsupported`, and the key is the place of the spring.
     pub fn of(network: &NetworkRecord) -> Result<Parts> {
-        Parts::of_springs(network, &network.springs)
+        Parts::default().with_springs(network, &network.springs)
     }
 
-    /// Of springs that are not in the list of the record.
-    pub(super) fn of_springs<'a>(
-        network: &NetworkRecord,
+    /// No springs yet, and memory for those of a network. A list that grew would leave behind the memory of its shorter forms.
+    pub(super) fn with_room(network: &Network) -> Parts {
+        Parts { lengths: Vec::with_capacity(network.lengths.len()), contents: Vec::with_capacity(network.others.len()) }
+    }
+
+    /// With springs that are not in the list of the record.
+    pub(super) fn with_springs<'a, S, C>(
+        mut self,
+        network: &NetworkRecord<S, C>,
         springs: impl IntoIterator<Item = impl Borrow<SpringRecord<'a>>>,
     ) -> Result<Parts> {
-        let mut parts = Parts::default();
         let simplices: Vec<Option<(f64, bool)>> =
             network.measures.iter().map(|measure| simplex(measure, network.dimension)).collect();
         for (i, spring) in springs.into_iter().enumerate() {
@@ -65,7 +71,7 @@ impl Parts {
                 return Err(refused(format!("the law {law}")));
             }
             match (measure.kind, simplices[spring.measure]) {
-                (MeasureKind::Length, _) => parts.lengths.push(LengthPart {
+                (MeasureKind::Length, _) => self.lengths.push(LengthPart {
                     points: [spring.points[0], spring.points[1]],
                     constant: spring.constant,
                     rest: spring.rest,
@@ -76,7 +82,7 @@ impl Parts {
                     if is_turned {
                         points.swap(0, 1);
                     }
-                    parts.contents.push(ContentPart {
+                    self.contents.push(ContentPart {
                         points,
                         constant: spring.constant * scale * scale,
                         rest: spring.rest / scale,
@@ -85,7 +91,7 @@ impl Parts {
                 _ => return Err(refused(format!("one of the kind {}", spring.kind))),
             }
         }
-        Ok(parts)
+        Ok(self)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Assembles the network of a mesh from the springs of its cells; springs between the same two points are added.
 
-use super::network::{MeasureSpring, Network};
+use super::network::{MeasureSpring, Network, SpringLaw};
 use super::shares::merge;
 use super::steady::is_steady;
 use crate::element::{SpringKind, Tabulation};
@@ -39,7 +39,8 @@ fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<Meas
             Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space")))
         }
     };
-    let at_point = |&q: &usize| (SpringKind::PointContent, &every, Measure::PointContent(block.element.clone(), q));
+    let at_point =
+        |&q: &usize| (SpringKind::PointContent, &every, Measure::PointContent(block.element.clone(), q as u32));
     let of_area = |table: &Arc<Tabulation>| (SpringKind::PointArea, &every, Measure::Span(table.clone()));
     let areas = springs.areas().iter().map(of_area);
     let points = springs.points().iter().map(at_point);
@@ -82,9 +83,8 @@ fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<Meas
                 Force::Exact { .. } if law.is_none() => parameters.first().map_or(0.0, |slack| slack / constant),
                 Force::Linear | Force::Laws(_) | Force::Exact { .. } => now,
             };
-            let parameters = if law.is_some() { parameters.to_vec() } else { Vec::new() };
-            let law = law.cloned();
-            all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law, parameters });
+            let law = law.map(|law| Box::new(SpringLaw::new(law.clone(), parameters)));
+            all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law });
         }
     }
 }
@@ -111,7 +111,8 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
                 let place = if law.is_linear() { *known.entry((points, law.mark())).or_insert(next) } else { next };
                 if place < next {
                     all[place].constant += fit.constants[at];
-                    all[place].parameters.iter_mut().zip(parameters).for_each(|(sum, p)| *sum += p);
+                    let sums = all[place].law.iter_mut().flat_map(|own| &mut own.parameters);
+                    sums.zip(parameters).for_each(|(sum, p)| *sum += p);
                     continue;
                 }
                 all.push(MeasureSpring {
@@ -120,8 +121,7 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
                     constant: fit.constants[at],
                     rest: distance(mesh.point(points[0]), mesh.point(points[1])),
                     measure: Measure::Length,
-                    law: Some(law.clone()),
-                    parameters: parameters.to_vec(),
+                    law: Some(Box::new(SpringLaw::new(law.clone(), parameters))),
                 });
             }
         }

@@ -6,7 +6,7 @@
 //!
 //! Theory: page *Exact networks and patches* of the book.
 
-use super::network::{LengthSpring, MeasureSpring, Network};
+use super::network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use super::shares::{LengthShare, SharedSpring};
 use super::simplices::linear_simplices;
 use super::system::each_cell;
@@ -177,7 +177,6 @@ impl EdgeDomain {
                 rest: 0.0,
                 measure: Measure::Span(Arc::new(unit.along(&[axis(k + 1), axis(k + 2)]))),
                 law: None,
-                parameters: Vec::new(),
             }
         };
         let mut all: Vec<MeasureSpring> = if springs.areas == 0.0 { Vec::new() } else { (0..d).map(area).collect() };
@@ -187,8 +186,7 @@ impl EdgeDomain {
             constant: springs.constant,
             rest: springs.rest,
             measure: Measure::Span(self.table.clone()),
-            law: law.cloned(),
-            parameters: springs.parameters.clone(),
+            law: law.map(|law| Box::new(SpringLaw::new(law.clone(), &springs.parameters))),
         });
         all
     }

@@ -3,7 +3,7 @@
 //!
 //! Theory: page *Exact networks and patches* of the book.
 
-use super::network::MeasureSpring;
+use super::network::{MeasureSpring, SpringLaw};
 use super::system::each_cell;
 use crate::element::{SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
@@ -65,15 +65,14 @@ fn of_cells<'l>(
                 values: Vec::new(),
                 gradients: along.collect(),
             };
-            let parameters = vec![volume * thickness];
+            let law = SpringLaw::new(law.clone(), &[volume * thickness]);
             springs.push(MeasureSpring {
                 kind: SpringKind::Fibre,
                 points: nodes.into(),
-                constant: law.slope(1.0, 1.0, &parameters),
+                constant: law.slope(1.0, 1.0),
                 rest: 1.0,
                 measure: Measure::Span(Arc::new(table)),
-                law: Some(law.clone()),
-                parameters,
+                law: Some(Box::new(law)),
             });
         }
     });

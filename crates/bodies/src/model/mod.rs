@@ -48,7 +48,7 @@ pub use load::{Action, Component, Traction, boundary_forces, nodal_forces};
 pub use lumping::{Lumping, lumped_masses, masses};
 pub use means::cell_means;
 pub use moments::Moments;
-pub use network::{LengthSpring, MeasureSpring, Network};
+pub use network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 pub(crate) use numbering::places;
 pub use patches::patch_springs;
 pub use prepared::PreparedNetwork;

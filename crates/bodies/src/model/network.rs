@@ -82,10 +82,40 @@ pub struct MeasureSpring {
     pub rest: f64,
     /// What it measures.
     pub measure: Measure,
-    /// The force law, unless the force is `constant · (c − rest)`. With a law the constant is its slope at rest.
-    pub law: Option<Arc<Law>>,
-    /// The parameters of the law.
-    pub parameters: Vec<f64>,
+    /// The force law, unless the force is `constant · (c − rest)`. With a law the constant is its slope at rest. It is behind a pointer,
+    /// because most springs of a body have none.
+    pub law: Option<Box<SpringLaw>>,
+}
+
+/// A law of force with the parameters of one spring.
+#[derive(Debug, Clone)]
+pub struct SpringLaw {
+    /// The law.
+    pub law: Arc<Law>,
+    /// Its parameters, in the order of [`Law::parameters`], in its units; two are stored here, more on the heap.
+    pub parameters: SmallVec<[f64; 2]>,
+}
+
+impl SpringLaw {
+    /// A law with these parameters.
+    pub fn new(law: Arc<Law>, parameters: &[f64]) -> SpringLaw {
+        SpringLaw { law, parameters: SmallVec::from_slice(parameters) }
+    }
+
+    /// The force if the spring measures c, and `rest` at rest.
+    pub fn force(&self, c: f64, rest: f64) -> f64 {
+        self.law.force(c, rest, &self.parameters)
+    }
+
+    /// The slope of the force, as [`SpringLaw::force`].
+    pub fn slope(&self, c: f64, rest: f64) -> f64 {
+        self.law.slope(c, rest, &self.parameters)
+    }
+
+    /// Energy, force and its slope, as [`SpringLaw::force`].
+    pub fn pull(&self, c: f64, rest: f64) -> [f64; 3] {
+        [self.law.energy(c, rest, &self.parameters), self.force(c, rest), self.slope(c, rest)]
+    }
 }
 
 impl MeasureSpring {
@@ -97,19 +127,15 @@ impl MeasureSpring {
         c: f64,
         [k, t]: [f64; 2],
     ) -> MeasureSpring {
-        let (law, parameters) = (Some(steady_law()), vec![t, k]);
-        MeasureSpring { kind, points, constant: k, rest: c, measure, law, parameters }
+        let law = Some(Box::new(SpringLaw::new(steady_law(), &[t, k])));
+        MeasureSpring { kind, points, constant: k, rest: c, measure, law }
     }
 
     /// Energy, force and its slope if the measure is c.
     pub fn pull(&self, c: f64) -> [f64; 3] {
         match &self.law {
             None => linear(self.constant, c - self.rest),
-            Some(law) => [
-                law.energy(c, self.rest, &self.parameters),
-                law.force(c, self.rest, &self.parameters),
-                law.slope(c, self.rest, &self.parameters),
-            ],
+            Some(law) => law.pull(c, self.rest),
         }
     }
 
@@ -131,7 +157,7 @@ impl MeasureSpring {
     pub fn tension(&self, c: f64) -> f64 {
         match &self.law {
             None => linear(self.constant, c - self.rest)[1],
-            Some(law) => law.force(c, self.rest, &self.parameters),
+            Some(law) => law.force(c, self.rest),
         }
     }
 }
@@ -153,8 +179,9 @@ impl Network {
     /// # Errors
     /// One is a function of the program; the kind is `Unsupported`.
     pub fn check_formulas(&self) -> Result<()> {
-        match self.others.iter().filter_map(|spring| spring.law.as_ref()).find(|law| law.is_function()) {
-            Some(law) => {
+        match self.others.iter().filter_map(|spring| spring.law.as_ref()).find(|own| own.law.is_function()) {
+            Some(own) => {
+                let law = &own.law;
                 let found = format!("the function {}", law.text);
                 let expected = "laws of force that are expressions, which a file can hold";
                 Err(Error::expected("force", expected, found).of_kind(ErrorKind::Unsupported))
@@ -200,8 +227,8 @@ impl Network {
         network.lengths.iter_mut().zip(lengths).for_each(|(s, factor)| s.constant *= factor);
         for (spring, factor) in network.others.iter_mut().zip(others) {
             spring.constant *= factor;
-            let outer = spring.law.iter().flat_map(|law| law.outer());
-            spring.parameters.iter_mut().zip(outer).filter(|(_, outer)| **outer).for_each(|(p, _)| *p *= factor);
+            let Some(SpringLaw { law, parameters }) = spring.law.as_deref_mut() else { continue };
+            parameters.iter_mut().zip(law.outer()).filter(|(_, outer)| **outer).for_each(|(p, _)| *p *= factor);
         }
         network
     }

@@ -7,7 +7,7 @@
 //!
 //! Theory: page *Exact networks and patches* of the book.
 
-use super::network::MeasureSpring;
+use super::network::{MeasureSpring, SpringLaw};
 use super::simplices::linear_simplices;
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, ErrorKind, Result};
@@ -71,15 +71,13 @@ pub fn patch_springs(
         gather(&mesh.points, d, &points, &mut x);
         let rest = measure.value(&x, d);
         let lambda = mean_lambda(mesh, element, moduli, parts);
-        let parameters = if law.is_some() { vec![lambda] } else { Vec::new() };
         MeasureSpring {
             kind: SpringKind::Patch,
             points: points.into(),
             constant: lambda / rest,
             rest,
             measure,
-            law: law.clone(),
-            parameters,
+            law: law.as_ref().map(|law| Box::new(SpringLaw::new(law.clone(), &[lambda]))),
         }
     };
     let patches = in_regions.chain(alone.iter().map(|parts| &parts[..])).filter(|parts| !parts.is_empty());

@@ -76,15 +76,17 @@ pub fn is_exact(fits: &[CellFits]) -> bool {
 /// The shares of the cells of a mesh in the springs between two points, sorted by the points; `fits` has one entry per block. The shares in
 /// a spring are one sum if `is_inside` one of its points, otherwise they follow each other in the order of the cells.
 pub fn length_shares(mesh: &Mesh, fits: &[CellFits], is_inside: impl Fn(usize) -> bool + Sync) -> Vec<LengthShare> {
-    let parts = each_point(mesh, fits, |stars, i, shares, all: &mut Vec<LengthShare>| {
+    let mut sums = Vec::new();
+    let visit = |stars: &[Star], i: usize, shares: &mut Vec<LengthShare>, all: &mut Vec<LengthShare>| {
         for star in stars {
             star.gather(mesh, i, |j| is_inside(i) || is_inside(j), shares);
         }
         // A stable sort keeps the order of the cells.
         shares.sort_by_key(|share| share.points[1]);
         all.extend_from_slice(shares);
-    });
-    parts.concat()
+    };
+    each_point(mesh, fits, visit, |part| sums.extend(part));
+    sums
 }
 
 /// Adds the length springs between the same two points. For each point the cells around it are visited, and the springs
@@ -92,34 +94,43 @@ pub fn length_shares(mesh: &Mesh, fits: &[CellFits], is_inside: impl Fn(usize) -
 /// a rest length are returned separately.
 pub(super) fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<MeasureSpring>) {
     let is_exact = is_exact(fits);
-    let parts = each_point(mesh, fits, |stars, i, shares, all: &mut (Vec<LengthSpring>, Vec<MeasureSpring>)| {
-        for star in stars {
-            star.gather(mesh, i, |_| true, shares);
-        }
-        shares.sort_unstable_by_key(|share| share.points[1]);
-        for share in shares {
-            let length = distance(mesh.point(i), mesh.point(share.points[1]));
-            match share.spring(length, is_exact) {
-                SharedSpring::None => {}
-                SharedSpring::Length(spring) => all.0.push(spring),
-                SharedSpring::Steady(spring) => all.1.push(spring),
+    let (mut springs, mut others) = (Vec::new(), Vec::new());
+    let visit =
+        |stars: &[Star], i: usize, shares: &mut Vec<LengthShare>, all: &mut (Vec<LengthSpring>, Vec<MeasureSpring>)| {
+            for star in stars {
+                star.gather(mesh, i, |_| true, shares);
             }
-        }
+            shares.sort_unstable_by_key(|share| share.points[1]);
+            for share in &*shares {
+                let length = distance(mesh.point(i), mesh.point(share.points[1]));
+                match share.spring(length, is_exact) {
+                    SharedSpring::None => {}
+                    SharedSpring::Length(spring) => all.0.push(spring),
+                    SharedSpring::Steady(spring) => all.1.push(spring),
+                }
+            }
+        };
+    each_point(mesh, fits, visit, |part: (Vec<_>, Vec<_>)| {
+        springs.extend(part.0);
+        others.extend(part.1);
     });
-    let (springs, others): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
-    (springs.concat(), others.concat())
+    springs.shrink_to_fit();
+    (springs, others)
 }
 
 /// The number of points that one thread visits at a time.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 512;
+/// The number of chunks whose results wait in memory to be taken: enough for many threads, and a small part of a large body.
+const ROUND: usize = 64;
 
-/// Runs `visit(stars, point, empty list, results)` for every point, on all threads. The results of each chunk of points are returned in
+/// Runs `visit(stars, point, empty list, results)` for every point, on all threads. The results of each chunk of points are taken in
 /// order.
 fn each_point<T: Default + Send>(
     mesh: &Mesh,
     fits: &[CellFits],
     visit: impl Fn(&[Star], usize, &mut Vec<LengthShare>, &mut T) + Sync,
-) -> Vec<T> {
+    mut take: impl FnMut(T),
+) {
     let linear = mesh.blocks.iter().zip(fits).filter(|(_, fit)| !matches!(fit.force, Force::Laws(_)));
     let stars: Vec<Star> = linear.map(|(block, fit)| Star::new(mesh, block, fit)).collect();
     let count = mesh.point_count();
@@ -132,7 +143,10 @@ fn each_point<T: Default + Send>(
         }
         results
     };
-    firsts.par_iter().map(part).collect()
+    for round in firsts.chunks(ROUND) {
+        let parts: Vec<T> = round.par_iter().map(part).collect();
+        parts.into_iter().for_each(&mut take);
+    }
 }
 
 /// The cells of one block around each point.

@@ -38,13 +38,13 @@ impl Contents {
             if !is_content || tension >= 0.0 {
                 continue;
             }
-            let is_known = spring.law.as_ref().is_none_or(|law| {
-                law.parameters.first().is_some_and(|name| name == "a")
-                    && (tension + spring.parameters[0]).abs() <= -ROUNDING * tension
+            let is_known = spring.law.as_ref().is_none_or(|own| {
+                own.law.parameters.first().is_some_and(|name| name == "a")
+                    && (tension + own.parameters[0]).abs() <= -ROUNDING * tension
             });
             if !is_known {
                 let expected = "springs on content whose law at rest is minus its parameter a";
-                let found = spring.law.as_ref().map_or("", |law| &law.text);
+                let found = spring.law.as_ref().map_or("", |own| &own.law.text);
                 return Err(Error::expected("nonnegative", expected, found).of_kind(ErrorKind::Unsupported));
             }
             contents.places.push(place);
@@ -76,15 +76,15 @@ impl Contents {
 pub(super) fn tightened(spring: &MeasureSpring, c: f64, more: f64) -> Option<MeasureSpring> {
     let mut spring = spring.clone();
     let tension = spring.tension(c) + more;
-    match &spring.law {
+    match &mut spring.law {
         None => {
             // T = −μ V/c, and the constant is (μ + λ) V/c², with V the content: λ is unchanged.
             spring.constant -= more / c;
             spring.rest = c - tension / spring.constant;
         }
         Some(law) => {
-            spring.parameters[0] -= more;
-            spring.constant = law.slope(c, spring.rest, &spring.parameters);
+            law.parameters[0] -= more;
+            spring.constant = law.slope(c, spring.rest);
         }
     }
     (spring.constant > 0.0 && spring.constant.is_finite()).then_some(spring)

@@ -66,10 +66,11 @@ impl<'a> Object<'a> {
             let error = Error::expected("springs", "a network with a constant above zero", "none");
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
-        if let Some(law) = network.others.iter().filter_map(|s| s.law.as_ref()).find(|law| !law.outer().contains(&true))
+        if let Some(own) =
+            network.others.iter().filter_map(|s| s.law.as_ref()).find(|own| !own.law.outer().contains(&true))
         {
             let expected = "laws with a parameter that the force is proportional to";
-            return Err(Error::expected("force", expected, format!("\"{}\"", law.text)));
+            return Err(Error::expected("force", expected, format!("\"{}\"", own.law.text)));
         }
         let (gradients, pulls) = SpringGradients::at(&network, points);
         let slopes = network.lengths.iter().map(|s| s.constant * s.rest);

@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::named::suggestion;
 use partial::Partial;
 use std::fs;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
@@ -79,6 +79,38 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<()> {
 /// # Errors
 /// The same as those of [`write_whole`], and failures of `content`.
 pub fn write_with(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    replace(path, |file, _| {
+        let mut buffer = BufWriter::new(file);
+        content(&mut buffer)?;
+        buffer.flush()
+    })
+}
+
+/// What can be written to at any place.
+pub trait WriteSeek: Write + Seek {}
+
+impl<W: Write + Seek> WriteSeek for W {}
+
+/// Writes a file as [`write_with`] does, with content that goes back to what it has written. For a device, which cannot go back, the
+/// content is held in memory.
+///
+/// # Errors
+/// Those of [`write_with`].
+pub fn write_seekable(path: &Path, content: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>) -> Result<()> {
+    replace(path, |mut file, is_file| {
+        if !is_file {
+            let mut all = io::Cursor::new(Vec::new());
+            content(&mut all)?;
+            return file.write_all(all.get_ref());
+        }
+        let mut buffer = BufWriter::new(file);
+        content(&mut buffer)?;
+        buffer.flush()
+    })
+}
+
+/// Writes a new file by `write`, which is told whether it is a file and no device, and puts it in the place of the old one.
+fn replace(path: &Path, write: impl FnOnce(&fs::File, bool) -> io::Result<()>) -> Result<()> {
     if path.file_name().is_none() || path.is_dir() {
         return Err(unwritable("expected the name of a file to write, found a folder", path));
     }
@@ -86,18 +118,13 @@ pub fn write_with(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Resul
     // A file that does not exist yet has no other name.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = fs::metadata(&target).ok();
-    let write = |file: &fs::File| {
-        let mut buffer = BufWriter::new(file);
-        content(&mut buffer)?;
-        buffer.flush()
-    };
     let written = if old.as_ref().is_some_and(|old| !old.is_file()) {
-        fs::File::options().write(true).open(&target).and_then(|file| write(&file))
+        fs::File::options().write(true).open(&target).and_then(|file| write(&file, false))
     } else {
         Partial::beside(&target).and_then(|partial| {
             let written = old
                 .map_or(Ok(()), |old| partial.file.set_permissions(old.permissions()))
-                .and_then(|()| write(&partial.file))
+                .and_then(|()| write(&partial.file, true))
                 .and_then(|()| partial.file.sync_all())
                 .and_then(|()| partial.rename(&target));
             written.inspect_err(|_| drop(partial.remove()))

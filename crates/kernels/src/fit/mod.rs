@@ -64,7 +64,7 @@ pub use normal::Rank;
 pub use norms::Norm;
 pub use objective::{Balance, Choices, Objective};
 pub use precision::{bounded_constants, condition, constants_of_kind, distance_from_optimum};
-pub use residual::{ElementErrors, Spread, element_errors};
+pub use residual::{ElementErrors, Spread, SpreadSum, each_element_errors, element_errors};
 pub use rest::Rest;
 pub use sampled::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 pub use settings::Fit;

@@ -1,6 +1,6 @@
 //! The difference between the stiffness of the springs of an element and that of the finite element.
 
-use super::cells::{CHUNK, CellFits};
+use super::cells::{CHUNK, CellFits, ROUND};
 use super::difference::Differences;
 use super::extremes::Extremes;
 use super::input::{check_fit, check_length};
@@ -43,8 +43,31 @@ impl ElementErrors {
 impl Spread {
     /// Mean and maximum of the values.
     pub fn of(values: &[f64]) -> Spread {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        Spread { mean, max: values.iter().copied().fold(0.0, f64::max) }
+        let mut all = SpreadSum::default();
+        all.add(values);
+        all.spread()
+    }
+}
+
+/// Sum and maximum of values that come one after the other, so that no list of all of them is held.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SpreadSum {
+    sum: f64,
+    max: f64,
+    count: usize,
+}
+
+impl SpreadSum {
+    /// Adds further values, none below zero.
+    pub fn add(&mut self, values: &[f64]) {
+        self.sum = values.iter().fold(self.sum, |sum, value| sum + value);
+        self.max = values.iter().copied().fold(self.max, f64::max);
+        self.count += values.len();
+    }
+
+    /// Mean and maximum of all values; zero if there are none.
+    pub fn spread(&self) -> Spread {
+        Spread { mean: self.sum / self.count.max(1) as f64, max: self.max }
     }
 }
 
@@ -60,6 +83,24 @@ pub fn element_errors<'a>(
     moduli: impl Into<BlockValues<'a, Hooke>>,
     fits: &CellFits,
 ) -> Result<ElementErrors> {
+    let cells = connectivity.len() / element.nodes();
+    let mut all = ElementErrors { frobenius: Vec::with_capacity(cells), spectral: Vec::with_capacity(cells) };
+    each_element_errors(element, points, connectivity, moduli, fits, |errors| all.extend(errors))?;
+    Ok(all)
+}
+
+/// As [`element_errors`]; `visit` is called with the errors of some cells after those of the others, in their order.
+///
+/// # Errors
+/// Those of [`element_errors`].
+pub fn each_element_errors<'a>(
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    moduli: impl Into<BlockValues<'a, Hooke>>,
+    fits: &CellFits,
+    mut visit: impl FnMut(ElementErrors),
+) -> Result<()> {
     let moduli = moduli.into();
     check_fit(element, &fits.springs, points, connectivity, &moduli)?;
     let cells = connectivity.len() / element.nodes();
@@ -68,15 +109,17 @@ pub fn element_errors<'a>(
     let parameters = fits.force.places(&fits.springs).last().map_or(0, |count| cells * count);
     check_length("parameters", fits.parameters.len(), parameters)?;
     let n = element.nodes();
-    let chunk = |(i, nodes): (usize, &[usize])| {
-        let moduli = moduli.part(i * CHUNK, nodes.len() / n);
-        let batch = ErrorBatch { element, points, connectivity: nodes, moduli, fits, first: i * CHUNK };
-        widest(batch).map_err(|(cell, fault)| cell_fault(element, i * CHUNK + cell, fault))
-    };
-    let chunks: Vec<Result<ElementErrors>> = connectivity.par_chunks(CHUNK * n).enumerate().map(chunk).collect();
-    let mut all = ElementErrors { frobenius: Vec::with_capacity(cells), spectral: Vec::with_capacity(cells) };
-    chunks.into_iter().try_for_each(|errors| errors.map(|errors| all.extend(errors)))?;
-    Ok(all)
+    for (round, nodes) in connectivity.chunks(ROUND * n).enumerate() {
+        let chunk = |(i, nodes): (usize, &[usize])| {
+            let first = round * ROUND + i * CHUNK;
+            let moduli = moduli.part(first, nodes.len() / n);
+            let batch = ErrorBatch { element, points, connectivity: nodes, moduli, fits, first };
+            widest(batch).map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+        };
+        let chunks: Vec<Result<ElementErrors>> = nodes.par_chunks(CHUNK * n).enumerate().map(chunk).collect();
+        chunks.into_iter().try_for_each(|errors| errors.map(&mut visit))?;
+    }
+    Ok(())
 }
 
 /// Cells of one block, of which the first has the number `first`.

@@ -14,8 +14,9 @@ pub enum Measure {
     Length,
     /// The area (m²) or volume (m³) of a cell, by its quadrature.
     Content(Arc<Element>),
-    /// The part of the content that belongs to one quadrature point, `w |J|`.
-    PointContent(Arc<Element>, usize),
+    /// The part of the content that belongs to one quadrature point, `w |J|`, by its index. The index has 32 bits, so that a measure, of
+    /// which each spring of a body has one, is of two words.
+    PointContent(Arc<Element>, u32),
     /// The length or area that one tangent or two tangents span at the single point of this table.
     Span(Arc<Tabulation>),
     /// A weighted sum of the contents of the cells of a patch.
@@ -85,7 +86,7 @@ impl Measure {
         match self {
             Measure::Length => length(x, dimension),
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).jet(),
-            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).jet(),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).jet(),
             Measure::Span(table) => Content::of_point(table, 0, x).jet(),
             Measure::Patch(patch) => patch.jet(x, dimension),
             Measure::Function(function) => Jet::evaluate(function, x),
@@ -97,7 +98,7 @@ impl Measure {
         match self {
             Measure::Length => super::distance(&x[..dimension], &x[dimension..]),
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).value(),
-            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).value(),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).value(),
             Measure::Span(table) => Content::of_point(table, 0, x).value(),
             Measure::Patch(patch) => patch.value(x, dimension),
             Measure::Function(function) => function.evaluate(x),
@@ -110,7 +111,7 @@ impl Measure {
             Measure::Function(function) => Jet::gradient(function, x),
             Measure::Length => self.jet(x, dimension).gradient,
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).gradient(),
-            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q, x).gradient(),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).gradient(),
             Measure::Span(table) => Content::of_point(table, 0, x).gradient(),
             Measure::Patch(patch) => patch.gradient(x, dimension),
         }

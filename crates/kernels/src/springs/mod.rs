@@ -204,7 +204,7 @@ impl Springs {
         let lengths = self.pairs.iter().map(|pair| (pair.to_vec(), Measure::Length));
         let functions = self.functions.iter().map(|f| (f.nodes.clone(), Measure::Function(f.function.clone())));
         let areas = self.areas.iter().map(|table| (every(), Measure::Span(table.clone())));
-        let points = self.points.iter().map(|&q| (every(), Measure::PointContent(element.clone(), q)));
+        let points = self.points.iter().map(|&q| (every(), Measure::PointContent(element.clone(), q as u32)));
         let content = self.content.map(|_| (every(), Measure::Content(element.clone())));
         lengths.chain(functions).chain(areas).chain(points).chain(content).collect()
     }

@@ -138,7 +138,7 @@ impl Fingerprint {
         for spring in &network.others {
             spring.points.iter().for_each(|p| all.word(*p as u64));
             all.numbers(&[spring.constant, spring.rest]);
-            all.numbers(&spring.parameters);
+            all.numbers(spring.law.as_ref().map_or(&[], |own| &own.parameters));
         }
         wanted.trained.iter().chain(wanted.validation.loads()).for_each(|target| all.target(target));
         if let Some(frequencies) = &wanted.frequencies {

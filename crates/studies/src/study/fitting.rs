@@ -5,7 +5,7 @@ use super::outcome::FitOutcome;
 use super::progress::Progress;
 use super::tensor::network_material;
 use crate::error::Result;
-use crate::fit::{ElementErrors, Spread, element_errors};
+use crate::fit::{SpreadSum, each_element_errors};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 
@@ -25,14 +25,17 @@ pub fn fit_mesh(
     rayon::broadcast(|_| ());
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let fitted = named.recipe.kind().fit(&task, progress)?;
-    let mut errors = ElementErrors::default();
+    let (mut frobenius, mut spectral) = (SpreadSum::default(), SpreadSum::default());
     let of_cells = if fitted.kind.is_of_cells() { &fitted.cells[..] } else { &[] };
     let moduli = material.moduli();
     for (index, (block, fit)) in mesh.blocks.iter().zip(of_cells).enumerate() {
         let moduli = moduli.block(index);
-        errors.extend(element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit)?);
+        each_element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit, |errors| {
+            frobenius.add(&errors.frobenius);
+            spectral.add(&errors.spectral);
+        })?;
     }
-    let spread = |values: &[f64]| (!of_cells.is_empty()).then(|| Spread::of(values));
+    let spread = |sum: SpreadSum| (!of_cells.is_empty()).then(|| sum.spread());
     let as_material = network_material(mesh, material, fitted.owners(), &fitted.network);
     Ok(FitOutcome {
         fit: named.clone(),
@@ -41,8 +44,8 @@ pub fn fit_mesh(
         deficient: fitted.cells.iter().map(|cells| cells.deficient).sum(),
         unreached: fitted.cells.iter().map(|cells| cells.unreached).sum(),
         reused: fitted.cells.iter().map(|cells| cells.reused).sum(),
-        frobenius: spread(&errors.frobenius),
-        spectral: spread(&errors.spectral),
+        frobenius: spread(frobenius),
+        spectral: spread(spectral),
         springs: fitted.springs,
         network: fitted.network,
         kind: fitted.kind,

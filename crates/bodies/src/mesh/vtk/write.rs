@@ -136,6 +136,9 @@ fn encode(grid: &Grid, file: &mut Text) -> io::Result<()> {
     Ok(())
 }
 
+/// The number of bytes that are encoded at a time: a multiple of three, of which base64 makes whole groups of letters.
+const PIECE: usize = 3 << 12;
+
 /// The file that is written.
 struct Text<'a>(&'a mut dyn Write);
 
@@ -144,7 +147,7 @@ impl Text<'_> {
         writeln!(self.0, "{line}")
     }
 
-    /// Appends an array in base64, uncompressed: the number of its bytes, and the bytes of its values.
+    /// Appends an array in base64, uncompressed: the number of its bytes, and the bytes of its values. Only a piece of it is in memory.
     fn array<const SIZE: usize>(
         &mut self,
         scalar: &str,
@@ -153,14 +156,21 @@ impl Text<'_> {
         values: impl ExactSizeIterator<Item = [u8; SIZE]>,
     ) -> io::Result<()> {
         let size = values.len() * SIZE;
-        let mut bytes = Vec::with_capacity(8 + size);
-        bytes.extend((size as u64).to_le_bytes());
-        bytes.extend(values.flatten());
         let name = escaped(name);
         // meshio makes a matrix of an array whose attribute says that it has one component.
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"))?;
-        self.line(&base64(&bytes))?;
+        let mut bytes = (size as u64).to_le_bytes().into_iter().chain(values.flatten());
+        let mut piece = Vec::with_capacity(PIECE);
+        loop {
+            piece.clear();
+            piece.extend(bytes.by_ref().take(PIECE));
+            self.0.write_all(base64(&piece).as_bytes())?;
+            if piece.len() < PIECE {
+                break;
+            }
+        }
+        self.line("")?;
         self.line("</DataArray>")
     }
 }

@@ -51,7 +51,7 @@ impl Contents {
             let spring = &network.others[s];
             let (table, point) = match &spring.measure {
                 Measure::Content(element) => (&element.tabulation, None),
-                Measure::PointContent(element, q) => (&element.tabulation, Some(*q)),
+                Measure::PointContent(element, q) => (&element.tabulation, Some(*q as usize)),
                 Measure::Span(table) => (&**table, Some(0)),
                 Measure::Length | Measure::Patch(_) | Measure::Function(_) => continue,
             };

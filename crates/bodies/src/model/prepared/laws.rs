@@ -42,7 +42,7 @@ pub struct LawsRoom {
 impl Laws {
     /// The springs in their order, grouped by law.
     pub fn new(network: &Network, springs: &[Lawful]) -> Laws {
-        let law = |lawful: &Lawful| network.others[lawful.spring].law.as_ref();
+        let law = |lawful: &Lawful| network.others[lawful.spring].law.as_ref().map(|own| &own.law);
         let mut kinds: Vec<(&Arc<Law>, Vec<Lawful>)> = Vec::new();
         for lawful in springs {
             let Some(law) = law(lawful) else { continue };
@@ -88,7 +88,9 @@ impl Block {
         let own = |i: usize| springs.get(i).unwrap_or(&springs[0]);
         let of = |i: usize| &others[own(i).spring];
         let rests: [f64; BLOCK] = std::array::from_fn(|i| of(i).rest);
-        let parameter = |p: usize| -> [f64; BLOCK] { std::array::from_fn(|i| of(i).parameters[p]) };
+        let parameter = |p: usize| -> [f64; BLOCK] {
+            std::array::from_fn(|i| of(i).law.as_ref().map_or(0.0, |own| own.parameters[p]))
+        };
         Block {
             law: law.clone(),
             cells: springs.iter().map(|lawful| lawful.cell).collect(),

@@ -79,7 +79,7 @@ pub fn network_material(
     let count = most_samples(mesh);
     let measure = |i: usize| {
         let seed = (2 * i + 1) * points / (2 * count);
-        let single = || stars.single(stars.around(seed)[0]);
+        let single = || stars.single(stars.around(seed).next().expect("every point belongs to a cell"));
         let mut sample = stars.sample(seed, POINTS);
         let (mut directions, height) = frame(&sample, mesh.cell_dimension());
         if height > FLAT {

@@ -96,8 +96,8 @@ impl Piece {
             (count > 0).then(|| f64::from(own) / f64::from(count))
         };
         let share = |points: &[usize]| {
-            let around = || stars.around(points[0]).iter().copied();
-            let any = || points.iter().flat_map(|&point| stars.around(point)).copied();
+            let around = || stars.around(points[0]);
+            let any = || points.iter().flat_map(|&point| stars.around(point));
             let all = share_of(&mut around().filter(|&cell| points.iter().all(|&point| has(cell, point))));
             all.or_else(|| share_of(&mut any())).unwrap_or(0.0)
         };

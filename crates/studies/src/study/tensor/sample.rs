@@ -11,8 +11,8 @@ pub(super) struct Stars<'a> {
     mesh: &'a Mesh,
     /// The index at which the cells of each point begin, `[points + 1]`.
     starts: Vec<usize>,
-    /// Cells, numbered through all blocks, grouped by point.
-    cells: Vec<usize>,
+    /// Cells, numbered through all blocks, grouped by point; of 32 bits, because this list is there when most memory is used.
+    cells: Vec<u32>,
     /// The number of the first cell of each block.
     firsts: Vec<usize>,
 }
@@ -39,13 +39,13 @@ impl<'a> Stars<'a> {
             starts[i] += starts[i - 1];
         }
         let mut next = starts.clone();
-        let mut cells = vec![0; starts[starts.len() - 1]];
+        let mut cells = vec![0_u32; starts[starts.len() - 1]];
         let (mut firsts, mut cell) = (Vec::new(), 0);
         for block in &mesh.blocks {
             firsts.push(cell);
             for nodes in block.cells() {
                 for &point in nodes {
-                    cells[next[point]] = cell;
+                    cells[next[point]] = cell as u32;
                     next[point] += 1;
                 }
                 cell += 1;
@@ -55,8 +55,8 @@ impl<'a> Stars<'a> {
     }
 
     /// The cells of a point.
-    pub(super) fn around(&self, point: usize) -> &[usize] {
-        &self.cells[self.starts[point]..self.starts[point + 1]]
+    pub(super) fn around(&self, point: usize) -> impl Iterator<Item = usize> {
+        self.cells[self.starts[point]..self.starts[point + 1]].iter().map(|&cell| cell as usize)
     }
 
     /// The points of a cell.
@@ -86,7 +86,7 @@ impl<'a> Stars<'a> {
         let mut closed = 0;
         while let Some(point) = queue.pop_front().filter(|_| closed < count && (closed == 0 || points.len() < ENOUGH)) {
             closed += 1;
-            for &cell in self.around(point) {
+            for cell in self.around(point) {
                 cells.push(cell);
                 for &p in self.points(cell) {
                     places.entry(p).or_insert_with(|| {
@@ -127,7 +127,7 @@ impl<'a> Stars<'a> {
             quality: Quality::default(),
         };
         let mut is_held: Vec<bool> =
-            points.iter().map(|&p| self.around(p).iter().any(|cell| cells.binary_search(cell).is_err())).collect();
+            points.iter().map(|&p| self.around(p).any(|cell| cells.binary_search(&cell).is_err())).collect();
         for side in Selection::Everything.sides(&mesh).expect("everything is no group") {
             let CellBlock { element, connectivity } = &mesh.blocks[side.cell.block];
             let nodes = &connectivity[side.cell.cell * element.nodes()..];
