@@ -17,6 +17,12 @@ pub trait Coordinates: Copy {
     /// Writes four numbers.
     fn store(self, to: &mut [f64; 4]);
 
+    /// Reads four numbers of single precision.
+    fn load_single(self, from: &[f32; 4]) -> Self;
+
+    /// Writes four numbers, rounded to single precision.
+    fn store_single(self, to: &mut [f32; 4]);
+
     /// `self + other`.
     fn plus(self, other: Self) -> Self;
 
@@ -29,11 +35,17 @@ pub trait Coordinates: Copy {
     /// `self + factor · other`.
     fn plus_scaled(self, factor: f64, other: Self) -> Self;
 
+    /// `self + a b` for each coordinate.
+    fn plus_products(self, a: Self, b: Self) -> Self;
+
     /// The cyclic permutation `(y, z, x)` of `(x, y, z)`, from which cross products are built.
     fn turned(self) -> Self;
 
     /// `a b − c d` for each coordinate, with `self` as `a`.
     fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self;
+
+    /// The sum of all four entries of each vector.
+    fn sums(vectors: [Self; 4]) -> Self;
 
     /// The scalar product `x x' + y y' + z z'`.
     fn dot(self, other: Self) -> f64;
@@ -100,6 +112,16 @@ impl Coordinates for Register {
     }
 
     #[inline(always)]
+    fn load_single(self, from: &[f32; 4]) -> Register {
+        self.of(cast(self.simd.avx._mm256_cvtps_pd(cast(*from))))
+    }
+
+    #[inline(always)]
+    fn store_single(self, to: &mut [f32; 4]) {
+        *to = cast(self.simd.avx._mm256_cvtpd_ps(cast(self.values)));
+    }
+
+    #[inline(always)]
     fn plus(self, other: Register) -> Register {
         self.of(self.simd.add_f64x4(self.values, other.values))
     }
@@ -120,6 +142,11 @@ impl Coordinates for Register {
     }
 
     #[inline(always)]
+    fn plus_products(self, a: Register, b: Register) -> Register {
+        self.of(self.simd.mul_add_f64x4(a.values, b.values, self.values))
+    }
+
+    #[inline(always)]
     fn turned(self) -> Register {
         let values: __m256d = cast(self.values);
         self.of(cast(self.simd.avx2._mm256_permute4x64_pd::<0b11_00_10_01>(values)))
@@ -128,6 +155,16 @@ impl Coordinates for Register {
     #[inline(always)]
     fn difference_of_products(self, b: Register, c: Register, d: Register) -> Register {
         self.of(self.simd.mul_sub_f64x4(self.values, b.values, self.simd.mul_f64x4(c.values, d.values)))
+    }
+
+    #[inline(always)]
+    fn sums([a, b, c, d]: [Register; 4]) -> Register {
+        let avx = a.simd.avx;
+        let pairs = |a: Register, b: Register| avx._mm256_hadd_pd(cast(a.values), cast(b.values));
+        let (ab, cd) = (pairs(a, b), pairs(c, d));
+        let lower = avx._mm256_permute2f128_pd::<0x20>(ab, cd);
+        let upper = avx._mm256_permute2f128_pd::<0x31>(ab, cd);
+        a.of(a.simd.add_f64x4(cast(lower), cast(upper)))
     }
 
     #[inline(always)]
@@ -147,6 +184,16 @@ impl Coordinates for [f64; 4] {
     #[inline(always)]
     fn store(self, to: &mut [f64; 4]) {
         *to = self;
+    }
+
+    #[inline(always)]
+    fn load_single(self, from: &[f32; 4]) -> [f64; 4] {
+        from.map(f64::from)
+    }
+
+    #[inline(always)]
+    fn store_single(self, to: &mut [f32; 4]) {
+        *to = self.map(|x| x as f32);
     }
 
     #[inline(always)]
@@ -170,6 +217,11 @@ impl Coordinates for [f64; 4] {
     }
 
     #[inline(always)]
+    fn plus_products(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|k| self[k] + a[k] * b[k])
+    }
+
+    #[inline(always)]
     fn turned(self) -> [f64; 4] {
         [self[1], self[2], self[0], self[3]]
     }
@@ -177,6 +229,11 @@ impl Coordinates for [f64; 4] {
     #[inline(always)]
     fn difference_of_products(self, b: [f64; 4], c: [f64; 4], d: [f64; 4]) -> [f64; 4] {
         std::array::from_fn(|k| self[k] * b[k] - c[k] * d[k])
+    }
+
+    #[inline(always)]
+    fn sums(vectors: [[f64; 4]; 4]) -> [f64; 4] {
+        vectors.map(|vector| vector.iter().sum())
     }
 
     #[inline(always)]
