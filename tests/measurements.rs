@@ -277,6 +277,9 @@ fn factors_far_from_one_are_legible() {
     for (young, lower) in [("1e9", "1.000e-5"), ("0.1", "1.000e5")] {
         let text = scene.replace("young   = 1e4", &format!("young   = {young}"));
         let found = outcome(world.folder.path(), "far.toml", &text).unwrap();
+        // Beside a body of the moduli that were found, not of the guess.
+        let [least, most] = found.fits[0].stability.as_ref().unwrap().energy_ratio;
+        assert!(found.fits[0].status() == "stable" && least > 0.1 && most < 10.0, "{young}: {least} to {most}");
         let notes = report::notes(&found);
         assert!(notes.iter().any(|note| note.contains(&format!("E of lower x {lower} ("))), "{notes:?}");
     }

@@ -9,7 +9,7 @@ use springfit::fit::{
 use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
-use springfit::scalar::{Coordinates, CoordinatesWork, with_coordinates};
+use springfit::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 use springfit::springs::{Law, Measure, Patch, Springs};
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
@@ -291,55 +291,72 @@ fn what_has_no_force_is_said() {
     assert!(Network { dimension: 2, ..Network::default() }.prepared().forces(&[1.0; 4], &mut [3.0; 4]));
 }
 
-struct Operations([[f64; 4]; 4], f64);
+struct Operations<N>([[N; 4]; 4], N);
 
-impl CoordinatesWork for Operations {
-    type Output = Vec<[f64; 4]>;
+impl<N: Coordinate> CoordinatesWork<N> for Operations<N> {
+    type Output = Vec<[N; 4]>;
 
-    fn run<C: Coordinates>(self, zero: C) -> Vec<[f64; 4]> {
+    fn run<C: Coordinates<N>>(self, zero: C) -> Vec<[N; 4]> {
         let Operations(given, factor) = self;
         let [a, b, c, d] = given.map(|x| zero.load(&x));
         let stored = |x: C| {
-            let mut to = [0.0; 4];
+            let mut to = [N::zero(); 4];
             x.store(&mut to);
             to
         };
+        let mut single = [0.0; 4];
+        a.store_single(&mut single);
         let vectors = [
             a.plus(b),
             a.minus(b),
+            a.times(b),
             a.scaled(factor),
             a.plus_scaled(factor, b),
+            a.plus_products(b, c),
             a.turned(),
             a.difference_of_products(b, c, d),
+            C::sums([a, b, c, d]),
+            zero.load_single(&single),
         ];
         vectors.map(stored).into_iter().chain([[a.dot(b); 4]]).collect()
     }
 }
 
 /// With and without registers of the machine, and by hand: products may be fused, which is within a rounding of their terms.
-#[test]
-fn registers_compute_what_arrays_do() {
+fn check_registers<N: Coordinate>() {
     let mut random = Random(76);
     for _ in 0..50 {
-        let given: [[f64; 4]; 4] = std::array::from_fn(|_| std::array::from_fn(|_| random.next()));
-        let [a, b, c, d] = given;
-        let factor = random.next();
+        let given: [[N; 4]; 4] = std::array::from_fn(|_| std::array::from_fn(|_| N::of(random.next())));
+        let [a, b, c, d] = given.map(|x| x.map(N::wide));
+        let factor = N::of(random.next());
+        let f = factor.wide();
         let each = |f: &dyn Fn(usize) -> f64| -> [f64; 4] { std::array::from_fn(f) };
         let expected = [
             each(&|k| a[k] + b[k]),
             each(&|k| a[k] - b[k]),
-            each(&|k| factor * a[k]),
-            each(&|k| a[k] + factor * b[k]),
+            each(&|k| a[k] * b[k]),
+            each(&|k| f * a[k]),
+            each(&|k| a[k] + f * b[k]),
+            each(&|k| a[k] + b[k] * c[k]),
             [a[1], a[2], a[0], a[3]],
             each(&|k| a[k] * b[k] - c[k] * d[k]),
+            [a, b, c, d].map(|x| x.iter().sum()),
+            each(&|k| f64::from(a[k] as f32)),
             [a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; 4],
         ];
-        for found in [with_coordinates(Operations(given, factor)), Operations(given, factor).run([0.0; 4])] {
+        let rounding = 8.0 * N::epsilon().wide();
+        for found in [with_coordinates(Operations(given, factor)), Operations(given, factor).run([N::zero(); 4])] {
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
-                assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+                assert!((found.wide() - expected).abs() < rounding, "{found:?} {expected}");
             }
         }
     }
+}
+
+#[test]
+fn registers_compute_what_arrays_do() {
+    check_registers::<f64>();
+    check_registers::<f32>();
 }
 
 /// What one evaluation leaves in memory is not seen by the next, by other threads neither.

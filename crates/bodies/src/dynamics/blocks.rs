@@ -1,12 +1,12 @@
 //! A symmetric matrix of D × D blocks, one row of blocks per point, in an order that keeps neighbours together.
 
-use std::array::from_fn;
+use crate::scalar::Coordinates;
 
-/// One block, `[row][column]`.
-pub(super) type Block<const D: usize> = [[f64; D]; D];
+/// One block, `[row][column]`: a row in a register, with zeros after its D numbers. Vectors have one row for each point, with zeros alike.
+pub(super) type Block<const D: usize> = [[f64; 4]; D];
 
 /// The pattern of blocks: those of the diagonal, and the `columns` of the other blocks of one row after the other.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Pattern {
     /// `[rows + 1]`.
     pub starts: Vec<usize>,
@@ -37,32 +37,60 @@ impl Pattern {
         columns.binary_search(&(column as u32)).ok().map(|at| self.starts[row] + at)
     }
 
-    /// `y ← A x`; `blocks` holds those of the diagonal first, then the others.
-    pub fn multiply<const D: usize>(&self, blocks: &[Block<D>], x: &[[f64; D]], y: &mut [[f64; D]]) {
+    /// The pattern that a factor has if it keeps the blocks which appear as rows of this pattern are eliminated, but not those
+    /// that appear because of them: the next level of fill.
+    pub fn filled(&self) -> Pattern {
+        let mut pairs = Vec::new();
+        for i in 0..self.rows() {
+            let row = &self.columns[self.starts[i]..self.starts[i + 1]];
+            for (at, &j) in row.iter().enumerate() {
+                pairs.push((i, j as usize));
+                pairs.extend(row[at + 1..].iter().map(|&k| (j as usize, k as usize)));
+            }
+        }
+        let place: Vec<usize> = (0..self.rows()).collect();
+        Pattern::new(&pairs, &place, self.rows())
+    }
+
+    /// `y ← A x`, and `x·A x`; `blocks` holds those of the diagonal first, then the others.
+    #[inline(always)]
+    pub fn multiply<C: Coordinates, const D: usize>(
+        &self,
+        zero: C,
+        blocks: &[Block<D>],
+        x: &[[f64; 4]],
+        y: &mut [[f64; 4]],
+    ) -> f64 {
         let (diagonal, beyond) = blocks.split_at(self.rows());
-        y.iter_mut().zip(diagonal).zip(x).for_each(|((y, block), x)| *y = times(block, x));
+        y.fill([0.0; 4]);
+        let mut energy = zero;
         for i in 0..self.rows() {
             let at = self.starts[i]..self.starts[i + 1];
-            let mut sum = y[i];
+            let own = x[i];
+            let sum = plus_turned(zero.load(&y[i]), diagonal[i].map(|row| zero.load(&row)), &own);
+            let mut products = [zero; 4];
             for (block, &j) in beyond[at.clone()].iter().zip(&self.columns[at]) {
-                let (j, part) = (j as usize, times(block, &x[j as usize]));
-                (0..D).for_each(|k| sum[k] += part[k]);
-                let part = turned_times(block, &x[i]);
-                (0..D).for_each(|k| y[j][k] += part[k]);
+                let j = j as usize;
+                let block = block.map(|row| zero.load(&row));
+                add_products(&mut products, block, zero.load(&x[j]));
+                plus_turned(zero.load(&y[j]), block, &own).store(&mut y[j]);
             }
-            y[i] = sum;
+            let sum = sum.plus(C::sums(products));
+            sum.store(&mut y[i]);
+            energy = energy.plus_products(sum, zero.load(&own));
         }
+        energy.dot(zero.load(&[1.0; 4]))
     }
 }
 
-/// `B x`.
+/// Adds the products of the entries of `B x` before they are summed: over all blocks of a row they are summed once.
 #[inline(always)]
-pub(super) fn times<const D: usize>(block: &Block<D>, x: &[f64; D]) -> [f64; D] {
-    from_fn(|k| (0..D).map(|l| block[k][l] * x[l]).sum())
+pub(super) fn add_products<C: Coordinates, const D: usize>(products: &mut [C; 4], block: [C; D], x: C) {
+    (0..D).for_each(|k| products[k] = products[k].plus_products(block[k], x));
 }
 
-/// `Bᵀ x`.
+/// `y + Bᵀ x`.
 #[inline(always)]
-pub(super) fn turned_times<const D: usize>(block: &Block<D>, x: &[f64; D]) -> [f64; D] {
-    from_fn(|l| (0..D).map(|k| block[k][l] * x[k]).sum())
+pub(super) fn plus_turned<C: Coordinates, const D: usize>(y: C, block: [C; D], x: &[f64; 4]) -> C {
+    (0..D).fold(y, |sum, k| sum.plus_scaled(x[k], block[k]))
 }

@@ -5,6 +5,7 @@ use super::equations::{End, Equations, Solved};
 use super::incomplete::Incomplete;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::places;
+use crate::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 
 /// The relative residual to which definiteness is tested, whatever the tolerance of solutions is.
 const DEFINITE: f64 = 1e-10;
@@ -26,11 +27,11 @@ pub(super) struct Gradients<const D: usize> {
     slots: Vec<u32>,
     incomplete: Incomplete<D>,
     tolerance: f64,
-    x: Vec<[f64; D]>,
-    residual: Vec<[f64; D]>,
-    toward: Vec<[f64; D]>,
-    along: Vec<[f64; D]>,
-    image: Vec<[f64; D]>,
+    x: Vec<[f64; 4]>,
+    residual: Vec<[f64; 4]>,
+    toward: Vec<[f64; 4]>,
+    along: Vec<[f64; 4]>,
+    image: Vec<[f64; 4]>,
 }
 
 impl<const D: usize> Gradients<D> {
@@ -47,13 +48,13 @@ impl<const D: usize> Gradients<D> {
         let rows = is_row.iter().filter(|is_row| **is_row).count();
         let pattern = Pattern::new(&pairs, &place, rows);
         let count = rows + pattern.columns.len();
-        if u32::try_from((count + 1) * D * D).is_err() {
+        if u32::try_from((count + 1) * D * 4).is_err() {
             let problem = "the equations cannot be built: more than 2³² entries";
             return Err(Error::new(problem).of_kind(ErrorKind::Limit));
         }
         let slot = |&(row, column): &(usize, usize)| {
             let (a, b) = (place[row / D], place[column / D]);
-            let within = |block: usize, k: usize, l: usize| (block * D + k) * D + l;
+            let within = |block: usize, k: usize, l: usize| (block * D + k) * 4 + l;
             let at = if held[row] || held[column] {
                 within(count, 0, 0)
             } else if a == b {
@@ -68,10 +69,10 @@ impl<const D: usize> Gradients<D> {
         let mut points: Vec<usize> = (0..is_row.len()).filter(|point| is_row[*point]).collect();
         points.sort_unstable_by_key(|point| place[*point]);
         let order: Vec<usize> = points.iter().flat_map(|p| p * D..(p + 1) * D).filter(|dof| !held[*dof]).collect();
-        let coordinates = order.iter().map(|dof| (place[dof / D] * D + dof % D) as u32).collect();
+        let coordinates = order.iter().map(|dof| (place[dof / D] * 4 + dof % D) as u32).collect();
         let incomplete = Incomplete::new(&pattern);
-        let [x, residual, toward, along, image] = std::array::from_fn(|_| vec![[0.0; D]; rows]);
-        let blocks = vec![[[0.0; D]; D]; count + 1];
+        let [x, residual, toward, along, image] = std::array::from_fn(|_| vec![[0.0; 4]; rows]);
+        let blocks = vec![[[0.0; 4]; D]; count + 1];
         Ok(Gradients {
             order,
             coordinates,
@@ -87,41 +88,6 @@ impl<const D: usize> Gradients<D> {
             image,
         })
     }
-
-    /// Iterates from x until the residual is at most `size`.
-    fn iterate(&mut self, size: f64) -> Solved {
-        let matrix = &self.blocks[..self.blocks.len() - 1];
-        let (mut last, mut iterations) = (0.0, 0);
-        let done = |end, iterations| Solved { end, iterations };
-        while !(dot(&self.residual, &self.residual).sqrt() <= size) {
-            if iterations == ITERATIONS {
-                return done(End::Rough, iterations);
-            }
-            self.toward.copy_from_slice(&self.residual);
-            self.incomplete.solve(&self.pattern, &mut self.toward);
-            let now = dot(&self.residual, &self.toward);
-            let share = if iterations == 0 { 0.0 } else { now / last };
-            for (along, toward) in self.along.as_flattened_mut().iter_mut().zip(self.toward.as_flattened()) {
-                *along = toward + share * *along;
-            }
-            self.pattern.multiply(matrix, &self.along, &mut self.image);
-            let curvature = dot(&self.along, &self.image);
-            iterations += 1;
-            if !(curvature > 0.0 && now > 0.0 && now / curvature < f64::INFINITY) {
-                return done(End::Indefinite, iterations);
-            }
-            let length = now / curvature;
-            let (x, residual) = (self.x.as_flattened_mut(), self.residual.as_flattened_mut());
-            for ((x, r), (along, image)) in
-                x.iter_mut().zip(residual).zip(self.along.as_flattened().iter().zip(self.image.as_flattened()))
-            {
-                *x += length * along;
-                *r -= length * image;
-            }
-            last = now;
-        }
-        done(End::Exact, iterations)
-    }
 }
 
 impl<const D: usize> Equations for Gradients<D> {
@@ -130,11 +96,11 @@ impl<const D: usize> Equations for Gradients<D> {
     }
 
     fn set_diagonal(&mut self, diagonal: &dyn Fn(usize) -> f64) {
-        self.blocks.fill([[0.0; D]; D]);
+        self.blocks.fill([[0.0; 4]; D]);
         let rows = self.pattern.rows();
         self.blocks[..rows].iter_mut().for_each(|block| (0..D).for_each(|k| block[k][k] = 1.0));
         for (&dof, &at) in self.order.iter().zip(&self.coordinates) {
-            let (row, k) = (at as usize / D, at as usize % D);
+            let (row, k) = (at as usize / 4, at as usize % 4);
             self.blocks[row][k][k] = diagonal(dof);
         }
     }
@@ -147,7 +113,7 @@ impl<const D: usize> Equations for Gradients<D> {
     }
 
     fn shift(&mut self, share: f64) {
-        let places = || self.coordinates.iter().map(|&at| (at as usize / D, at as usize % D));
+        let places = || self.coordinates.iter().map(|&at| (at as usize / 4, at as usize % 4));
         let size = places().map(|(row, k)| self.blocks[row][k][k].abs()).fold(0.0, f64::max);
         places().for_each(|(row, k)| self.blocks[row][k][k] += share * size);
     }
@@ -158,7 +124,7 @@ impl<const D: usize> Equations for Gradients<D> {
             (0..D).for_each(|k| (0..k).for_each(|l| block[l][k] = block[k][l]));
         }
         let count = self.blocks.len() - 1;
-        self.incomplete.refill(&self.pattern, &self.blocks[..count])
+        self.incomplete.refill(&self.blocks[..count])
     }
 
     /// Before a direction of negative curvature is found, the residual along it does not decrease: so small a residual
@@ -176,41 +142,88 @@ impl<const D: usize> Equations for Gradients<D> {
     }
 
     fn solve(&mut self, x: &mut [f64], guess: Option<&[f64]>) -> Solved {
-        self.x.fill([0.0; D]);
-        self.residual.fill([0.0; D]);
+        self.x.fill([0.0; 4]);
+        self.residual.fill([0.0; 4]);
         let residual = self.residual.as_flattened_mut();
         self.coordinates.iter().zip(&*x).for_each(|(&at, b)| residual[at as usize] = *b);
-        let before = dot(&self.residual, &self.residual).sqrt();
         if let Some(guess) = guess {
             let start = self.x.as_flattened_mut();
             self.coordinates.iter().zip(&self.order).for_each(|(&at, &dof)| start[at as usize] = guess[dof]);
-            self.pattern.multiply(&self.blocks[..self.blocks.len() - 1], &self.x, &mut self.image);
-            let left = |(b, image): (&f64, &f64)| (b - image) * (b - image);
-            let after =
-                self.residual.as_flattened().iter().zip(self.image.as_flattened()).map(left).sum::<f64>().sqrt();
-            if after < before {
-                let residual = self.residual.as_flattened_mut();
-                residual.iter_mut().zip(self.image.as_flattened()).for_each(|(r, image)| *r -= image);
-            } else {
-                self.x.fill([0.0; D]);
-            }
         }
-        let solved = self.iterate(self.tolerance * before);
+        let solved = with_coordinates(Iterations { equations: self, is_guessed: guess.is_some() });
         let found = self.x.as_flattened();
         x.iter_mut().zip(&self.coordinates).for_each(|(x, &at)| *x = found[at as usize]);
         solved
     }
 }
 
-fn dot<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
-    // Four sums at a time, because the terms of one sum wait for each other.
-    let ((a, b), (a_rest, b_rest)) = {
-        let ((a, a_rest), (b, b_rest)) = (a.as_flattened().as_chunks::<4>(), b.as_flattened().as_chunks::<4>());
-        ((a, b), (a_rest, b_rest))
-    };
-    let mut sums = [0.0; 4];
-    for (a, b) in a.iter().zip(b) {
-        (0..4).for_each(|k| sums[k] += a[k] * b[k]);
+/// Iterations from x until the residual is small.
+struct Iterations<'a, const D: usize> {
+    equations: &'a mut Gradients<D>,
+    /// Whether x is a guess, which is dropped if zero is better.
+    is_guessed: bool,
+}
+
+impl<const D: usize> CoordinatesWork for Iterations<'_, D> {
+    type Output = Solved;
+
+    #[inline(always)]
+    fn run<C: Coordinates>(self, zero: C) -> Solved {
+        let Gradients { pattern, blocks, incomplete, tolerance, x, residual, toward, along, image, .. } =
+            self.equations;
+        let matrix = &blocks[..blocks.len() - 1];
+        let mut left = square(zero, residual);
+        let size = *tolerance * left.sqrt();
+        if self.is_guessed {
+            pattern.multiply(zero, matrix, x, image);
+            toward.copy_from_slice(residual);
+            let after = combine(zero, toward, -1.0, image);
+            if after < left {
+                std::mem::swap(residual, toward);
+                left = after;
+            } else {
+                x.fill([0.0; 4]);
+            }
+        }
+        let (mut last, mut iterations) = (0.0, 0);
+        let done = |end, iterations| Solved { end, iterations };
+        while !(left.sqrt() <= size) {
+            if iterations == ITERATIONS {
+                return done(End::Rough, iterations);
+            }
+            let now = incomplete.solve(zero, residual, toward);
+            let share = if iterations == 0 { 0.0 } else { now / last };
+            for (along, toward) in along.iter_mut().zip(&*toward) {
+                zero.load(toward).plus_scaled(share, zero.load(along)).store(along);
+            }
+            let curvature = pattern.multiply(zero, matrix, along, image);
+            iterations += 1;
+            if !(curvature > 0.0 && now > 0.0 && now / curvature < f64::INFINITY) {
+                return done(End::Indefinite, iterations);
+            }
+            let length = now / curvature;
+            combine(zero, x, length, along);
+            left = combine(zero, residual, -length, image);
+            last = now;
+        }
+        done(End::Exact, iterations)
     }
-    sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+}
+
+/// `|a|²`.
+#[inline(always)]
+fn square<C: Coordinates>(zero: C, a: &[[f64; 4]]) -> f64 {
+    a.iter().fold(zero, |sum, a| sum.plus_products(zero.load(a), zero.load(a))).dot(zero.load(&[1.0; 4]))
+}
+
+/// `a ← a + factor b`, and `|a|²`.
+#[inline(always)]
+fn combine<C: Coordinates>(zero: C, a: &mut [[f64; 4]], factor: f64, b: &[[f64; 4]]) -> f64 {
+    let mut sum = zero;
+    for (a, b) in a.iter_mut().zip(b) {
+        let new = zero.load(a).plus_scaled(factor, zero.load(b));
+        new.store(a);
+        sum = sum.plus_products(new, new);
+    }
+    sum.dot(zero.load(&[1.0; 4]))
 }

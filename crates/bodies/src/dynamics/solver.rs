@@ -12,8 +12,8 @@ pub enum LinearSolver {
     /// `n log n`, and the time of the factorisation as `n^(3/2)`. A linear model is factorised once.
     #[default]
     Factor,
-    /// Conjugate gradients, preconditioned by an incomplete factor of blocks of one point without fill, until
-    /// `‖b − A x‖ ≤ tolerance ‖b‖`.
+    /// Conjugate gradients, preconditioned by an incomplete factor of blocks of one point, with some fill where the factor stays cheap,
+    /// until `‖b − A x‖ ≤ tolerance ‖b‖`.
     ///
     /// The cost of an iteration per spring does not depend on the size of the model. The number of iterations grows
     /// with the square root of `h² k/m`, which is the number of springs that a wave crosses in one step; the size of

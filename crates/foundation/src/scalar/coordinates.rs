@@ -27,6 +27,12 @@ pub trait Coordinates<N: Coordinate = f64>: Copy {
     /// Writes four numbers.
     fn store(self, to: &mut [N; 4]);
 
+    /// Reads four numbers of single precision.
+    fn load_single(self, from: &[f32; 4]) -> Self;
+
+    /// Writes four numbers, rounded to single precision.
+    fn store_single(self, to: &mut [f32; 4]);
+
     /// `self + other`.
     fn plus(self, other: Self) -> Self;
 
@@ -42,11 +48,17 @@ pub trait Coordinates<N: Coordinate = f64>: Copy {
     /// `self + factor · other`.
     fn plus_scaled(self, factor: N, other: Self) -> Self;
 
+    /// `self + a b` for each coordinate.
+    fn plus_products(self, a: Self, b: Self) -> Self;
+
     /// The cyclic permutation `(y, z, x)` of `(x, y, z)`, from which cross products are built.
     fn turned(self) -> Self;
 
     /// `a b − c d` for each coordinate, with `self` as `a`.
     fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self;
+
+    /// The sum of all four entries of each vector.
+    fn sums(vectors: [Self; 4]) -> Self;
 
     /// The scalar product `x x' + y y' + z z'`.
     fn dot(self, other: Self) -> N;
@@ -79,6 +91,16 @@ impl<N: Coordinate> Coordinates<N> for [N; 4] {
     }
 
     #[inline(always)]
+    fn load_single(self, from: &[f32; 4]) -> [N; 4] {
+        from.map(|x| N::of(f64::from(x)))
+    }
+
+    #[inline(always)]
+    fn store_single(self, to: &mut [f32; 4]) {
+        *to = self.map(|x| x.wide() as f32);
+    }
+
+    #[inline(always)]
     fn plus(self, other: [N; 4]) -> [N; 4] {
         std::array::from_fn(|k| self[k] + other[k])
     }
@@ -104,6 +126,11 @@ impl<N: Coordinate> Coordinates<N> for [N; 4] {
     }
 
     #[inline(always)]
+    fn plus_products(self, a: [N; 4], b: [N; 4]) -> [N; 4] {
+        std::array::from_fn(|k| self[k] + a[k] * b[k])
+    }
+
+    #[inline(always)]
     fn turned(self) -> [N; 4] {
         [self[1], self[2], self[0], self[3]]
     }
@@ -111,6 +138,11 @@ impl<N: Coordinate> Coordinates<N> for [N; 4] {
     #[inline(always)]
     fn difference_of_products(self, b: [N; 4], c: [N; 4], d: [N; 4]) -> [N; 4] {
         std::array::from_fn(|k| self[k] * b[k] - c[k] * d[k])
+    }
+
+    #[inline(always)]
+    fn sums(vectors: [[N; 4]; 4]) -> [N; 4] {
+        vectors.map(|[a, b, c, d]| a + b + c + d)
     }
 
     #[inline(always)]

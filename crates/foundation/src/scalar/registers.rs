@@ -26,11 +26,12 @@ impl<V> Register<V> {
     }
 }
 
-/// Registers of one kind of number: its vector, its instructions, and the one that turns a vector of the machine.
+/// Registers of one kind of number: its vector, its instructions, the one that turns a vector of the machine, and what has no name in
+/// common.
 macro_rules! registers {
     (
         $number:ty, $work:ident, $vector:ty, $splat:ident, $add:ident, $sub:ident, $mul:ident, $mul_add:ident, $mul_sub:ident,
-        $set:ident.$turn:ident($machine:ty)
+        $set:ident.$turn:ident($machine:ty), { $($own:tt)* }
     ) => {
         impl Coordinate for $number {
             #[inline(always)]
@@ -104,6 +105,11 @@ macro_rules! registers {
             }
 
             #[inline(always)]
+            fn plus_products(self, a: Self, b: Self) -> Self {
+                self.of(self.simd.$mul_add(a.values, b.values, self.values))
+            }
+
+            #[inline(always)]
             fn turned(self) -> Self {
                 let values: $machine = cast(self.values);
                 self.of(cast(self.simd.$set.$turn::<0b11_00_10_01>(values)))
@@ -119,6 +125,8 @@ macro_rules! registers {
                 let products: [$number; 4] = cast(self.simd.$mul(self.values, other.values));
                 products[0] + products[1] + products[2]
             }
+
+            $($own)*
         }
     };
 }
@@ -133,7 +141,28 @@ registers!(
     mul_f64x4,
     mul_add_f64x4,
     mul_sub_f64x4,
-    avx2._mm256_permute4x64_pd(__m256d)
+    avx2._mm256_permute4x64_pd(__m256d),
+    {
+        #[inline(always)]
+        fn load_single(self, from: &[f32; 4]) -> Self {
+            self.of(cast(self.simd.avx._mm256_cvtps_pd(cast(*from))))
+        }
+
+        #[inline(always)]
+        fn store_single(self, to: &mut [f32; 4]) {
+            *to = cast(self.simd.avx._mm256_cvtpd_ps(cast(self.values)));
+        }
+
+        #[inline(always)]
+        fn sums([a, b, c, d]: [Self; 4]) -> Self {
+            let avx = a.simd.avx;
+            let pairs = |a: Self, b: Self| avx._mm256_hadd_pd(cast(a.values), cast(b.values));
+            let (ab, cd) = (pairs(a, b), pairs(c, d));
+            let lower = avx._mm256_permute2f128_pd::<0x20>(ab, cd);
+            let upper = avx._mm256_permute2f128_pd::<0x31>(ab, cd);
+            a.of(a.simd.add_f64x4(cast(lower), cast(upper)))
+        }
+    }
 );
 registers!(
     f32,
@@ -145,5 +174,22 @@ registers!(
     mul_f32x4,
     mul_add_f32x4,
     mul_sub_f32x4,
-    avx._mm_permute_ps(__m128)
+    avx._mm_permute_ps(__m128),
+    {
+        #[inline(always)]
+        fn load_single(self, from: &[f32; 4]) -> Self {
+            self.load(from)
+        }
+
+        #[inline(always)]
+        fn store_single(self, to: &mut [f32; 4]) {
+            self.store(to);
+        }
+
+        #[inline(always)]
+        fn sums([a, b, c, d]: [Self; 4]) -> Self {
+            let sum = |vector: Self| cast::<_, [f32; 4]>(vector.values).iter().sum();
+            a.of(cast::<[f32; 4], _>([sum(a), sum(b), sum(c), sum(d)]))
+        }
+    }
 );

@@ -95,9 +95,8 @@ impl FittedKind {
     pub fn compared(&self, moduli: CellMap<Hooke>) -> CellMap<Hooke> {
         match self {
             FittedKind::Exact(outcome) => outcome.compared(moduli),
-            FittedKind::Stiffness(_) | FittedKind::Sampled(_) | FittedKind::Whole(_) | FittedKind::Published(_) => {
-                moduli
-            }
+            FittedKind::Whole(outcome) => outcome.compared(moduli),
+            FittedKind::Stiffness(_) | FittedKind::Sampled(_) | FittedKind::Published(_) => moduli,
         }
     }
 

@@ -167,7 +167,8 @@ impl<'a> WholeBody<'a> {
         } else {
             None
         };
-        let outcome = WholeOutcome { moduli, held_out, masses, ..WholeOutcome::of(recipe, &wanted, &found) };
+        let own = WholeOutcome::of(recipe, &wanted, &found);
+        let outcome = WholeOutcome { is_measured, moduli, held_out, masses, ..own };
         Ok((found.network, outcome))
     }
 }

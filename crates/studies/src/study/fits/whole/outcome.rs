@@ -2,6 +2,7 @@
 
 use super::moduli::FoundModuli;
 use super::recipe::{Start, WholeRecipe};
+use crate::material::{CellMap, Hooke, Moduli};
 use crate::whole::{Errors, MassStage, Stage, Target, Validation, Wanted, WholeFit};
 
 /// The loads of a whole-object fit, and its result.
@@ -42,6 +43,8 @@ pub struct WholeOutcome {
     pub cancelled: bool,
     /// Whether the fit started from the exact network.
     pub is_exact: bool,
+    /// Whether the displacements were measured, so that the moduli of the scene are a guess.
+    pub is_measured: bool,
     /// The moduli of the body or of its regions, if these are the unknowns.
     pub moduli: FoundModuli,
     /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
@@ -218,10 +221,22 @@ impl WholeOutcome {
             stands: found.stands,
             cancelled: found.cancelled,
             is_exact: matches!(recipe.start, Start::Exact(..)),
+            is_measured: false,
             moduli: FoundModuli::default(),
             held_out: Vec::new(),
             masses: None,
         }
+    }
+
+    /// The moduli of the finite elements with whose energies those of the network are compared. Where those of the scene are a guess, they
+    /// are multiplied by the least factor that was found.
+    pub fn compared(&self, moduli: CellMap<Hooke>) -> CellMap<Hooke> {
+        let found = self.moduli.all.iter().filter(|_| self.is_measured).map(|modulus| modulus.factor);
+        let Some(factor) = found.reduce(f64::min) else { return moduli };
+        moduli.map(|hooke| match hooke {
+            Hooke::Isotropic(own) => Hooke::Isotropic(Moduli { lambda: factor * own.lambda, mu: factor * own.mu }),
+            Hooke::Anisotropic(_) => hooke.clone(),
+        })
     }
 
     /// The largest relative error after the fit under the loads that it has seen.
