@@ -104,3 +104,17 @@ fn a_mechanism_without_negative_springs_releases_no_energy() {
         assert_eq!((outcome.fits[0].network.negative(), stability.standing), (0, Standing::Singular), "{stability:?}");
     }
 }
+
+/// A factor of these equations is not there, and the iterations do not end: the note says why.
+#[test]
+fn missing_displacements_have_their_reason() {
+    let (_, fit, _) = BOXES[1];
+    let shape = "element = \"hex8\", size = [1, 1, 0.1], cells = [8, 8, 8]";
+    let outcome = solved(shape, fit, "[solver]\nmethod = \"multigrid\"\n");
+    let load = &outcome.fits[0].loads[0];
+    assert!(load.displacement.is_none());
+    let reason = load.unsolved.as_ref().unwrap();
+    assert!(reason.contains("minimal residuals stall at the relative residual") && reason.contains("iterations"));
+    let notes = springfit::report::notes(&outcome).join("\n");
+    assert!(notes.contains(&format!("no displacements are given ({reason})")), "{notes}");
+}
