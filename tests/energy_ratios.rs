@@ -105,6 +105,24 @@ fn a_mechanism_without_negative_springs_releases_no_energy() {
     }
 }
 
+/// `√(−λ)` of the least eigenvalue of `M^(−½) K M^(−½)`; that of the modes is found to 1e-6.
+#[test]
+fn the_growth_of_an_indefinite_network_is_that_of_its_least_eigenvalue() {
+    let (shape, fit, _) = BOXES[1];
+    let motion = "[motion]\nduration = 1e-5\nstep = 1e-6\nlinear = true\ngravity = [0, 0, -1]\n";
+    let outcome = solved(shape, fit, motion);
+    let motion = outcome.motion.as_ref().unwrap();
+    let support = bottom(&outcome.mesh);
+    let k = dense(&outcome.fits[0].network.stiffness(&outcome.mesh.points), &support);
+    let free: Vec<usize> = (0..outcome.mesh.points.len()).filter(|&dof| !support.is_fixed(dof)).collect();
+    let root: Vec<f64> = free.iter().map(|dof| motion.masses[dof / 3].sqrt()).collect();
+    let scaled = DMatrix::from_fn(root.len(), root.len(), |i, j| k[(i, j)] / (root[i] * root[j]));
+    let expected = (-SymmetricEigen::new(scaled).eigenvalues.min()).sqrt();
+    let model = motion.models.iter().find(|model| model.fit == Some(0)).unwrap();
+    let found = model.growth.unwrap();
+    assert!((found / expected - 1.0).abs() < 1e-5, "{found} and {expected}");
+}
+
 /// A factor of these equations is not there, and the iterations do not end: the note says why.
 #[test]
 fn missing_displacements_have_their_reason() {
