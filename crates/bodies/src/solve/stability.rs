@@ -12,6 +12,8 @@ const STEPS: usize = 200;
 const NEAR_STEPS: usize = 40;
 /// An energy ratio below this is zero up to rounding: the network does not resist the motion.
 pub(super) const NOTHING: f64 = 1e-9;
+/// The energy of a motion by its displacements is rounded by up to this share of the body's, where the body is slender.
+const ROUNDED: f64 = 1e-6;
 /// A ratio below zero by this share of the largest is found without a factor of the network.
 const CLEAR: f64 = 1e-3;
 /// An energy ratio below this indicates that the network is close to a mechanism: it is a hundred times softer than the
@@ -83,9 +85,19 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
         ends(|x| body.apply(x), inverse, &[low.vector.clone(), rough, smooth], wanted, steps)
     });
     let quotient = |x: &[f64]| dot(x, &network.apply(x)) / dot(x, &body.apply(x));
-    let ratio = |Ritz { vector, is_found, .. }: Ritz| (quotient(&vector), vector, is_found);
     let largest = quotient(&high.vector);
-    let candidates = near.into_iter().flatten().chain([low]).map(ratio).filter(|(ratio, ..)| ratio.is_finite());
+    // What is near zero in the ratios themselves is rounding; its reciprocal has all digits, or is rounding beside one that is infinite.
+    let is_sure = near.is_none() || low.is_found || quotient(&low.vector) < -ROUNDED;
+    let near = near.into_iter().flatten().map(|Ritz { value, vector, is_found }| {
+        let ratio = match (quotient(&vector), 1.0 / value) {
+            (ratio, _) if !(ratio.abs() <= ROUNDED) => ratio,
+            (_, ratio) if ratio.abs() <= ROUNDED => ratio,
+            _ => 0.0,
+        };
+        (ratio, vector, is_found)
+    });
+    let low = Some(low).filter(|_| is_sure).map(|low| (quotient(&low.vector), low.vector, low.is_found));
+    let candidates = near.chain(low).filter(|(ratio, ..)| ratio.is_finite());
     let least = candidates.reduce(|a, b| if b.0 < a.0 { b } else { a });
     let Some((least, softest, is_found)) = least else {
         let softest = vec![0.0; body.size()];
