@@ -58,6 +58,39 @@ fn what_does_not_fit_into_memory_is_refused_with_its_figures() {
     assert_refused(&run("multigrid", 200), "scene.toml:2: mesh: the stiffness", &figures);
 }
 
+/// Neither way fits: the figure is that of the levels, which is the lesser one here.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_figure_of_a_refusal_is_the_least_that_would_do() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("scene.toml"), scene(30, "", "")).unwrap();
+    let limit = "export RAYON_NUM_THREADS=1; ulimit -v 200000";
+    let found = program(folder.path(), limit, &["run", "scene.toml", "--out", "out"]);
+    let words = ["the stiffness with the levels of its multigrid takes 0.", "a factor does not fit either"];
+    assert_refused(&found, "scene.toml:2: mesh: the stiffness with the levels", &words);
+    assert!(!String::from_utf8_lossy(&found.stderr).contains("factorised instead"));
+}
+
+/// The factor with pivots of a network that is not positive definite takes several times as much as a Cholesky factor.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_indefinite_network_keeps_its_status_where_its_factor_does_not_fit() {
+    let folder = TempDir::new().unwrap();
+    let text = scene(16, "", "[solver]\nmethod = \"cholesky\"")
+        .replace("size = [0.02, 0.02, 0.02]", "size = [0.02, 0.02, 0.002]");
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let limit = "export RAYON_NUM_THREADS=1; ulimit -v 700000";
+    let found = program(folder.path(), limit, &["run", "scene.toml", "--out", "out"]);
+    let text = String::from_utf8_lossy(&found.stderr).into_owned() + &String::from_utf8_lossy(&found.stdout);
+    assert!(found.status.success(), "{text}");
+    let words = [
+        "indefinite, a motion releases energy",
+        "no displacements are given (the factor of the stiffness",
+        " GB of memory",
+    ];
+    assert!(words.iter().all(|word| text.contains(word)), "{text}");
+}
+
 /// Where no estimate saw it coming, the program ends as with every other error.
 #[cfg(target_os = "linux")]
 #[test]

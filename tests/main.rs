@@ -21,6 +21,7 @@ mod dynamics;
 mod elements;
 mod elimination;
 mod energies;
+mod energy_ratios;
 mod errors;
 mod exact;
 mod explicit;

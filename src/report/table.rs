@@ -328,10 +328,17 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     } else {
         String::new()
     };
+    let reason = fit.loads.iter().find_map(|load| load.unsolved.as_ref());
+    let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));
     let unsolved = match fit.loads.iter().all(|load| load.displacement.is_none()) {
-        true => ", and no displacements are given",
-        false => "",
+        true => format!(", and no displacements are given{reason}"),
+        false => String::new(),
     };
+    if !stability.is_found && [Standing::Stable, Standing::Soft].contains(&stability.standing) {
+        notes.push(format!(
+            "{name}: the search for the softest motion has not converged; the least energy ratio may be lower than {least:.1e}"
+        ));
+    }
     match stability.standing {
         Standing::Stable => {}
         Standing::Soft => notes.push(format!(

@@ -68,8 +68,9 @@ impl fmt::Display for Fault {
             ),
             Fault::Stalled { residual, iterations, levels } => write!(
                 f,
-                "conjugate gradients stall at the relative residual {residual:.1e} after {iterations} iterations (levels: {}): a \
-                 larger tolerance, a higher degree of the smoother, a mesh with better cells, or a direct solver may help",
+                "the iterations stall at the relative residual {residual:.1e} after {iterations} of them (levels: {}): more \
+                 iterations, a larger tolerance, a higher degree of the smoother, a mesh with better cells, or a direct \
+                 solver may help",
                 sizes(levels)
             ),
             Fault::Size { what, expected, found } => write!(f, "expected {expected} entries of {what}, found {found}"),

@@ -37,6 +37,14 @@ impl BlockStiffness {
         bytes(&places(mesh).1, mesh.dimension, models, levels)
     }
 
+    /// Whether so many stiffnesses, and so many times what solves with one, fit into memory.
+    ///
+    /// # Errors
+    /// They do not; kind `Limit`.
+    pub fn check_size(mesh: &Mesh, models: usize, levels: usize) -> Result<()> {
+        require(BlockStiffness::expected_bytes(mesh, models, levels))
+    }
+
     /// Of the finite elements, once it is known that `models` such matrices and `levels` times what solves with one fit into memory.
     ///
     /// # Errors
@@ -157,6 +165,10 @@ fn bytes(pattern: &Pattern, d: usize, models: usize, levels: usize) -> u64 {
     (blocks * d * d * size_of::<f64>()) as u64
 }
 
+fn require(bytes: u64) -> Result<()> {
+    memory::require("the stiffness with the levels of its multigrid", bytes, ADVICE).map_err(|e| e.at_key("mesh"))
+}
+
 fn body<const D: usize>(
     mesh: &Mesh,
     moduli: &CellMap<Hooke>,
@@ -164,8 +176,7 @@ fn body<const D: usize>(
     levels: usize,
 ) -> Result<BlockMatrix<D, D>> {
     let (cells, pattern) = places(mesh);
-    let bytes = bytes(&pattern, D, models, levels);
-    memory::require("the stiffness with the levels of its multigrid", bytes, ADVICE).map_err(|e| e.at_key("mesh"))?;
+    require(bytes(&pattern, D, models, levels))?;
     let mut matrix = BlockMatrix::zero(Arc::new(pattern));
     for (index, (block, groups)) in mesh.blocks.iter().zip(cells.iter().map(Connectivity::groups)).enumerate() {
         let table = &block.element.tabulation;

@@ -3,7 +3,7 @@
 use super::inertia::Masses;
 use super::method::StaticSolver;
 use super::modes::{Modes, modes_of};
-use super::stability::{NOTHING, SOFT, Stability, Standing};
+use super::stability::{Stability, Standing, standing};
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory::available;
 use crate::model::{BlockStiffness, Support};
@@ -19,7 +19,7 @@ const DOUBT: f64 = 1e-12;
 const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
 const LEAST_STEPS: usize = 100;
-const LARGEST_STEPS: usize = 8;
+const LARGEST_STEPS: usize = 32;
 
 /// Vectors of a solution with its levels, about.
 const VECTORS: usize = 12;
@@ -106,7 +106,8 @@ impl Levels {
     /// The displacements of all degrees of freedom under the nodal forces f, `[points · dimension]`.
     ///
     /// # Errors
-    /// The iterations stall: kind `Limit`. The stiffness is not positive definite: kind `Infeasible`.
+    /// The iterations stall: kind `Limit`, at the key `solver.iterations` if they were too few. The stiffness is not positive definite:
+    /// kind `Infeasible`.
     pub fn solve(&self, f: &[f64], solver: &StaticSolver, share: &mut Share) -> Result<(Vec<f64>, Solved)> {
         Ok(self.solve_each(&[f], solver, share)?.remove(0))
     }
@@ -160,7 +161,7 @@ impl Levels {
                 Hierarchy::Plane(levels) => levels.solve_each(&some, solver.tolerance, solver.iterations, watch),
                 Hierarchy::Space(levels) => levels.solve_each(&some, solver.tolerance, solver.iterations, watch),
             };
-            solutions.extend(found.map_err(|fault| limit(&fault))?);
+            solutions.extend(found.map_err(|fault| unsolved("conjugate gradients", &fault, solver))?);
         }
         Ok(solutions)
     }
@@ -183,7 +184,7 @@ impl Levels {
             }
             _ => return Err(Error::new("expected stiffnesses of one dimension, found two")),
         };
-        let found = found.map_err(|fault| limit(&fault))?;
+        let found = found.map_err(|fault| unsolved("minimal residuals", &fault, solver))?;
         displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
         Ok((displacement, self.told("minres", &found)))
     }
@@ -301,7 +302,8 @@ pub fn compare_levels(
     };
     let shown = match network {
         _ if body.size() == 0 => {
-            return Ok(Stability { standing: Standing::Stable, energy_ratio: [1.0; 2], softest: Vec::new() });
+            let (energy_ratio, softest) = ([1.0; 2], Vec::new());
+            return Ok(Stability { standing: Standing::Stable, energy_ratio, softest, is_found: true });
         }
         Ok(levels) => levels.prove()?,
         Err(motion) => Some(motion.to_vec()),
@@ -311,14 +313,22 @@ pub fn compare_levels(
         (_, start) => body.extreme(End::Least, stiffness, own, start.as_deref(), LEAST_STEPS)?,
     };
     let largest = body.extreme(End::Largest, stiffness, own, None, LARGEST_STEPS)?;
-    let standing = match least.quotient {
-        ratio if !(ratio.abs() >= NOTHING) => Standing::Singular,
-        ratio if ratio < 0.0 || shown.is_some() => Standing::Indefinite,
-        ratio if ratio < SOFT => Standing::Soft,
-        _ => Standing::Stable,
-    };
+    let standing = standing(least.quotient, shown.is_none());
     let energy_ratio = [least.quotient, largest.quotient.max(least.quotient)];
-    Ok(Stability { standing, energy_ratio, softest: free(least.displacement) })
+    Ok(Stability { standing, energy_ratio, softest: free(least.displacement), is_found: least.is_settled })
+}
+
+/// Why the iterations of `method` have given no solution, with what may help.
+fn unsolved(method: &str, fault: &Fault, solver: &StaticSolver) -> Error {
+    let Fault::Stalled { residual, iterations, levels } = fault else { return limit(fault) };
+    let levels = sizes(levels);
+    let place = format!("at the relative residual {residual:.1e} after {iterations} iterations (levels: {levels})");
+    let help = "a larger solver.tolerance, a mesh with better cells, or solver.method = \"cholesky\" may help";
+    if *iterations < solver.iterations {
+        return Error::new(format!("{method} stall {place}: {help}")).of_kind(ErrorKind::Limit);
+    }
+    let problem = format!("{method} stall {place}, which are all that is allowed: more of them, {help}");
+    Error::at("solver.iterations", problem).of_kind(ErrorKind::Limit)
 }
 
 /// An end of the iterations that says nothing about the model, or one that does.

@@ -8,6 +8,7 @@ mod equations;
 mod expectation;
 mod inertia;
 mod internal;
+mod lanczos;
 mod levels;
 mod linear;
 mod method;

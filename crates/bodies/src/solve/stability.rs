@@ -2,14 +2,20 @@
 //!
 //! Theory: page *Precision* of the book.
 
+use super::lanczos::{Ritz, ends, noise};
 use super::linear::{Factor, System};
 use crate::springs::dot;
-use nalgebra::{DMatrix, DVector};
 
-/// The number of steps of the Lanczos method. The ends of the spectrum, which are needed, converge first.
-const STEPS: usize = 40;
+/// Steps of a search at most. 20 to 80 are usual; ratios that differ by many orders may take more.
+const STEPS: usize = 200;
+/// Steps of the search near zero in a matrix that is not positive definite: what is nearest is found first, or is zero with rounding.
+const NEAR_STEPS: usize = 40;
 /// An energy ratio below this is zero up to rounding: the network does not resist the motion.
 pub(super) const NOTHING: f64 = 1e-9;
+/// The energy of a motion by its displacements is rounded by up to this share of the body's, where the body is slender.
+const ROUNDED: f64 = 1e-6;
+/// A ratio below zero by this share of the largest is found without a factor of the network.
+const CLEAR: f64 = 1e-3;
 /// An energy ratio below this indicates that the network is close to a mechanism: it is a hundred times softer than the
 /// body.
 pub(super) const SOFT: f64 = 0.01;
@@ -25,6 +31,8 @@ pub struct Stability {
     pub energy_ratio: [f64; 2],
     /// The motion with the least ratio, on the free degrees of freedom.
     pub softest: Vec<f64>,
+    /// Whether the search for the least ratio has converged; if not, some motion may have a lesser one.
+    pub is_found: bool,
 }
 
 /// Whether the stiffness of a network is positive definite.
@@ -40,102 +48,71 @@ pub enum Standing {
     Singular,
 }
 
-/// The extreme ratios of the energies of `network` and `body`, both with the same support.
+/// The extreme ratios of the energies of `network` and `body`, both with the same support, each that of a motion.
 ///
-/// With a factor of the network the Lanczos method is applied to `K⁻¹R`, which finds the ratios next to zero, of either
-/// sign, accurately. Without a factor `R⁻¹K` finds the least ratio. If everything is held the ratios are 1.
+/// Lanczos' method on `R⁻¹K` finds both ends of the ratios, of either sign. A least ratio near zero is then found by its reciprocal
+/// in `K⁻¹R` with the factor of the network; without it, or if the matrix is not positive definite and the ratio is far enough below zero,
+/// it is left as it is. If everything is held the ratios are 1.
 pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System, body_factor: &Factor) -> Stability {
-    let positive = factor.is_some_and(Factor::is_positive_definite);
-    let spectrum = match factor {
-        Some(factor) => lanczos(body, |_, r| {
-            let mut x = r.to_vec();
-            factor.solve(&mut x);
-            x
-        }),
-        None => lanczos(body, |v, _| {
-            let mut x = network.apply(v);
-            body_factor.solve(&mut x);
-            x
-        }),
+    if body.size() == 0 {
+        return Stability { standing: Standing::Stable, energy_ratio: [1.0; 2], softest: Vec::new(), is_found: true };
+    }
+    let is_positive = factor.is_some_and(Factor::is_positive_definite);
+    // `v` is rough, `R⁻¹ v` is smooth: together they meet every motion.
+    let rough = noise(body.size());
+    let mut smooth = rough.clone();
+    body_factor.solve(&mut smooth);
+    let direct = |v: &[f64], _: &[f64]| {
+        let mut image = network.apply(v);
+        body_factor.solve(&mut image);
+        image
     };
-    let (ratios, softest) = match (factor, spectrum) {
-        // Everything is held: no motion distinguishes the two models.
-        _ if body.size() == 0 => ([1.0; 2], Vec::new()),
-        (_, None) => ([0.0; 2], vec![0.0; body.size()]),
-        (Some(_), Some([low, high])) if positive => ([1.0 / high.value, 1.0 / low.value], high.vector),
-        // One end of the spectrum of K⁻¹R is the negative ratio nearest to zero, the other one the positive ratio
-        // nearest to zero.
-        (Some(_), Some([low, high])) if low.value < 0.0 => ([1.0 / low.value, 1.0 / high.value], low.vector),
-        (Some(_), Some([low, high])) => ([1.0 / high.value, 1.0 / low.value], high.vector),
-        (None, Some([low, high])) => ([low.value, high.value], low.vector),
+    let starts = [rough, smooth];
+    let Some([low, high]) = ends(|x| body.apply(x), direct, &starts, [!is_positive, true], STEPS) else {
+        let softest = vec![0.0; body.size()];
+        return Stability { standing: Standing::Singular, energy_ratio: [0.0; 2], softest, is_found: false };
     };
-    let standing = match ratios[0].abs() {
-        least if !(least >= NOTHING) => Standing::Singular,
-        _ if !positive && body.size() > 0 => Standing::Indefinite,
+    let is_clear = low.is_found && (is_positive || low.value < -CLEAR * high.value.abs());
+    let [rough, smooth] = starts;
+    let near = factor.filter(|_| !is_clear).and_then(|factor| {
+        let inverse = |_: &[f64], rv: &[f64]| {
+            let mut image = rv.to_vec();
+            factor.solve(&mut image);
+            image
+        };
+        // The largest reciprocal is that of the least ratio; where some are negative, the least is that of the ratio next below zero.
+        let (wanted, steps) = if is_positive { ([false, true], STEPS) } else { ([true, false], NEAR_STEPS) };
+        ends(|x| body.apply(x), inverse, &[low.vector.clone(), rough, smooth], wanted, steps)
+    });
+    let quotient = |x: &[f64]| dot(x, &network.apply(x)) / dot(x, &body.apply(x));
+    let largest = quotient(&high.vector);
+    // What is near zero in the ratios themselves is rounding; its reciprocal has all digits, or is rounding beside one that is infinite.
+    let is_sure = near.is_none() || low.is_found || quotient(&low.vector) < -ROUNDED;
+    let near = near.into_iter().flatten().map(|Ritz { value, vector, is_found }| {
+        let ratio = match (quotient(&vector), 1.0 / value) {
+            (ratio, _) if !(ratio.abs() <= ROUNDED) => ratio,
+            (_, ratio) if ratio.abs() <= ROUNDED => ratio,
+            _ => 0.0,
+        };
+        (ratio, vector, is_found)
+    });
+    let low = Some(low).filter(|_| is_sure).map(|low| (quotient(&low.vector), low.vector, low.is_found));
+    let candidates = near.chain(low).filter(|(ratio, ..)| ratio.is_finite());
+    let least = candidates.reduce(|a, b| if b.0 < a.0 { b } else { a });
+    let Some((least, softest, is_found)) = least else {
+        let softest = vec![0.0; body.size()];
+        return Stability { standing: Standing::Singular, energy_ratio: [0.0; 2], softest, is_found: false };
+    };
+    Stability { standing: standing(least, is_positive), energy_ratio: [least, largest.max(least)], softest, is_found }
+}
+
+/// The verdict on a network whose least ratio was found to be `least`, and which was shown to be positive definite or not. A matrix that is
+/// not has a motion without energy above zero, up to rounding: if the search shows none that releases energy, it is one without resistance.
+pub(super) fn standing(least: f64, is_positive: bool) -> Standing {
+    match least {
+        least if least <= -NOTHING => Standing::Indefinite,
+        least if !is_positive || !(least >= NOTHING) => Standing::Singular,
         least if least < SOFT => Standing::Soft,
         _ => Standing::Stable,
-    };
-    Stability { standing, energy_ratio: ratios, softest }
-}
-
-/// An approximate eigenvalue, and its vector on the free degrees of freedom.
-struct Ritz {
-    value: f64,
-    vector: Vec<f64>,
-}
-
-/// The lower and upper end of the spectrum of an operator that is symmetric in the inner product `xᵀ R y` of `body`.
-/// `operator` receives `v` and `R v`. `None` if no step could be made.
-fn lanczos(body: &System, operator: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Option<[Ritz; 2]> {
-    let n = body.size();
-    let steps = STEPS.min(n);
-    // The start must not be orthogonal to a mode by a symmetry of the body; this one is the same on every machine.
-    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut random = || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
-    let mut v: Vec<f64> = (0..n).map(|_| random()).collect();
-    let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-    let mut projected = DMatrix::zeros(steps, steps);
-    for step in 0..steps {
-        let mut rv = body.apply(&v);
-        let size = dot(&v, &rv).sqrt();
-        if !(size > 0.0 && size.is_finite()) {
-            break;
-        }
-        v.iter_mut().for_each(|x| *x /= size);
-        rv.iter_mut().for_each(|x| *x /= size);
-        let mut next = operator(&v, &rv);
-        let before = dot(&next, &body.apply(&next)).sqrt();
-        basis.push((v, rv));
-        for _ in 0..2 {
-            for (i, (q, rq)) in basis.iter().enumerate() {
-                let along = dot(rq, &next);
-                projected[(i, step)] += along;
-                next.iter_mut().zip(q).for_each(|(x, q)| *x -= along * q);
-            }
-        }
-        let left = dot(&next, &body.apply(&next)).max(0.0).sqrt();
-        v = next;
-        if left.is_nan() || left <= 1e-13 * before {
-            break;
-        }
     }
-    let m = basis.len();
-    let projected = projected.view((0, 0), (m, m)).into_owned();
-    if m == 0 || projected.iter().any(|x: &f64| !x.is_finite()) {
-        return None;
-    }
-    let eigen = ((&projected + projected.transpose()) * 0.5).symmetric_eigen();
-    let ritz = |index: usize| {
-        let mut vector = DVector::zeros(n);
-        for ((q, _), w) in basis.iter().zip(eigen.eigenvectors.column(index).iter()) {
-            vector.axpy(*w, &DVector::from_column_slice(q), 1.0);
-        }
-        Ritz { value: eigen.eigenvalues[index], vector: vector.as_slice().to_vec() }
-    };
-    Some([ritz(eigen.eigenvalues.imin()), ritz(eigen.eigenvalues.imax())])
 }

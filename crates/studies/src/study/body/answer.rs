@@ -22,6 +22,8 @@ pub(super) struct NetworkAnswer {
     pub work: Option<f64>,
     pub seconds: f64,
     pub solved: Option<Solved>,
+    /// Why there are no displacements, if they were sought.
+    pub unsolved: Option<String>,
 }
 
 /// For each load the first load with the same support, whose equations it shares.

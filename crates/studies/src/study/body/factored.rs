@@ -64,7 +64,8 @@ impl Factored {
     }
 
     /// The answers of a network to all loads, and its stability under the support of the first; its energies are compared with those of
-    /// finite elements of the second moduli, the first are those of this body.
+    /// finite elements of the second moduli, the first are those of this body. A network that is not positive definite keeps its
+    /// stability where its factor does not fit into memory, and has no displacements.
     ///
     /// # Errors
     /// The equations do not fit into memory.
@@ -80,32 +81,41 @@ impl Factored {
         let entries = network.stiffness(&mesh.points);
         let assembly = start.elapsed().as_secs_f64();
         let other = (compared != moduli).then(|| finite_elements(mesh, compared));
-        let mut systems: Vec<(System, Option<Factor>, Stability, f64)> = Vec::new();
+        let mut systems: Vec<(System, Result<Option<Factor>>, Stability, f64)> = Vec::new();
         let mut answers = Vec::new();
         for (i, case) in cases.iter().enumerate() {
             let index = self.system_of[i];
             if index == systems.len() {
                 let start = Instant::now();
                 let system = System::new(&entries, &case.support)?.placed(&mesh.points, mesh.dimension);
-                let factor = system.factorize().map_err(|e| e.at_key("mesh"))?;
+                let factor = match system.cholesky().map_err(|e| e.at_key("mesh"))? {
+                    Some(factor) => Ok(Some(factor)),
+                    None => system.general(),
+                };
                 let seconds = start.elapsed().as_secs_f64();
                 let (body, body_factor) = (&*self.systems[index].0, &*self.systems[index].1);
                 let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
                 let other = other.map(|body| definite(&body, mesh).map(|factor| (body, factor))).transpose()?;
                 let (body, body_factor) = other.as_ref().map_or((body, body_factor), |(body, factor)| (body, factor));
-                let stability = compare_energies(&system, factor.as_ref(), body, body_factor);
+                let stability =
+                    compare_energies(&system, factor.as_ref().ok().and_then(Option::as_ref), body, body_factor);
                 systems.push((system, factor, stability, seconds));
             }
             let (system, factor, stability, setup) = &systems[index];
             let start = Instant::now();
-            let factor = factor.as_ref().filter(|_| stability.standing != Standing::Singular);
+            let mut unsolved = factor.as_ref().err().map(|e| e.problem().to_string());
+            let factor = factor.as_ref().ok().and_then(Option::as_ref);
+            let factor = factor.filter(|_| stability.standing != Standing::Singular);
             let found = factor.map(|factor| (factor, system.solve(factor, &case.forces)));
             let seconds = assembly + setup + start.elapsed().as_secs_f64();
+            if let Some((_, (_, residual))) = &found {
+                unsolved = (!(*residual <= SOLVED)).then(|| format!("the factor leaves {residual:.1e} of the forces"));
+            }
             let found = found.filter(|(_, (u, residual))| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
             let solved = found.as_ref().map(|(factor, (_, residual))| by_factor(factor, system, *residual));
             let displacement = found.map(|(_, (u, _))| u);
             let work = displacement.as_ref().and_then(|u| case.work(u, || Some(square(&entries, u))));
-            answers.push(NetworkAnswer { displacement, work, seconds, solved });
+            answers.push(NetworkAnswer { displacement, work, seconds, solved, unsolved });
         }
         let (_, _, stability, _) = systems.into_iter().next().expect("there is a load");
         Ok((answers, stability))

@@ -2,7 +2,7 @@
 
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
@@ -23,6 +23,14 @@ pub(super) struct Iterated {
 const PARTS: usize = 100;
 
 impl Iterated {
+    /// Whether the equations with their levels fit into memory.
+    ///
+    /// # Errors
+    /// They do not: kind `Limit`.
+    pub fn check_size(mesh: &Mesh, cases: &[Case]) -> Result<()> {
+        BlockStiffness::check_size(mesh, 2, 2 * supports(cases))
+    }
+
     /// # Errors
     /// Some motion has no stiffness, the equations do not fit into memory, or the iterations stall.
     pub fn solve(
@@ -32,10 +40,9 @@ impl Iterated {
         solver: &StaticSolver,
         progress: &mut Progress,
     ) -> Result<(Iterated, Vec<BodyAnswer>)> {
-        let supports = shared(cases).iter().enumerate().filter(|(i, first)| i == *first).count();
         let start = Instant::now();
         // Those of the body, and of a network.
-        let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * supports)?;
+        let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * supports(cases))?;
         let assembly = start.elapsed().as_secs_f64();
         let mut iterated = Iterated { systems: Vec::new(), system_of: vec![0; cases.len()] };
         let mut answers: Vec<Option<BodyAnswer>> = cases.iter().map(|_| None).collect();
@@ -100,31 +107,37 @@ impl Iterated {
             let found = compare_levels(levels.as_ref().map_err(|motion| &motion[..]), &stiffness, body)?;
             let standing = found.standing;
             first.get_or_insert(found);
-            let solutions: Vec<Option<Solution>> = match (&levels, standing) {
-                (_, Standing::Singular) => group.iter().map(|_| None).collect(),
+            let solutions: Vec<std::result::Result<Solution, Option<String>>> = match (&levels, standing) {
+                (_, Standing::Singular) => group.iter().map(|_| Err(None)).collect(),
                 (Ok(levels), Standing::Stable | Standing::Soft) => {
                     let found = solutions(levels, cases, &group, solver, ("networks", done), progress)?;
-                    found.into_iter().map(Some).collect()
+                    found.into_iter().map(Ok).collect()
                 }
                 // An equilibrium that is not stable; where it is not found, there is none to show.
                 (_, Standing::Indefinite | Standing::Stable | Standing::Soft) => {
                     let found = |i: &usize| {
                         let start = Instant::now();
-                        let found = system.solve_other(&stiffness, &cases[*i].forces, solver).ok();
-                        let (displacement, solved) = found.filter(|(_, solved)| solved.residual <= SOLVED)?;
-                        Some(Solution { displacement, solved, seconds: start.elapsed().as_secs_f64() })
+                        let found = system.solve_other(&stiffness, &cases[*i].forces, solver);
+                        let (displacement, solved) = found.map_err(|e| Some(e.problem().to_string()))?;
+                        if !(solved.residual <= SOLVED) {
+                            return Err(Some(format!("the iterations leave {:.1e} of the forces", solved.residual)));
+                        }
+                        Ok(Solution { displacement, solved, seconds: start.elapsed().as_secs_f64() })
                     };
                     group.iter().map(found).collect()
                 }
             };
             for (&i, found) in group.iter().zip(solutions) {
                 let (mut work, mut seconds) = (None, setup);
-                if let Some(Solution { displacement: u, seconds: own, .. }) = &found {
+                if let Ok(Solution { displacement: u, seconds: own, .. }) = &found {
                     work = cases[i].work(u, || Some(product(&stiffness.apply(u), u)));
                     seconds += own;
                 }
-                let (displacement, solved) = found.map(|found| (found.displacement, found.solved)).unzip();
-                answers[i] = Some(NetworkAnswer { displacement, work, seconds, solved });
+                let (displacement, solved, unsolved) = match found {
+                    Ok(found) => (Some(found.displacement), Some(found.solved), None),
+                    Err(why) => (None, None, why),
+                };
+                answers[i] = Some(NetworkAnswer { displacement, work, seconds, solved, unsolved });
             }
             done += group.len();
         }
@@ -133,11 +146,20 @@ impl Iterated {
     }
 }
 
+fn supports(cases: &[Case]) -> usize {
+    shared(cases).iter().enumerate().filter(|(i, first)| i == *first).count()
+}
+
 /// The loads of each support, in the order in which the supports come.
 fn groups(cases: &[Case]) -> Vec<Vec<usize>> {
     let first = shared(cases);
     let of = |i: usize| (i..cases.len()).filter(|k| first[*k] == i).collect();
     (0..cases.len()).filter(|i| first[*i] == *i).map(of).collect()
+}
+
+/// The error at the mesh, unless another key is at fault.
+fn keyed(error: Error) -> Error {
+    if error.key().is_some() { error } else { error.at_key("mesh") }
 }
 
 /// The displacements under a load, how they were found, and the share of this load in the time that its group took.
@@ -165,7 +187,7 @@ fn solutions(
     };
     let start = Instant::now();
     let forces: Vec<&[f64]> = group.iter().map(|&i| &cases[i].forces[..]).collect();
-    let found = levels.solve_each(&forces, solver, &mut share).map_err(|e| e.at_key("mesh"))?;
+    let found = levels.solve_each(&forces, solver, &mut share).map_err(keyed)?;
     let seconds = start.elapsed().as_secs_f64() / group.len() as f64;
     let checked = |(&i, (displacement, solved)): (&usize, (Vec<f64>, Solved))| {
         check_residual(solved.residual, &cases[i])?;

@@ -122,6 +122,7 @@ impl LargeBody {
                 seconds_lem,
                 solved_fem: None,
                 solved_lem: None,
+                unsolved: None,
                 followed: Some(followed),
                 gauge: None,
             });

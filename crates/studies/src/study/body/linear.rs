@@ -4,7 +4,7 @@ use super::answer::{BodyAnswer, NetworkAnswer, shared};
 use super::case::Case;
 use super::factored::Factored;
 use super::iterated::Iterated;
-use crate::error::Result;
+use crate::error::{ErrorKind, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, Support};
@@ -49,6 +49,19 @@ impl LinearBody {
         progress: &mut Progress,
     ) -> Result<LinearBody> {
         if !cases.is_empty() && solver.iterates(mesh, cases.len()) {
+            if let Err(error) = Iterated::check_size(mesh, cases) {
+                if !solver.gives_way(&error) {
+                    return Err(error);
+                }
+                // The factor of a slender body may be the smaller one. If it is not, what the levels take is the least that would do.
+                let factorized = LinearBody::factorize(mesh, moduli, cases, solver, progress);
+                return match factorized {
+                    Err(other) if other.kind() == ErrorKind::Limit => {
+                        Err(error.followed_by("; a factor does not fit either"))
+                    }
+                    factorized => factorized,
+                };
+            }
             match Iterated::solve(mesh, moduli, cases, &solver, progress) {
                 Ok((iterated, answers)) => {
                     return Ok(LinearBody {
@@ -143,7 +156,7 @@ impl LinearBody {
 
 /// The answer of a network to a load beside that of the finite elements.
 fn outcome(body: &BodyAnswer, network: NetworkAnswer, case: &Case, dimension: usize) -> LoadOutcome {
-    let NetworkAnswer { displacement, work, seconds, solved } = network;
+    let NetworkAnswer { displacement, work, seconds, solved, unsolved } = network;
     LoadOutcome {
         name: case.name.clone(),
         error: displacement.as_ref().and_then(|u| case.error(&body.displacement, u, dimension)),
@@ -153,6 +166,7 @@ fn outcome(body: &BodyAnswer, network: NetworkAnswer, case: &Case, dimension: us
         seconds_lem: seconds,
         solved_fem: Some(body.solved.clone()),
         solved_lem: solved,
+        unsolved,
         followed: None,
         gauge: None,
     }

@@ -61,6 +61,8 @@ pub struct LoadOutcome {
     pub solved_fem: Option<Solved>,
     /// The same of the network.
     pub solved_lem: Option<Solved>,
+    /// Why there are no displacements of a network that is not stable, if they were sought.
+    pub unsolved: Option<String>,
     /// At large deformation, how the load was applied to the network.
     pub followed: Option<Followed>,
     /// The gauge's reading of the network.

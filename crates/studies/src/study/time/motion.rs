@@ -10,7 +10,7 @@ use crate::model::{
     unheld_bodies,
 };
 use crate::scalar::{norm, scaled_norm};
-use crate::solve::{Levels, StaticSolver};
+use crate::solve::{Levels, StaticSolver, lowest_modes};
 use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
 };
@@ -258,7 +258,8 @@ fn indefinite(name: &str, network: &Network) -> String {
     )
 }
 
-/// The growth rate of the fastest motion that releases energy, 1/s, to a tenth; `None` if there is none.
+/// The growth rate of the fastest motion that releases energy, 1/s; `None` if there is none. Where that motion cannot be worked out, as
+/// with points that have no mass, the rate is an upper bound.
 ///
 /// `K + σ M` is positive definite for `σ > −ω²` of the lowest mode. Of a large network that cannot move as a rigid body, K itself is shown to
 /// be positive definite without a factor.
@@ -286,10 +287,10 @@ fn growth(network: &Network, masses: &[f64], mesh: &Mesh, planned: &Planned) -> 
     while shift < 1e6 * largest && !stands(4.0 * shift)? {
         shift *= 4.0;
     }
-    let (mut below, mut above) = (shift, 4.0 * shift);
-    for _ in 0..3 {
-        let middle = (below * above).sqrt();
-        if stands(middle)? { above = middle } else { below = middle }
-    }
-    Ok(Some((below * above).sqrt().sqrt()))
+    // The lowest ω² of `K + σ M` is that of K raised by σ.
+    let above = 4.0 * shift;
+    let system = raised.by(above)?;
+    let lowest = system.cholesky()?.and_then(|factor| lowest_modes(&system, &factor, masses, mesh.dimension, 1).ok());
+    let square = lowest.map_or(above, |modes| above - modes.squares[0]);
+    Ok(Some(square.clamp(shift, above).sqrt()))
 }

@@ -1,0 +1,154 @@
+//! The ends of the spectrum of an operator that is symmetric in the inner product of a body.
+//!
+//! Theory: page *Precision* of the book.
+
+use super::modes::generator;
+use crate::springs::dot;
+use nalgebra::DMatrix;
+
+/// A value is found once the residual of its vector is below this share of it, all in the norm of the body: an eigenvalue is as near.
+const FOUND: f64 = 2e-3;
+/// Steps that are made at least: by then a value a hundredth beyond the next is seen.
+const LEAST_STEPS: usize = 32;
+/// Steps between two looks at the values.
+const LOOK: usize = 4;
+/// The vectors in the basis before it is condensed to those of each end.
+const BASIS: usize = 60;
+/// The vectors of each end that are kept then.
+const KEPT: usize = 10;
+
+/// An approximate eigenvalue θ of the operator A, and its vector.
+pub(super) struct Ritz {
+    pub value: f64,
+    /// `xᵀ R x = 1`, on the free degrees of freedom.
+    pub vector: Vec<f64>,
+    /// Whether `‖A x − θ x‖` in the norm of R is a small share of θ.
+    pub is_found: bool,
+}
+
+/// Vectors q and their images `R q`, orthonormal: `qᵢᵀ R qⱼ = δᵢⱼ`.
+type Basis = Vec<(Vec<f64>, Vec<f64>)>;
+
+/// The lower and upper end of the spectrum of an operator A that is symmetric in the inner product `xᵀ R y`, until those that are
+/// `wanted` are found, or `steps` are made. `metric` is R; `operator` receives `v` and `R v` and gives `A v`. The search
+/// begins with the sum of `starts`, each with the same weight. `None` if no step could be made.
+///
+/// Lanczos' method with full orthogonalisation, restarted with the Ritz vectors of both ends (Wu, Simon, SIAM J. Matrix Anal. Appl. 22,
+/// 2000). The projection P is symmetric; its upper triangle is what the orthogonalisation removes. `A Q = Q P + r e_mᵀ`, hence the
+/// residual of the Ritz vector `Q y` is `‖r‖ |y_m|`.
+pub(super) fn ends(
+    metric: impl Fn(&[f64]) -> Vec<f64>,
+    operator: impl Fn(&[f64], &[f64]) -> Vec<f64>,
+    starts: &[Vec<f64>],
+    wanted: [bool; 2],
+    steps: usize,
+) -> Option<[Ritz; 2]> {
+    let n = starts.first()?.len();
+    let mut v = vec![0.0; n];
+    for start in starts {
+        let size = dot(start, &metric(start)).sqrt();
+        if size > 0.0 && size.is_finite() {
+            add(&mut v, 1.0 / size, start);
+        }
+    }
+    let mut rv = metric(&v);
+    let mut basis: Basis = Vec::new();
+    let mut projected = DMatrix::zeros(BASIS, BASIS);
+    for step in 1..=steps {
+        let size = dot(&v, &rv).max(0.0).sqrt();
+        if !(size > 0.0 && size.is_finite()) {
+            return if basis.is_empty() { None } else { found(&basis, &projected, 0.0) };
+        }
+        v.iter_mut().for_each(|x| *x /= size);
+        rv.iter_mut().for_each(|x| *x /= size);
+        let mut next = operator(&v, &rv);
+        basis.push((v, rv));
+        let last = basis.len() - 1;
+        for _ in 0..2 {
+            for (i, (q, rq)) in basis.iter().enumerate() {
+                let along = dot(rq, &next);
+                projected[(i, last)] += along;
+                add(&mut next, -along, q);
+            }
+        }
+        // R v by the same recurrence would lose digits at each step.
+        rv = metric(&next);
+        v = next;
+        let left = dot(&v, &rv).max(0.0).sqrt();
+        let is_whole = !(left > 1e-13 * projected.column(last).norm()) || basis.len() == n;
+        if is_whole || step == steps {
+            return found(&basis, &projected, if is_whole { 0.0 } else { left });
+        }
+        let is_full = basis.len() == BASIS;
+        if is_full || (step >= LEAST_STEPS && step % LOOK == 0) {
+            let eigen = eigen(&projected, basis.len())?;
+            let is_found = |end: usize| residual(&eigen, end, left) <= FOUND * eigen.0[end].abs();
+            if (!wanted[0] || is_found(0)) && (!wanted[1] || is_found(basis.len() - 1)) {
+                return found(&basis, &projected, left);
+            }
+            if is_full {
+                basis = condensed(&basis, &mut projected, &eigen);
+            }
+        }
+    }
+    None
+}
+
+/// Numbers that meet every motion, the same on every machine: as displacements they are rough.
+pub(super) fn noise(n: usize) -> Vec<f64> {
+    let mut random = generator();
+    (0..n).map(|_| random()).collect()
+}
+
+/// The values, ascending, and the vectors of the projection on m vectors.
+type Eigen = (Vec<f64>, DMatrix<f64>);
+
+/// `None` if an entry is not finite.
+fn eigen(projected: &DMatrix<f64>, m: usize) -> Option<Eigen> {
+    let whole = DMatrix::from_fn(m, m, |i, j| projected[(i.min(j), i.max(j))]);
+    if whole.iter().any(|x: &f64| !x.is_finite()) {
+        return None;
+    }
+    let eigen = whole.symmetric_eigen();
+    let mut order: Vec<usize> = (0..m).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    Some((order.iter().map(|&k| eigen.eigenvalues[k]).collect(), eigen.eigenvectors.select_columns(&order)))
+}
+
+fn residual((values, vectors): &Eigen, index: usize, left: f64) -> f64 {
+    left * vectors[(values.len() - 1, index)].abs()
+}
+
+/// Both ends; `left` is `‖r‖`.
+fn found(basis: &Basis, projected: &DMatrix<f64>, left: f64) -> Option<[Ritz; 2]> {
+    let eigen = eigen(projected, basis.len())?;
+    let ritz = |index: usize| Ritz {
+        value: eigen.0[index],
+        vector: combination(basis, &eigen.1, index).0,
+        is_found: residual(&eigen, index, left) <= FOUND * eigen.0[index].abs(),
+    };
+    Some([ritz(0), ritz(basis.len() - 1)])
+}
+
+/// The basis of the Ritz vectors of both ends, on which the projection is diagonal.
+fn condensed(basis: &Basis, projected: &mut DMatrix<f64>, eigen: &Eigen) -> Basis {
+    let kept: Vec<usize> = (0..KEPT).chain(basis.len() - KEPT..basis.len()).collect();
+    projected.fill(0.0);
+    kept.iter().enumerate().for_each(|(i, &index)| projected[(i, i)] = eigen.0[index]);
+    kept.iter().map(|&index| combination(basis, &eigen.1, index)).collect()
+}
+
+fn combination(basis: &Basis, vectors: &DMatrix<f64>, index: usize) -> (Vec<f64>, Vec<f64>) {
+    let n = basis[0].0.len();
+    let (mut q, mut rq) = (vec![0.0; n], vec![0.0; n]);
+    for ((own, image), &weight) in basis.iter().zip(vectors.column(index).iter()) {
+        add(&mut q, weight, own);
+        add(&mut rq, weight, image);
+    }
+    (q, rq)
+}
+
+/// `y ← y + a x`.
+fn add(y: &mut [f64], a: f64, x: &[f64]) {
+    y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+}
