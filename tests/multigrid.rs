@@ -56,10 +56,13 @@ fn shipped_scenes_have_the_same_answers() {
             let what = format!("{name}: {}", x.fit.name);
             let (found, known) = (x.stability.as_ref().unwrap(), y.stability.as_ref().unwrap());
             assert_eq!(found.standing, known.standing, "{what}");
-            // Both are ratios of motions: the lower one is the better.
+            // Both are ratios of motions, not below the least one; a search with levels ends where its ratio has settled to 1e-3 in a step.
             let [least, expected] = [found.energy_ratio[0], known.energy_ratio[0]];
             let is_stable = known.standing == Standing::Stable;
-            assert!(!is_stable || (0.01..=1.001 * expected).contains(&least), "{what}: {least} and {expected}");
+            assert!(
+                !is_stable || (0.998 * expected..=1.01 * expected).contains(&least),
+                "{what}: {least} and {expected}"
+            );
             let support = &supports(&scene, &levels.mesh);
             let free: Vec<usize> = (0..levels.mesh.points.len()).filter(|dof| !support.is_fixed(*dof)).collect();
             let mut motion = vec![0.0; levels.mesh.points.len()];
