@@ -68,7 +68,7 @@ impl fmt::Display for Fault {
             ),
             Fault::Stalled { residual, iterations, levels } => write!(
                 f,
-                "the iterations stall at the relative residual {residual:.1e} after {iterations} of them (levels: {}): more \
+                "the solution stalls at the relative residual {residual:.1e} after {iterations} iterations (levels: {}): more \
                  iterations, a larger tolerance, a higher degree of the smoother, a mesh with better cells, or a direct \
                  solver may help",
                 sizes(levels)
