@@ -79,7 +79,7 @@ fn driven<N: Precision>(element: &str, steps: usize, account: bool) -> MotionSta
         .displacement(last, Curve::new(|t| 1e-3 * (1.0 - (50.0 * t).cos())))
         .force(last - d, Curve::new(|t| 0.01 * t));
     let prepared = network.prepared_in::<N>();
-    let motion = Motion { support, drive, ..Motion::free(&prepared, &mesh.points, &masses) };
+    let motion = Motion { support, drive, ..Motion::free(&*prepared, &mesh.points, &masses) };
     let longest = Simulation::new(motion.clone(), explicit(1e-9)).unwrap().longest_step();
     let mut simulation = Simulation::new(motion, Options { account, ..explicit(0.5 * longest) }).unwrap();
     simulation.start(&vec![0.0; mesh.points.len()], &scattered(mesh.points.len(), 1e-2)).unwrap();
@@ -120,7 +120,7 @@ fn a_step_without_forces_leaves_the_state_before() {
         };
         let (points, masses, prepared) = ([0.0, 0.0, 1.0, 0.0], [1.0; 2], network.prepared_in::<N>());
         let options = Options { account, ..explicit(0.5) };
-        let mut simulation = Simulation::new(Motion::free(&prepared, &points, &masses), options).unwrap();
+        let mut simulation = Simulation::new(Motion::free(&*prepared, &points, &masses), options).unwrap();
         simulation.start(&[0.0; 4], &[1.0, 0.0, -1.0, 0.0]).unwrap();
         let before = simulation.state().clone();
         assert_eq!(simulation.step().outcome, StepOutcome::NoResponse);

@@ -88,7 +88,7 @@ pub fn write(case: &Case, steps: usize, to: &Path) {
 /// Seconds per step of the simulation with forces in these numbers, and where the points are at the end.
 pub fn springfit<N: Precision>(case: &Case, steps: usize, account: bool) -> ([f64; 2], Vec<f64>) {
     let prepared = case.network.prepared_in::<N>();
-    let motion = Motion::free(&prepared, &case.points, &case.masses);
+    let motion = Motion::free(&*prepared, &case.points, &case.masses);
     let options = Options { step: case.step, integrator: Integrator::SymplecticEuler, account, ..Options::default() };
     let mut simulation = Simulation::new(motion, options).expect("the model is sound");
     let (from, start) = (clock(), Instant::now());

@@ -4,7 +4,7 @@
 use super::motion::Motion;
 use super::pass::{self, PIECE};
 use super::state::MotionState;
-use crate::model::{Precision, RowForces, Rows};
+use crate::model::{RowForces, Rows};
 use crate::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 use rayon::prelude::*;
 use std::fmt::Debug;
@@ -61,7 +61,7 @@ struct NetworkRows<'a, N> {
     before: Vec<(usize, [N; 2])>,
 }
 
-impl<'a, N: Precision> NetworkRows<'a, N> {
+impl<'a, N: Coordinate> NetworkRows<'a, N> {
     fn new(
         network: &'a dyn RowForces<N>,
         dimension: usize,
@@ -108,7 +108,7 @@ impl<'a, N: Precision> NetworkRows<'a, N> {
     }
 }
 
-impl<N: Precision> RowMotion for NetworkRows<'_, N> {
+impl<N: Coordinate> RowMotion for NetworkRows<'_, N> {
     fn start(&mut self, state: &MotionState) -> bool {
         self.u = rows(&state.displacement, self.dimension, N::of);
         self.v = rows(&state.velocity, self.dimension, N::of);

@@ -1,6 +1,5 @@
 //! Networks whose points and forces are in rows of their own numbers, for explicit steps.
 
-use crate::scalar::Coordinate;
 use std::fmt::Debug;
 
 /// Forces with one row of four numbers for each point.
@@ -17,22 +16,4 @@ pub enum Rows<'a> {
     Double(&'a dyn RowForces<f64>),
     /// In `f32`.
     Single(&'a dyn RowForces<f32>),
-}
-
-/// The numbers of a network in rows: `f64` or `f32`.
-pub trait Precision: Coordinate {
-    /// The network as one in these numbers.
-    fn rows<'a>(forces: &'a dyn RowForces<Self>) -> Rows<'a>;
-}
-
-impl Precision for f64 {
-    fn rows<'a>(forces: &'a dyn RowForces<f64>) -> Rows<'a> {
-        Rows::Double(forces)
-    }
-}
-
-impl Precision for f32 {
-    fn rows<'a>(forces: &'a dyn RowForces<f32>) -> Rows<'a> {
-        Rows::Single(forces)
-    }
 }

@@ -12,7 +12,7 @@ mod tangents;
 
 use super::network::Network;
 use super::numbering::places;
-use super::rows::{Precision, RowForces, Rows};
+use super::rows::{RowForces, Rows};
 use super::{BlockStiffness, Elastic, Response};
 use crate::scalar::Coordinate;
 use part::{Part, Room, parts};
@@ -38,18 +38,54 @@ pub struct PreparedNetwork<'a, N = f64> {
 impl Network {
     /// Sorts the springs for [`Elastic::forces`]; this costs about as much as a hundred evaluations.
     pub fn prepared(&self) -> PreparedNetwork<'_> {
-        self.prepared_in()
+        PreparedNetwork::new(self)
     }
 
     /// The same in numbers of this kind.
-    pub fn prepared_in<N: Precision>(&self) -> PreparedNetwork<'_, N> {
-        let (parts, rest) = parts(self, &order(self));
-        let sources = Sources::new(&parts);
-        PreparedNetwork { network: self, parts, sources, rest, rooms: Mutex::default() }
+    pub fn prepared_in<N: Precision>(&self) -> Box<dyn Elastic + '_> {
+        N::prepare(self)
     }
 }
 
-impl<N: Coordinate> PreparedNetwork<'_, N> {
+/// The numbers of a prepared network: `f64` or `f32`.
+pub trait Precision: Coordinate {
+    /// The network prepared in these numbers.
+    fn prepare(network: &Network) -> Box<dyn Elastic + '_>;
+}
+
+impl<'a, N: Coordinate> PreparedNetwork<'a, N> {
+    fn new(network: &'a Network) -> PreparedNetwork<'a, N> {
+        let (parts, rest) = parts(network, &order(network));
+        let sources = Sources::new(&parts);
+        PreparedNetwork { network, parts, sources, rest, rooms: Mutex::default() }
+    }
+
+    /// The forces as [`Elastic::forces`].
+    fn add_up(&self, x: &[f64], force: &mut [f64]) -> bool {
+        let sound = match self.network.dimension {
+            1 => self.forces_in::<1>(x, force),
+            2 => self.forces_in::<2>(x, force),
+            _ => self.forces_in::<3>(x, force),
+        };
+        let others = &self.network.others;
+        sound & self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force)
+    }
+
+    /// The forces as [`RowForces::pull_rows`].
+    fn add_up_rows(&self, x: &[[N; 4]], force: &mut [[N; 4]]) -> bool {
+        self.with_rooms(|rooms| match &self.parts[..] {
+            // No row has to be moved.
+            [part] if part.is_all_of(x.len()) => {
+                part.pull_rows(self.network.dimension, &self.network.others, x, force, rooms[0].work())
+            }
+            _ => {
+                let sound = self.pull(|point| x[point], rooms);
+                self.sources.gather(rooms, force, |point, sum| *point = sum);
+                sound
+            }
+        })
+    }
+
     /// Evaluates the parts with the points at these positions; false if a spring has no force.
     fn pull(&self, position: impl Fn(usize) -> [N; 4] + Sync, rooms: &mut [Room<N>]) -> bool {
         let (d, others) = (self.network.dimension, &self.network.others);
@@ -110,54 +146,52 @@ fn order(network: &Network) -> Vec<usize> {
     order
 }
 
-impl<N: Coordinate> RowForces<N> for PreparedNetwork<'_, N> {
-    fn pull_rows(&self, x: &[[N; 4]], force: &mut [[N; 4]]) -> bool {
-        self.with_rooms(|rooms| match &self.parts[..] {
-            // No row has to be moved.
-            [part] if part.is_all_of(x.len()) => {
-                part.pull_rows(self.network.dimension, &self.network.others, x, force, rooms[0].work())
+/// Each kind of number has functions of its own and not generic ones, so that its loops are compiled, and optimised, with this crate.
+macro_rules! precision {
+    ($number:ty, $rows:ident) => {
+        impl Precision for $number {
+            fn prepare(network: &Network) -> Box<dyn Elastic + '_> {
+                Box::new(PreparedNetwork::<$number>::new(network))
             }
-            _ => {
-                let sound = self.pull(|point| x[point], rooms);
-                self.sources.gather(rooms, force, |point, sum| *point = sum);
-                sound
+        }
+
+        impl RowForces<$number> for PreparedNetwork<'_, $number> {
+            fn pull_rows(&self, x: &[[$number; 4]], force: &mut [[$number; 4]]) -> bool {
+                self.add_up_rows(x, force)
             }
-        })
-    }
+        }
+
+        impl Elastic for PreparedNetwork<'_, $number> {
+            fn respond(&self, x: &[f64]) -> Option<Response> {
+                self.network.respond(x)
+            }
+
+            fn energy(&self, x: &[f64]) -> Option<f64> {
+                Elastic::energy(self.network, x)
+            }
+
+            fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
+                self.add_up(x, force)
+            }
+
+            fn rows(&self) -> Option<Rows<'_>> {
+                self.rest.is_empty().then(|| Rows::$rows(self))
+            }
+
+            fn blocks(&self, x: &[f64]) -> Option<BlockStiffness> {
+                self.network.blocks(x)
+            }
+
+            fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+                self.network.refill(x, force, tangent)
+            }
+
+            fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+                self.network.refill_definite(x, force, tangent)
+            }
+        }
+    };
 }
 
-impl<N: Precision> Elastic for PreparedNetwork<'_, N> {
-    fn respond(&self, x: &[f64]) -> Option<Response> {
-        self.network.respond(x)
-    }
-
-    fn energy(&self, x: &[f64]) -> Option<f64> {
-        Elastic::energy(self.network, x)
-    }
-
-    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
-        let sound = match self.network.dimension {
-            1 => self.forces_in::<1>(x, force),
-            2 => self.forces_in::<2>(x, force),
-            _ => self.forces_in::<3>(x, force),
-        };
-        let others = &self.network.others;
-        sound & self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force)
-    }
-
-    fn rows(&self) -> Option<Rows<'_>> {
-        self.rest.is_empty().then(|| N::rows(self))
-    }
-
-    fn blocks(&self, x: &[f64]) -> Option<BlockStiffness> {
-        self.network.blocks(x)
-    }
-
-    fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
-        self.network.refill(x, force, tangent)
-    }
-
-    fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
-        self.network.refill_definite(x, force, tangent)
-    }
-}
+precision!(f64, Double);
+precision!(f32, Single);

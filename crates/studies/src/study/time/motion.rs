@@ -99,7 +99,7 @@ pub fn move_models(
         let options = planned.recipe.options;
         let model: Box<dyn Elastic> = match planned.recipe.precision {
             ForcePrecision::Double => Box::new(fit.network.prepared()),
-            ForcePrecision::Single => Box::new(fit.network.prepared_in::<f32>()),
+            ForcePrecision::Single => fit.network.prepared_in::<f32>(),
         };
         let (mut made, states) =
             run.follow((&fit.fit.name, growth, masses), &*model, damping, options, keeps, progress)?;
