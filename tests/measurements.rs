@@ -280,6 +280,7 @@ fn factors_far_from_one_are_legible() {
         // Beside a body of the moduli that were found, not of the guess.
         let [least, most] = found.fits[0].stability.as_ref().unwrap().energy_ratio;
         assert!(found.fits[0].status() == "stable" && least > 0.1 && most < 10.0, "{young}: {least} to {most}");
+        assert!(report::notes(&found).iter().all(|note| !note.contains("is not the material")));
         let notes = report::notes(&found);
         assert!(notes.iter().any(|note| note.contains(&format!("E of lower x {lower} ("))), "{notes:?}");
     }

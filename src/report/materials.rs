@@ -30,6 +30,10 @@ pub(super) fn material_table(outcome: &Outcome) -> String {
 /// A warning of a network that is far from the material.
 pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<String> {
     let (name, m) = (&fit.fit.name, &fit.as_material);
+    // A guess that the fit was to replace.
+    if fit.kind.whole().is_some_and(|whole| whole.is_measured) {
+        return None;
+    }
     // Near the incompressible the tensor is nearly that of changes of volume: E says what it does not.
     let is_near = |(young, asked): (f64, f64)| (young / asked - 1.0).abs() <= FAR;
     let is_modulus = m.young.zip(m.asked_young).is_some_and(is_near);
