@@ -35,7 +35,8 @@ const STEPS: usize = 24;
 /// Of a motion of 25 s, in which the membrane folds.
 const LONG: usize = 2500;
 
-/// Seconds per step, the median of three runs, and iterations of conjugate gradients per step; `times` motions of so many steps in a run.
+/// The median over three runs of the seconds per step, and the iterations of conjugate gradients per step. A run has `times` motions, and a
+/// motion has `steps` steps.
 fn seconds(mesh: &Mesh, network: &Network, options: Options, times: usize, steps: usize) -> (f64, f64) {
     let masses = masses(mesh, 1000.0, THICKNESS);
     let mut support = Support::free(mesh);

@@ -58,6 +58,19 @@ pub fn cube(element: &str, side: usize) -> (Mesh, Network) {
     (mesh, network)
 }
 
+/// A dome of triangles, a fifth as high as its radius in m, 10 kPa and 0.5 mm thick, and its springs on lengths.
+fn dome(rings: usize, radius: f64) -> (Mesh, Network) {
+    let element = Arc::new(Element::load("tri3").unwrap());
+    let mesh = DiscMesh { element, radius, height: radius / 5.0, rings: DiscMesh::even(rings) }.build().unwrap();
+    let block = &mesh.blocks[0];
+    let springs = Springs::select(&block.element, None).unwrap();
+    let moduli = Material::new(10e3, 0.3, State::PlaneStress { thickness: 5e-4 }).unwrap().moduli();
+    let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::OffDiagonal)) };
+    let fits = fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &fit, &mut |_| {});
+    let network = Network::assemble(&mesh, &[fits.unwrap()]);
+    (mesh, network)
+}
+
 /// Velocities that follow no symmetry, m/s, the same on every machine.
 pub fn scattered(dofs: usize, size: f64) -> Vec<f64> {
     (0..dofs).map(|i| size * (12.9898 * (i + 1) as f64).sin()).collect()
@@ -397,14 +410,7 @@ fn one_factor_gives_the_motion_of_many() {
 /// direction of a point, dampers and gravity. Both solvers to far below what the assertions ask for.
 #[test]
 fn conjugate_gradients_give_the_motion_of_the_factor() {
-    let element = Arc::new(Element::load("tri3").unwrap());
-    let mesh = DiscMesh { element, radius: 5e-3, height: 1e-3, rings: DiscMesh::even(5) }.build().unwrap();
-    let block = &mesh.blocks[0];
-    let springs = Springs::select(&block.element, None).unwrap();
-    let moduli = Material::new(10e3, 0.3, State::PlaneStress { thickness: 5e-4 }).unwrap().moduli();
-    let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::OffDiagonal)) };
-    let fits = fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &fit, &mut |_| {});
-    let network = Network::assemble(&mesh, &[fits.unwrap()]);
+    let (mesh, network) = dome(5, 5e-3);
     let masses = masses(&mesh, 1000.0, 5e-4);
     let mut support = Support::free(&mesh);
     support.fix(&mesh.groups["rim"].points[1..], &[0, 1, 2], 3);
@@ -465,15 +471,7 @@ fn incomplete_factors_leave_few_iterations() {
         assert!(step.outcome == StepOutcome::Linearized && step.solver_iterations <= 2, "{step:?}");
     }
     for (rings, most) in [(13, 10), (33, 15)] {
-        let element = Arc::new(Element::load("tri3").unwrap());
-        let (radius, rings) = (5e-3 * rings as f64 / 13.5, DiscMesh::even(rings));
-        let mesh = DiscMesh { element, radius, height: radius / 5.0, rings }.build().unwrap();
-        let block = &mesh.blocks[0];
-        let springs = Springs::select(&block.element, None).unwrap();
-        let moduli = Material::new(10e3, 0.3, State::PlaneStress { thickness: 5e-4 }).unwrap().moduli();
-        let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::OffDiagonal)) };
-        let fits = fit_cells(&block.element, &springs, &mesh.points, &block.connectivity, moduli, &fit, &mut |_| {});
-        let network = Network::assemble(&mesh, &[fits.unwrap()]);
+        let (mesh, network) = dome(rings, 5e-3 * rings as f64 / 13.5);
         let masses = masses(&mesh, 1000.0, 5e-4);
         let mut support = Support::free(&mesh);
         support.fix(&mesh.groups["rim"].points, &[0, 1, 2], 3);

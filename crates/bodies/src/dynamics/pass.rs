@@ -17,9 +17,9 @@ pub(super) fn all<N: Coordinate>(numbers: &[N], test: impl Fn(N) -> bool + Sync)
 }
 
 /// `x ← p + u`.
-pub(super) fn place(x: &mut [f64], p: &[f64], u: &[f64]) {
-    let piece = |(x, p, u): (&mut [f64], &[f64], &[f64])| {
-        x.iter_mut().zip(p).zip(u).for_each(|((x, p), u)| *x = p + u);
+pub(super) fn place<N: Coordinate>(x: &mut [N], p: &[N], u: &[N]) {
+    let piece = |(x, p, u): (&mut [N], &[N], &[N])| {
+        x.iter_mut().zip(p).zip(u).for_each(|((x, p), u)| *x = *p + *u);
     };
     match x.len() {
         0..=PIECE => piece((x, p, u)),

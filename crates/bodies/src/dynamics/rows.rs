@@ -96,8 +96,7 @@ impl<'a, N: Coordinate> NetworkRows<'a, N> {
         for &(dof, was) in &before {
             self.set(dof, was);
         }
-        let placed = self.x.as_flattened_mut().iter_mut().zip(self.rest.as_flattened()).zip(self.u.as_flattened());
-        placed.for_each(|((x, rest), u)| *x = *rest + *u);
+        pass::place(self.x.as_flattened_mut(), self.rest.as_flattened(), self.u.as_flattened());
         self.pull();
         for (row, v) in self.v.iter_mut().enumerate() {
             for k in 0..3 {
@@ -112,8 +111,7 @@ impl<N: Coordinate> RowMotion for NetworkRows<'_, N> {
     fn start(&mut self, state: &MotionState) -> bool {
         self.u = rows(&state.displacement, self.dimension, N::of);
         self.v = rows(&state.velocity, self.dimension, N::of);
-        let placed = self.x.as_flattened_mut().iter_mut().zip(self.rest.as_flattened()).zip(self.u.as_flattened());
-        placed.for_each(|((x, rest), u)| *x = *rest + *u);
+        pass::place(self.x.as_flattened_mut(), self.rest.as_flattened(), self.u.as_flattened());
         self.pull()
     }
 

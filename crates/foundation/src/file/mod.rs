@@ -109,7 +109,7 @@ pub fn write_seekable(path: &Path, content: impl FnOnce(&mut dyn WriteSeek) -> i
     })
 }
 
-/// Writes a new file by `write`, which is told whether it is a file and no device, and puts it in the place of the old one.
+/// Writes a new file by `write` and replaces the old one with it. The second argument of `write` is false if the path is a device or a pipe.
 fn replace(path: &Path, write: impl FnOnce(&fs::File, bool) -> io::Result<()>) -> Result<()> {
     if path.file_name().is_none() || path.is_dir() {
         return Err(unwritable("expected the name of a file to write, found a folder", path));

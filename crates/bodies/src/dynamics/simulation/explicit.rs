@@ -33,12 +33,11 @@ impl Simulation<'_> {
             self.way[*dof] = curve.at(time) - start;
         }
         (self.steps, self.state.time) = (self.steps + 1, time);
-        let step = Step::explicit(StepOutcome::Converged);
         if !self.refresh_changed() {
-            return self.step_back(step);
+            return self.step_back();
         }
         self.book();
-        step
+        Step::explicit(StepOutcome::Converged)
     }
 
     /// The same step of a motion in rows.
@@ -61,16 +60,16 @@ impl Simulation<'_> {
     }
 
     /// Restores the state before an explicit step.
-    fn step_back(&mut self, step: Step) -> Step {
+    fn step_back(&mut self) -> Step {
         self.steps -= 1;
         self.state.time = self.steps as f64 * self.options.step;
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         self.refresh();
-        Step { outcome: StepOutcome::NoResponse, ..step }
+        Step::explicit(StepOutcome::NoResponse)
     }
 
-    /// The same after an explicit step; loads that do not change are kept.
+    /// Computes loads, elastic and damping forces after a step; loads that do not change are kept.
     fn refresh_changed(&mut self) -> bool {
         if self.motion.drive.is_steady() { self.resist() } else { self.refresh() }
     }

@@ -28,7 +28,7 @@ impl Iterated {
     /// # Errors
     /// They do not: kind `Limit`.
     pub fn check_size(mesh: &Mesh, cases: &[Case]) -> Result<()> {
-        BlockStiffness::check_size(mesh, 2, 2 * supports(cases))
+        BlockStiffness::check_size(mesh, 2, 2 * groups(cases).len())
     }
 
     /// # Errors
@@ -42,7 +42,7 @@ impl Iterated {
     ) -> Result<(Iterated, Vec<BodyAnswer>)> {
         let start = Instant::now();
         // Those of the body, and of a network.
-        let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * supports(cases))?;
+        let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * groups(cases).len())?;
         let assembly = start.elapsed().as_secs_f64();
         let mut iterated = Iterated { systems: Vec::new(), system_of: vec![0; cases.len()] };
         let mut answers: Vec<Option<BodyAnswer>> = cases.iter().map(|_| None).collect();
@@ -144,10 +144,6 @@ impl Iterated {
         let stability = first.expect("there is a load");
         Ok((answers.into_iter().map(|answer| answer.expect("each load has a support")).collect(), stability))
     }
-}
-
-fn supports(cases: &[Case]) -> usize {
-    shared(cases).iter().enumerate().filter(|(i, first)| i == *first).count()
 }
 
 /// The loads of each support, in the order in which the supports come.

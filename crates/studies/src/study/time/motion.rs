@@ -258,8 +258,8 @@ fn indefinite(name: &str, network: &Network) -> String {
     )
 }
 
-/// The growth rate of the fastest motion that releases energy, 1/s; `None` if there is none. Where that motion cannot be worked out, as
-/// with points that have no mass, the rate is an upper bound.
+/// The growth rate of the fastest motion that releases energy, 1/s; `None` if there is none. The rate is an upper bound where the motion
+/// cannot be computed, for example if a point has no mass.
 ///
 /// `K + σ M` is positive definite for `σ > −ω²` of the lowest mode. Of a large network that cannot move as a rigid body, K itself is shown to
 /// be positive definite without a factor.

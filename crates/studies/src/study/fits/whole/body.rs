@@ -112,7 +112,9 @@ impl<'a> WholeBody<'a> {
         progress: &mut Progress,
     ) -> Result<(Network, WholeOutcome)> {
         let wanted = self.wanted(recipe, progress)?;
-        if recipe.masses > 0 && wanted.trained.iter().any(|target| self.measured(target).is_some()) {
+        // The finite elements have the moduli of the scene: they are no reference for a body that was measured.
+        let is_measured = wanted.trained.iter().any(|target| self.measured(target).is_some());
+        if recipe.masses > 0 && is_measured {
             let expected = "none where displacements are measured: masses are fitted to frequencies of finite elements with the moduli of the scene";
             return Err(Error::expected("masses", expected, recipe.masses));
         }
@@ -154,8 +156,6 @@ impl<'a> WholeBody<'a> {
             false => (found, wanted, Vec::new()),
         };
         let moduli = found_moduli(recipe, &object, &wanted, &found, &mesh)?;
-        // The finite elements have the moduli of the scene: they are no reference for a body that was measured.
-        let is_measured = wanted.trained.iter().any(|target| self.measured(target).is_some());
         let has_others = self.fine.is_some() || !recipe.supports.is_empty() || !recipe.other_supports.is_empty();
         let held_out = if has_others && !is_measured {
             self.held_out((recipe, held), &object.network(&none), &found.network, progress)?
