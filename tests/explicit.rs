@@ -109,6 +109,33 @@ fn single_precision_follows_double_precision() {
     }
 }
 
+/// A body a thousand times as far from the origin as it is long moves as it does at the origin. Its positions in double precision are rounded to
+/// 1e-13 of its length; in single precision they are measured from one of its points.
+#[test]
+fn bodies_far_from_the_origin_move_alike() {
+    for element in ["tet4", "hex8"] {
+        let (mesh, network) = cube(element, 3);
+        let masses = lumped_masses(&mesh, 1000.0, 1.0, Lumping::Hrz);
+        let held: Vec<usize> = (0..mesh.point_count()).filter(|p| mesh.points[p * 3] == 0.0).collect();
+        let mut support = Support::free(&mesh);
+        support.fix(&held, &[0, 1, 2], 3);
+        let prepared = network.prepared_in::<f32>();
+        for account in [false, true] {
+            let moved = |far: f64| {
+                let points: Vec<f64> = mesh.points.iter().map(|x| x + far).collect();
+                let drive = Drive::default().gravity(&[-9.81; 3]);
+                let motion = Motion { support: support.clone(), drive, ..Motion::free(&*prepared, &points, &masses) };
+                let options = Options { account, ..explicit(1e-4) };
+                let mut simulation = Simulation::new(motion, options).unwrap();
+                (0..200).for_each(|_| assert_eq!(simulation.step().outcome, StepOutcome::Converged));
+                simulation.state().displacement.clone()
+            };
+            let (near, far) = (moved(0.0), moved(1000.0 * mesh.points.iter().fold(0.0f64, |a, x| a.max(*x))));
+            assert!(apart(&near, &far) < 1e-4, "{element}, account {account}: {:e}", apart(&near, &far));
+        }
+    }
+}
+
 /// Two points that meet: a spring of no length has no direction. The numbers are exact in both precisions.
 #[test]
 fn a_step_without_forces_leaves_the_state_before() {

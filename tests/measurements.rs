@@ -3,7 +3,7 @@
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit::report;
-use springfit::study::{FoundModuli, ModuliSearch, Outcome, Scene, run};
+use springfit::study::{FoundModuli, FoundModulus, ModuliSearch, Outcome, Scene, run};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -298,6 +298,9 @@ fn measured_bodies_are_not_compared_with_the_guess() {
     let text = text.replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
     let error = outcome(world.folder.path(), "masses.toml", &text).unwrap_err().to_string();
     assert!(error.contains("fit[0].masses: expected none where displacements are measured"), "{error}");
+    let error = outcome(world.folder.path(), "frequencies.toml", &text.replace("masses = 2", "frequencies = 2"));
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("fit[0].frequencies: expected none where displacements are measured"), "{error}");
 }
 
 /// What is measured belongs to points of the scene's mesh, of which a finer mesh has its own.
@@ -312,15 +315,119 @@ fn measured_points_need_not_be_points_of_the_finer_mesh() {
     }
 }
 
-/// Displacements of the finer body are no data beside measured ones.
+/// Displacements of finite elements with the moduli of the scene are no data beside measured ones, be they those of the mesh, of a finer one,
+/// or under loads that are made. Springs may be fitted to both, with a note.
 #[test]
 fn loads_without_measured_displacements_are_refused_beside_others() {
     let world = World::new(2);
     world.measure(2, (0.0, 1), |_| true);
-    let text = world.scene(2, Some(4), None, "unknowns = \"region-young\"");
-    let text = text.replace("measured = { file = \"shear.csv\" }\n", "");
-    let error = outcome(world.folder.path(), "mixed.toml", &text).unwrap_err().to_string();
-    assert!(error.contains("fit[0].loads") && error.contains("shear, which has none"), "{error}");
+    let measured = "measured = { file = \"shear.csv\" }\n";
+    for (finer, unknowns) in
+        [(Some(4), "region-young"), (None, "region-young"), (None, "body-moduli"), (None, "moduli")]
+    {
+        let text = world.scene(2, finer, None, &format!("unknowns = \"{unknowns}\""));
+        let error = outcome(world.folder.path(), "mixed.toml", &text.replace(measured, "")).unwrap_err().to_string();
+        assert!(error.contains("fit[0].loads") && error.contains("shear, which has none"), "{error}");
+        let text = text.replace("\"squeeze\"]", "\"squeeze\", \"made\"]");
+        let error = outcome(world.folder.path(), "made.toml", &text).unwrap_err().to_string();
+        assert!(error.contains("fit[0].loads") && error.contains("which has none"), "{unknowns}: {error}");
+    }
+    let springs = world.scene(2, None, None, "").replace("start = \"exact\"", "start = \"offdiag\"");
+    let found = outcome(world.folder.path(), "springs.toml", &springs.replace(measured, "")).unwrap();
+    let notes = report::notes(&found);
+    let guess =
+        "under shear, loads made from the mesh are those of finite elements with the moduli of the scene, a guess";
+    assert!(notes.iter().any(|note| note.contains(guess)), "{notes:?}");
+    // A load of the scene that is not fitted is compared with the guess.
+    let text = world.scene(2, None, None, "unknowns = \"region-young\"").replace(measured, "");
+    let text = text.replace("\"pull\", \"shear\", \"squeeze\"]", "\"pull\", \"squeeze\"]");
+    let notes = report::notes(&outcome(world.folder.path(), "other.toml", &text).unwrap());
+    assert!(
+        notes.iter().any(|note| note.contains("errors under shear are those against finite elements")),
+        "{notes:?}"
+    );
+}
+
+/// Springs that follow the measured load to less than a millionth at the least ρ: it is the loads that choose ρ, with the moduli of the scene, which
+/// keep the start, and the report says so.
+#[test]
+fn a_fit_that_validation_holds_back_says_so() {
+    let world = World::new(2);
+    world.measure(2, (0.0, 1), |_| true);
+    let scene = world.scene(2, None, None, "").replace("start = \"exact\"", "start = \"offdiag\"");
+    let scene = scene.replace("[\"pull\", \"shear\", \"squeeze\"]", "[\"pull\"]");
+    let found = outcome(world.folder.path(), "held.toml", &scene).unwrap();
+    let notes = report::notes(&found);
+    let says = |words: &str| notes.iter().any(|note| note.contains(words));
+    assert!(says("what has chosen rho does not want it") && !says("cannot do better"), "{notes:?}");
+    assert!(
+        says("under loads made from the mesh are those of finite elements with the moduli of the scene"),
+        "{notes:?}"
+    );
+    let free = scene.replace("start = \"offdiag\"", "start = \"offdiag\"\nregularization = 1e-6");
+    let found = outcome(world.folder.path(), "free.toml", &free).unwrap();
+    assert!(found.fits[0].kind.whole().unwrap().fitted.iter().all(|load| load.after < 1e-4));
+}
+
+/// The moduli with a finer mesh are the least squares of that mesh: its exact network alone finds the same with the same data, and its
+/// intervals are those without the part of the meshes.
+#[test]
+fn a_finer_mesh_gives_its_own_least_squares() {
+    let world = World::new(4);
+    for (keys, seed) in [("region-young", 1), ("region-moduli", 2), ("region-moduli", 3)] {
+        let sigmas = world.measure(2, (0.02, seed), |_| true);
+        let keys = format!("unknowns = \"{keys}\"");
+        let found =
+            |size: usize, finer: Option<usize>| moduli(&world.find(size, finer, Some(&sigmas), &keys).unwrap()).clone();
+        let (own, corrected) = (found(4, None), found(2, Some(4)));
+        assert!((own.misfit.unwrap() / corrected.misfit.unwrap() - 1.0).abs() < 1e-4, "{own:?} {corrected:?}");
+        for (own, corrected) in own.all.iter().zip(&corrected.all) {
+            // The derivatives of the one are differences.
+            assert!((corrected.factor / own.factor - 1.0).abs() < 1e-3, "{own:?} {corrected:?}");
+            let half = |modulus: &FoundModulus| modulus.interval.map(|[low, high]| (high / low).ln() / 2.0).unwrap();
+            let of_noise = (half(corrected).powi(2) - (1.96 * corrected.mesh.unwrap()).powi(2)).sqrt();
+            assert!((of_noise / half(own) - 1.0).abs() < 0.02, "{of_noise} {own:?} {corrected:?}");
+        }
+    }
+}
+
+/// Where a point is held its displacement is known: what was measured there changes nothing.
+#[test]
+fn noise_at_held_points_is_no_data() {
+    let world = World::new(2);
+    let sigmas = world.measure(2, (0.02, 5), |_| true);
+    let keys = "unknowns = \"region-young\"\nvalidate = \"discrepancy\"";
+    let before = world.find(2, None, Some(&sigmas), keys).unwrap();
+    for (name, _) in LOADS {
+        let path = world.folder.path().join(format!("{name}.csv"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        let moved = text.replace(",0.0,0.0,0.0\n", &format!(",{:?},0.0,{:?}\n", sigmas[0], -3.0 * sigmas[0]));
+        assert_ne!(text, moved);
+        std::fs::write(path, moved).unwrap();
+    }
+    assert_eq!(moduli(&before), moduli(&world.find(2, None, Some(&sigmas), keys).unwrap()));
+}
+
+/// A search without ρ that follows a fit with a large one finds its optimum, which is that of a fit without ρ.
+#[test]
+fn searches_without_regularization_find_their_optimum() {
+    let world = World::new(2);
+    for seed in 0..10 {
+        let sigmas = world.measure(2, (0.02, seed), |_| true);
+        let find = |keys: &str| {
+            let keys = format!("unknowns = \"region-moduli\"\n{keys}");
+            moduli(&world.find(2, None, Some(&sigmas), &keys).unwrap()).clone()
+        };
+        let free = find("");
+        for keys in ["regularization = 1e-2", "regularization = 1.0", "validate = \"discrepancy\""] {
+            let held = find(keys);
+            assert_eq!(held.search, ModuliSearch::Finished, "{seed} {keys}");
+            for (held, free) in held.all.iter().zip(&free.all) {
+                let ([low, high], [least, most]) = (held.interval.unwrap(), free.interval.unwrap());
+                assert!(low < 1.01 * least && high > 0.99 * most, "{seed} {keys}: {held:?} {free:?}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -339,7 +446,7 @@ fn a_finer_mesh_removes_the_error_of_the_network() {
     let alone = world.find(2, None, None, "unknowns = \"region-young\"").unwrap();
     let corrected = world.find(2, Some(4), None, "unknowns = \"region-young\"").unwrap();
     let worst = |outcome: &Outcome| {
-        let error = |m: &springfit::study::FoundModulus| m.factor / TRUTH[usize::from(m.name.contains("upper"))] - 1.0;
+        let error = |m: &FoundModulus| m.factor / TRUTH[usize::from(m.name.contains("upper"))] - 1.0;
         moduli(outcome).all.iter().map(|m| error(m).abs()).fold(0.0, f64::max)
     };
     println!("{:.4} alone, {:.4} with a finer mesh", worst(&alone), worst(&corrected));
@@ -394,6 +501,7 @@ fn wrong_noise_is_named() {
     let young = "unknowns = \"region-young\"";
     let large = error(Some(&[1.0, 1e-3, 1e-3]), young);
     assert!(large.contains("noise below the displacements under \"pull\"") && large.contains("1.000e0 m"), "{large}");
+    assert!(large.contains("load[0].measured.sigma") && !large.contains("fit[0]"), "{large}");
     let negative = error(Some(&[-1.0, 1e-3, 1e-3]), young);
     assert!(negative.contains("load[0].measured.sigma"), "{negative}");
     let none = error(None, "unknowns = \"region-young\"\nvalidate = \"discrepancy\"");

@@ -1,5 +1,6 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
+use crate::coarse::block;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit::fit::{CellFits, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells};
@@ -12,8 +13,9 @@ use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
     Balanced, BodyRegions, DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares,
-    ModuliParts, ModuliSharing, NodalLoad, Object, Residual, ResidualForces, Target, Unknowns, Validation, Wanted,
-    Weighing, WholeFit, WholeSettings, fit_whole, made_loads, raise_idle, random_loads, varied_loads,
+    ModuliParts, ModuliSharing, NodalLoad, Object, Pressure, Residual, ResidualForces, Target, Unknowns, Validation,
+    Wanted, Weighing, WholeFit, WholeSettings, fit_whole, made_loads, ninety_five, raise_idle, random_loads,
+    varied_loads,
 };
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -269,7 +271,7 @@ fn moduli_of_two_halves_come_back() {
         let u = system.solve(&factor, &load.forces).0;
         Target::new(load.name, body.support.clone(), load.forces, u)
     };
-    let loads = varied_loads(&body.mesh, &body.support, 1.0, 24, 5);
+    let loads = varied_loads(&body.mesh, &body.support, 1.0, Pressure::Uniform, (24, 5));
     let trained: Vec<Target> = loads.into_iter().map(moved).collect();
     let wanted = Wanted { trained, ..Wanted::default() };
     let settings = WholeSettings {
@@ -292,6 +294,64 @@ fn moduli_of_two_halves_come_back() {
         assert!(stage.objective.windows(2).all(|pair| pair[1] < pair[0]), "{:?}", stage.objective);
     }
     assert!(found.curve[0].objective.len() > 1);
+}
+
+/// Student's distribution in the tables of Abramowitz and Stegun (1964), table 26.10, to their five figures; beyond 1000 degrees of freedom by its
+/// expansion, which meets the sums there.
+#[test]
+fn few_residuals_have_the_quantiles_of_student() {
+    for (freedom, deviations) in [
+        (1, 12.706),
+        (2, 4.303),
+        (3, 3.182),
+        (4, 2.776),
+        (5, 2.571),
+        (10, 2.228),
+        (30, 2.042),
+        (60, 2.000),
+        (120, 1.980),
+    ] {
+        assert!((ninety_five(Some(freedom)) - deviations).abs() < 6e-4, "{freedom}: {}", ninety_five(Some(freedom)));
+    }
+    assert!((ninety_five(None) - 1.959964).abs() < 1e-6);
+    assert!((ninety_five(Some(999)) - ninety_five(Some(1000))).abs() < 1e-5);
+    assert!((ninety_five(Some(usize::MAX)) - ninety_five(None)).abs() < 1e-12);
+}
+
+/// Uniform tractions along a bar cancel everywhere but at its held ends, up to rounding: such a load is none, in every unit of length.
+#[test]
+fn loads_of_rounding_errors_are_none() {
+    let names = |size: f64| -> [Vec<String>; 2] {
+        let mesh = block("hex8", &[2.0 * size, size, size], &[4, 2, 2]);
+        let mut support = Support::free(&mesh);
+        ["xmin", "xmax"].iter().for_each(|side| support.fix(&mesh.groups[*side].points, &[0, 1, 2], 3));
+        let made = made_loads(&mesh, &support, 1.0);
+        let varied = varied_loads(&mesh, &support, 1.0, Pressure::Uniform, (12, 1));
+        [made, varied].map(|loads| loads.into_iter().map(|load| load.name).collect())
+    };
+    let [made, varied] = names(1.0);
+    assert!(!made.contains(&"stress xx".into()) && made.contains(&"stress yy".into()), "{made:?}");
+    for size in [1e-3, 0.01, 0.07, 3.0, 1e4] {
+        assert_eq!(names(size), [made.clone(), varied.clone()], "{size}");
+    }
+}
+
+/// Loads that choose ρ or are held out have no load of the fit among them; the patches and fields of a seed are the same with either
+/// pressure.
+#[test]
+fn varied_loads_of_two_seeds_have_none_in_common() {
+    let mesh = block("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
+    let mut support = Support::free(&mesh);
+    support.fix(&mesh.groups["xmin"].points, &[0, 1, 2], 3);
+    let loads = |pressure, seed| varied_loads(&mesh, &support, 1.0, pressure, (16, seed));
+    let (fitted, own) = (loads(Pressure::Uniform, 1), loads(Pressure::Varying, 1));
+    assert_eq!(fitted[1..], own[1..]);
+    assert!(fitted[0].name == "pressure" && own[0].name == "varying pressure" && fitted[0].forces != own[0].forces);
+    for seed in [2, 1001] {
+        for other in loads(Pressure::Varying, seed) {
+            assert!(fitted.iter().chain(&own).all(|load| load.forces != other.forces), "{}", other.name);
+        }
+    }
 }
 
 /// The moduli of two regions, one four times as stiff, from displacements with noise: 95 % intervals hold the truth in at least nine of
@@ -317,7 +377,7 @@ fn intervals_of_moduli_hold_the_truth() {
     let network = object.network(&truth);
     let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
     let factor = system.factorize().unwrap().unwrap();
-    let loads = varied_loads(&body.mesh, &body.support, 1.0, 6, 5);
+    let loads = varied_loads(&body.mesh, &body.support, 1.0, Pressure::Uniform, (6, 5));
     let exact: Vec<Target> = loads
         .into_iter()
         .map(|load| {

@@ -14,7 +14,7 @@ pub struct Account {
     pub time: f64,
     /// The kinetic energy `½ vᵀ M v`, J.
     pub kinetic: f64,
-    /// The elastic energy U(x), J; NaN if the model has none.
+    /// The elastic energy beyond that at rest, `U(x) − U(X)`, J; NaN if the model has none.
     pub elastic: f64,
     /// The momentum `Σ m v`, `[dimension]`, kg m/s.
     pub momentum: Vec<f64>,

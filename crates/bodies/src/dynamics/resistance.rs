@@ -25,6 +25,8 @@ pub(super) struct Resistance<'a> {
     pub held: Vec<bool>,
     /// The largest coordinate, m.
     pub extent: f64,
+    /// The energy of the model at rest, J: springs of rest length zero have some.
+    still: f64,
     x: Vec<f64>,
 }
 
@@ -43,6 +45,7 @@ impl<'a> Resistance<'a> {
             mass: motion.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect(),
             held: motion.held(),
             extent: motion.points.iter().fold(0.0, |extent, x| extent.max(x.abs())),
+            still: motion.model.energy(motion.points).unwrap_or(0.0),
             x: motion.points.to_vec(),
         };
         resistance.direct(&vec![0.0; motion.points.len()], true);
@@ -95,13 +98,14 @@ impl<'a> Resistance<'a> {
         (energy + force.iter().sum::<f64>()).is_finite().then_some(energy)
     }
 
+    /// The elastic energy beyond that at rest, J.
     pub fn energy(&mut self, u: &[f64]) -> Option<f64> {
         if self.linear {
             let mut force = vec![0.0; u.len()];
             return Some(self.rest.refill(u, &mut force));
         }
         self.place(u);
-        self.model.energy(&self.x)
+        Some(self.model.energy(&self.x)? - self.still)
     }
 
     /// `C v`, N.

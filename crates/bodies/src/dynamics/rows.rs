@@ -4,7 +4,7 @@
 use super::motion::Motion;
 use super::pass::{self, PIECE};
 use super::state::MotionState;
-use crate::model::{RowForces, Rows};
+use crate::model::{RowForces, Rows, origin};
 use crate::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 use rayon::prelude::*;
 use std::fmt::Debug;
@@ -46,7 +46,7 @@ struct NetworkRows<'a, N> {
     network: &'a dyn RowForces<N>,
     dimension: usize,
     h: N,
-    /// The positions at rest, m.
+    /// The positions at rest, m, from a place that all points share.
     rest: Vec<[N; 4]>,
     /// `h M⁻¹`, s/kg.
     share: Vec<[N; 4]>,
@@ -69,7 +69,9 @@ impl<'a, N: Coordinate> NetworkRows<'a, N> {
         h: f64,
         inverse: &[f64],
     ) -> NetworkRows<'a, N> {
-        let rest = rows(points, dimension, N::of);
+        let origin = origin::<N>(points, dimension);
+        let near: Vec<f64> = points.iter().enumerate().map(|(i, x)| x - origin[i % dimension]).collect();
+        let rest = rows(&near, dimension, N::of);
         let share = rows(inverse, dimension, |inverse| N::of(h * inverse));
         let [u, v, x, force] = std::array::from_fn(|_| vec![[N::zero(); 4]; rest.len()]);
         let (h, loads, before) = (N::of(h), Vec::new(), Vec::new());

@@ -51,6 +51,7 @@ pub use moments::Moments;
 pub use network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 pub(crate) use numbering::places;
 pub use patches::patch_springs;
+pub(crate) use prepared::origin;
 pub use prepared::{Precision, PreparedNetwork};
 pub use pressure::smoothed_pressure;
 pub use rows::{RowForces, Rows};

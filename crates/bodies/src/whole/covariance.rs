@@ -4,7 +4,9 @@
 
 use super::displacements::Displacements;
 use super::linearized::{LeastSquares, PRODUCT};
+use super::student::ninety_five;
 use crate::error::{Error, Result};
+use crate::springs::{dot, norm};
 use nalgebra::{DMatrix, DVector};
 
 /// The unknowns that are tried at most: each takes the solution of every load.
@@ -16,8 +18,6 @@ const PART: f64 = 0.05;
 
 /// The factor that the 95 % interval of a weak combination of unknowns exceeds on either side.
 pub const WEAK: f64 = 2.0;
-/// Deviations on either side that hold 95 % of a normal distribution.
-pub const NINETY_FIVE: f64 = 1.96;
 
 /// What the residuals say of the unknowns.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +30,9 @@ pub struct Determination {
     pub shifts: Vec<f64>,
     /// The standard deviation of a residual: the relative error of a displacement, with that of one load as its unit.
     pub residual: f64,
+    /// Deviations on either side that hold 95 %: those of a normal distribution where the noise is known, and else of Student's with n − m
+    /// degrees of freedom.
+    pub reach: f64,
     /// Combinations that the displacements hardly see, or not at all, each by its unknowns: those whose 95 % intervals reach beyond the
     /// factor 2.
     pub weak: Vec<Vec<usize>>,
@@ -54,20 +57,29 @@ impl Determination {
             let unit: Vec<f64> = (0..m).map(|q| f64::from(u8::from(p == q))).collect();
             Ok(at.forward(&unit, PRODUCT)?.concat())
         };
-        let columns = (0..m).map(|p| Ok(DVector::from_vec(column(p)?))).collect::<Result<Vec<DVector<f64>>>>()?;
-        let seen = problem.observations();
+        let columns = (0..m).map(column).collect::<Result<Vec<_>>>()?;
+        Determination::by(&columns, &at.residuals.concat(), problem.observations(), noise)
+    }
+
+    /// The same by the derivatives of the residuals in each unknown, of which `seen` are known.
+    ///
+    /// # Errors
+    /// There are as many unknowns as residuals that are known, or more.
+    pub fn by(columns: &[Vec<f64>], residuals: &[f64], seen: usize, noise: Option<f64>) -> Result<Determination> {
+        let m = columns.len();
         if seen <= m {
             return Err(Error::expected("displacements", format!("more than {m} that are known"), seen));
         }
-        let residual = (at.square() / (seen - m) as f64).sqrt();
+        let residual = (dot(residuals, residuals) / (seen - m) as f64).sqrt();
         let size = noise.unwrap_or(residual);
-        let norms: Vec<f64> = columns.iter().map(|column| column.norm()).collect();
+        let reach = ninety_five(noise.is_none().then_some(seen - m));
+        let norms: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
         let largest = norms.iter().copied().fold(0.0, f64::max);
         let is_seen = |p: usize| norms[p] > UNSEEN * largest;
         // In units in which every unknown changes the residuals alike.
         let scaled = DMatrix::from_fn(m, m, |p, q| {
             if is_seen(p) && is_seen(q) {
-                columns[p].dot(&columns[q]) / (norms[p] * norms[q])
+                dot(&columns[p], &columns[q]) / (norms[p] * norms[q])
             } else {
                 f64::from(u8::from(p == q))
             }
@@ -88,8 +100,7 @@ impl Determination {
             }
             Some(size * variance.sqrt() / norms[p])
         };
-        let residuals = DVector::from_vec(at.residuals.concat());
-        let slope = |p: usize, _| if is_seen(p) { columns[p].dot(&residuals) / norms[p] } else { 0.0 };
+        let slope = |p: usize, _| if is_seen(p) { dot(&columns[p], residuals) / norms[p] } else { 0.0 };
         let slopes = DVector::from_fn(m, slope);
         let mut shifts = vec![0.0; m];
         for (value, vector) in pairs().filter(|(value, _)| **value > UNSEEN * UNSEEN) {
@@ -99,11 +110,11 @@ impl Determination {
         let mut weak: Vec<Vec<usize>> = (0..m).filter(|&p| !is_seen(p)).map(|p| vec![p]).collect();
         for (value, vector) in pairs() {
             let own: Vec<usize> = (0..m).filter(|&p| is_seen(p) && vector[p].abs() > PART).collect();
-            let width = |p: usize| NINETY_FIVE * size * vector[p].abs() / (value.sqrt() * norms[p]);
+            let width = |p: usize| reach * size * vector[p].abs() / (value.sqrt() * norms[p]);
             if own.iter().any(|&p| !(*value > UNSEEN * UNSEEN) || width(p) > WEAK.ln()) {
                 weak.push(own);
             }
         }
-        Ok(Determination { deviations: (0..m).map(deviation).collect(), shifts, residual, weak })
+        Ok(Determination { deviations: (0..m).map(deviation).collect(), shifts, residual, reach, weak })
     }
 }

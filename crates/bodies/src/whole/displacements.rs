@@ -77,13 +77,14 @@ impl<'a> Displacements<'a> {
         Ok(Displacements { object, targets, frequencies, scales, groups, systems, blocks, guesses })
     }
 
-    /// The number of displacements that are known and free to change.
-    pub(super) fn observations(&self) -> usize {
+    /// The number of displacements that are known and free to change, and of frequencies.
+    pub fn observations(&self) -> usize {
         let free = |target: &Target| {
             let known = target.weights.iter().zip(&target.support.prescribed);
             known.filter(|(weight, held)| **weight > 0.0 && held.is_none()).count()
         };
-        self.targets.iter().map(|target| free(target)).sum()
+        let frequencies = self.frequencies.map_or(0, |frequencies| frequencies.squares.len());
+        self.targets.iter().map(|target| free(target)).sum::<usize>() + frequencies
     }
 
     /// Forgets the displacements from which the next equilibrium is searched. The result at the next θ then depends on

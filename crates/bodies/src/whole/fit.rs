@@ -41,6 +41,39 @@ pub struct WholeFit {
     pub cancelled: bool,
 }
 
+impl WholeFit {
+    /// The fit with unknowns θ that were found in another way.
+    ///
+    /// # Errors
+    /// The network is not stable at θ, or the equations do not fit into memory.
+    pub fn moved(self, object: &Object, wanted: &Wanted, theta: &[f64]) -> Result<WholeFit> {
+        let problem = Displacements::new(object, wanted.trained.iter().collect(), wanted.frequencies.as_ref())?;
+        let judge = Displacements::new(object, wanted.validation.loads().iter().collect(), None)?;
+        self.ended(object, (&problem, &judge), theta)
+    }
+
+    fn ended(
+        mut self,
+        object: &Object,
+        (problem, judge): (&Displacements, &Displacements),
+        theta: &[f64],
+    ) -> Result<WholeFit> {
+        let after = |problem: &Displacements| {
+            let fell = || {
+                let problem = "the fitted network has become unstable under a load";
+                Error::at("network", problem).of_kind(ErrorKind::Infeasible)
+            };
+            problem.forget();
+            problem.errors(theta)?.ok_or_else(fell)
+        };
+        (self.trained[1], self.validated[1]) = (after(problem)?, after(judge)?);
+        (self.network, self.range) = (object.network(theta), object.range(theta));
+        self.change = object.unknowns().factors(theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);
+        self.theta = theta.to_vec();
+        Ok(self)
+    }
+}
+
 /// Fits the constants of the object. `from` is a state of an earlier run of the same fit. A network that is unstable at
 /// the start is not an error.
 ///
@@ -114,22 +147,10 @@ pub fn fit_whole(
         snapshot.stage = stages;
     }
     watch(Some(&snapshot));
-    found.network = object.network(&best.theta);
     found.exceeds = object.range(&best.theta) > settings.range.max(found.range);
-    found.range = object.range(&best.theta);
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
-    problem.forget();
-    judge.forget();
-    let after = |problem: &Displacements| {
-        let fell = || {
-            Error::at("network", "the fitted network has become unstable under a load").of_kind(ErrorKind::Infeasible)
-        };
-        problem.errors(&best.theta)?.ok_or_else(fell)
-    };
-    found.trained = [trained, after(&problem)?];
-    found.validated = [validated, after(&judge)?];
-    found.change = object.unknowns().factors(&best.theta).into_iter().map(|c| c.max(1.0 / c)).fold(1.0, f64::max);
-    found.theta = best.theta;
+    (found.trained[0], found.validated[0]) = (trained, validated);
+    let mut found = found.ended(object, (&problem, &judge), &best.theta)?;
     (found.steps, found.limited, found.cancelled) = (steps, snapshot.is_limited(), cancelled);
     (found.curve, found.left_out) = (snapshot.curve, snapshot.left_out);
     Ok(found)

@@ -34,6 +34,9 @@ const LEAST_RADIUS: f64 = 1e-6;
 const ACCEPTED: f64 = 1e-3;
 
 impl GaussNewton {
+    /// For few unknowns, which are found to the last digits.
+    pub const PRECISE: GaussNewton = GaussNewton { products: 100, accuracy: 1e-6, decrease: 1e-9 };
+
     /// Minimises from θ in at most `iterations` steps, to the lowest point. `visit` is called with each point and may end
     /// the search by returning false.
     pub(super) fn descend(

@@ -18,8 +18,13 @@ pub struct NodalLoad {
     pub forces: Vec<f64>,
 }
 
-/// The name of the pressure among varied loads.
+/// The name of the uniform pressure among varied loads.
 pub const PRESSURE: &str = "pressure";
+/// Forces below this share of the largest one of a load are the rounding of forces that cancel, such as those of uniform tractions between held
+/// ends.
+const ROUNDING: f64 = 1e-10;
+/// Added to the seed of the slopes of a pressure that varies, so that the loads after it are the same with either pressure.
+const SLOPES: u64 = 0x9e37_79b9;
 /// The number of waves across the object in the random fields.
 const WAVES: f64 = 0.5;
 /// The number of sines of which a component of a random field is the sum.
@@ -78,9 +83,20 @@ pub fn made_loads(mesh: &Mesh, support: &Support, thickness: impl Into<CellMap<f
                 .expect("a mesh has cells to act on"),
         }
     }));
-    // A load that moves nothing has no information: a chain of rods has no sides, or all sides are held.
-    let acts = |load: &NodalLoad| load.forces.iter().zip(&support.prescribed).any(|(f, p)| p.is_none() && *f != 0.0);
+    acting(loads, support)
+}
+
+/// The loads that move something: a chain of rods has no sides, all sides may be held, and tractions may cancel wherever points are free.
+fn acting(loads: Vec<NodalLoad>, support: &Support) -> Vec<NodalLoad> {
+    let acts = |load: &NodalLoad| {
+        let least = ROUNDING * largest(&load.forces);
+        load.forces.iter().zip(&support.prescribed).any(|(f, held)| held.is_none() && f.abs() > least)
+    };
     loads.into_iter().filter(acts).collect()
+}
+
+fn largest(forces: &[f64]) -> f64 {
+    forces.iter().fold(0.0, |largest, f| largest.max(f.abs()))
 }
 
 /// "random 1", …: smooth body forces, each component a sum of sines with up to half a wave across the object. The same
@@ -114,25 +130,43 @@ pub fn random_loads(
     (1..=count).map(&mut field).collect()
 }
 
-/// "pressure" on the whole boundary, then "patch 1", …: tractions of random direction around a random place of the boundary, and
+/// The pressure with which varied loads begin. Few other loads see the resistance to a change of volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pressure {
+    /// The same everywhere: "pressure".
+    Uniform,
+    /// Linear in the position, with slopes from the seed: "varying pressure". No other seed has it, as none has the other varied loads.
+    Varying,
+}
+
+/// A pressure on the whole boundary, then "patch 1", …: tractions of random direction around a random place of the boundary, and
 /// "field 1", …: body forces that are linear in the position. Every third is a field. The same seed always gives the same loads.
 pub fn varied_loads(
     mesh: &Mesh,
     support: &Support,
     thickness: impl Into<CellMap<f64>>,
-    count: usize,
-    seed: u64,
+    pressure: Pressure,
+    (count, seed): (usize, u64),
 ) -> Vec<NodalLoad> {
     let thickness = &thickness.into();
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);
-    let pressure = boundary_forces(mesh, &|_: &[f64], n: &[f64]| n.iter().map(|n| -n).collect(), thickness);
+    let uniform = boundary_forces(mesh, &|_: &[f64], n: &[f64]| n.iter().map(|n| -n).collect(), thickness);
+    let least = ROUNDING * largest(&uniform);
     let on_boundary: Vec<usize> =
-        (0..mesh.point_count()).filter(|p| pressure[p * d..(p + 1) * d].iter().any(|f| *f != 0.0)).collect();
+        (0..mesh.point_count()).filter(|p| uniform[p * d..(p + 1) * d].iter().any(|f| f.abs() > least)).collect();
     let weights = nodal_forces(mesh, &Selection::Everything, &Action::body(&vec![1.0; d]), thickness)
         .expect("a mesh has cells to act on");
-    let mut loads = vec![NodalLoad { name: PRESSURE.into(), forces: pressure }];
+    let mut loads = vec![match pressure {
+        Pressure::Uniform => NodalLoad { name: PRESSURE.into(), forces: uniform },
+        Pressure::Varying => {
+            let mut random = StdRng::seed_from_u64(seed ^ SLOPES);
+            let slopes: Vec<f64> = (0..d).map(|_| random.random_range(-1.0..1.0)).collect();
+            let push = |x: &[f64], n: &[f64]| n.iter().map(|n| -n * (1.0 + dot(&slopes, &frame.away(x)))).collect();
+            NodalLoad { name: "varying pressure".into(), forces: boundary_forces(mesh, &push, thickness) }
+        }
+    }];
     for index in 1..count {
         let direction = unit(&(0..d).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>());
         if index % 3 == 0 || on_boundary.is_empty() {
@@ -153,8 +187,7 @@ pub fn varied_loads(
         };
         loads.push(NodalLoad { name: format!("patch {index}"), forces: boundary_forces(mesh, &around, thickness) });
     }
-    let acts = |load: &NodalLoad| load.forces.iter().zip(&support.prescribed).any(|(f, p)| p.is_none() && *f != 0.0);
-    loads.into_iter().filter(acts).collect()
+    acting(loads, support)
 }
 
 /// The middle of the object, and its direction away from the supports.

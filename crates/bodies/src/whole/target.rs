@@ -42,7 +42,7 @@ impl Target {
     }
 
     /// `√(w_l W)/‖ū_l‖_W`; `None` if no displacement is known that is free to change.
-    pub(super) fn scale(&self) -> Option<Vec<f64>> {
+    pub fn scale(&self) -> Option<Vec<f64>> {
         let known = || self.displacement.iter().zip(&self.weights).map(|(u, w)| w.sqrt() * u);
         // The square may overflow.
         let largest = known().fold(0.0, |a: f64, u| a.max(u.abs()));

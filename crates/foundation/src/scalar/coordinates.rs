@@ -8,6 +8,10 @@ use std::fmt::Debug;
 
 /// The numbers that coordinates have: `f64`, or `f32` with half the digits in half the memory.
 pub trait Coordinate: Float + Default + Debug + Send + Sync + 'static {
+    /// Whether positions are measured from a point of the body before they are rounded, because the digits that they lose far from zero
+    /// matter.
+    const IS_SHORT: bool;
+
     /// The nearest number to x.
     fn of(x: f64) -> Self;
 

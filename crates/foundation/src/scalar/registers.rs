@@ -34,6 +34,8 @@ macro_rules! registers {
         $set:ident.$turn:ident($machine:ty), { $($own:tt)* }
     ) => {
         impl Coordinate for $number {
+            const IS_SHORT: bool = <$number>::DIGITS < f64::DIGITS;
+
             #[inline(always)]
             fn of(x: f64) -> $number {
                 x as $number

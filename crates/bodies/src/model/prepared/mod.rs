@@ -109,9 +109,10 @@ impl<'a, N: Coordinate> PreparedNetwork<'a, N> {
     /// The forces of the prepared springs.
     fn forces_in<const D: usize>(&self, x: &[f64], force: &mut [f64]) -> bool {
         let points = x.as_chunks::<D>().0;
+        let origin = origin::<N>(x, D);
         let position = |point: usize| {
             let mut row = [N::zero(); 4];
-            (0..D).for_each(|k| row[k] = N::of(points[point][k]));
+            (0..D).for_each(|k| row[k] = N::of(points[point][k] - origin[k]));
             row
         };
         self.with_rooms(|rooms| {
@@ -122,6 +123,11 @@ impl<'a, N: Coordinate> PreparedNetwork<'a, N> {
             sound
         })
     }
+}
+
+/// The place from which positions `[points × dimension]` are measured: springs see their differences alone.
+pub(crate) fn origin<N: Coordinate>(x: &[f64], dimension: usize) -> [f64; 3] {
+    std::array::from_fn(|k| if N::IS_SHORT && k < dimension { x.get(k).copied().unwrap_or(0.0) } else { 0.0 })
 }
 
 /// The order of the points: as they are numbered, or the order from the outside in if it brings neighbours nearer to

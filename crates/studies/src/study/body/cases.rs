@@ -43,6 +43,15 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
         let measured = load.measured.as_ref().map(|entry| read_measured(scene, entry, mesh)).transpose();
         let at = |e: Error| scene.at(&format!("load[{i}]"), e.under("measured"));
         case.measured = measured.map_err(|e| e.placed(at))?;
+        if let (Some(field), Some(sigma)) = (&case.measured, case.noise) {
+            let known = field.displacements.iter().zip(&case.support.prescribed);
+            let free: Vec<f64> = known.filter(|(_, held)| held.is_none()).filter_map(|(u, _)| *u).collect();
+            let rms = (free.iter().map(|u| u * u).sum::<f64>() / free.len().max(1) as f64).sqrt();
+            if !(sigma < rms) {
+                let expected = format!("noise below the displacements under \"{}\", {rms:.3e} m (rms)", case.name);
+                return Err(at(Error::expected("sigma", expected, format!("{sigma:.3e} m"))));
+            }
+        }
     }
     Ok((fixed, cases))
 }

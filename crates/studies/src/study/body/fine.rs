@@ -13,7 +13,7 @@ use crate::study::fits::{Answers, Finer, RegionFactors};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 use crate::whole::{BodyRegions, NodalLoad};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// A finer mesh of the same body.
@@ -258,7 +258,14 @@ impl Finer for FineBody {
     }
 
     fn coarseness(&self, mesh: &Mesh) -> f64 {
-        (self.mesh.point_count() as f64 / mesh.point_count() as f64).powf(1.0 / mesh.cell_dimension() as f64)
+        let kinds = |mesh: &Mesh| mesh.blocks.iter().map(|block| block.element.name.clone()).collect::<BTreeSet<_>>();
+        let cells = |mesh: &Mesh| mesh.blocks.iter().map(|block| block.cells().len()).sum::<usize>();
+        // Cells of different kinds have no sizes to compare; their points have distances.
+        let [fine, coarse] = match kinds(&self.mesh) == kinds(mesh) {
+            true => [&self.mesh, mesh].map(cells),
+            false => [&self.mesh, mesh].map(Mesh::point_count),
+        };
+        (fine as f64 / coarse as f64).powf(1.0 / mesh.cell_dimension() as f64)
     }
 
     fn moments(&self) -> Moments {

@@ -1,13 +1,13 @@
 //! A `[[fit]]` of a scene file.
 
-use super::exact::ExactEntry;
+use super::exact::{ExactEntry, without_groups};
 use super::keys::keys;
 use super::named::NamedFit;
 use super::published::PublishedEntry;
 use super::recipe::Recipe;
 use super::sampled::{FitFunctions, SampledEntry};
 use super::stiffness::StiffnessEntry;
-use super::whole::{WholeEntry, starts};
+use super::whole::{Start, WholeEntry, starts};
 use crate::error::{Error, Result};
 use crate::file;
 use crate::fit::Objective;
@@ -161,6 +161,11 @@ impl FitEntry {
             Kind::Whole => {
                 let (entry, sampled) = self.whole()?;
                 let recipes = entry.recipes(|| sampled.clone().check(folder, functions))?;
+                if let Some(springs) = &self.springs {
+                    if recipes.iter().any(|(_, recipe)| matches!(recipe.start, Start::Exact(..))) {
+                        return Err(without_groups(springs));
+                    }
+                }
                 let several = recipes.len() > 1;
                 let fit = |(start, recipe): (String, _)| {
                     let own = |name: &String| if several { format!("{name} from {start}") } else { name.clone() };

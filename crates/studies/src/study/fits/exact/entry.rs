@@ -33,8 +33,7 @@ impl ExactEntry {
     /// `nonnegative`, or keys contradict each other.
     pub fn recipe(&self, springs: Option<&[String]>) -> Result<ExactRecipe> {
         if let Some(springs) = springs {
-            let expected = "no groups: an exact network joins all nodes of each cell and has springs on its content";
-            return Err(Error::expected("springs", expected, format!("{springs:?}")));
+            return Err(without_groups(springs));
         }
         let energy = self.energy.as_deref().map(|name| ExactEnergy::named(name).map_err(|e| e.at_key("energy")));
         let volume = self.volume.as_deref().map(|name| VolumeSprings::named(name).map_err(|e| e.at_key("volume")));
@@ -55,4 +54,10 @@ impl ExactEntry {
         let positive = self.nonnegative.then(|| PositiveFit { across: self.across, ..PositiveFit::default() });
         Ok(ExactRecipe { energy, shear, volume, positive })
     }
+}
+
+/// The error of an exact network of some groups of springs.
+pub fn without_groups(springs: &[String]) -> Error {
+    let expected = "no groups: an exact network joins all nodes of each cell and has springs on its content";
+    Error::expected("springs", expected, format!("{springs:?}"))
 }

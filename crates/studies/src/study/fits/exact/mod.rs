@@ -9,7 +9,7 @@ mod positive;
 mod recipe;
 mod record;
 
-pub use entry::ExactEntry;
+pub use entry::{ExactEntry, without_groups};
 pub use outcome::ExactOutcome;
 pub use positive::PositiveRecord;
 pub use recipe::{ExactRecipe, spring_words};

@@ -1,7 +1,9 @@
 //! The body to which the whole-object fits of a scene are fitted.
 
+use super::evidence::Evidence;
 use super::finer::Finer;
 use super::found_moduli::found_moduli;
+use super::moduli::FoundModuli;
 use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
@@ -113,10 +115,12 @@ impl<'a> WholeBody<'a> {
     ) -> Result<(Network, WholeOutcome)> {
         let wanted = self.wanted(recipe, progress)?;
         // The finite elements have the moduli of the scene: they are no reference for a body that was measured.
-        let is_measured = wanted.trained.iter().any(|target| self.measured(target).is_some());
-        if recipe.masses > 0 && is_measured {
-            let expected = "none where displacements are measured: masses are fitted to frequencies of finite elements with the moduli of the scene";
-            return Err(Error::expected("masses", expected, recipe.masses));
+        let is_measured = self.is_measured(recipe, &wanted)?;
+        for (key, count) in [("masses", recipe.masses), ("frequencies", recipe.frequencies)] {
+            if count > 0 && is_measured {
+                let expected = "none where displacements are measured: frequencies are those of finite elements with the moduli of the scene";
+                return Err(Error::expected(key, expected, count));
+            }
         }
         let mut object = match start {
             Some((fits, network)) => self.springs(recipe, fits, network)?,
@@ -148,14 +152,20 @@ impl<'a> WholeBody<'a> {
             // An error about the checkpoint must not discard the result.
             progress(Event::Note(&format!("{name}: the checkpoint is not the last state: {e}")));
         }
-        let (found, wanted, mesh) = match found.stands && self.is_corrected(recipe, &wanted)? {
-            true => {
-                let corrected = self.corrected(recipe, (&object, &wanted), found, progress)?;
-                (corrected.found, corrected.wanted, corrected.deviations)
+        let is_of_few_moduli = recipe.is_of_few_moduli() && found.stands;
+        let (found, wanted, moduli) = match self.fine.filter(|_| is_of_few_moduli && is_measured) {
+            Some(fine) => {
+                let own = self.corrected(recipe, fine, (&object, &wanted), found, progress)?;
+                let moduli = found_moduli(recipe, &object, &own.found, own.evidence, &own.deviations);
+                (own.found, own.wanted, moduli)
             }
-            false => (found, wanted, Vec::new()),
+            None if is_of_few_moduli => {
+                let evidence = Evidence::of_network(&object, &wanted, &found)?;
+                let moduli = found_moduli(recipe, &object, &found, evidence, &[]);
+                (found, wanted, moduli)
+            }
+            None => (found, wanted, FoundModuli::default()),
         };
-        let moduli = found_moduli(recipe, &object, &wanted, &found, &mesh)?;
         let has_others = self.fine.is_some() || !recipe.supports.is_empty() || !recipe.other_supports.is_empty();
         let held_out = if has_others && !is_measured {
             self.held_out((recipe, held), &object.network(&none), &found.network, progress)?
@@ -167,8 +177,9 @@ impl<'a> WholeBody<'a> {
         } else {
             None
         };
+        let [guessed, unmeasured] = if is_measured { self.guessed(recipe, &wanted) } else { Default::default() };
         let own = WholeOutcome::of(recipe, &wanted, &found);
-        let outcome = WholeOutcome { is_measured, moduli, held_out, masses, ..own };
+        let outcome = WholeOutcome { is_measured, guessed, unmeasured, moduli, held_out, masses, ..own };
         Ok((found.network, outcome))
     }
 }

@@ -124,11 +124,10 @@ impl WholeEntry {
         let is_exact = matches!(start, Start::Exact(..));
         let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
         let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
-        // Few unknowns are found to the last digit.
         let few = unknowns.moduli().is_some_and(|sharing| sharing != ModuliSharing::Element);
         let settings = WholeSettings::default();
         let method = match few {
-            true => GaussNewton { products: 100, accuracy: 1e-6, decrease: 1e-9 },
+            true => GaussNewton::PRECISE,
             false => GaussNewton::default(),
         };
         let method = DescentMethod::GaussNewton(method);
@@ -185,6 +184,10 @@ impl WholeEntry {
                 ValidationRecipe::Loads(LoadSelection::new(names))
             }
         };
+        if unknowns == Sharing::RegionYoung && matches!(start, Start::Exact(_, VolumeSprings::Patches)) {
+            let expected = "\"points\" or \"cells\" with unknowns = \"region-young\": patches at a boundary of regions belong to both";
+            return Err(Error::expected("volume", expected, "\"patches\""));
+        }
         if unknowns.moduli().is_some() != is_exact {
             let found = format!("\"{}\" with the start \"{}\"", unknowns.name(), start.title());
             let expected = "\"moduli\", \"region-moduli\", \"region-young\" or \"body-moduli\" with the start \"exact\", and no others";
@@ -225,14 +228,33 @@ impl WholeEntry {
 /// The given lists of groups.
 ///
 /// # Errors
-/// There is no list, or a list has no group.
+/// There is no list, a list has no group or one twice, or two lists have the same groups.
 fn checked_supports(key: &str, supports: Option<&[Vec<String>]>) -> Result<Vec<Vec<String>>> {
     match supports {
         Some([]) => Err(Error::expected(key, "lists of groups that are held", "none")),
-        Some(supports) => match supports.iter().position(Vec::is_empty) {
-            Some(empty) => Err(Error::expected(format!("{key}[{empty}]"), "groups that are held", "none")),
-            None => Ok(supports.to_vec()),
-        },
+        Some(supports) => {
+            for (i, groups) in supports.iter().enumerate() {
+                let wrong = |found: String| {
+                    Err(Error::expected(format!("{key}[{i}]"), "groups that are held, each once", found))
+                };
+                if groups.is_empty() {
+                    return wrong("none".into());
+                }
+                if let Some(again) = (1..groups.len()).find(|&k| groups[..k].contains(&groups[k])) {
+                    return wrong(format!("\"{}\" again", groups[again]));
+                }
+                let alike =
+                    |other: &Vec<String>| other.len() == groups.len() && other.iter().all(|name| groups.contains(name));
+                if let Some(first) = supports[..i].iter().position(alike) {
+                    return Err(Error::expected(
+                        format!("{key}[{i}]"),
+                        "a support of its own",
+                        format!("{key}[{first}] again"),
+                    ));
+                }
+            }
+            Ok(supports.to_vec())
+        }
         None => Ok(Vec::new()),
     }
 }

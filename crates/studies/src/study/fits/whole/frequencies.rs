@@ -56,6 +56,17 @@ impl WholeBody<'_> {
             None => Moments::of_body(mesh, density, thickness),
         };
         let supports = self.all_supports(recipe)?;
+        for (held, _) in &supports {
+            let free = held.support.prescribed.iter().filter(|held| held.is_none()).count();
+            if 2 * count > free {
+                let expected = format!(
+                    "at most {}, half of the {free} free degrees of freedom held at {}, because as many frequencies more are compared",
+                    free / 2,
+                    held.words()
+                );
+                return Err(Error::expected("masses", expected, count));
+            }
+        }
         let (mut of_supports, mut wanted, mut others) = (Vec::new(), Vec::new(), Vec::new());
         for (done, (held, part)) in supports.iter().enumerate() {
             progress(Event::stage("frequencies of the body", done, supports.len()));

@@ -10,7 +10,7 @@ use crate::model::{Network, Support, exact_network};
 use crate::solve::Equations;
 use crate::study::fits::exact::spring_words;
 use crate::study::progress::Progress;
-use crate::whole::{Target, varied_loads};
+use crate::whole::{Pressure, Target, varied_loads};
 
 /// The number of loads for each support.
 const LOADS: usize = 30;
@@ -44,7 +44,9 @@ impl WholeBody<'_> {
         let mut all = Vec::new();
         for (held, part) in supports {
             let seed = recipe.seed.wrapping_add(SEED);
-            let make = |mesh: &Mesh, support: &Support| varied_loads(mesh, support, thickness, LOADS, seed);
+            let make = |mesh: &Mesh, support: &Support| {
+                varied_loads(mesh, support, thickness, Pressure::Varying, (LOADS, seed))
+            };
             let targets = self.made("loads", &held, (&make, seed), progress)?;
             let body = self.equations("supports", &held.support)?;
             let of_body = load_errors(&body, &targets)?;

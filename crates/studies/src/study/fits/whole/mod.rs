@@ -5,12 +5,15 @@
 mod body;
 mod corrected;
 mod entry;
+mod evidence;
 mod finer;
+mod finer_steps;
 mod fitting;
 mod found_moduli;
 mod frequencies;
 mod held_out;
 mod moduli;
+mod notes;
 mod objects;
 mod outcome;
 mod recipe;

@@ -31,6 +31,8 @@ pub struct WholeOutcome {
     pub exceeds: bool,
     /// The stages of the path, one for each ρ.
     pub curve: Vec<Stage>,
+    /// Whether the noise chose ρ.
+    pub is_by_noise: bool,
     /// How many times as large as the noise the residuals are, if the noise chose ρ.
     pub excess: Option<f64>,
     /// With leave-one-out validation the geometric mean of the relative errors after each stage.
@@ -45,6 +47,11 @@ pub struct WholeOutcome {
     pub is_exact: bool,
     /// Whether the displacements were measured, so that the moduli of the scene are a guess.
     pub is_measured: bool,
+    /// The loads of the fit and of its validation whose displacements are those of finite elements with the moduli of the scene, where
+    /// others are measured.
+    pub guessed: Vec<String>,
+    /// The loads of the scene without measured displacements, where moduli are found from measured ones.
+    pub unmeasured: Vec<String>,
     /// The moduli of the body or of its regions, if these are the unknowns.
     pub moduli: FoundModuli,
     /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
@@ -100,7 +107,7 @@ impl SupportPart {
     }
 
     /// For notes, after the support.
-    fn words(self) -> &'static str {
+    pub(super) fn words(self) -> &'static str {
         match self {
             SupportPart::Fitted => "",
             SupportPart::Consulted => ", a support that was not fitted",
@@ -179,8 +186,6 @@ pub struct ModelError {
     pub seconds_per_step: Option<f64>,
 }
 
-/// A relative error under a load from which on a fit has not enough unknowns of the right kind.
-const CAPACITY: f64 = 0.2;
 /// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -202,8 +207,10 @@ impl WholeOutcome {
             name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
         };
         let chosen = found.curve.iter().find(|stage| Some(stage.regularization) == found.regularization);
-        let excess = chosen.filter(|_| wanted.validation == Validation::Discrepancy).and_then(|stage| stage.validated);
+        let is_by_noise = wanted.validation == Validation::Discrepancy;
+        let excess = chosen.filter(|_| is_by_noise).and_then(|stage| stage.validated);
         WholeOutcome {
+            is_by_noise,
             excess,
             loads: recipe.loads.words(),
             validated: recipe.validation.words(),
@@ -222,6 +229,8 @@ impl WholeOutcome {
             cancelled: found.cancelled,
             is_exact: matches!(recipe.start, Start::Exact(..)),
             is_measured: false,
+            guessed: Vec::new(),
+            unmeasured: Vec::new(),
             moduli: FoundModuli::default(),
             held_out: Vec::new(),
             masses: None,
@@ -237,121 +246,5 @@ impl WholeOutcome {
             Hooke::Isotropic(own) => Hooke::Isotropic(Moduli { lambda: factor * own.lambda, mu: factor * own.mu }),
             Hooke::Anisotropic(_) => hooke.clone(),
         })
-    }
-
-    /// The largest relative error after the fit under the loads that it has seen.
-    fn largest_left(&self) -> f64 {
-        let loads = self.fitted.iter().chain(&self.judged);
-        loads.map(|load| load.after).filter(|error| error.is_finite()).fold(0.0, f64::max)
-    }
-
-    /// Notes for the reader, one sentence each.
-    pub fn notes(&self) -> Vec<String> {
-        let validated = match &self.validated[..] {
-            [] => String::new(),
-            loads => format!(", regularization rho chosen by {}", loads.join(", ")),
-        };
-        let done = match self.regularization {
-            Some(rho) => {
-                let (change, range) = (self.change, self.range);
-                format!(
-                    "rho {rho:.0e}, {} steps, constants changed by factors up to {change:.1}, range {range:.0}",
-                    self.steps
-                )
-            }
-            None if !self.stands => "the start is not stable under each of them, so its constants are unchanged".into(),
-            None => {
-                let tried = self.curve.len();
-                format!(
-                    "none of {tried} values of rho gave smaller errors than the start, in {} steps; its constants are unchanged",
-                    self.steps
-                )
-            }
-        };
-        let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
-        let [before, after] = [0, 1].map(|i| largest(&self.frequencies[i]));
-        let done = match self.frequencies[0].len() {
-            0 => done,
-            count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
-        };
-        let ended = match (self.cancelled, self.limited, self.excess) {
-            (true, ..) => "; it was ended early".into(),
-            _ if self.exceeds => "; the range is larger than the one that is allowed where rho is chosen".into(),
-            (_, true, _) => "; a better rho exceeds the range that is allowed".into(),
-            (.., Some(excess)) if excess > 1.0 => {
-                format!("; no rho that was tried reaches the noise: residuals are {excess:.2} times as large")
-            }
-            _ => String::new(),
-        };
-        let percent = |error: Option<f64>| error.map_or("-".into(), |error| format!("{:.2}", 100.0 * error));
-        let held_out = self.held_out.iter().map(|held_out| {
-            let seen = held_out.part.words();
-            let model =
-                |model: &ModelError| format!("{} {} / {}", model.model, percent(model.median), percent(model.worst));
-            let models: Vec<String> = held_out.models.iter().map(model).collect();
-            let (loads, support) = (held_out.loads, &held_out.support);
-            let worse = |load: &WorseLoad| {
-                format!("{} {} / {}", load.load, percent(Some(load.finite_elements)), percent(Some(load.fitted)))
-            };
-            let worse: Vec<String> = held_out.worse.iter().map(worse).collect();
-            let listed = if worse.is_empty() {
-                String::new()
-            } else {
-                format!(
-                    "; loads worse than finite elements by more than a tenth (finite elements / fitted): {}",
-                    worse.join(", ")
-                )
-            };
-            format!(
-                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}{listed}",
-                models.join(", ")
-            )
-        });
-        let fitted = format!(
-            "fitted to {}, so that errors under them are not predictions{validated}: {done}{ended}",
-            self.loads.join(", ")
-        );
-        let moduli = self.moduli.notes();
-        let capacity = (self.largest_left() > CAPACITY && !self.is_exact).then(|| {
-            format!(
-                "errors of up to {:.0} % are left: springs with the rest lengths of the mesh cannot do better here; start = \"exact\" has \
-                 the capacity",
-                100.0 * self.largest_left()
-            )
-        });
-        let masses = self.masses.iter().flat_map(FittedMasses::notes);
-        std::iter::once(fitted).chain(moduli).chain(held_out).chain(masses).chain(capacity).collect()
-    }
-}
-
-impl FittedMasses {
-    fn notes(&self) -> Vec<String> {
-        let (count, total, change) = (self.count, self.total, self.change);
-        let second = format!(
-            "mass and centre are those of the body, second moments up to {:.1} % off",
-            100.0 * self.second_error
-        );
-        let first = format!(
-            "masses fitted to the first {count} frequencies under each support, {total:.4e} kg in all, changed by factors up to \
-             {change:.1}, rho {:.0e}: {second}",
-            self.regularization
-        );
-        let support = |of: &SupportFrequencies| {
-            let seen = of.part.words();
-            let model = |m: &ModelFrequencies| format!("{} {:.2} / {:.2}", m.model, 100.0 * m.first, 100.0 * m.next);
-            let models: Vec<String> = of.models.iter().map(model).collect();
-            let (support, last) = (&of.support, 2 * count);
-            format!(
-                "frequencies 1 to {count} / {} to {last} off by (rms, %), held at {support}{seen}: {}",
-                count + 1,
-                models.join(", ")
-            )
-        };
-        let matrix = format!(
-            "mass matrix for programs that have one: {:.3} of the consistent one and {:.3} of lumped masses",
-            1.0 - self.share,
-            self.share
-        );
-        [first, matrix].into_iter().chain(self.supports.iter().map(support)).collect()
     }
 }

@@ -11,8 +11,8 @@ use crate::named::unknown;
 use crate::solve::Equations;
 use crate::study::progress::Progress;
 use crate::whole::{
-    NodalLoad, PRESSURE, Residual, Target, Validation, Wanted, Weighing, WholeSettings, made_loads, random_loads,
-    varied_loads,
+    NodalLoad, PRESSURE, Pressure, Residual, Target, Validation, Wanted, Weighing, WholeSettings, made_loads,
+    random_loads, varied_loads,
 };
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ impl WholeBody<'_> {
         let make = |mesh: &Mesh, support: &Support| {
             let mut loads = made_loads(mesh, support, thickness);
             if is_varied {
-                loads.extend(varied_loads(mesh, support, thickness, VARIED, recipe.seed));
+                loads.extend(varied_loads(mesh, support, thickness, Pressure::Uniform, (VARIED, recipe.seed)));
             }
             loads
         };
@@ -66,7 +66,10 @@ impl WholeBody<'_> {
                     others => self.supports("validate_supports", others)?,
                 };
                 let make = |mesh: &Mesh, support: &Support| match is_varied {
-                    true => varied_loads(mesh, support, thickness, VARIED, recipe.seed.wrapping_add(1)),
+                    true => {
+                        let drawn = (VARIED, recipe.seed.wrapping_add(1));
+                        varied_loads(mesh, support, thickness, Pressure::Varying, drawn)
+                    }
                     false => random_loads(mesh, support, thickness, RANDOM, recipe.seed),
                 };
                 Validation::Loads(self.targets("validate", named, &others, (&make, recipe.seed), progress)?)
@@ -88,7 +91,7 @@ impl WholeBody<'_> {
     /// Weighs the loads by the noise of their displacements, if it is known for each; returns the deviation of the residuals.
     ///
     /// # Errors
-    /// It is known for some of them only, it is needed and not known, or it is larger than the displacements.
+    /// It is known for some of them only, or it is needed and not known.
     fn weigh(&self, recipe: &WholeRecipe, trained: &mut [Target]) -> Result<Option<f64>> {
         let known =
             |target: &Target| self.cases.iter().find(|case| case.name == target.name).and_then(|case| case.noise);
@@ -103,17 +106,11 @@ impl WholeBody<'_> {
             return Ok(None);
         }
         // ‖ū_l‖/σ_l.
-        let mut sizes = Vec::new();
-        for (target, sigma) in trained.iter().zip(sigmas.into_iter().flatten()) {
-            let seen = target.displacement.iter().zip(&target.weights).filter(|(_, weight)| **weight > 0.0);
-            let square: f64 = seen.clone().map(|(u, _)| u * u).sum();
-            let rms = (square / seen.count().max(1) as f64).sqrt();
-            if !(sigma < rms) {
-                let expected = format!("noise below the displacements under \"{}\", {rms:.3e} m (rms)", target.name);
-                return Err(Error::expected("sigma", expected, format!("{sigma:.3e} m")));
-            }
-            sizes.push(square.sqrt() / sigma);
-        }
+        let size = |(target, sigma): (&Target, f64)| {
+            let square: f64 = target.displacement.iter().zip(&target.weights).map(|(u, weight)| weight * u * u).sum();
+            square.sqrt() / sigma
+        };
+        let sizes: Vec<f64> = trained.iter().zip(sigmas.into_iter().flatten()).map(size).collect();
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         trained.iter_mut().zip(&sizes).for_each(|(target, size)| target.weight = (size / largest).powi(2));
         Ok(Some(1.0 / largest))
@@ -186,7 +183,12 @@ impl WholeBody<'_> {
             let target = |u| Target::new(case.name.clone(), case.support.clone(), case.forces.clone(), u);
             targets.push(match (&case.measured, displacement) {
                 (Some(field), _) => {
-                    let known = field.displacements.iter().map(|u| u.map_or((0.0, 0.0), |u| (u, 1.0)));
+                    // What is held has no displacement to explain, and no noise: the support says where it is.
+                    let held = case.support.prescribed.iter().map(Option::is_some);
+                    let known = field.displacements.iter().zip(held).map(|(u, held)| match u {
+                        Some(u) => (*u, f64::from(u8::from(!held))),
+                        None => (0.0, 0.0),
+                    });
                     let (displacement, weights) = known.unzip();
                     Target { weights, ..target(displacement) }
                 }
