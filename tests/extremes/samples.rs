@@ -39,7 +39,7 @@ body = [0, 0, 1.0]
 [[load]]
 group = "zmax"
 displacement = ["free", "free", 0.01]
-measured = { file = "measured.csv", scale = 1.0, sigma = 0.001 }
+measured = { file = "measured.csv", scale = 1.0, sigma = 0.0001 }
 [[load]]
 sum = ["load 1", "load 3"]
 [solver]
