@@ -55,7 +55,7 @@ pub struct FitRecord {
     pub energy_error_bound: Option<f64>,
     /// What the network is as a material, at rest.
     pub as_material: NetworkMaterialRecord,
-    /// Of the whole network, where the scene asks for `moduli`; Pa.
+    /// Of the whole network, where the scene asks for `moduli`; Pa. In plane strain that of the solid.
     pub effective_young: Option<f64>,
     /// Poisson's ratio of the network where it was measured (`[output] moduli`).
     pub effective_poisson: Option<f64>,

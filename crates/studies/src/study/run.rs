@@ -89,7 +89,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         for (done, fit) in fits.iter_mut().enumerate() {
             progress(Event::stage("moduli", done, count));
             fit.network.check_size()?;
-            fit.moduli = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
+            let found = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
+            fit.moduli = found.map(|moduli| moduli.of_solid(material.state()));
         }
     }
     let law = large.as_ref().map(|large| large.laws.title());
