@@ -1,4 +1,4 @@
-//! What the root mean square hides: the error where the body moves most, and that of the work of each load.
+//! What the root mean square hides: the error where the body moves most, and that of the compliance under each load.
 
 use super::columns::{Heading, aligned};
 use crate::study::{BodyLoad, FitOutcome, LoadOutcome, Outcome, extent};
