@@ -5,9 +5,7 @@ use crate::file::{check_apart, check_file, check_folder};
 use crate::study::Scene;
 use std::path::{Path, PathBuf};
 
-/// What the finite elements are called among the models that move.
-const BODY: &str = "finite elements";
-/// The table of the points, which all networks of a run have in common.
+/// The table of the points, if all networks of a run have the same masses.
 pub(super) const POINTS: &str = "points.csv";
 /// The report as a page.
 pub(super) const PAGE: &str = "report.html";
@@ -34,12 +32,16 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
     let recipe = scene.motion();
     let bodies = recipe.filter(|recipe| recipe.finite_elements).map(|_| BODY);
     let moved: Vec<&str> = recipe.map_or(Vec::new(), |_| bodies.into_iter().chain(fits.iter().copied()).collect());
-    let Stems { fits, motions } = Stems::of(fits.iter().copied(), moved.iter().copied());
+    let Stems { fits, motions, points } = Stems::of(fits.iter().copied(), moved.iter().copied());
     let mut names: Vec<String> = motions.iter().map(|stem| format!("{stem}.csv")).collect();
     if output.csv {
         names.extend(fits.iter().map(|stem| format!("{stem}.csv")));
         names.push(POINTS.into());
     }
+        let has_masses = |fit: &NamedFit| fit.recipe.whole().is_some_and(|whole| whole.masses > 0);
+        if scene.fits().iter().any(has_masses) {
+            names.extend(points.iter().map(|stem| format!("{stem}.csv")));
+        }
     if output.json != Some(false) {
         names.extend(fits.iter().map(|stem| format!("{stem}.json")));
     }
@@ -67,14 +69,19 @@ pub(super) struct Stems {
     pub motions: Vec<String>,
 }
 
+    /// Files of the points of each network, where they are not the same.
+    pub points: Vec<String>,
 impl Stems {
     /// Of the fits, and of the models that move.
     pub fn of<'a>(fits: impl Iterator<Item = &'a str>, moved: impl Iterator<Item = &'a str>) -> Stems {
         let fits: Vec<&str> = fits.collect();
         let moved: Vec<String> = moved.map(|name| format!("motion {name}")).collect();
-        let mut stems = file_stems(fits.iter().copied().chain(moved.iter().map(String::as_str)));
+        let points: Vec<String> = fits.iter().map(|name| format!("points {name}")).collect();
+        let own = moved.iter().chain(&points).map(String::as_str);
+        let mut stems = file_stems(fits.iter().copied().chain(own));
+        let points = stems.split_off(fits.len() + moved.len());
         let motions = stems.split_off(fits.len());
-        Stems { fits: stems, motions }
+        Stems { fits: stems, motions, points }
     }
 }
 
