@@ -62,7 +62,7 @@ pub use fits::{
 };
 pub use fitting::fit_mesh;
 pub use forecast::{ExpectedStage, Forecast};
-pub use masses::point_masses;
+pub use masses::{PointMasses, point_masses};
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{
