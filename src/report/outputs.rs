@@ -1,8 +1,9 @@
 //! The files that a command writes, known before its work.
 
+use super::pictures::check_arrays;
 use crate::error::Result;
 use crate::file::{check_apart, check_file, check_folder};
-use crate::study::Scene;
+use crate::study::{BODY, NamedFit, Scene};
 use std::path::{Path, PathBuf};
 
 /// The table of the points, if all networks of a run have the same masses.
@@ -25,7 +26,7 @@ pub fn check_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Resul
 /// The same of all that a run of the scene writes.
 ///
 /// # Errors
-/// As there.
+/// As there; or two arrays of a file for ParaView would have the same name.
 pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Result<()> {
     let output = scene.output();
     let fits: Vec<&str> = scene.fits().iter().map(|fit| fit.name.as_str()).collect();
@@ -37,15 +38,16 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
     if output.csv {
         names.extend(fits.iter().map(|stem| format!("{stem}.csv")));
         names.push(POINTS.into());
-    }
         let has_masses = |fit: &NamedFit| fit.recipe.whole().is_some_and(|whole| whole.masses > 0);
         if scene.fits().iter().any(has_masses) {
             names.extend(points.iter().map(|stem| format!("{stem}.csv")));
         }
+    }
     if output.json != Some(false) {
         names.extend(fits.iter().map(|stem| format!("{stem}.json")));
     }
     if output.vtu {
+        check_arrays(scene)?;
         names.push("mesh.vtu".into());
         names.extend(fits.iter().map(|stem| format!("{stem}.vtu")));
         names.extend(motions.iter().map(|stem| format!("{stem}.pvd")));
@@ -67,10 +69,10 @@ pub(super) struct Stems {
     pub fits: Vec<String>,
     /// Files of the motions.
     pub motions: Vec<String>,
-}
-
     /// Files of the points of each network, where they are not the same.
     pub points: Vec<String>,
+}
+
 impl Stems {
     /// Of the fits, and of the models that move.
     pub fn of<'a>(fits: impl Iterator<Item = &'a str>, moved: impl Iterator<Item = &'a str>) -> Stems {

@@ -69,6 +69,7 @@ pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, Measured, ModelMotion, MotionEnding,
     MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
 };
+pub use own_name::BODY;
 pub use paper::{
     Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,
 };

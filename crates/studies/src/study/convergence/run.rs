@@ -10,6 +10,7 @@ use crate::solve::Ending;
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::metrics::{displacement_error, product, square};
+use crate::study::own_name::BODY;
 use crate::study::outcome::Outcome;
 use crate::study::progress::{Event, Progress};
 use crate::study::run::run_with;
@@ -20,8 +21,6 @@ use std::time::Instant;
 pub const MOST_LEVELS: usize = 8;
 /// The number of levels if none is requested and memory suffices.
 const USUAL_LEVELS: usize = 4;
-/// The name of the first model.
-const BODY: &str = "finite elements";
 
 /// Runs the scene on its mesh and on meshes with cells of half the size each, and compares the compliance under every
 /// load.

@@ -8,6 +8,7 @@ use crate::model::{
 };
 use crate::solve::{Levels, System, lowest_modes};
 use crate::study::outcome::{FrequencyOutcome, Outcome};
+use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 

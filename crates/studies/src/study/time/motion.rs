@@ -14,6 +14,7 @@ use crate::solve::{Levels, StaticSolver, lowest_modes};
 use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
 };
+use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, ForcePrecision, MotionRecipe};
 use std::time::Instant;
@@ -66,14 +67,14 @@ pub fn move_models(
         let (mut made, states) = match energy {
             Some(laws) => {
                 let body = RegionsBody { mesh, laws };
-                run.follow((name, None, &planned.masses), &body, damping, options, true, progress)?
+                run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
             }
             None => {
                 options.linear = true;
                 check_body(mesh)?;
                 let stiffness = finite_elements(mesh, material.moduli());
                 let body = LinearElastic { points: &mesh.points, stiffness };
-                run.follow((name, None, &planned.masses), &body, damping, options, true, progress)?
+                run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
             }
         };
         if planned.draws {
