@@ -38,8 +38,8 @@ pub struct FitRecord {
     pub negative_springs: usize,
     /// Elements whose equations do not determine all constants.
     pub undetermined_elements: usize,
-    /// The least and the largest energy of the network over the body's; of exact networks with volume springs on cells or patches,
-    /// over that of finite elements with λ at most 2 μ, which do not lock.
+    /// The least and the largest energy of the network over the body's; of exact networks with volume springs on patches, or on
+    /// cells of several quadrature points, over that of finite elements with λ at most 2 μ, which do not lock.
     pub energy_ratio: Option<[Option<f64>; 2]>,
     /// Points that move most in the softest motion, from 0.
     pub loose_nodes: Vec<usize>,
