@@ -126,6 +126,11 @@ pub fn network_grid(file: &NetworkFile) -> Grid {
     grid
 }
 
+/// Of the finite elements, if they reached the whole load.
+fn body_vectors(load: &BodyLoad, dimension: usize) -> Option<Array> {
+    load.is_reached().then(|| vectors(body_array(&load.name), &load.fem, dimension))
+}
+
 /// The numbers of the points in the file: node tags of Gmsh, places from 0 of VTK; `None` of a mesh that is no file.
 fn nodes(mesh: &Mesh) -> Option<Array> {
     let numbers = |numbering: &Numbering| numbering.nodes.iter().map(|&number| number as f64).collect();

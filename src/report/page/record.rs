@@ -52,7 +52,7 @@ pub struct ViewRecord {
 /// A load of the body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoadViewRecord {
-    /// Its name.
+    /// Its name, with the share of it that the finite elements reached if that is not all.
     pub name: String,
     /// The displacements of the finite elements, `[points × 3]`, m.
     pub displacement: Floats,

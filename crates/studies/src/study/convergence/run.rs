@@ -6,7 +6,6 @@ use super::quantities::Quantities;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
-use crate::solve::Ending;
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::metrics::{displacement_error, product, square};
@@ -163,7 +162,7 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<(Vec<bool>, Vec<Vec<Step>>)
         Some(value).filter(|value| value.is_finite())
     };
     for (load, quantity) in outcome.loads.iter().zip(&quantities) {
-        let reached = load.followed.is_none_or(|followed| followed.ending == Ending::Converged);
+        let reached = load.is_reached();
         let fem = Some(&load.fem).filter(|_| reached);
         let large = body.as_ref().map(|body| body as &dyn Elastic);
         steps.push(vec![Step {

@@ -15,7 +15,7 @@ pub struct BodyLoad {
     pub support: Support,
     /// The nodal forces, `[points · dimension]`, N.
     pub forces: Vec<f64>,
-    /// The displacements of the finite elements, `[points · dimension]`, m.
+    /// The displacements of the finite elements, `[points · dimension]`, m, under the part of the load that was reached.
     pub fem: Vec<f64>,
     /// At large deformation, how the load was applied to the finite elements.
     pub followed: Option<Followed>,
@@ -91,6 +91,11 @@ pub struct Followed {
 }
 
 impl BodyLoad {
+    /// Whether the finite elements are in equilibrium under the whole load; `fem` is otherwise that of a part of it.
+    pub fn is_reached(&self) -> bool {
+        self.followed.is_none_or(|followed| followed.ending == Ending::Converged)
+    }
+
     /// The gauge's reading of the finite elements, if there is one under this load.
     pub fn reading(&self) -> Option<Reading> {
         self.gauge.and_then(GaugeResult::reading)
