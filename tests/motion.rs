@@ -396,7 +396,7 @@ fn wrong_keys_are_told() {
         (
             "where = \"x < 1e-9 && z > 0.0199\"",
             "group = \"zmin\"",
-            "motion.pull[0].displacement[1]: … point 1 at [0.0, 0.0, 0.0] m along y… [[fix]] …",
+            "motion.pull[0].displacement[1]: … point 0 at [0.0, 0.0, 0.0] m along y… [[fix]] …",
         ),
         ("where = \"x < 1e-9 && z > 0.0199\"", "where = \"x > 1\"", "motion.pull[0]: … no points"),
         ("where = \"x < 1e-9 && z > 0.0199\"", "", "motion.pull[0]: … found neither"),
@@ -429,7 +429,7 @@ fn wrong_keys_are_told() {
         expect(&edited(BLOCK, from, to), message);
     }
     let twice = format!("{BLOCK}[[motion.pull]]\ngroup = \"zmax\"\ndisplacement = [0, 0, 0]\n");
-    expect(&twice, "motion.pull[1].displacement[1]: … point 49 at [0.0, 0.0, 0.02] m along y… motion.pull[0] …");
+    expect(&twice, "motion.pull[1].displacement[1]: … point 48 at [0.0, 0.0, 0.02] m along y… motion.pull[0] …");
     let many = edited(BLOCK, "duration = 0.05", "duration = 5000");
     let many = edited(&many, "every = 0.01", "every = 0.001");
     expect(&many, "motion.every: … at most 1000000 … found 5000000");

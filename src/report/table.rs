@@ -381,6 +381,6 @@ fn points(outcome: &Outcome, points: &[usize]) -> String {
     };
     let named: Vec<_> = points.iter().take(3).map(place).collect();
     let rest = if points.len() > 3 { format!(" and {} more", points.len() - 3) } else { String::new() };
-    let word = if points.len() == 1 { "point" } else { "points" };
-    format!("{word} {}{rest}", named.join(", "))
+    let (word, many) = (outcome.mesh.point_word(), if points.len() == 1 { "" } else { "s" });
+    format!("{word}{many} {}{rest}", named.join(", "))
 }

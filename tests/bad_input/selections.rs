@@ -147,7 +147,7 @@ fn loads_that_contradict_supports() {
                 load,
                 edge,
                 "scene.toml: load[0].displacement[0]",
-                "moves point 1 at [0.0, 0.0, 0.0] m along x by 0.001 m",
+                "moves point 0 at [0.0, 0.0, 0.0] m along x by 0.001 m",
             ),
             (load, "group = \"zmin\"\ntraction = [0, 0, 1]", "scene.toml: load[0].traction", still),
             (load, "group = \"zmin\"\nforce = [1, 0, 0]", "scene.toml: load[0].force", still),

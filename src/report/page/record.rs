@@ -31,7 +31,7 @@ pub struct ViewRecord {
     pub dimension: usize,
     /// `[points × 3]`, m.
     pub points: Floats,
-    /// The numbers of the points in the mesh file, from 1 in a mesh that is no file.
+    /// The numbers of the points in the mesh file, from 0 in a mesh that is no file.
     pub numbers: Places,
     /// Edges of the cells on the surface, `[edges × 2]`.
     pub edges: Places,

@@ -93,7 +93,7 @@ pub fn move_models(
         let masses = fit.masses().unwrap_or(&planned.masses);
         let growth = growth(&fit.network, masses, mesh, planned)?;
         if growth.is_some() {
-            progress(Event::Note(&indefinite(&fit.fit.name, &fit.network)));
+            progress(Event::Note(&indefinite(mesh, &fit.fit.name, &fit.network)));
         }
         let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
@@ -244,10 +244,10 @@ impl Run<'_> {
 }
 
 /// The note about an indefinite network before it moves.
-fn indefinite(name: &str, network: &Network) -> String {
+fn indefinite(mesh: &Mesh, name: &str, network: &Network) -> String {
     let worst = network.most_negative(3).into_iter().map(|(points, constant)| {
-        let points: Vec<String> = points.iter().map(|p| (p + 1).to_string()).collect();
-        format!("{constant:.2e} at points {}", points.join(" "))
+        let points: Vec<String> = points.iter().map(|p| mesh.point_number(*p).to_string()).collect();
+        format!("{constant:.2e} at {}s {}", mesh.point_word(), points.join(" "))
     });
     let worst: Vec<String> = worst.collect();
     format!(
