@@ -37,6 +37,7 @@ fn setting(motion: &MotionOutcome) -> String {
 fn row(model: &ModelMotion) -> Vec<String> {
     let ended = match &model.ending {
         MotionEnding::Complete | MotionEnding::Refused(_) => model.ending.name().into(),
+        MotionEnding::Unsolved => format!("{} in {}", model.ending.name(), steps(model.unsolved)),
         MotionEnding::NoResponse | MotionEnding::RanAway => {
             format!("{} after {} steps", model.ending.name(), model.steps)
         }
@@ -80,7 +81,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
         notes.extend(turning_note(model, motion.models[0].deformation));
         let known = || model.records.last().map_or(0.0, |record| record.account.time);
         match &model.ending {
-            MotionEnding::Complete => {}
+            MotionEnding::Complete | MotionEnding::Unsolved => {}
             MotionEnding::Refused(why) => notes.push(format!("{name}: the motion was not started: {why}")),
             MotionEnding::NoResponse => notes.push(format!(
                 "{name}: the model has no response after {} steps; its motion is known up to {:?} s",

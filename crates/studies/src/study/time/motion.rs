@@ -61,7 +61,6 @@ pub fn move_models(
     let mut models = Vec::new();
     let mut reference = Vec::new();
     if planned.recipe.finite_elements {
-        let name = "finite elements";
         let mut options = planned.recipe.options;
         let damping = planned.damping(None, mesh)?;
         let (mut made, states) = match energy {
@@ -115,7 +114,8 @@ pub fn move_models(
             states.iter().zip(&reference).map(rms).collect()
         };
         made.records.iter_mut().zip(errors(&states)).for_each(|(record, error)| record.error = error);
-        if turning && made.ending == MotionEnding::Complete {
+        // The motion of a network that releases energy grows whatever the fit: its error says nothing.
+        if turning && growth.is_none() && made.ending == MotionEnding::Complete {
             let linear = Options { linear: true, ..options };
             let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
             let name = format!("{} without turning", fit.fit.name);
@@ -230,6 +230,9 @@ impl Run<'_> {
             if keeps {
                 states.push(simulation.state().displacement.clone());
             }
+        }
+        if made.ending == MotionEnding::Complete && made.unsolved > 0 {
+            made.ending = MotionEnding::Unsolved;
         }
         Ok((made, states))
     }
