@@ -427,6 +427,11 @@ fn wrong_keys_are_told() {
         ),
         (pull, "displacement = [\"free\", 0]", "motion.pull[0].displacement: … 3 entries … found 2"),
         (
+            pull,
+            "displacement = [\"free\", \"free\", \"free\"]",
+            "motion.pull[0].displacement: … a direction that is moved, found \"free\" in all",
+        ),
+        (
             "where = \"x < 1e-9 && z > 0.0199\"",
             "group = \"zmin\"",
             "motion.pull[0].displacement[1]: … point 0 at [0.0, 0.0, 0.0] m along y… [[fix]] …",
