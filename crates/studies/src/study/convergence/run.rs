@@ -9,8 +9,8 @@ use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, ma
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::metrics::{displacement_error, product, square};
-use crate::study::own_name::BODY;
 use crate::study::outcome::Outcome;
+use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::run::run_with;
 use crate::study::scene::{LoadCase, Output, Scene};
@@ -39,9 +39,9 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     }
     let title = scene.title().into();
     let (extent, levels, loads) = Default::default();
-    let mut prescribed = Vec::new();
     let mut convergence = Convergence { scene: title, extent, law: None, reference: None, levels, loads };
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
+    let mut prescribed = Vec::new();
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
         let start = Instant::now();
