@@ -826,7 +826,7 @@ fn faults_are_named() {
         .unwrap();
     let newmark = Integrator::Newmark { beta: 0.0, gamma: 0.5 };
     reads(&error(free(), Options { integrator: newmark, ..plain }), "newmark: … found 0 and 0.5").unwrap();
-    reads(&error(Motion { masses: &[1.0, 0.0], ..free() }, plain), "masses: … point 2 … found 0").unwrap();
+    reads(&error(Motion { masses: &[1.0, 0.0], ..free() }, plain), "masses: … point 1 … found 0").unwrap();
     reads(&error(Motion { masses: &[1.0; 3], ..free() }, plain), "masses: … found 3 for 4 coordinates").unwrap();
     reads(&error(Motion { drive: d().force(4, Curve::constant(1.0)), ..free() }, plain), "drive: … below 4, found 4")
         .unwrap();

@@ -142,3 +142,28 @@ fn the_study_of_stretches_has_all_its_parts() {
         assert!(found.to_string().starts_with(error), "{found}");
     }
 }
+
+/// Compression beyond what the body bears: no file has the state on the way under the name of the load, and no table its displacement.
+#[test]
+fn a_load_that_is_reached_in_part_is_not_shown_as_the_whole() {
+    let (_folder, scene) = bar("[[fit]]\nobjective = \"exact\"\nenergy = \"stable-neo-hookean\"", &[]);
+    let settings = ["newton.iterations=4", "newton.steps=2", "load[0].traction=[0, 0, -0.9]"];
+    let settings = settings.map(|setting| springfit::study::Setting::parse(setting).unwrap());
+    let text = std::fs::read_to_string(scene.path()).unwrap();
+    let scene = Scene::parse_with(&text, scene.path(), &settings).unwrap();
+    let outcome = run(&scene, &mut |_| {}).unwrap();
+    let followed = outcome.loads[0].followed.unwrap();
+    assert!(followed.load > 0.0 && followed.load < 1.0, "{followed:?}");
+    let names =
+        |grid: springfit::mesh::vtk::Grid| grid.point_data.into_iter().map(|array| array.name).collect::<Vec<_>>();
+    let mesh = names(report::displacement_grid(&outcome));
+    let network = names(report::network_grid(&report::NetworkFile::of(&outcome, &outcome.fits[0])));
+    for names in [mesh, network] {
+        assert!(
+            names.contains(&"u fem push aside (m)".into()) && !names.contains(&"u fem pull (m)".into()),
+            "{names:?}"
+        );
+    }
+    let table = report::table(&outcome);
+    assert!(table.contains("Largest displacement of the finite elements: push aside"), "{table}");
+}

@@ -229,3 +229,34 @@ fn patches_carry_large_compression() {
     }
     assert!(outcome.fits[1].loads[0].error.unwrap().rms < 1e-6);
 }
+
+/// A linear simplex has one quadrature point: one volume spring on it is that of the point. The network, the body that its energy is
+/// compared with, and what is said of it are the same. A hexahedron has eight.
+#[test]
+fn a_spring_on_a_linear_simplex_is_that_of_its_point() {
+    let outcome = |element: &str, volume: &str| {
+        let size = if element == "tri3" { "[2, 1]" } else { "[2, 1, 1]" };
+        let plane = if element == "tri3" { "plane = \"strain\"\n" } else { "" };
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"{element}\", size = {size}, cells = {size} }}\n[material]\nyoung = 1e4\npoisson = 0.49\n\
+             {plane}[[fit]]\nobjective = \"exact\"\nvolume = \"{volume}\"\nname = \"network\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\n\
+             group = \"xmax\"\nforce = {}\n",
+            if element == "tri3" { "[1, 0]" } else { "[1, 0, 0]" }
+        );
+        run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+    };
+    for element in ["tri3", "tet4", "hex8"] {
+        let [points, cells] = ["points", "cells"].map(|volume| outcome(element, volume));
+        let is_same = element != "hex8";
+        let ratio = |of: &springfit::study::Outcome| of.fits[0].stability.as_ref().unwrap().energy_ratio;
+        let notes = |of: &springfit::study::Outcome| springfit::report::notes(of);
+        let springs = |of: &springfit::study::Outcome| -> Vec<[f64; 2]> {
+            of.fits[0].network.others.iter().map(|spring| [spring.constant, spring.rest]).collect()
+        };
+        assert_eq!(springs(&points) == springs(&cells), is_same, "{element}");
+        assert_eq!(ratio(&points) == ratio(&cells), is_same, "{element}: {:?} {:?}", ratio(&points), ratio(&cells));
+        assert_eq!(notes(&points) == notes(&cells), is_same, "{element}: {:?}", notes(&cells));
+        assert!(notes(&points).join(" ").contains("linear cells lock"), "{element}");
+        assert_eq!(notes(&cells).join(" ").contains("differs from the finite elements"), !is_same, "{element}");
+    }
+}

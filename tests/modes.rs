@@ -298,7 +298,7 @@ fn faults_of_a_mass_matrix_are_named() {
     let of = |found: springfit::error::Result<ConsistentMasses>| found.unwrap_err().to_string();
     reads(&of(matrix.blended(&[1.0; 8], 1.5)), "share: … from 0 to 1, found 1.5").unwrap();
     reads(&of(matrix.blended(&[1.0; 7], 0.5)), "masses: … 8, one for each point, found 7").unwrap();
-    reads(&of(matrix.blended(&[f64::NAN; 8], 0.5)), "masses: … point 1, found NaN").unwrap();
+    reads(&of(matrix.blended(&[f64::NAN; 8], 0.5)), "masses: … point 0, found NaN").unwrap();
     reads(&of(matrix.clone().scaled(-1.0)), "factor: … found -1").unwrap();
     reads(&matrix.product(&[0.0; 5], 3).unwrap_err().to_string(), "vector: … 24 numbers, found 5").unwrap();
     reads(&of(ConsistentMasses::of_mesh(&mesh, -1.0, 1.0)), "masses: … in cell 1 of block 1").unwrap();
@@ -347,9 +347,9 @@ fn faults_are_named() {
     reads(&model.error(3), "modes: … at most 2, … found 3").unwrap();
     assert_eq!(model.modes(0), Modes { squares: Vec::new(), shapes: Vec::new() });
     let massless = Model { masses: vec![0.0, 1.0, 0.0], ..Model::chain(&[1.0, 1.0], &row) };
-    reads(&massless.error(1), "masses: … point 3, found 0").unwrap();
+    reads(&massless.error(1), "masses: … point 2, found 0").unwrap();
     let negative = Model { masses: vec![0.0, -2.5, 1.0], ..Model::chain(&[1.0, 1.0], &row) };
-    reads(&negative.error(1), "masses: … point 2, found -2.5").unwrap();
+    reads(&negative.error(1), "masses: … point 1, found -2.5").unwrap();
     let few = Model { masses: vec![1.0, 1.0], ..Model::chain(&[1.0, 1.0], &row) };
     reads(&few.error(1), "masses: … at least 3 points, found 2").unwrap();
     let flat = Model { dimension: 0, ..Model::chain(&[1.0, 1.0], &row) };

@@ -127,3 +127,21 @@ fn bodies_have_the_moduli_of_what_they_are_made_of() {
     close(found, expected.young, expected.poisson, expected.zener, 1e-5);
     assert!((found.zener - expected.zener).abs() < 1e-9);
 }
+
+/// In plane strain the boundary is that of the plane stress of E/(1 − ν²) and ν/(1 − ν); what is reported is the solid, as in the table
+/// of the network as a material. The network of linear triangles with the energy of the finite elements is that solid.
+#[test]
+fn the_moduli_of_a_whole_network_in_plane_strain_are_those_of_the_solid() {
+    let text = "[mesh]\nbox = { element = \"tri3\", size = [1, 1], cells = [3, 3] }\n\
+                [material]\nyoung = 10e3\npoisson = 0.3\nplane = \"strain\"\nthickness = 0.5\n\
+                [[fit]]\nobjective = \"exact\"\n[output]\nmoduli = true\n";
+    let scene = springfit::study::Scene::parse(text, std::path::Path::new("scene.toml")).unwrap();
+    let outcome = springfit::study::run(&scene, &mut |_| {}).unwrap();
+    let record = &springfit::report::Report::of(&outcome).fits[0];
+    let (whole, sampled) = (record.effective_young.unwrap(), record.as_material.young.unwrap());
+    assert!((whole - 1e4).abs() < 1e-5 && (sampled - 1e4).abs() < 1e-5, "{whole} {sampled}");
+    let (whole, sampled) = (record.effective_poisson.unwrap(), record.as_material.poisson.unwrap());
+    assert!((whole - 0.3).abs() < 1e-9 && (sampled - 0.3).abs() < 1e-9, "{whole} {sampled}");
+    let notes = springfit::report::notes(&outcome).join("\n");
+    assert!(notes.contains("the whole network has E = 1.0000e4 Pa, nu = 0.300"), "{notes}");
+}

@@ -272,6 +272,39 @@ fn states_are_written_at_steps() {
     assert_eq!(times, [0, 13, 25, 31]);
 }
 
+/// A note has the real end and says that states are not evenly apart; where steps divide both times there is none. Without `every` the
+/// states are whole steps apart.
+#[test]
+fn times_that_steps_do_not_divide_are_told() {
+    let short = edited(BLOCK, "watch =", "finite_elements = false\nwatch =");
+    let notes = |text: &str| report::notes(&outcome(text)).join("\n");
+    let told = notes(&short);
+    assert!(!told.contains("no multiple"), "{told}");
+    let longer = notes(&edited(&short, "duration = 0.05", "duration = 0.0502"));
+    assert!(longer.contains("the motion ends at 0.051 s, with the first step that reaches 0.0502 s"), "{longer}");
+    let uneven = notes(&edited(&short, "every = 0.01", "every = 0.0125"));
+    assert!(uneven.contains("each multiple of 0.0125 s, which is no multiple of 0.001 s"), "{uneven}");
+    let text = edited(&edited(&short, "every = 0.01\n", ""), "duration = 0.05", "duration = 0.15");
+    let free = outcome(&text);
+    let motion = free.motion.as_ref().unwrap();
+    assert_near(motion.recipe.every, 0.002, 1e-15);
+    assert_eq!(motion.models[0].records.len(), 76);
+    assert!(!report::notes(&free).join("\n").contains("no multiple"));
+}
+
+/// One Newton iteration more than the linearised step does not solve a large step: such a motion is not called complete.
+#[test]
+fn a_motion_with_unsolved_steps_is_not_complete() {
+    let text = edited(BLOCK, "linear = true\n", "iterations = 2\ntolerance = 1e-14\n");
+    let text = edited(&text, "[\"0.01*sin(60*t)\", 0, \"0.1*t\"]", "[0, 0, \"4*t\"]");
+    let outcome = outcome(&text);
+    let springs = &outcome.motion.as_ref().unwrap().models[1];
+    assert!(springs.unsolved > 0 && springs.steps == 50, "{}", springs.unsolved);
+    assert_eq!(springs.ending, MotionEnding::Unsolved);
+    assert!(report::table(&outcome).contains(&format!("not solved in {} steps", springs.unsolved)));
+    assert_eq!(report::Report::of(&outcome).motion[1].ended, "not solved");
+}
+
 /// Symplectic Euler within its limit, dampers beside the springs, BDF2 with Newton's method: all go where Newmark goes.
 #[test]
 fn methods_agree() {
@@ -394,9 +427,14 @@ fn wrong_keys_are_told() {
         ),
         (pull, "displacement = [\"free\", 0]", "motion.pull[0].displacement: … 3 entries … found 2"),
         (
+            pull,
+            "displacement = [\"free\", \"free\", \"free\"]",
+            "motion.pull[0].displacement: … a direction that is moved, found \"free\" in all",
+        ),
+        (
             "where = \"x < 1e-9 && z > 0.0199\"",
             "group = \"zmin\"",
-            "motion.pull[0].displacement[1]: … point 1 at [0.0, 0.0, 0.0] m along y… [[fix]] …",
+            "motion.pull[0].displacement[1]: … point 0 at [0.0, 0.0, 0.0] m along y… [[fix]] …",
         ),
         ("where = \"x < 1e-9 && z > 0.0199\"", "where = \"x > 1\"", "motion.pull[0]: … no points"),
         ("where = \"x < 1e-9 && z > 0.0199\"", "", "motion.pull[0]: … found neither"),
@@ -429,7 +467,7 @@ fn wrong_keys_are_told() {
         expect(&edited(BLOCK, from, to), message);
     }
     let twice = format!("{BLOCK}[[motion.pull]]\ngroup = \"zmax\"\ndisplacement = [0, 0, 0]\n");
-    expect(&twice, "motion.pull[1].displacement[1]: … point 49 at [0.0, 0.0, 0.02] m along y… motion.pull[0] …");
+    expect(&twice, "motion.pull[1].displacement[1]: … point 48 at [0.0, 0.0, 0.02] m along y… motion.pull[0] …");
     let many = edited(BLOCK, "duration = 0.05", "duration = 5000");
     let many = edited(&many, "every = 0.01", "every = 0.001");
     expect(&many, "motion.every: … at most 1000000 … found 5000000");
@@ -516,4 +554,22 @@ fn an_indefinite_network_is_told() {
         assert!(matches!(&indefinite.ending, MotionEnding::Refused(why) if why.contains("releases energy")));
         assert_eq!((sound.steps, &sound.ending), (2, &MotionEnding::Complete));
     }
+}
+
+/// Both networks turn, and the first releases energy: without turning its springs run away, to errors of many millions of percent, which are
+/// not errors of the fit.
+#[test]
+fn of_an_indefinite_network_no_error_is_that_of_the_fit() {
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cylinder_hex.msh");
+    let outcome = outcome(&format!(
+        "[mesh]\nfile = {mesh:?}\nscale = 0.01\n[material]\nyoung = 10e3\npoisson = 0.3\ndensity = 1000\n[[fit]]\n\
+         objective = \"modal\"\nhigher = 0.316\n[[fit]]\nobjective = \"offdiag\"\n[[fix]]\ngroup = \"fixed\"\n\
+         [motion]\nduration = 0.01\nstep = 0.001\ngravity = [200, 0, 0]\n"
+    ));
+    let [_, indefinite, sound] = &outcome.motion.as_ref().unwrap().models[..] else { panic!("three models move") };
+    assert!(indefinite.growth.is_some() && indefinite.ending == MotionEnding::Complete);
+    assert!(indefinite.linear_error.is_none() && indefinite.error().is_some());
+    assert!(sound.growth.is_none() && sound.linear_error.is_some());
+    let notes = report::notes(&outcome).join("\n");
+    assert_eq!(notes.matches("the fit's is").count(), 1, "{notes}");
 }

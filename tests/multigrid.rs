@@ -110,6 +110,29 @@ fn supports_and_given_displacements_are_those_of_a_factor() {
     assert_eq!(levels.fits[0].loads.len(), 2);
 }
 
+/// Every tolerance that the key accepts is one that an answer may have.
+#[test]
+fn an_answer_is_as_good_as_was_asked() {
+    let text = format!(
+        "{BOX}[[fit]]\nobjective = \"modal\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [3, 0, 1]\n[[load]]\n\
+         group = \"xmax\"\ndisplacement = [0.01, \"free\", 0]\n"
+    );
+    let solved = |tolerance: &str| {
+        let text = format!("{text}[solver]\nmethod = \"multigrid\"\ntolerance = {tolerance}\n");
+        run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+    };
+    let known = solved("1e-12");
+    for tolerance in ["1e-7", "1e-6", "1e-5", "1e-4", "9e-4"] {
+        let found = solved(tolerance);
+        let bound: f64 = tolerance.parse().unwrap();
+        for (found, known) in found.loads.iter().zip(&known.loads) {
+            // The norm of the energy weighs the long motions of this bar less than a norm of displacements.
+            assert!(difference(&found.fem, &known.fem) < 10.0 * bound, "{tolerance}: {}", known.name);
+        }
+        assert!(found.fits[0].loads.iter().all(|load| load.displacement.is_some()), "{tolerance}");
+    }
+}
+
 /// A network that has negative springs and one without springs across are not called stable, whatever solves.
 #[test]
 fn networks_that_do_not_stand_are_shown() {

@@ -110,3 +110,40 @@ fn no_escape_of_an_input_is_printed_or_written() {
     assert_eq!(run(&["run", "none\u{1b}[2J.toml"]), Some(2));
     assert_eq!(run(&["check", "none\u{1b}[2J.toml"]), Some(2));
 }
+
+/// Names of fits and loads that together make one name of two arrays are found before the work, and so is a fit with the name of the
+/// finite elements.
+#[test]
+fn names_that_make_equal_names_are_found_before_the_work() {
+    let folder = TempDir::new().unwrap();
+    let load = "[[load]]\nname = \"pull\"";
+    let two = "[[load]]\nname = \"slow pull\"\ngroup = \"xmax\"\ntraction = [2, 0]\n[[fit]]\nobjective = \"offdiag\"\nname = \"first slow\"\n";
+    for (from, to, message) in [
+        (
+            load,
+            &format!("{two}{load}")[..],
+            ":20: fit[1].name: … \"first slow\", whose array \"u first slow pull (m)\" …",
+        ),
+        ("\"first\"", "\"fem\"", ":11: fit[0].name: … \"fem\", whose array \"u fem pull (m)\" …"),
+        (
+            load,
+            &format!("[[load]]\nname = \"fem pull\"\ngroup = \"xmax\"\ntraction = [2, 0]\n{load}"),
+            ":15: load[0].name: … \"fem pull\" …",
+        ),
+        ("\"first\"", "\"finite elements\"", ":11: fit[0].name: … a name of its own, found \"finite elements\" again"),
+    ] {
+        let text = SQUARE.replace(from, to);
+        fs::write(folder.path().join("s.toml"), &text).unwrap();
+        let output = springfit(folder.path(), &["run", "s.toml"]);
+        let found = String::from_utf8_lossy(&output.stderr).into_owned();
+        crate::messages::reads(found.trim_end(), &format!("error: s.toml{message}")).unwrap();
+        assert_eq!((output.status.code(), folder.path().join("out").exists()), (Some(2), false));
+    }
+    // Without files for ParaView there are no such arrays.
+    fs::write(
+        folder.path().join("s.toml"),
+        SQUARE.replace("\"first\"", "\"fem\"").replace("vtu = true", "vtu = false"),
+    )
+    .unwrap();
+    assert!(springfit(folder.path(), &["run", "s.toml"]).status.success());
+}

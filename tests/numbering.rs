@@ -147,3 +147,27 @@ fn reports_say_null_of_what_was_not_looked_for() {
     let generated = quality("box = { element = \"tri3\", size = [1, 1], cells = [1, 1] }");
     assert_eq!((generated.poor_elements, generated.coincident_nodes, generated.hanging_nodes), (None, Some(0), None));
 }
+
+/// Springs along the sides of squares leave shears free: the loosest points are named as in the files, by the numbers of the mesh file or from 0.
+#[test]
+fn points_of_notes_are_those_of_files() {
+    let folder = TempDir::new().unwrap();
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n12 0 0 0\n30 1 0 0\n41 1 1 0\n8 0 1 0\n$EndNodes\n$Elements\n1\n\
+                1 3 2 1 1 12 30 41 8\n$EndElements\n";
+    fs::write(folder.path().join("m.msh"), text).unwrap();
+    let file = format!("file = {:?}", folder.path().join("m.msh"));
+    let box_mesh = "box = { element = \"quad4\", size = [1, 1], cells = [1, 1] }";
+    for (mesh, word, names) in [(box_mesh, "point", ["2", "3"]), (&file[..], "node", ["41", "8"])] {
+        let text = format!(
+            "[mesh]\n{mesh}\n[material]\nyoung = 1e4\npoisson = 0.3\nthickness = 1\n[[fit]]\nobjective = \"frobenius\"\n\
+             springs = [\"edge\"]\n[[fix]]\nwhere = \"y < 1e-9\"\n[[load]]\nwhere = \"y > 0.9\"\nforce = [1, 0]\n"
+        );
+        let outcome = run(&Scene::parse(&text, Path::new("/scene.toml")).unwrap(), &mut |_| {}).unwrap();
+        assert_eq!(Report::of(&outcome).fits[0].loose_nodes, [2, 3]);
+        let notes = springfit::report::notes(&outcome).join("\n");
+        let [a, b] = names;
+        for part in [format!("Moving freely: {word}s {a} ("), format!("), {b} (")] {
+            assert!(notes.contains(&part), "{part}: {notes}");
+        }
+    }
+}

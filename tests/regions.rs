@@ -527,3 +527,22 @@ fn sampled_fits_take_the_law_of_each_region() {
         assert_close(along(1.0, 2.0), along(2.0, 3.0), 1e-9);
     }
 }
+
+/// E and ν of the network of a body of two materials are those of sampled cells: the table says so, with those of the finite elements of the
+/// same cells, which the exact network has. Of a body of one material it says nothing.
+#[test]
+fn the_material_of_samples_is_told_from_that_of_the_body() {
+    let two =
+        "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 2e3\npoisson = 0.3\n[[material]]\nyoung = 7e3\npoisson = 0.2\n";
+    let found = outcome(&bar("hex8", [1, 1, 3], two, EXACT));
+    let record = &Report::of(&found).fits[0].as_material;
+    let (young, poisson) = (record.asked_young.unwrap(), record.asked_poisson.unwrap());
+    assert!(2e3 < young && young < 7e3);
+    assert_close(record.young.unwrap(), young, 1e-9);
+    assert_close(record.poisson.unwrap(), poisson, 1e-9);
+    let told = format!("not of the body; finite elements have E = {young:.4e} Pa, nu = {poisson:.3} there.");
+    assert!(springfit::report::table(&found).contains(&told), "{}", springfit::report::table(&found));
+    let one = outcome(&bar("hex8", [1, 1, 3], "[material]\nyoung = 2e3\npoisson = 0.3\n", EXACT));
+    assert!(!springfit::report::table(&one).contains("differ from cell to cell"));
+    assert_eq!(Report::of(&one).fits[0].as_material.asked_young, Some(2e3));
+}

@@ -24,7 +24,7 @@ class Report:
 
     Attributes:
         record: The report as ``report.json`` has it.
-        displacements: By load and by fit (the finite elements have the name ""), m, shape (points, dimension).
+        displacements: By load and by fit (the finite elements have the name ""), of those that reach the load, m, shape (points, dimension).
         files: What was written.
     """
 

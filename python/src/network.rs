@@ -17,7 +17,7 @@ use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
 use springfit::report::{self, NetworkFile, NetworkFormat};
 use springfit::solve::System;
 use springfit::springs::Measure;
-use springfit::study::{FitOutcome, Outcome};
+use springfit::study::{FitOutcome, Outcome, PointMasses};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ impl Network {
     pub fn new(
         mesh: Arc<Mesh>,
         material: Material,
-        masses: Option<Vec<f64>>,
+        masses: Option<PointMasses>,
         fit: FitOutcome,
         ends: Option<Arc<Ends>>,
     ) -> Network {

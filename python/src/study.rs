@@ -69,14 +69,15 @@ pub fn keyless(error: Error) -> Error {
     }
 }
 
-/// By load, of the finite elements (`""`) and of each fit that has an answer.
+/// By load, of the finite elements (`""`) and of each fit, if they have an answer to the whole load.
 fn displacements<'py>(
     py: Python<'py>,
     outcome: &Outcome,
 ) -> BTreeMap<String, BTreeMap<String, Bound<'py, PyArray2<f64>>>> {
     let d = outcome.mesh.dimension;
     let of_load = |(place, load): (usize, &springfit::study::BodyLoad)| {
-        let mut models = BTreeMap::from([(String::new(), matrix(py, load.fem.clone(), d))]);
+        let body = load.is_reached().then(|| (String::new(), matrix(py, load.fem.clone(), d)));
+        let mut models = BTreeMap::from_iter(body);
         for fit in &outcome.fits {
             let answer = fit.loads.get(place).and_then(|load| load.displacement.clone());
             models.extend(answer.map(|u| (fit.fit.name.clone(), matrix(py, u, d))));

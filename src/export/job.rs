@@ -77,7 +77,7 @@ impl<'a> Job<'a> {
         let step = network.largest_step.ok_or_else(|| Error::expected("largest_step", "a step in s", "none"))?;
         let parts = Parts::of(network)?;
         if let (Some(part), false) = (parts.contents.first(), holds.volumes && d == 3) {
-            let found = format!("a spring on the content of points {:?}", part.points);
+            let found = format!("a spring on the content of {}", named(network, &part.points));
             let advice = "objective = \"offdiag\" with nonnegative = true has springs between two points alone, and so has \"divergence\"";
             return unsupported("springs".into(), "springs between two points", found, advice);
         }
@@ -88,7 +88,7 @@ impl<'a> Job<'a> {
             return unsupported("springs".into(), "constants above zero", found, advice);
         }
         if let Some(part) = parts.contents.iter().find(|part| part.constant <= 0.0 || part.rest <= 0.0) {
-            let found = format!("{:e} N/m⁵ and {:e} m³ at points {:?}", part.constant, part.rest, part.points);
+            let found = format!("{:e} N/m⁵ and {:e} m³ at {}", part.constant, part.rest, named(network, &part.points));
             return unsupported(
                 "springs".into(),
                 "volume springs with constants and rest volumes above zero",
@@ -98,13 +98,13 @@ impl<'a> Job<'a> {
         }
         for held in network.held.iter().filter(|_| !holds.partial) {
             if held.displacement.iter().any(Option::is_none) {
-                let found = format!("point {} held along some axes", held.point);
+                let found = format!("{} held along some axes", named(network, &[held.point]));
                 let advice = "hold it along all axes, or none";
                 return unsupported("held".into(), "points that are held in all directions", found, advice);
             }
         }
         if let Some(held) = network.held.iter().find(|held| held.displacement.iter().flatten().any(|u| *u != 0.0)) {
-            let found = format!("point {} moved", held.point);
+            let found = format!("{} moved", named(network, &[held.point]));
             return unsupported("held".into(), "supports at rest", found, "move it in the program");
         }
         let job = Job { network, parts, gravity: spatial(gravity, network), masses, step };
@@ -148,15 +148,15 @@ impl<'a> Job<'a> {
         }
         let expected = format!("springs along the edges of tetrahedra and on their volumes, which {program} holds");
         let advice = "; take a mesh of linear tetrahedra, and for springs between cells leave `across` out";
-        let error = |points: String| {
-            let found = format!("one of points {points}");
+        let error = |points: &[usize]| {
+            let found = format!("one of {}", named(self.network, points));
             Error::expected("springs", &expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported)
         };
         if let Some(spring) = self.parts.lengths.iter().find(|s| !edges.contains(&ordered(s.points[0], s.points[1]))) {
-            return Err(error(format!("{:?}", spring.points)));
+            return Err(error(&spring.points));
         }
         match self.parts.contents.iter().find(|part| !corners.contains(&sorted(&part.points))) {
-            Some(part) => Err(error(format!("{:?}", part.points))),
+            Some(part) => Err(error(&part.points)),
             None => Ok(()),
         }
     }
@@ -174,7 +174,7 @@ impl<'a> Job<'a> {
             return Ok(());
         };
         let expected = format!("springs that do not pull at rest, which {program} holds");
-        let found = format!("a rest measure of {share:.3} of that in the mesh at points {points:?}");
+        let found = format!("a rest measure of {share:.3} of that in the mesh at {}", named(self.network, points));
         let advice = "; objective = \"offdiag\" with nonnegative = true has such springs, with springs = [\"edge\", \"bulk\"] on volumes as well";
         Err(Error::expected("springs", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
     }
@@ -208,11 +208,23 @@ impl<'a> Job<'a> {
                     format!("springs that do not pull at rest, or balance edge by edge, which {program} holds");
                 let advice =
                     "; objective = \"exact\" without nonnegative balances, and fits with rest = \"mesh\" do not pull";
-                let error = Error::expected("springs", expected, format!("tension along the edge {edge:?}"));
+                let error =
+                    Error::expected("springs", expected, format!("tension between {}", named(self.network, edge)));
                 Err(error.followed_by(advice).of_kind(ErrorKind::Unsupported))
             }
         }
     }
+}
+
+/// Points in words: by their numbers in the mesh file, or by their places in the network, which count from 0.
+pub(super) fn named(network: &NetworkRecord, points: &[usize]) -> String {
+    let many = if points.len() == 1 { "" } else { "s" };
+    let (word, numbers): (_, Vec<u64>) = match &network.nodes {
+        Some(nodes) => ("node", points.iter().filter_map(|&p| nodes.get(p)).copied().collect()),
+        None => ("point", points.iter().map(|&p| p as u64).collect()),
+    };
+    let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+    format!("{word}{many} {}", numbers.join(" "))
 }
 
 fn free_points(network: &NetworkRecord) -> usize {

@@ -1,6 +1,6 @@
 //! PhysTwin: the arrays of its simulator `SpringMassSystemWarp`.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job, Tension, named};
 use super::target::{Content, NamedFile, Target, dampers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{ArrayFile, LengthPart, NetworkRecord};
@@ -38,7 +38,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     let is_outside = |spring: &&LengthPart| !(spring.rest > 0.0 && spring.constant > 0.0);
     if let Some(spring) = job.parts.lengths.iter().find(is_outside) {
         let expected = "constants and rest lengths above zero, which PhysTwin holds";
-        let found = format!("{:e} N/m and {:e} m at points {:?}", spring.constant, spring.rest, spring.points);
+        let found = format!("{:e} N/m and {:e} m at {}", spring.constant, spring.rest, named(network, &spring.points));
         let error = Error::expected("springs", expected, found).of_kind(ErrorKind::Unsupported);
         return Err(error.followed_by("; objective = \"offdiag\" with nonnegative = true has such springs"));
     }

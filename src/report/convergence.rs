@@ -78,7 +78,7 @@ fn rows(convergence: &Convergence, load: &LoadConvergence, model: &ModelConverge
     };
     let mut rows: Vec<Vec<String>> = model.steps.iter().enumerate().map(row).collect();
     if let Some((limit, order)) = model.limit().and_then(|limit| Some((limit, limit.order()?))) {
-        let of_truth = load.truth.map(|truth| 100.0 * (limit.value / truth.value - 1.0));
+        let of_truth = load.truth.and_then(|truth| load.softer(limit.value, truth.value));
         let mut row = vec![String::new(); rows[0].len()];
         row[1] = "limit".into();
         row[5] = format!("{:.6e}", limit.value);

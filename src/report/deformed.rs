@@ -23,7 +23,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     let mesh = &outcome.mesh;
     let d = mesh.dimension;
     let place = outcome.load(load)?;
-    let fem = &outcome.loads[place].fem;
+    let fem = &outcome.loads.get(place).filter(|load| load.is_reached())?.fem;
     let mut panels: Vec<(&str, &Vec<f64>, Option<DisplacementError>)> = Vec::new();
     for name in fits {
         let fit = outcome.fits.iter().find(|fit| fit.fit.name == **name);

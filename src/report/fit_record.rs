@@ -38,8 +38,8 @@ pub struct FitRecord {
     pub negative_springs: usize,
     /// Elements whose equations do not determine all constants.
     pub undetermined_elements: usize,
-    /// The least and the largest energy of the network over the body's; of exact networks with volume springs on cells or patches,
-    /// over that of finite elements with λ at most 2 μ, which do not lock.
+    /// The least and the largest energy of the network over the body's; of exact networks with volume springs on patches, or on
+    /// cells of several quadrature points, over that of finite elements with λ at most 2 μ, which do not lock.
     pub energy_ratio: Option<[Option<f64>; 2]>,
     /// Points that move most in the softest motion, from 0.
     pub loose_nodes: Vec<usize>,
@@ -55,7 +55,7 @@ pub struct FitRecord {
     pub energy_error_bound: Option<f64>,
     /// What the network is as a material, at rest.
     pub as_material: NetworkMaterialRecord,
-    /// Of the whole network, where the scene asks for `moduli`; Pa.
+    /// Of the whole network, where the scene asks for `moduli`; Pa. In plane strain that of the solid.
     pub effective_young: Option<f64>,
     /// Poisson's ratio of the network where it was measured (`[output] moduli`).
     pub effective_poisson: Option<f64>,

@@ -1,4 +1,4 @@
-//! What the root mean square hides: the error where the body moves most, and that of the work of each load.
+//! What the root mean square hides: the error where the body moves most, and that of the compliance under each load.
 
 use super::columns::{Heading, aligned};
 use crate::study::{BodyLoad, FitOutcome, LoadOutcome, Outcome, extent};
@@ -24,7 +24,7 @@ pub(super) fn load_error_table(outcome: &Outcome) -> String {
     format!("\n{}{}", aligned(&header, &rows), largest(outcome))
 }
 
-/// How far the finite elements move, which percentages hide.
+/// How far the finite elements move under the loads that they reach, which percentages hide.
 fn largest(outcome: &Outcome) -> String {
     let d = outcome.mesh.dimension;
     let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
@@ -33,6 +33,9 @@ fn largest(outcome: &Outcome) -> String {
         let most = load.fem.chunks_exact(d).map(length).fold(0.0, f64::max);
         format!("{} {most:.3e} m ({:.2} % of the body)", load.name, 100.0 * most / size)
     };
-    let loads: Vec<String> = outcome.loads.iter().map(moved).collect();
+    let loads: Vec<String> = outcome.loads.iter().filter(|load| load.is_reached()).map(moved).collect();
+    if loads.is_empty() {
+        return String::new();
+    }
     format!("Largest displacement of the finite elements: {}.\n", loads.join(", "))
 }

@@ -58,7 +58,8 @@ pub struct LoadRecord {
     pub e_max: Option<f64>,
     /// Percent of the largest displacement, at the point that moves most in the finite elements.
     pub e_tip: Option<f64>,
-    /// By how many percent the work of the load, twice the energy of a linear model, is larger than in the finite elements.
+    /// By how many percent the network is softer than the finite elements: from the work of the load, twice the energy of a linear
+    /// model, or from the inverse of that under prescribed displacements.
     pub e_energy: Option<f64>,
     /// To assemble, factorise and solve, each as if this were the only load.
     pub seconds_fem: f64,

@@ -12,6 +12,10 @@ pub struct NetworkMaterialRecord {
     pub young: Option<f64>,
     /// Poisson's ratio, mean over all directions; null as `young`, and of a rod.
     pub poisson: Option<f64>,
+    /// Young's modulus of the material there, Pa, as `young`: where it differs from cell to cell that of the finite elements of the samples.
+    pub asked_young: Option<f64>,
+    /// Poisson's ratio of the material there, as `poisson`.
+    pub asked_poisson: Option<f64>,
     /// `‖C − C₀‖/‖C₀‖` of the elasticity tensors, root mean square over the samples; null where it is not finite.
     pub tensor_distance: Option<f64>,
     /// The same of the mean of the samples' tensors.
@@ -33,6 +37,8 @@ impl NetworkMaterialRecord {
         NetworkMaterialRecord {
             young: material.young,
             poisson: material.poisson,
+            asked_young: material.asked_young,
+            asked_poisson: material.asked_poisson,
             tensor_distance: finite(material.distance),
             mean_tensor_distance: finite(material.mean_distance),
             largest_tensor_distance: finite(material.largest_distance),

@@ -101,7 +101,7 @@ use std::path::{Path, PathBuf};
 pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Result<Vec<PathBuf>> {
     let models = || outcome.motion.iter().flat_map(|motion| &motion.models);
     let names = models().map(|model| model.name.as_str());
-    let Stems { fits: stems, motions } = Stems::of(outcome.fits.iter().map(|f| f.fit.name.as_str()), names);
+    let Stems { fits: stems, motions, points } = Stems::of(outcome.fits.iter().map(|f| f.fit.name.as_str()), names);
     let moved = || models().zip(&motions);
     let mut written = Vec::new();
     let reports = output.report != Some(false);
@@ -115,8 +115,9 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         write_with(&path, |to| network_csv(&outcome.mesh, &fit.network, to))?;
         written.push(path);
     }
-    if let Some(fit) = outcome.fits.first().filter(|_| tables) {
-        let path = folder.join(POINTS);
+    let names = points_names(outcome, points);
+    for (fit, name) in outcome.fits.iter().zip(&names).filter(|_| tables) {
+        let path = folder.join(name);
         write_with(&path, |to| points_csv(&NetworkFile::of(outcome, fit), to))?;
         written.push(path);
     }
@@ -155,6 +156,16 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         written.push(path);
     }
     Ok(written)
+}
+
+/// One file of points if all networks have the same masses, otherwise one for each fit.
+fn points_names(outcome: &Outcome, stems: Vec<String>) -> Vec<String> {
+    let mut masses = outcome.fits.iter().map(|fit| NetworkFile::of(outcome, fit).masses());
+    let first = masses.next();
+    match masses.all(|masses| Some(masses) == first) {
+        true => vec![POINTS.into()],
+        false => stems.iter().map(|stem| format!("{stem}.csv")).collect(),
+    }
 }
 
 /// Writes texts under their names into `folder`, and returns the paths.

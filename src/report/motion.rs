@@ -4,7 +4,7 @@ use super::columns::{Heading, aligned};
 use super::linear_theory::turning_note;
 use super::rows::csv;
 use crate::scalar::norm;
-use crate::study::{ModelMotion, MotionEnding, MotionOutcome, Outcome, Record};
+use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record};
 
 /// One row per model; empty without a motion.
 pub(super) fn motion_table(outcome: &Outcome) -> String {
@@ -37,6 +37,7 @@ fn setting(motion: &MotionOutcome) -> String {
 fn row(model: &ModelMotion) -> Vec<String> {
     let ended = match &model.ending {
         MotionEnding::Complete | MotionEnding::Refused(_) => model.ending.name().into(),
+        MotionEnding::Unsolved => format!("{} in {}", model.ending.name(), steps(model.unsolved)),
         MotionEnding::NoResponse | MotionEnding::RanAway => {
             format!("{} after {} steps", model.ending.name(), model.steps)
         }
@@ -63,10 +64,41 @@ fn row(model: &ModelMotion) -> Vec<String> {
     row
 }
 
+/// Where steps do not divide the times that are asked for.
+fn step_notes(recipe: &MotionRecipe) -> Vec<String> {
+    let (step, end) = (recipe.options.step, recipe.end());
+    // Decimals are not exact in binary.
+    let is_later = end > recipe.duration * (1.0 + 1e-9);
+    let later = is_later.then(|| {
+        format!(
+            "the motion ends at {} s, with the first step that reaches {:?} s, which is no multiple of {step:?} s",
+            short(end),
+            recipe.duration
+        )
+    });
+    let uneven = (!recipe.is_even()).then(|| {
+        let every = recipe.every;
+        format!(
+            "states are written after the first step at or beyond each multiple of {every:?} s, which is no multiple of {step:?} s: the times \
+             between them differ by a step"
+        )
+    });
+    later.into_iter().chain(uneven).collect()
+}
+
+/// Without the last digits, which are rounding errors of products.
+fn short(seconds: f64) -> f64 {
+    format!("{seconds:.12e}").parse().unwrap_or(seconds)
+}
+
+fn steps(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "step" } else { "steps" })
+}
+
 /// What a reader must know of a motion before trusting it.
 pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
     let Some(motion) = &outcome.motion else { return Vec::new() };
-    let mut notes = Vec::new();
+    let mut notes = step_notes(&motion.recipe);
     for model in &motion.models {
         let name = &model.name;
         if let (Some(growth), Some(fit)) = (model.growth, model.fit) {
@@ -80,7 +112,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
         notes.extend(turning_note(model, motion.models[0].deformation));
         let known = || model.records.last().map_or(0.0, |record| record.account.time);
         match &model.ending {
-            MotionEnding::Complete => {}
+            MotionEnding::Complete | MotionEnding::Unsolved => {}
             MotionEnding::Refused(why) => notes.push(format!("{name}: the motion was not started: {why}")),
             MotionEnding::NoResponse => notes.push(format!(
                 "{name}: the model has no response after {} steps; its motion is known up to {:?} s",
@@ -94,7 +126,8 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
             )),
         }
         if model.unsolved > 0 {
-            notes.push(format!("{name}: in {} steps the equations were not solved to the tolerance", model.unsolved));
+            let many = steps(model.unsolved);
+            notes.push(format!("{name}: in {many} the equations were not solved to the tolerance"));
         }
     }
     notes
@@ -115,7 +148,7 @@ pub fn motion_csv(model: &ModelMotion) -> String {
         let account = &record.account;
         let balance = account.balance.map(|b| [b.work, b.dissipated, b.drift]);
         // Times are products of the step.
-        let t = format!("{:.12e}", account.time).parse::<f64>().unwrap_or(account.time);
+        let t = short(account.time);
         let full = |value: f64| format!("{value:e}");
         let mut row = vec![t.to_string(), full(account.kinetic), full(account.elastic), full(account.total())];
         row.extend((0..3).map(|i| balance.map_or(String::new(), |balance| full(balance[i]))));

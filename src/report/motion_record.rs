@@ -46,7 +46,7 @@ pub struct MotionRecord {
     pub seconds: f64,
     /// Steps in a second of computation.
     pub steps_per_second: Option<f64>,
-    /// `complete`, `no response`, `ran away` or `not begun`.
+    /// `complete`; `not solved` if that is so of the equations of some steps; `no response`, `ran away` or `not begun`.
     pub ended: String,
     /// Why the motion was not begun.
     pub reason: Option<String>,

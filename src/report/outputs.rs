@@ -1,13 +1,12 @@
 //! The files that a command writes, known before its work.
 
+use super::pictures::check_arrays;
 use crate::error::Result;
 use crate::file::{check_apart, check_file, check_folder};
-use crate::study::Scene;
+use crate::study::{BODY, NamedFit, Scene};
 use std::path::{Path, PathBuf};
 
-/// What the finite elements are called among the models that move.
-const BODY: &str = "finite elements";
-/// The table of the points, which all networks of a run have in common.
+/// The table of the points, if all networks of a run have the same masses.
 pub(super) const POINTS: &str = "points.csv";
 /// The report as a page.
 pub(super) const PAGE: &str = "report.html";
@@ -27,23 +26,28 @@ pub fn check_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Resul
 /// The same of all that a run of the scene writes.
 ///
 /// # Errors
-/// As there.
+/// As there; or two arrays of a file for ParaView would have the same name.
 pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Result<()> {
     let output = scene.output();
     let fits: Vec<&str> = scene.fits().iter().map(|fit| fit.name.as_str()).collect();
     let recipe = scene.motion();
     let bodies = recipe.filter(|recipe| recipe.finite_elements).map(|_| BODY);
     let moved: Vec<&str> = recipe.map_or(Vec::new(), |_| bodies.into_iter().chain(fits.iter().copied()).collect());
-    let Stems { fits, motions } = Stems::of(fits.iter().copied(), moved.iter().copied());
+    let Stems { fits, motions, points } = Stems::of(fits.iter().copied(), moved.iter().copied());
     let mut names: Vec<String> = motions.iter().map(|stem| format!("{stem}.csv")).collect();
     if output.csv {
         names.extend(fits.iter().map(|stem| format!("{stem}.csv")));
         names.push(POINTS.into());
+        let has_masses = |fit: &NamedFit| fit.recipe.whole().is_some_and(|whole| whole.masses > 0);
+        if scene.fits().iter().any(has_masses) {
+            names.extend(points.iter().map(|stem| format!("{stem}.csv")));
+        }
     }
     if output.json != Some(false) {
         names.extend(fits.iter().map(|stem| format!("{stem}.json")));
     }
     if output.vtu {
+        check_arrays(scene)?;
         names.push("mesh.vtu".into());
         names.extend(fits.iter().map(|stem| format!("{stem}.vtu")));
         names.extend(motions.iter().map(|stem| format!("{stem}.pvd")));
@@ -65,6 +69,8 @@ pub(super) struct Stems {
     pub fits: Vec<String>,
     /// Files of the motions.
     pub motions: Vec<String>,
+    /// Files of the points of each network, where they are not the same.
+    pub points: Vec<String>,
 }
 
 impl Stems {
@@ -72,9 +78,12 @@ impl Stems {
     pub fn of<'a>(fits: impl Iterator<Item = &'a str>, moved: impl Iterator<Item = &'a str>) -> Stems {
         let fits: Vec<&str> = fits.collect();
         let moved: Vec<String> = moved.map(|name| format!("motion {name}")).collect();
-        let mut stems = file_stems(fits.iter().copied().chain(moved.iter().map(String::as_str)));
+        let points: Vec<String> = fits.iter().map(|name| format!("points {name}")).collect();
+        let own = moved.iter().chain(&points).map(String::as_str);
+        let mut stems = file_stems(fits.iter().copied().chain(own));
+        let points = stems.split_off(fits.len() + moved.len());
         let motions = stems.split_off(fits.len());
-        Stems { fits: stems, motions }
+        Stems { fits: stems, motions, points }
     }
 }
 

@@ -1,13 +1,57 @@
 //! Grids for ParaView.
 
 use super::network::NetworkFile;
+use crate::error::{Error, Result};
 use crate::mesh::vtk::{Array, Grid};
 use crate::mesh::{Mesh, Numbering};
 use crate::model::{LengthSpring, MeasureSpring, Network, smoothed_pressure};
-use crate::study::Outcome;
+use crate::study::{BodyLoad, Outcome, Scene};
+use std::collections::HashSet;
 
 const LINE: u8 = 3;
 const POINTS: u8 = 2;
+
+/// The displacements of the finite elements in both kinds of files.
+pub(super) fn body_array(load: &str) -> String {
+    format!("u fem {load} (m)")
+}
+
+/// The displacements of a network beside those of others.
+pub(super) fn network_array(fit: &str, load: &str) -> String {
+    format!("u {fit} {load} (m)")
+}
+
+/// The displacements of a network in a file of its own.
+fn own_array(load: &str) -> String {
+    format!("u {load} (m)")
+}
+
+/// Checks that each array has a name of its own, before the work.
+///
+/// # Errors
+/// The names of a fit and a load make the same name as others, or as those of the finite elements.
+pub(super) fn check_arrays(scene: &Scene) -> Result<()> {
+    let loads = || scene.loads().iter().map(|load| load.name.as_str());
+    let bodies: HashSet<String> = loads().map(body_array).collect();
+    let expected = "a name that makes no equal names of arrays in the files for ParaView";
+    if let Some((i, load)) = loads().enumerate().find(|(_, load)| bodies.contains(&own_array(load))) {
+        let found = format!("\"{load}\", whose array \"{}\" is that of the finite elements", own_array(load));
+        return Err(scene.at(&format!("load[{i}]"), Error::expected("name", expected, found)));
+    }
+    let mut taken = bodies;
+    for fit in scene.fits() {
+        for load in loads() {
+            let array = network_array(&fit.name, load);
+            if taken.contains(&array) {
+                let found = format!("\"{}\", whose array \"{array}\" another model has as well", fit.name);
+                let place = fit.entry().map_or_else(|| format!("fit \"{}\"", fit.name), |i| format!("fit[{i}]"));
+                return Err(scene.at(&place, Error::expected("name", expected, found)));
+            }
+            taken.insert(array);
+        }
+    }
+    Ok(())
+}
 
 /// The solid cells, with the displacements of the finite elements and of each network.
 pub fn displacement_grid(outcome: &Outcome) -> Grid {
@@ -15,12 +59,12 @@ pub fn displacement_grid(outcome: &Outcome) -> Grid {
     let mut grid = cell_grid(mesh, &mesh.points);
     grid.point_data.extend(nodes(mesh));
     for load in &outcome.loads {
-        grid.point_data.push(vectors(format!("u fem {} (m)", load.name), &load.fem, mesh.dimension));
+        grid.point_data.extend(body_vectors(load, mesh.dimension));
     }
     for fit in &outcome.fits {
         for load in &fit.loads {
             if let Some(u) = &load.displacement {
-                grid.point_data.push(vectors(format!("u {} {} (m)", fit.fit.name, load.name), u, mesh.dimension));
+                grid.point_data.push(vectors(network_array(&fit.fit.name, &load.name), u, mesh.dimension));
                 let linear = outcome.law.is_none();
                 let pressure = smoothed_pressure(mesh, &fit.network, &outcome.material, u, linear);
                 let name = || format!("pressure, smoothed, {} {} (Pa)", fit.fit.name, load.name);
@@ -74,12 +118,17 @@ pub fn network_grid(file: &NetworkFile) -> Grid {
     }
     let answers = file.study.iter().flat_map(|(outcome, fit)| fit.loads.iter().zip(&outcome.loads));
     for (load, body) in answers {
-        grid.point_data.push(vectors(format!("u fem {} (m)", body.name), &body.fem, mesh.dimension));
+        grid.point_data.extend(body_vectors(body, mesh.dimension));
         if let Some(u) = &load.displacement {
-            grid.point_data.push(vectors(format!("u {} (m)", load.name), u, mesh.dimension));
+            grid.point_data.push(vectors(own_array(&load.name), u, mesh.dimension));
         }
     }
     grid
+}
+
+/// Of the finite elements, if they reached the whole load.
+fn body_vectors(load: &BodyLoad, dimension: usize) -> Option<Array> {
+    load.is_reached().then(|| vectors(body_array(&load.name), &load.fem, dimension))
 }
 
 /// The numbers of the points in the file: node tags of Gmsh, places from 0 of VTK; `None` of a mesh that is no file.

@@ -174,7 +174,7 @@ fn errors(report: &Report) -> ResultTable {
         std::iter::once(text(&fit.name)).chain(fit.loads.iter().flat_map(of)).collect()
     };
     let rows = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
-    let title = "Errors of the displacements in percent of the largest; e_energy is that of the work of the load";
+    let title = "Errors of the displacements in percent of the largest; e_energy is that of the compliance";
     ResultTable::new("errors", title, columns, rows)
 }
 

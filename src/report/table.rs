@@ -10,6 +10,7 @@ use super::motion::{motion_notes, motion_table};
 use super::region_record::RegionRecord;
 use crate::fit::Spread;
 use crate::mesh::{Filled, Quality};
+use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
 use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading, extent};
 use crate::text::printable;
@@ -245,6 +246,7 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         .assumed
         .iter()
         .cloned()
+        .chain(lumping(outcome))
         .chain(finite)
         .chain(linear_notes(outcome))
         .chain(silent)
@@ -252,6 +254,12 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         .chain(own)
         .chain(starts.iter().map(agreed));
     notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
+}
+
+/// That masses are not the row sums that most expect. A motion says itself how it lumps them.
+fn lumping(outcome: &Outcome) -> Option<String> {
+    let is_hrz = outcome.motion.is_none() && outcome.lumping == Some(Lumping::Hrz);
+    is_hrz.then(|| "some row sums of the mass matrix are not positive: the masses are those of the HRZ method".into())
 }
 
 /// What is wrong with an equilibrium.
@@ -373,6 +381,6 @@ fn points(outcome: &Outcome, points: &[usize]) -> String {
     };
     let named: Vec<_> = points.iter().take(3).map(place).collect();
     let rest = if points.len() > 3 { format!(" and {} more", points.len() - 3) } else { String::new() };
-    let word = if points.len() == 1 { "point" } else { "points" };
-    format!("{word} {}{rest}", named.join(", "))
+    let (word, many) = (outcome.mesh.point_word(), if points.len() == 1 { "" } else { "s" });
+    format!("{word}{many} {}{rest}", named.join(", "))
 }

@@ -138,6 +138,7 @@ fn loads_that_contradict_supports() {
     let moved = "group = \"zmin\"\ndisplacement = [0, \"free\", 1e-3]";
     let edge = "where = \"x == 0\"\ndisplacement = [1e-3, 0, 0]";
     let still = "nothing that can move";
+    let free = "group = \"zmax\"\ndisplacement = [\"free\", \"free\", \"free\"]";
     let mut refusals = Refusals::default();
     refusals.expect_of_edits(
         BRICK,
@@ -147,9 +148,10 @@ fn loads_that_contradict_supports() {
                 load,
                 edge,
                 "scene.toml: load[0].displacement[0]",
-                "moves point 1 at [0.0, 0.0, 0.0] m along x by 0.001 m",
+                "moves point 0 at [0.0, 0.0, 0.0] m along x by 0.001 m",
             ),
             (load, "group = \"zmin\"\ntraction = [0, 0, 1]", "scene.toml: load[0].traction", still),
+            (load, free, "scene.toml: load[0].displacement", "a direction that is moved"),
             (load, "group = \"zmin\"\nforce = [1, 0, 0]", "scene.toml: load[0].force", still),
             (all, "where = \"z >= 0\"\n[[load]]\nbody = [1, 0, 0]", "scene.toml: load[0].body", still),
         ],

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::mesh::{Field, Mesh, MeshSource};
 use crate::report::network::NetworkRecord;
 use crate::report::outline::cell_edges;
+use crate::report::pictures::{body_array, network_array};
 use std::path::Path;
 
 /// The largest displacement is drawn as this part of the body's size.
@@ -72,7 +73,7 @@ impl Deformation {
         let mesh = Mesh::resolve(&source, &[], 1.0).map_err(|e| e.in_file(&path))?;
         let network = run.network(Some(&fit.name))?;
         check_same(&mesh, &network).map_err(|e| e.in_file(&path))?;
-        let displacements = [format!("u fem {} (m)", load.name), format!("u {} {} (m)", fit.name, load.name)];
+        let displacements = [body_array(&load.name), network_array(&fit.name, &load.name)];
         let displacements = displacements.map(|array| displacement(&path, &mesh, &array));
         let [body, springs] = displacements;
         let displacements = [body?, springs?];

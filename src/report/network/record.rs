@@ -135,7 +135,7 @@ pub struct LoadErrorsRecord {
     pub e_max: Option<f64>,
     /// The error at the point that moves most, percent of the largest displacement.
     pub e_tip: Option<f64>,
-    /// Percent.
+    /// By how many percent it is softer than the finite elements, from the work of the load.
     pub e_energy: Option<f64>,
 }
 

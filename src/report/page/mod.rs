@@ -70,7 +70,11 @@ impl ViewRecord {
         };
         for load in &outcome.loads {
             let displacement = drawing.vectors(&load.fem);
-            view.loads.push(LoadViewRecord { name: load.name.clone(), displacement });
+            let name = match load.followed.filter(|_| !load.is_reached()) {
+                Some(followed) => format!("{}, {:.3} of the load", load.name, followed.load),
+                None => load.name.clone(),
+            };
+            view.loads.push(LoadViewRecord { name, displacement });
         }
         for (fit, springs) in outcome.fits.iter().zip(&drawing.springs) {
             let own = drawing.spring_mesh(&fit.network, springs);

@@ -31,7 +31,7 @@ pub struct ViewRecord {
     pub dimension: usize,
     /// `[points × 3]`, m.
     pub points: Floats,
-    /// The numbers of the points in the mesh file, from 1 in a mesh that is no file.
+    /// The numbers of the points in the mesh file, from 0 in a mesh that is no file.
     pub numbers: Places,
     /// Edges of the cells on the surface, `[edges × 2]`.
     pub edges: Places,
@@ -52,7 +52,7 @@ pub struct ViewRecord {
 /// A load of the body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoadViewRecord {
-    /// Its name.
+    /// Its name, with the share of it that the finite elements reached if that is not all.
     pub name: String,
     /// The displacements of the finite elements, `[points × 3]`, m.
     pub displacement: Floats,

@@ -111,7 +111,7 @@ impl Dampers {
             let dofs = nodes.iter().flat_map(|p| p * d..(p + 1) * d);
             for (dof, g) in dofs.zip(measure.gradient(x, d)).filter(|(dof, _)| !support.is_fixed(*dof)) {
                 if !(masses[dof / d] > 0.0) {
-                    let expected = format!("a mass above zero at point {}", dof / d + 1);
+                    let expected = format!("a mass above zero at point {}", dof / d);
                     return Err(Error::expected("masses", expected, masses[dof / d]));
                 }
                 inverse += g * g / masses[dof / d];

@@ -63,7 +63,7 @@ impl<'a> Motion<'a> {
         for (p, &mass) in self.masses.iter().enumerate() {
             let moves = held[p * d..(p + 1) * d].contains(&false);
             if !(mass.is_finite() && (mass > 0.0 || mass == 0.0 && !moves)) {
-                let expected = format!("a mass above zero at point {} (HRZ lumping gives one)", p + 1);
+                let expected = format!("a mass above zero at point {p} (HRZ lumping gives one)");
                 return Err(Error::expected("masses", expected, mass));
             }
         }

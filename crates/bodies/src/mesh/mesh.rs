@@ -110,9 +110,19 @@ impl Mesh {
         &self.points[index * self.dimension..(index + 1) * self.dimension]
     }
 
-    /// The number of a point in its file; in a mesh without a file, its index plus 1.
+    /// The number of a point in its file; in a mesh without a file its index, which files of networks have as well.
     pub fn point_number(&self, index: usize) -> u64 {
-        self.numbering.as_ref().map_or(index as u64 + 1, |numbering| numbering.nodes[index])
+        self.numbering.as_ref().map_or(index as u64, |numbering| numbering.nodes[index])
+    }
+
+    /// A point in words: `node 17` by its number in the file, or `point 4` by its index in a mesh without a file.
+    pub fn point_title(&self, index: usize) -> String {
+        format!("{} {}", self.point_word(), self.point_number(index))
+    }
+
+    /// What the numbers of points are: `node` of those in the file, `point` of indices.
+    pub fn point_word(&self) -> &'static str {
+        if self.numbering.is_some() { "node" } else { "point" }
     }
 
     /// CRC-32 of the points as little-endian numbers of 64 bits, followed by the cells as integers of 32 bits.

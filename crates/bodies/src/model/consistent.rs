@@ -94,7 +94,7 @@ impl ConsistentMasses {
             return Err(Error::expected("masses", format!("{}, one for each point", self.point_count), lumped.len()));
         }
         if let Some(p) = lumped.iter().position(|m| !(*m >= 0.0 && m.is_finite())) {
-            return Err(Error::expected("masses", format!("a mass of at least zero at point {}", p + 1), lumped[p]));
+            return Err(Error::expected("masses", format!("a mass of at least zero at point {p}"), lumped[p]));
         }
         let mut all = self.clone();
         all.values.iter_mut().for_each(|value| *value *= (1.0 - share).sqrt());

@@ -81,16 +81,14 @@ impl Edges {
         }
         if let Some(edge) = edges.lengths.iter().position(|length| !(*length > 0.0)) {
             let [i, j] = edges.pairs[edge];
-            return Err(Error::expected("mesh", "points apart", format!("the points {} and {} in one", i + 1, j + 1)));
+            let found = format!("{} and {} in one", mesh.point_title(i), mesh.point_title(j));
+            return Err(Error::expected("mesh", "points apart", found));
         }
         if let Some(spring) = springs.next() {
             let [i, j] = spring.points;
             let expected = "springs between two points of a cell, sorted by their points";
-            return Err(Error::expected(
-                "network",
-                expected,
-                format!("one between the points {} and {}", i + 1, j + 1),
-            ));
+            let found = format!("one between {} and {}", mesh.point_title(i), mesh.point_title(j));
+            return Err(Error::expected("network", expected, found));
         }
         Ok(edges)
     }

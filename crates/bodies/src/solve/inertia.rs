@@ -77,7 +77,7 @@ impl<'a> MassRoot<'a> {
         }
         let points = || free.iter().map(|dof| dof / dimension);
         if let Some(p) = points().find(|&p| !(of_points[p] > 0.0 && of_points[p].is_finite())) {
-            return Err(Error::expected("masses", format!("a mass above zero at point {}", p + 1), of_points[p]));
+            return Err(Error::expected("masses", format!("a mass above zero at point {p}"), of_points[p]));
         }
         Ok(MassRoot { masses, free, dimension, diagonal: points().map(|p| of_points[p].sqrt()).collect() })
     }

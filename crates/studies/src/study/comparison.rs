@@ -127,7 +127,7 @@ pub fn measure_recipes(
         let errors = element_errors(element, &points, &cells, moduli, &fitted)?;
         let negative = fitted.constants.iter().filter(|k| **k < 0.0).count();
         let general = recipe.stiffness().is_some_and(|fit| fit.solver != Solver::Native);
-        let lattice = || Lattice::of(&shared, &size, fit).ok()?.of_springs();
+        let lattice = || Some(Lattice::of(&shared, &size, fit).ok()?.of_springs()?.of_solid(material.state()));
         outcomes.push(MethodOutcome {
             name,
             solver,

@@ -62,13 +62,14 @@ pub use fits::{
 };
 pub use fitting::fit_mesh;
 pub use forecast::{ExpectedStage, Forecast};
-pub use masses::point_masses;
+pub use masses::{PointMasses, point_masses};
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, Measured, ModelMotion, MotionEnding,
     MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
 };
+pub use own_name::BODY;
 pub use paper::{
     Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,
 };

@@ -3,7 +3,7 @@
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, Fit, fit_cells};
-use crate::material::Material;
+use crate::material::{Material, State};
 use crate::mesh::{BoxMesh, CellBlock, Mesh, Selection, SideIndex};
 use crate::model::{Entries, Network, Support, content, finite_elements};
 use crate::solve::System;
@@ -27,6 +27,20 @@ pub struct EffectiveModuli {
     pub poisson: f64,
     /// Zener's ratio `2 C_shear/(C₁₁ − C₁₂)`, from means over the axes: 1 for an isotropic material (Zener 1948).
     pub zener: f64,
+}
+
+impl EffectiveModuli {
+    /// With E and ν of the solid in plane strain, which are the plane moduli `E/(1 − ν²)` and `ν/(1 − ν)` otherwise. The stiffness
+    /// stays that of the plane.
+    pub fn of_solid(self, state: State) -> EffectiveModuli {
+        match state {
+            State::PlaneStrain { .. } => {
+                let poisson = self.poisson / (1.0 + self.poisson);
+                EffectiveModuli { young: self.young * (1.0 - poisson * poisson), poisson, ..self }
+            }
+            State::Rod { .. } | State::Solid | State::PlaneStress { .. } => self,
+        }
+    }
 }
 
 /// The cells and springs of a periodic box.

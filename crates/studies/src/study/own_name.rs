@@ -2,6 +2,9 @@
 
 use crate::error::{Error, Result};
 
+/// The name of the finite elements among the models of a scene.
+pub const BODY: &str = "finite elements";
+
 /// Checks that `name` is not among `others`.
 ///
 /// # Errors

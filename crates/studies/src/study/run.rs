@@ -5,7 +5,7 @@ use super::checkpoint::Controls;
 use super::fits::{Finer, Reference, WholeBody};
 use super::fitting::fit_mesh;
 use super::forecast::Forecast;
-use super::masses::{inertial_masses, point_masses};
+use super::masses::point_masses;
 use super::moduli::moduli_of_body;
 use super::outcome::{BodyLoad, Outcome};
 use super::progress::{Event, Progress};
@@ -73,8 +73,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     };
     whole.newton = large.as_ref().map(|_| scene.newton());
     whole.fine = fine.as_ref().map(|fine| fine as &dyn Finer);
-    let inertial = masses.clone().filter(|_| fits_whole).map(|sums| inertial_masses(&mesh, material, sums));
-    whole.masses = inertial.as_deref();
+    whole.masses = masses.as_ref().map(|masses| &masses.values[..]);
     whole.solver = scene.solver();
     whole.know(body.iter().flat_map(|body| body.held(&cases)));
     let held = held_points(&mesh, &support, &cases);
@@ -89,7 +88,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         for (done, fit) in fits.iter_mut().enumerate() {
             progress(Event::stage("moduli", done, count));
             fit.network.check_size()?;
-            fit.moduli = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
+            let found = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
+            fit.moduli = found.map(|moduli| moduli.of_solid(material.state()));
         }
     }
     let law = large.as_ref().map(|large| large.laws.title());
@@ -139,7 +139,8 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         mesh,
         material: material.clone(),
         support: Some(support),
-        masses,
+        lumping: masses.as_ref().map(|masses| masses.lumping),
+        masses: masses.map(|masses| masses.values),
         law,
         loads,
         fits,

@@ -31,10 +31,12 @@ impl Case {
         Some(work).filter(|work| work.is_finite())
     }
 
-    /// By how many percent the work of a network exceeds that of the finite elements; `None` for measured
-    /// displacements.
+    /// By how many percent the compliance of a network exceeds that of the finite elements; `None` for measured
+    /// displacements. Under forces it is proportional to the work, under prescribed displacements to its inverse: of a network that
+    /// is too soft forces do more work, and less work moves it as far.
     pub fn work_error(&self, fem: Option<f64>, found: Option<f64>) -> Option<f64> {
-        let error = 100.0 * (found? / fem? - 1.0);
+        let ratio = if self.is_prescribed { fem? / found? } else { found? / fem? };
+        let error = 100.0 * (ratio - 1.0);
         Some(error).filter(|error| self.measured.is_none() && error.is_finite())
     }
 

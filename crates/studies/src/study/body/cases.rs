@@ -144,9 +144,8 @@ fn acting(
             for (k, u) in given.iter().enumerate().filter_map(|(k, u)| Some((k, (*u)?))) {
                 let dof = p * d + k;
                 if fixed.prescribed[dof].is_some_and(|held| held != u) {
-                    let (axis, number, place) = (["x", "y", "z"][k], mesh.point_number(p), mesh.point(p));
-                    let problem =
-                        format!("moves point {number} at {place:?} m along {axis} by {u:?} m, which [[fix]] holds");
+                    let (axis, title, place) = (["x", "y", "z"][k], mesh.point_title(p), mesh.point(p));
+                    let problem = format!("moves {title} at {place:?} m along {axis} by {u:?} m, which [[fix]] holds");
                     return Err(Error::at(format!("displacement[{k}]"), problem));
                 }
                 support.prescribed[dof] = Some(u);

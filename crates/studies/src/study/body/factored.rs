@@ -54,7 +54,7 @@ impl Factored {
             let (system, factor) = &factored.systems[index];
             let start = Instant::now();
             let (u, residual) = system.solve(factor, &case.forces);
-            check_residual(residual, case)?;
+            check_residual(residual, SOLVED, case)?;
             let seconds = assembly + setup[index] + start.elapsed().as_secs_f64();
             let work = case.work(&u, || Some(square(&entries, &u)));
             answers.push(BodyAnswer { displacement: u, work, seconds, solved: by_factor(factor, system, residual) });

@@ -1,6 +1,6 @@
 //! A finer mesh of the body of a scene, whose finite elements the networks are compared with.
 
-use super::answer::{check_residual, not_definite};
+use super::answer::{check_residual, largest_residual, not_definite};
 use super::case::Case;
 use super::cases::{applied_cases, held};
 use crate::error::{Error, Result};
@@ -113,7 +113,7 @@ impl FineBody {
         for (done, case) in cases.iter().enumerate() {
             progress(Event::stage("finer body", done, cases.len()));
             let (u, residual) = self.equations(&case.support, cases.len())?.solve(&case.forces)?;
-            check_residual(residual, case)?;
+            check_residual(residual, largest_residual(&self.solver), case)?;
             found.push(u);
         }
         Ok(found)
@@ -190,8 +190,9 @@ impl Finer for FineBody {
         progress(Event::stage("finer body", 0, cases.len()));
         let forces: Vec<Vec<f64>> = cases.iter().map(|case| case.forces.clone()).collect();
         let solved = self.equations(support, ASKED)?.solve_each(&forces, REFINED)?;
-        let found = cases.iter().zip(solved).map(|(case, (u, residual))| check_residual(residual, case).map(|()| u));
-        let found: Vec<Vec<f64>> = found.collect::<Result<_>>()?;
+        let largest = largest_residual(&self.solver);
+        let checked = |(case, (u, residual))| check_residual(residual, largest, case).map(|()| u);
+        let found: Vec<Vec<f64>> = cases.iter().zip(solved).map(checked).collect::<Result<_>>()?;
         let answer = |(case, u): (Case, Vec<f64>)| {
             (
                 NodalLoad { name: case.name, forces: self.embedding.restrict(&case.forces) },
@@ -247,7 +248,7 @@ impl Finer for FineBody {
             }
             let (_, equations) = known.iter().find(|(support, _)| **support == case.support).expect("it was added");
             let (u, residual) = equations.solve(&case.forces)?;
-            check_residual(residual, case)?;
+            check_residual(residual, largest_residual(&self.solver), case)?;
             found.push(self.sampling.interpolate(&u));
         }
         Ok(found)

@@ -1,13 +1,13 @@
 //! The loads of a scene at small deformation where the equations are too large for a factor: conjugate gradients with multigrid.
 
-use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
+use super::answer::{BodyAnswer, NetworkAnswer, check_residual, largest_residual, not_definite, shared};
 use super::case::Case;
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
 use crate::solve::{Levels, Solved, Stability, Standing, StaticSolver, compare_levels};
-use crate::study::metrics::{SOLVED, product};
+use crate::study::metrics::product;
 use crate::study::progress::{Event, Progress};
 use std::sync::Arc;
 use std::time::Instant;
@@ -119,7 +119,7 @@ impl Iterated {
                         let start = Instant::now();
                         let found = system.solve_other(&stiffness, &cases[*i].forces, solver);
                         let (displacement, solved) = found.map_err(|e| Some(e.problem().to_string()))?;
-                        if !(solved.residual <= SOLVED) {
+                        if !(solved.residual <= largest_residual(solver)) {
                             return Err(Some(format!("the iterations leave {:.1e} of the forces", solved.residual)));
                         }
                         Ok(Solution { displacement, solved, seconds: start.elapsed().as_secs_f64() })
@@ -186,7 +186,7 @@ fn solutions(
     let found = levels.solve_each(&forces, solver, &mut share).map_err(keyed)?;
     let seconds = start.elapsed().as_secs_f64() / group.len() as f64;
     let checked = |(&i, (displacement, solved)): (&usize, (Vec<f64>, Solved))| {
-        check_residual(solved.residual, &cases[i])?;
+        check_residual(solved.residual, largest_residual(solver), &cases[i])?;
         Ok(Solution { displacement, solved, seconds })
     };
     group.iter().zip(found).map(checked).collect()

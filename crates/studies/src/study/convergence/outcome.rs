@@ -44,6 +44,8 @@ pub struct Level {
 pub struct LoadConvergence {
     /// The name of the load.
     pub name: String,
+    /// Whether it prescribes displacements: the softer body does less work under it.
+    pub is_prescribed: bool,
     /// The limit of the compliance of the finite elements, J; `None` if they do not reach the load on some level.
     pub truth: Option<Limit>,
     /// The limit of the mean displacement of the loaded part, m; `None` also if it is prescribed.
@@ -77,24 +79,29 @@ pub struct Step {
 
 impl LoadConvergence {
     /// The results of these models; the limits are those of the first one.
-    pub fn new(name: String, models: Vec<ModelConvergence>) -> LoadConvergence {
+    pub fn new(name: String, is_prescribed: bool, models: Vec<ModelConvergence>) -> LoadConvergence {
         let body = models.first();
         let truth = body.and_then(ModelConvergence::limit);
         let means: Option<Vec<f64>> =
             body.and_then(|body| body.steps.iter().map(|step| step.mean_displacement).collect());
         let mean_truth = means.and_then(|means| limit_of(&means));
-        LoadConvergence { name, truth, mean_truth, models }
+        LoadConvergence { name, is_prescribed, truth, mean_truth, models }
     }
 
     /// The error of the model's compliance relative to that of the finite elements of each level, in percent.
     pub fn of_body(&self, model: &ModelConvergence) -> Vec<Option<f64>> {
-        let against = |(own, body): (&Step, &Step)| percent(own.compliance?, body.compliance?);
+        let against = |(own, body): (&Step, &Step)| self.softer(own.compliance?, body.compliance?);
         model.steps.iter().zip(&self.models[0].steps).map(against).collect()
     }
 
     /// The error of the model's compliance relative to the limit, in percent.
     pub fn of_truth(&self, model: &ModelConvergence) -> Vec<Option<f64>> {
-        model.steps.iter().map(|step| percent(step.compliance?, self.truth?.value)).collect()
+        model.steps.iter().map(|step| self.softer(step.compliance?, self.truth?.value)).collect()
+    }
+
+    /// By how many percent a body that does this work under the load is softer than one that does the other.
+    pub fn softer(&self, work: f64, other: f64) -> Option<f64> {
+        if self.is_prescribed { percent(other, work) } else { percent(work, other) }
     }
 
     /// The error of the model's mean displacement relative to the limit, in percent.

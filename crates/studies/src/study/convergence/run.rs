@@ -6,22 +6,20 @@ use super::quantities::Quantities;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
-use crate::solve::Ending;
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::metrics::{displacement_error, product, square};
 use crate::study::outcome::Outcome;
+use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::run::run_with;
-use crate::study::scene::{Output, Scene};
+use crate::study::scene::{LoadCase, Output, Scene};
 use std::time::Instant;
 
 /// The largest number of levels. Each level has up to eight times as many cells as the previous one.
 pub const MOST_LEVELS: usize = 8;
 /// The number of levels if none is requested and memory suffices.
 const USUAL_LEVELS: usize = 4;
-/// The name of the first model.
-const BODY: &str = "finite elements";
 
 /// Runs the scene on its mesh and on meshes with cells of half the size each, and compares the compliance under every
 /// load.
@@ -43,6 +41,7 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     let (extent, levels, loads) = Default::default();
     let mut convergence = Convergence { scene: title, extent, law: None, reference: None, levels, loads };
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
+    let mut prescribed = Vec::new();
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
         let start = Instant::now();
@@ -54,7 +53,8 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         let refined = &scenes[level];
         let controls = Controls { announce: true, ..Controls::default() };
         let outcome = run_with(refined, &controls, &mut staged).map_err(in_level)?;
-        let steps = steps(refined, &outcome).map_err(in_level)?;
+        let (own, steps) = steps(refined, &outcome).map_err(in_level)?;
+        prescribed = own;
         for (load, steps) in steps.into_iter().enumerate() {
             if level == 0 {
                 let names = std::iter::once(BODY).chain(outcome.fits.iter().map(|fit| fit.fit.name.as_str()));
@@ -75,8 +75,11 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         }
         convergence.law = outcome.law;
     }
-    let loads = scene.loads().iter().zip(models);
-    convergence.loads = loads.map(|(load, models)| LoadConvergence::new(load.name.clone(), models)).collect();
+    let loads = scene.loads().iter().zip(prescribed).zip(models);
+    let of_load = |((load, is_prescribed), models): ((&LoadCase, bool), _)| {
+        LoadConvergence::new(load.name.clone(), is_prescribed, models)
+    };
+    convergence.loads = loads.map(of_load).collect();
     Ok(convergence)
 }
 
@@ -134,8 +137,8 @@ fn cell_size(mesh: &Mesh) -> f64 {
     (content / mesh.cell_count().max(1) as f64).powf(1.0 / mesh.cell_dimension() as f64)
 }
 
-/// The results of the finite elements and of each fit, for each load.
-fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
+/// For each load whether it prescribes displacements, and the results of the finite elements and of each fit.
+fn steps(scene: &Scene, outcome: &Outcome) -> Result<(Vec<bool>, Vec<Vec<Step>>)> {
     let (mesh, material) = (&outcome.mesh, &outcome.material);
     let quantities = Quantities::of(scene, mesh, material)?;
     let prescribed = quantities.iter().any(Quantities::is_prescribed);
@@ -159,7 +162,7 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
         Some(value).filter(|value| value.is_finite())
     };
     for (load, quantity) in outcome.loads.iter().zip(&quantities) {
-        let reached = load.followed.is_none_or(|followed| followed.ending == Ending::Converged);
+        let reached = load.is_reached();
         let fem = Some(&load.fem).filter(|_| reached);
         let large = body.as_ref().map(|body| body as &dyn Elastic);
         steps.push(vec![Step {
@@ -186,5 +189,5 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<Vec<Vec<Step>>> {
             });
         }
     }
-    Ok(steps)
+    Ok((quantities.iter().map(Quantities::is_prescribed).collect(), steps))
 }

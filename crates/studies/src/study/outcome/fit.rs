@@ -36,7 +36,8 @@ pub struct FitOutcome {
     pub spectral: Option<Spread>,
     /// The network as a material, from samples of its cells.
     pub as_material: NetworkMaterial,
-    /// The moduli of the whole network under linear displacements of its boundary, if the scene requests them.
+    /// The moduli of the whole network under linear displacements of its boundary, in plane strain those of the solid, if the scene
+    /// requests them.
     pub moduli: Option<EffectiveModuli>,
     /// The results that only the kind of the fit has.
     pub kind: FittedKind,

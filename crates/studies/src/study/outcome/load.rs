@@ -15,7 +15,7 @@ pub struct BodyLoad {
     pub support: Support,
     /// The nodal forces, `[points · dimension]`, N.
     pub forces: Vec<f64>,
-    /// The displacements of the finite elements, `[points · dimension]`, m.
+    /// The displacements of the finite elements, `[points · dimension]`, m, under the part of the load that was reached.
     pub fem: Vec<f64>,
     /// At large deformation, how the load was applied to the finite elements.
     pub followed: Option<Followed>,
@@ -50,8 +50,9 @@ pub struct LoadOutcome {
     /// The error relative to the finite elements or the measurement; `None` if the network is not stable or nothing
     /// moves.
     pub error: Option<DisplacementError>,
-    /// By how many percent the work of the load, which is its compliance, exceeds that in the finite elements: `f·u`,
-    /// or the work of the forces that hold prescribed displacements. `None` also if displacements were measured.
+    /// By how many percent the compliance under the load exceeds that of the finite elements, from the work `w = f·u` of the
+    /// forces: `100 (w/w_FEM − 1)`, or `100 (w_FEM/w − 1)` with the forces that hold prescribed displacements. Positive means that
+    /// the network is too soft. `None` also if displacements were measured.
     pub work_error: Option<f64>,
     /// The time to assemble, factorise and solve the finite elements, as if this were the only load, s.
     pub seconds_fem: f64,
@@ -90,6 +91,11 @@ pub struct Followed {
 }
 
 impl BodyLoad {
+    /// Whether the finite elements are in equilibrium under the whole load; `fem` is otherwise that of a part of it.
+    pub fn is_reached(&self) -> bool {
+        self.followed.is_none_or(|followed| followed.ending == Ending::Converged)
+    }
+
     /// The gauge's reading of the finite elements, if there is one under this load.
     pub fn reading(&self) -> Option<Reading> {
         self.gauge.and_then(GaugeResult::reading)

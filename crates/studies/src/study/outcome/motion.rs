@@ -64,7 +64,7 @@ pub struct ModelMotion {
     pub unsolved: usize,
     /// The largest deformation of the finite elements at the records, if they are linear.
     pub deformation: Option<Deformation>,
-    /// For a network whose springs rotate: the mean and the largest error over the records of the same network with
+    /// For a network whose springs rotate and that releases no energy: the mean and the largest error over the records of the same network with
     /// springs that do not rotate, as linear finite elements do not. This is the part of the error that the fit causes.
     /// `None` if the finite elements rotate as well, or hardly.
     pub linear_error: Option<[f64; 2]>,
@@ -79,8 +79,10 @@ pub struct ModelMotion {
 /// How a motion ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MotionEnding {
-    /// All steps were made.
+    /// All steps were made, and their equations solved.
     Complete,
+    /// All steps were made; the equations of some were not solved to the tolerance, see [`ModelMotion::unsolved`].
+    Unsolved,
     /// The model has no response any more, for example because a cell is inverted.
     NoResponse,
     /// Numbers grew beyond all bounds.
@@ -141,6 +143,7 @@ impl MotionEnding {
     pub fn name(&self) -> &'static str {
         match self {
             MotionEnding::Complete => "complete",
+            MotionEnding::Unsolved => "not solved",
             MotionEnding::NoResponse => "no response",
             MotionEnding::RanAway => "ran away",
             MotionEnding::Refused(_) => "not begun",

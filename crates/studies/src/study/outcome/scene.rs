@@ -6,7 +6,8 @@ use super::load::BodyLoad;
 use super::motion::MotionOutcome;
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
-use crate::model::Support;
+use crate::model::{Lumping, Support};
+use crate::study::masses::PointMasses;
 
 /// The results of a scene.
 #[derive(Debug)]
@@ -29,6 +30,8 @@ pub struct Outcome {
     pub support: Option<Support>,
     /// The masses, `[points]`, kg; `None` if the scene gives no density.
     pub masses: Option<Vec<f64>>,
+    /// How these were lumped.
+    pub lumping: Option<Lumping>,
     /// The title of the material's law; `None` at small deformation.
     pub law: Option<String>,
     /// The loads of the scene, with the response of the finite elements.
@@ -49,7 +52,7 @@ impl Outcome {
         name: String,
         mesh: Mesh,
         material: impl Into<MaterialMap>,
-        masses: Option<Vec<f64>>,
+        masses: Option<PointMasses>,
         fit: FitOutcome,
     ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
@@ -64,7 +67,8 @@ impl Outcome {
             mesh,
             material,
             support,
-            masses,
+            lumping: masses.as_ref().map(|masses| masses.lumping),
+            masses: masses.map(|masses| masses.values),
             law,
             loads,
             fits: vec![fit],

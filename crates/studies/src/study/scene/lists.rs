@@ -4,7 +4,7 @@ use super::load::LoadCase;
 use super::material::MaterialEntries;
 use crate::error::{Error, Result};
 use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
-use crate::study::own_name::expect_own_name;
+use crate::study::own_name::{BODY, expect_own_name};
 use std::path::Path;
 
 /// The fits of all `[[fit]]` entries; files are relative to `folder`.
@@ -16,7 +16,7 @@ pub fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
             if fit.name.trim().is_empty() {
                 return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
             }
-            expect_own_name(&key, &fit.name, fits.iter().map(|fit| fit.name.as_str()))?;
+            expect_own_name(&key, &fit.name, std::iter::once(BODY).chain(fits.iter().map(|fit| fit.name.as_str())))?;
             fits.push(fit.of_entry(i));
         }
     }

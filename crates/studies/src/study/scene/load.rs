@@ -185,6 +185,9 @@ impl LoadEntry {
         }
         if let Some(v) = self.displacement {
             range::largest("displacement", v.iter().filter_map(|g| g.0), "m")?;
+            if v.iter().all(|given| given.0.is_none()) {
+                return Err(Error::expected("displacement", "a direction that is moved", "\"free\" in all"));
+            }
             actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
         }
         if is_sum {

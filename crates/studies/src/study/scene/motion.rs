@@ -161,7 +161,7 @@ struct ForceEntry {
 
 /// A tolerance for the quotient of duration and step, because decimals are not exact in binary.
 const SLACK: f64 = 1.0 - 1e-12;
-/// The number of states that are written by default.
+/// The largest number of states that are written by default, after the first.
 const STATES: f64 = 100.0;
 
 impl MotionRecipe {
@@ -173,6 +173,18 @@ impl MotionRecipe {
             ForcePrecision::Single => " in single precision",
         };
         format!("{:?} s in {} steps of {step:?} s by {name}{precision}", self.duration, self.steps)
+    }
+
+    /// The time at the end of the last step, s: that of the first step that reaches the duration.
+    pub fn end(&self) -> f64 {
+        self.steps as f64 * self.options.step
+    }
+
+    /// Whether the times between states that are written are alike but for the last one.
+    pub fn is_even(&self) -> bool {
+        let written = self.written();
+        let apart: Vec<usize> = written.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        apart.split_last().is_none_or(|(_, apart)| apart.iter().all(|steps| *steps == apart[0]))
     }
 
     /// The steps at whose end a state is written: the first one at or after each multiple of `every`, and the last
@@ -203,7 +215,7 @@ impl MotionEntry {
             return Err(Error::expected("step", expected, format!("{steps:e}")).of_kind(ErrorKind::Limit));
         }
         let every = match self.every {
-            None => (duration / STATES).max(step),
+            None => step * (duration / STATES / step * SLACK).ceil(),
             Some(every) => positive("every", every)?,
         };
         if every < step * (1.0 - 1e-9) {
@@ -230,10 +242,12 @@ impl MotionEntry {
                 if free { Ok(None) } else { read().map(Some) }
             };
             let displacement: Result<Vec<_>> = pull.displacement.into_iter().enumerate().map(component).collect();
-            pulls.push(PrescribedMotion {
-                part,
-                displacement: displacement.map_err(|e| e.under(format!("pull[{i}]")))?,
+            let displacement = displacement.and_then(|given| match given.iter().all(Option::is_none) {
+                true => Err(Error::expected("displacement", "a direction that is moved", "\"free\" in all")),
+                false => Ok(given),
             });
+            let displacement = displacement.map_err(|e| e.under(format!("pull[{i}]")))?;
+            pulls.push(PrescribedMotion { part, displacement });
         }
         let mut forces = Vec::new();
         for (i, force) in self.force.into_iter().enumerate() {

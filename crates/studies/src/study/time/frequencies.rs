@@ -7,8 +7,8 @@ use crate::model::{
     BlockStiffness, Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies,
 };
 use crate::solve::{Levels, System, lowest_modes};
-use crate::study::masses::inertial_masses;
 use crate::study::outcome::{FrequencyOutcome, Outcome};
+use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 
@@ -27,10 +27,12 @@ pub fn natural_frequencies(
     progress: &mut Progress,
 ) -> Result<Vec<FrequencyOutcome>> {
     let (mesh, material) = (&outcome.mesh, &outcome.material);
-    let lumped = |lumping| lumped_masses(mesh, material.densities(), material.thicknesses(), lumping);
-    let masses = match scene.motion() {
-        Some(motion) => lumped(motion.lumping),
-        None => inertial_masses(mesh, material, lumped(Lumping::RowSum)),
+    let masses = match (scene.motion(), &outcome.masses) {
+        (None, Some(masses)) => masses.clone(),
+        (motion, _) => {
+            let lumping = motion.map_or(Lumping::Hrz, |motion| motion.lumping);
+            lumped_masses(mesh, material.densities(), material.thicknesses(), lumping)
+        }
     };
     let count = scene.output().frequencies;
     let rigid: usize = unheld_bodies(mesh, support).iter().map(|body| body.motions).sum();
@@ -59,7 +61,7 @@ pub fn natural_frequencies(
         Ok(finite_elements(mesh, material.moduli()))
     };
     let body = || BlockStiffness::of_body(mesh, material.moduli(), 1, 1);
-    let mut all = vec![of("finite elements", &masses, &body, &entries)?];
+    let mut all = vec![of(BODY, &masses, &body, &entries)?];
     for (done, fit) in outcome.fits.iter().enumerate() {
         progress(Event::stage("frequencies", done + 1, total));
         let entries = || {

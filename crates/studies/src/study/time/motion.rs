@@ -14,6 +14,7 @@ use crate::solve::{Levels, StaticSolver, lowest_modes};
 use crate::study::outcome::{
     ModelMotion, MotionEnding, MotionOutcome, Outcome, Record, TimedForce, TimedPull, mean_and_largest,
 };
+use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{DampingRecipe, ForcePrecision, MotionRecipe};
 use std::time::Instant;
@@ -60,20 +61,19 @@ pub fn move_models(
     let mut models = Vec::new();
     let mut reference = Vec::new();
     if planned.recipe.finite_elements {
-        let name = "finite elements";
         let mut options = planned.recipe.options;
         let damping = planned.damping(None, mesh)?;
         let (mut made, states) = match energy {
             Some(laws) => {
                 let body = RegionsBody { mesh, laws };
-                run.follow((name, None, &planned.masses), &body, damping, options, true, progress)?
+                run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
             }
             None => {
                 options.linear = true;
                 check_body(mesh)?;
                 let stiffness = finite_elements(mesh, material.moduli());
                 let body = LinearElastic { points: &mesh.points, stiffness };
-                run.follow((name, None, &planned.masses), &body, damping, options, true, progress)?
+                run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
             }
         };
         if planned.draws {
@@ -92,7 +92,7 @@ pub fn move_models(
         let masses = fit.masses().unwrap_or(&planned.masses);
         let growth = growth(&fit.network, masses, mesh, planned)?;
         if growth.is_some() {
-            progress(Event::Note(&indefinite(&fit.fit.name, &fit.network)));
+            progress(Event::Note(&indefinite(mesh, &fit.fit.name, &fit.network)));
         }
         let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
         let keeps = planned.draws || !reference.is_empty();
@@ -114,7 +114,8 @@ pub fn move_models(
             states.iter().zip(&reference).map(rms).collect()
         };
         made.records.iter_mut().zip(errors(&states)).for_each(|(record, error)| record.error = error);
-        if turning && made.ending == MotionEnding::Complete {
+        // The motion of a network that releases energy grows whatever the fit: its error says nothing.
+        if turning && growth.is_none() && made.ending == MotionEnding::Complete {
             let linear = Options { linear: true, ..options };
             let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
             let name = format!("{} without turning", fit.fit.name);
@@ -230,6 +231,9 @@ impl Run<'_> {
                 states.push(simulation.state().displacement.clone());
             }
         }
+        if made.ending == MotionEnding::Complete && made.unsolved > 0 {
+            made.ending = MotionEnding::Unsolved;
+        }
         Ok((made, states))
     }
 
@@ -243,10 +247,10 @@ impl Run<'_> {
 }
 
 /// The note about an indefinite network before it moves.
-fn indefinite(name: &str, network: &Network) -> String {
+fn indefinite(mesh: &Mesh, name: &str, network: &Network) -> String {
     let worst = network.most_negative(3).into_iter().map(|(points, constant)| {
-        let points: Vec<String> = points.iter().map(|p| (p + 1).to_string()).collect();
-        format!("{constant:.2e} at points {}", points.join(" "))
+        let points: Vec<String> = points.iter().map(|p| mesh.point_number(*p).to_string()).collect();
+        format!("{constant:.2e} at {}s {}", mesh.point_word(), points.join(" "))
     });
     let worst: Vec<String> = worst.collect();
     format!(

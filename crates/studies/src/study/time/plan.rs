@@ -107,7 +107,7 @@ fn planned(
         return Err(Error::expected(
             "mass",
             expected,
-            format!("{:e} kg at point {}", planned.masses[p], mesh.point_number(p)),
+            format!("{:e} kg at {}", planned.masses[p], mesh.point_title(p)),
         ));
     }
     Ok(planned)
@@ -157,7 +157,7 @@ fn add_prescribed_motion(
                 let axis = ["x", "y", "z"][k];
                 Error::at(
                     &key,
-                    format!("moves point {} at {:?} m along {axis}, which {by}", mesh.point_number(p), mesh.point(p)),
+                    format!("moves {} at {:?} m along {axis}, which {by}", mesh.point_title(p), mesh.point(p)),
                 )
             };
             if fixed.is_fixed(dof) {

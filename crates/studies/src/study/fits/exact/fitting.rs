@@ -63,12 +63,12 @@ impl FitKind for ExactRecipe {
         let mut outcome = ExactOutcome {
             energy: fit.energy,
             shear: fit.shear,
-            volume: fit.volume,
+            volume: measured(mesh, fit.volume),
             is_other: laws
                 .is_some_and(|laws| self.energy.is_some() && !laws.laws().all(|law| is_all_of(&fit.energy, law))),
             patches: patches.len(),
             positive: None,
-            locking: locking(mesh, material),
+            locking: locking(mesh, material, fit.volume),
         };
         network.others.extend(patches);
         network.others.extend(fibres);
@@ -130,15 +130,35 @@ impl CellMethod for ExactRecipe {
 /// Poisson's ratio from which on linear cells are noticeably too stiff.
 const LOCKS: f64 = 0.4;
 
-/// The largest Poisson's ratio from 0.4 on of linear cells that integrate changes of volume like all others, and the keys of springs
-/// that do not lock there. Plane stress does not lock.
-fn locking(mesh: &Mesh, material: &MaterialMap) -> Option<(f64, &'static str)> {
+/// Whether the content of a cell is that of its one quadrature point, as in linear triangles and tetrahedra.
+fn has_one_point(element: &Element) -> bool {
+    element.tabulation.weights.len() == 1
+}
+
+/// The contents that the volume springs measure: springs on cells are those on points where each cell has one.
+fn measured(mesh: &Mesh, volume: VolumeSprings) -> VolumeSprings {
+    match volume {
+        VolumeSprings::Cells if mesh.blocks.iter().all(|block| has_one_point(&block.element)) => VolumeSprings::Points,
+        VolumeSprings::Points | VolumeSprings::Cells | VolumeSprings::Patches => volume,
+    }
+}
+
+/// The largest Poisson's ratio from 0.4 on of linear cells that integrate changes of volume like all others and whose network does as
+/// well, and the keys of springs that do not lock there. Plane stress does not lock.
+fn locking(mesh: &Mesh, material: &MaterialMap, volume: VolumeSprings) -> Option<(f64, &'static str)> {
+    let is_like_the_body = |element: &Element| match volume {
+        VolumeSprings::Points => true,
+        VolumeSprings::Cells => has_one_point(element),
+        VolumeSprings::Patches => false,
+    };
     if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
         return None;
     }
     let of_block = |(index, block): (usize, &CellBlock)| {
         let element = &block.element;
-        let is_linear = element.nodes() == element.cell.corners().len() && element.tabulation.volumetric.is_empty();
+        let is_linear = is_like_the_body(element)
+            && element.nodes() == element.cell.corners().len()
+            && element.tabulation.volumetric.is_empty();
         let ratios = (0..block.cells().len()).filter_map(|cell| Some(material.isotropic(index, cell)?.poisson()));
         let largest = ratios.fold(0.0, f64::max);
         let remedy = match element.cell.is_simplex() {

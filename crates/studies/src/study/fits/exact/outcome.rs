@@ -16,7 +16,7 @@ pub struct ExactOutcome {
     pub energy: ExactEnergy,
     /// The domains over which its shear springs average the deformation.
     pub shear: ShearSprings,
-    /// The contents that its volume springs measure.
+    /// The contents that its volume springs measure: those of points also where a spring on each cell is the same.
     pub volume: VolumeSprings,
     /// Whether the material has another law.
     pub is_other: bool,
@@ -24,7 +24,7 @@ pub struct ExactOutcome {
     pub patches: usize,
     /// The difference of the nearest network without negative springs, if that was requested.
     pub positive: Option<PositiveOutcome>,
-    /// The largest Poisson's ratio of cells whose finite elements lock, and the keys that reduce it.
+    /// The largest Poisson's ratio of cells whose finite elements lock, and the network with them, and the keys that reduce it.
     pub locking: Option<(f64, &'static str)>,
 }
 
@@ -57,13 +57,14 @@ impl ExactOutcome {
                 self.energy.name()
             )
         });
+        let locking = self.locking.map(|(poisson, remedy)| {
+            format!(
+                "at nu = {poisson} linear cells lock: the finite elements are too stiff, and this network with them; {remedy} \
+                 reduces it, and `springfit converge` measures it"
+            )
+        });
         let volume = match self.volume {
-            VolumeSprings::Points => self.locking.map(|(poisson, remedy)| {
-                format!(
-                    "at nu = {poisson} linear cells lock: the finite elements are too stiff, and this network with them; {remedy} \
-                     reduces it, and `springfit converge` measures it"
-                )
-            }),
+            VolumeSprings::Points => None,
             VolumeSprings::Cells => Some(
                 "one volume spring in each cell: differs from the finite elements, which lock near nu = 0.5".into(),
             ),
@@ -81,6 +82,12 @@ impl ExactOutcome {
                     .into(),
             ),
         };
-        other.into_iter().chain(shear).chain(volume).chain(self.positive.as_ref().map(positive_note)).collect()
+        other
+            .into_iter()
+            .chain(shear)
+            .chain(volume)
+            .chain(locking)
+            .chain(self.positive.as_ref().map(positive_note))
+            .collect()
     }
 }
