@@ -11,8 +11,8 @@ use springfit::report;
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
 use springfit::study::{
-    FitEntry, FitOutcome, Lattice, NetworkMaterial, Outcome, Recipe, Reference, SpringOwners, fit_mesh,
-    network_material,
+    FitEntry, FitOutcome, Lattice, NetworkMaterial, Outcome, Recipe, Reference, Scene, SpringOwners, fit_mesh,
+    network_material, run,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -280,4 +280,29 @@ fn it_costs_next_to_nothing() {
     let seconds = (0..10).map(|_| network_material(&mesh, material, SpringOwners::Cells(&fits), &network).seconds);
     let least = seconds.fold(f64::INFINITY, f64::min);
     assert!(least < 0.25, "{least} s");
+}
+
+/// Young's modulus of a sheet whose thickness varies is that of its material, whatever the thickness of its first cell is.
+#[test]
+fn a_thickness_that_varies_is_no_modulus() {
+    let sheet = "box = { element = \"quad4\", size = [2, 1], cells = [4, 2] }";
+    for (plane, thickness) in [("stress", "0.1*(1+x)"), ("stress", "0.1*(3-x)"), ("strain", "0.1*(3-x)")] {
+        let text = format!(
+            "[mesh]\n{sheet}\n[material]\nyoung = 1e4\npoisson = 0.3\nplane = \"{plane}\"\nthickness = \"{thickness}\"\n\
+             [[fit]]\nobjective = \"exact\"\n[[fit]]\nobjective = \"frobenius\"\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+        let [exact, frobenius] = [0, 1].map(|fit| outcome.fits[fit].as_material.clone());
+        assert!(
+            (exact.young.unwrap() / 1e4 - 1.0).abs() < 1e-9 && exact.distance < 1e-9,
+            "{plane} {thickness}: {exact:?}"
+        );
+        assert!((exact.asked_young.unwrap() / 1e4 - 1.0).abs() < 1e-9, "{plane} {thickness}: {exact:?}");
+        assert!((exact.poisson.unwrap() - exact.asked_poisson.unwrap()).abs() < 1e-9, "{plane} {thickness}: {exact:?}");
+        // Squares of springs in plane stress at ν = 0.3 err by a few percent.
+        assert!((frobenius.young.unwrap() / 1e4 - 1.0).abs() < 0.1, "{plane} {thickness}: {frobenius:?}");
+    }
 }

@@ -15,7 +15,7 @@ use springfit::model::{Action, Body, Elastic, Network, Support, nodal_forces};
 use springfit::solve::{Ending, Newton};
 use springfit::springs::{Force, Law, Springs};
 use springfit::stiffness::Geometry;
-use springfit::study::displacement_error;
+use springfit::study::{Scene, displacement_error, run};
 use std::sync::Arc;
 
 fn every(element: &Element) -> Vec<String> {
@@ -384,4 +384,57 @@ fn fits_that_shapes_do_not_determine_are_told() {
     let nothing = Springs::select(&element, Some(&[])).unwrap();
     let found = fit_sampled(&element, &nothing, &x, &[0, 1, 2, 3], &energy, State::Solid, &none, &mut |_| {});
     reads(&found.unwrap_err().to_string(), "springs: … found none").unwrap();
+}
+
+/// Of a list of 100 deformation gradients 80 are fitted and 20 held out. A fit of fewer says so, and its errors name the keys of the scene.
+#[test]
+fn shapes_of_a_list_that_are_left_out_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String =
+        (0..100).map(|i| format!("{},0,0,{}\n", 1.0 + 0.001 * i as f64, 1.0 - 0.0005 * i as f64)).collect();
+    std::fs::write(folder.path().join("list.csv"), rows).unwrap();
+    let ran = |shapes: &str| {
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"quad4\", size = [1, 1], cells = [1, 1] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+             plane = \"strain\"\nthickness = 1\n[[fit]]\nobjective = \"sampled\"\nlaw = \"neo-hookean\"\n[fit.shapes]\n{shapes}\n"
+        );
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {}))
+    };
+    for (keys, is_left_out) in [("count = 79", true), ("count = 80", false), ("", false)] {
+        let outcome = ran(&format!("gradients = \"list.csv\"\n{keys}")).unwrap();
+        let notes = springfit::report::notes(&outcome);
+        let says = notes.iter().any(|note| note.contains("the first 79 of the 80 shapes of the list"));
+        assert_eq!(says, is_left_out, "{keys}: {notes:?}");
+    }
+    for (keys, key) in [
+        ("stretch = [0.3, -0.1]", ":14: fit[0].shapes.stretch"),
+        ("perturbation = 5", ":14: fit[0].shapes.perturbation"),
+        ("count = 0", ":14: fit[0].shapes.count"),
+        ("families = [\"torsion\"]", ":14: fit[0].shapes.families"),
+        ("families = []", ":14: fit[0].shapes.families"),
+    ] {
+        let error = ran(keys).unwrap_err().to_string();
+        assert!(error.contains(key), "{keys}: {error}");
+    }
+}
+
+/// A group that is named twice, or none, is no choice of springs.
+#[test]
+fn springs_are_named_once() {
+    for (springs, found) in [("[\"edge\", \"edge\"]", "\"edge\" again"), ("[]", "none")] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+             [[fit]]\nobjective = \"frobenius\"\nsprings = {springs}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        let error = Scene::load(&path).unwrap_err().to_string();
+        assert!(
+            error.contains(&format!("fit[0].springs: expected groups of the element, each once, found {found}")),
+            "{error}"
+        );
+    }
 }

@@ -21,6 +21,9 @@ pub struct RestTension {
     pub unbalanced: f64,
 }
 
+/// A pull below this share of the constant times the length is that of rounding.
+const ROUNDING: f64 = 1e-12;
+
 impl RestTension {
     /// The tension of a network with its points at `points`, `[points × dimension]`, m.
     pub fn of(network: &Network, points: &[f64]) -> RestTension {
@@ -30,6 +33,9 @@ impl RestTension {
         let changes: Vec<f64> = network.lengths.iter().map(|s| (s.rest / length(s.points) - 1.0).abs()).collect();
         let pulls = network.lengths.iter().map(|s| s.pull(length(s.points))[1].abs());
         let mut largest = pulls.fold(0.0, f64::max);
+        // What springs pull by the rounding of their rest lengths is nothing.
+        let lengths = network.lengths.iter().map(|s| (s.constant * length(s.points)).abs());
+        let rounding = ROUNDING * lengths.fold(0.0, f64::max);
         for spring in &network.others {
             let mut x = vec![0.0; spring.points.len() * d];
             gather(points, d, &spring.points, &mut x);
@@ -44,7 +50,7 @@ impl RestTension {
             rest_lengths: Spread::of(&changes),
             negative: network.lengths.iter().filter(|s| s.rest < 0.0).count(),
             steady: network.others.iter().filter(|s| s.law.is_some()).count(),
-            unbalanced: if largest > 0.0 { left / largest } else { 0.0 },
+            unbalanced: if largest > rounding { left / largest } else { 0.0 },
         }
     }
 }

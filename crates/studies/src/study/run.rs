@@ -90,6 +90,11 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
             fit.network.check_size()?;
             let found = moduli_of_body(&mesh, &fit.network.stiffness(&mesh.points))?;
             fit.moduli = found.map(|moduli| moduli.of_solid(material.state()));
+            if fit.moduli.is_none() {
+                let problem =
+                    "the whole network has no moduli: some strain meets no resistance, or no point is inside the body";
+                progress(Event::Note(&format!("{}: {problem}", fit.name)));
+            }
         }
     }
     let law = large.as_ref().map(|large| large.laws.title());

@@ -104,6 +104,26 @@ impl Sampling {
     /// # Errors
     /// A number is out of range; a list is empty or has a wrong length; or a family requires a solid.
     pub fn check(&self, dimension: usize) -> Result<()> {
+        self.check_numbers()?;
+        match &self.source {
+            Source::Families(families) if families.contains(&DeformationFamily::Torsion) && dimension < 3 => {
+                return Err(Error::expected("families", "families of the plane", "\"torsion\""));
+            }
+            Source::Gradients(list) if list.is_empty() || list.len() % (dimension * dimension) != 0 => {
+                let expected = format!("deformation gradients of {} numbers", dimension * dimension);
+                return Err(Error::expected("gradients", expected, format!("{} numbers in all", list.len())));
+            }
+            Source::Gradients(list) => check_finite("gradients", list)?,
+            Source::States(_) | Source::Families(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Checks what does not depend on the cells.
+    ///
+    /// # Errors
+    /// A number is out of range, or there is no family or state.
+    pub fn check_numbers(&self) -> Result<()> {
         check_count("shapes", self.shapes as u64, 1, bound::SHAPES)?;
         check_count("held_out", self.held_out as u64, 0, bound::SHAPES)?;
         let [least, largest] = self.stretch;
@@ -117,23 +137,24 @@ impl Sampling {
             Source::Families(families) if families.is_empty() => {
                 return Err(Error::expected("families", "at least one family", "none"));
             }
-            Source::Families(families) if families.contains(&DeformationFamily::Torsion) && dimension < 3 => {
-                return Err(Error::expected("families", "families of the plane", "\"torsion\""));
-            }
             Source::Families(_) if self.stretch == [0.0; 2] && self.perturbation == 0.0 => {
                 return Err(Error::expected("stretch", "shapes that differ from the one at rest", "none"));
             }
-            Source::Gradients(list) if list.is_empty() || list.len() % (dimension * dimension) != 0 => {
-                let expected = format!("deformation gradients of {} numbers", dimension * dimension);
-                return Err(Error::expected("gradients", expected, format!("{} numbers in all", list.len())));
-            }
-            Source::States(states) if states.is_empty() => {
-                return Err(Error::expected("states", "at least one state", "none"));
-            }
-            Source::Gradients(list) => check_finite("gradients", list)?,
-            Source::States(_) | Source::Families(_) => {}
+            Source::States(states) if states.is_empty() => Err(Error::expected("states", "at least one state", "none")),
+            Source::Gradients(_) | Source::States(_) | Source::Families(_) => Ok(()),
         }
-        Ok(())
+    }
+
+    /// How many shapes of its list, in a body of this dimension, a fit uses if it has as many; those that are held out are others. `None`
+    /// without a list of gradients.
+    pub fn listed(&self, dimension: usize) -> Option<usize> {
+        match &self.source {
+            Source::Gradients(list) => {
+                let all = list.len() / (dimension * dimension);
+                Some(all - all / APART)
+            }
+            Source::Families(_) | Source::States(_) => None,
+        }
     }
 
     /// Checks that every state has this many numbers, all finite.

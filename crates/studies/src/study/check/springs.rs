@@ -105,7 +105,10 @@ fn moduli(element: &Arc<Element>, name: &'static str, springs: &Springs) -> Prop
     let fit = Fit::new(Objective::Frobenius(Weight::None));
     let lattice = Material::for_body(d, young, poisson, None, None)
         .and_then(|material| Lattice::fit(element, springs, &vec![1.0; d], material, &fit));
-    let Ok(lattice) = lattice else { return Property::noted(name, "its cells fill no box") };
+    let lattice = match lattice {
+        Ok(lattice) => lattice,
+        Err(e) => return Property::noted(name, format!("none on a box: {}", e.problem())),
+    };
     match lattice.of_springs() {
         None => Property::noted(name, "some uniform strain meets no resistance"),
         Some(m) => {

@@ -149,6 +149,16 @@ impl FitEntry {
     pub fn fits_with(&self, folder: &Path, functions: &FitFunctions) -> Result<Vec<NamedFit>> {
         let kind = Kind::of(&self.objective)?;
         self.check_owners(kind)?;
+        if let Some(springs) = &self.springs {
+            let again = (1..springs.len()).find(|&i| springs[..i].contains(&springs[i]));
+            let found = match again {
+                Some(again) => Some(format!("\"{}\" again", springs[again])),
+                None => springs.is_empty().then(|| "none".into()),
+            };
+            if let Some(found) = found {
+                return Err(Error::expected("springs", "groups of the element, each once", found));
+            }
+        }
         if let (Some(key), false) = (functions.key(), kind == Kind::Sampled) {
             let found = format!("one with \"{}\"", self.objective);
             return Err(Error::expected(key, "a function with the objective \"sampled\" alone", found));

@@ -37,7 +37,7 @@ pub(super) fn distance(stiffness: &DMatrix<f64>, asked: &DMatrix<f64>) -> f64 {
     (stiffness - asked).norm() / asked.norm()
 }
 
-/// Young's modulus, Pa, and Poisson's ratio of a body in this state, as means over all directions of tension. With
+/// Young's modulus and Poisson's ratio of a body in this state, whose stiffness is in Pa, as means over all directions of tension. With
 /// `S = C⁻¹` and n, m orthogonal,
 ///
 /// ```text
@@ -70,7 +70,7 @@ pub(super) fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, 
             (young * (1.0 - poisson * poisson), Some(poisson))
         }
     };
-    Some((young / state.thickness(), poisson))
+    Some((young, poisson))
 }
 
 /// The least eigenvalue, relative to the largest, that is not a rounding error.

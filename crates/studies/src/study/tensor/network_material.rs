@@ -5,10 +5,10 @@ use super::isotropic::{constants, distance, of_material};
 use super::owners::SpringOwners;
 use super::piece::Piece;
 use super::relaxation::{body_tensor, tensor};
-use super::sample::Stars;
+use super::sample::{Sample, Stars};
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::Mesh;
-use crate::model::{Network, edge_springs};
+use crate::model::{Moments, Network, edge_springs};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -98,22 +98,35 @@ pub fn network_material(
             CellMap::Uniform(one) => of_material(&one, dimension),
             moduli => body_tensor(&sample, moduli, &directions),
         };
-        (tensor(&sample, &piece, &directions), asked)
+        (tensor(&sample, &piece, &directions), asked, thickness(&sample, own.thicknesses()))
     };
-    let (tensors, asked): (Vec<DMatrix<f64>>, Vec<DMatrix<f64>>) = (0..count).into_par_iter().map(measure).unzip();
+    let samples: Vec<_> = (0..count).into_par_iter().map(measure).collect();
+    let thicknesses: Vec<f64> = samples.iter().map(|(.., thickness)| *thickness).collect();
+    let (tensors, asked): (Vec<DMatrix<f64>>, Vec<DMatrix<f64>>) =
+        samples.into_iter().map(|(c, asked, _)| (c, asked)).unzip();
+    // The mean of tensors in Pa.
+    let solid = |all: &[DMatrix<f64>]| -> DMatrix<f64> {
+        let parts: Vec<_> = all.iter().zip(&thicknesses).map(|(c, thickness)| c / *thickness).collect();
+        parts.iter().skip(1).fold(parts[0].clone(), |sum, c| sum + c) / count as f64
+    };
     let mean = |all: &[DMatrix<f64>]| -> DMatrix<f64> {
         all.iter().skip(1).fold(all[0].clone(), |sum, c| sum + c) / count as f64
     };
     let stiffness = mean(&tensors);
     let distances: Vec<f64> = tensors.iter().zip(&asked).map(|(c, asked)| distance(c, asked)).collect();
     let state = material.state();
-    let found = constants(&stiffness, state);
-    let (asked, wanted) = match material.uniform() {
-        Some(one) => (of_material(&one.moduli().into(), dimension), Some((one.young(), Some(one.poisson())))),
-        None => {
-            let asked = mean(&asked);
-            let wanted = constants(&asked, state);
-            (asked, wanted)
+    let found = constants(&solid(&tensors), state);
+    let has_one_thickness = material.thicknesses().uniform().is_some();
+    let (asked, found, wanted) = match material.uniform() {
+        Some(one) if has_one_thickness => {
+            (of_material(&one.moduli().into(), dimension), found, Some((one.young(), Some(one.poisson()))))
+        }
+        uniform => {
+            let wanted = constants(&solid(&asked), state);
+            // Where the thickness alone differs, the finite elements have Young's modulus of the material.
+            let scale = uniform.zip(wanted).map_or(1.0, |(one, (young, _))| one.young() / young);
+            let scaled = |(young, poisson): (f64, Option<f64>)| (scale * young, poisson);
+            (mean(&asked), found.map(scaled), wanted.map(scaled))
         }
     };
     NetworkMaterial {
@@ -128,4 +141,10 @@ pub fn network_material(
         seconds: start.elapsed().as_secs_f64(),
         stiffness,
     }
+}
+
+/// The mean thickness of a sample, m, or the mean cross-section, m²; 1 of a solid.
+fn thickness(sample: &Sample, of_cells: CellMap<f64>) -> f64 {
+    let content = |thickness| Moments::of_body(&sample.mesh, CellMap::Uniform(1.0), thickness).mass;
+    content(of_cells) / content(CellMap::Uniform(1.0))
 }

@@ -130,7 +130,20 @@ impl ShapesEntry {
             sampling.stretch =
                 symmetric.or_else(|| pair(value)).ok_or_else(|| Error::expected("stretch", expected, shown(value)))?;
         }
-        Ok(())
+        sampling.check_numbers().map_err(counted)
+    }
+}
+
+/// An error of the settings of shapes with the key that the number of shapes has in scenes.
+fn counted(error: Error) -> Error {
+    if error.key() == Some("shapes") { error.at_key("count") } else { error }
+}
+
+/// An error of the settings of shapes that depends on the cells, with the path of its key.
+pub(super) fn of_shapes(error: Error) -> Error {
+    match error.key() {
+        Some("families" | "gradients") => error.under("shapes"),
+        _ => error,
     }
 }
 

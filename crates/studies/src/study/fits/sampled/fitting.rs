@@ -1,5 +1,6 @@
 //! Computes fits to the forces at sampled shapes.
 
+use super::entry::of_shapes;
 use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
 use super::record::SampledRecord;
@@ -36,7 +37,7 @@ impl FitKind for SampledRecipe {
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let start = Instant::now();
         let found = fit_shapes(self, task, progress)?;
-        let kind = FittedKind::Sampled(SampledOutcome::of(self, &found));
+        let kind = FittedKind::Sampled(SampledOutcome::of(self, &found, task.mesh.cell_dimension()));
         let cells = found.into_iter().map(|found| found.fits).collect();
         Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
     }
@@ -86,7 +87,8 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
             };
             let connectivity: Vec<usize> = cells.iter().flat_map(|cell| block.cell(*cell)).copied().collect();
             let (element, points) = (&block.element, &mesh.points);
-            let found = fit_sampled(element, springs, points, &connectivity, energy, state, &fit, progress)?;
+            let found = fit_sampled(element, springs, points, &connectivity, energy, state, &fit, progress);
+            let found = found.map_err(of_shapes)?;
             regions.push((cells, found));
         }
         Ok(joined(regions))
@@ -116,6 +118,7 @@ fn fit_function(
         let fit = recipe.resolve(&block.element, springs, &Arc::default())?;
         let points = &task.mesh.points;
         fit_sampled(&block.element, springs, points, &block.connectivity, energy, material.state(), &fit, progress)
+            .map_err(of_shapes)
     })
 }
 

@@ -8,6 +8,8 @@ use crate::fit::{SampledFits, Spread};
 pub struct SampledOutcome {
     /// The number of shapes of the fit.
     pub shapes: usize,
+    /// The shapes of a list that a fit of enough shapes would use; `None` if they are not from a list.
+    pub listed: Option<usize>,
     /// The errors on the shapes of the fit.
     pub trained: Spread,
     /// The errors on the shapes that were held out; `None` if there are none.
@@ -20,13 +22,14 @@ pub struct SampledOutcome {
 
 impl SampledOutcome {
     /// The outcome of the fits of all blocks of cells.
-    pub(super) fn of(recipe: &SampledRecipe, found: &[SampledFits]) -> SampledOutcome {
+    pub(super) fn of(recipe: &SampledRecipe, found: &[SampledFits], dimension: usize) -> SampledOutcome {
         let spread =
             |of: fn(&SampledFits) -> &Vec<f64>| Spread::of(&found.iter().flat_map(of).copied().collect::<Vec<f64>>());
         let apart = found.iter().flat_map(|f| &f.held_out).all(|error| error.is_finite());
         let held_out = apart.then(|| spread(|f| &f.held_out));
         SampledOutcome {
             shapes: recipe.fit.sampling.shapes,
+            listed: recipe.fit.sampling.listed(dimension),
             trained: spread(|f| &f.trained),
             held_out,
             agreeing: found.iter().filter_map(|f| f.agreeing).reduce(f64::min),
@@ -65,6 +68,10 @@ impl SampledOutcome {
                 100.0 * agreeing
             )
         });
-        unexplained.into_iter().chain(loads).chain(agreeing).collect()
+        let left_out = self.listed.filter(|listed| self.shapes < *listed).map(|listed| {
+            let shapes = self.shapes;
+            format!("fitted to the first {shapes} of the {listed} shapes of the list that are not held out: count = {listed} takes all")
+        });
+        unexplained.into_iter().chain(left_out).chain(loads).chain(agreeing).collect()
     }
 }
