@@ -251,6 +251,8 @@ fn the_report_has_the_material() {
     let numbers = [
         ("young", 1e4),
         ("poisson", 0.3),
+        ("asked_young", 1e4),
+        ("asked_poisson", 0.3),
         ("tensor_distance", 0.0),
         ("mean_tensor_distance", 0.0),
         ("largest_tensor_distance", 0.0),

@@ -128,7 +128,7 @@ fn names_that_make_equal_names_are_found_before_the_work() {
         (
             load,
             &format!("[[load]]\nname = \"fem pull\"\ngroup = \"xmax\"\ntraction = [2, 0]\n{load}"),
-            ":15: load[0].name: … \"fem pull\" …",
+            ":15: load[0].name: … \"fem pull\", whose array …",
         ),
         ("\"first\"", "\"finite elements\"", ":11: fit[0].name: … a name of its own, found \"finite elements\" again"),
     ] {
