@@ -93,7 +93,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
             if fit.moduli.is_none() {
                 let problem =
                     "the whole network has no moduli: some strain meets no resistance, or no point is inside the body";
-                progress(Event::Note(&format!("{}: {problem}", fit.name)));
+                progress(Event::Note(&format!("{}: {problem}", fit.fit.name)));
             }
         }
     }
