@@ -83,7 +83,7 @@ pub fn fit_masses(
         return Err(Error::expected("masses", "frequencies to fit", "none"));
     }
     if let Some(p) = start.iter().position(|m| !(*m > 0.0 && m.is_finite())) {
-        let found = format!("{:e} kg at point {}", start[p], p + 1);
+        let found = format!("{:e} kg at point {}", start[p], p);
         return Err(Error::expected("masses", "masses above zero at the start", found));
     }
     let scale = moments.mass / start.iter().sum::<f64>();

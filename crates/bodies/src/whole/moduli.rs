@@ -152,12 +152,12 @@ impl<'a> ModuliParts<'a> {
         }
     }
 
-    /// The cell, the edge or the patch of a part, counted from 1.
+    /// The cell or the patch of a part, counted from 1, or the points of its edge.
     fn place_name(&self, part: Part) -> String {
         match (part, &self.carriers) {
             (Part::Domain(index), Carriers::Domains(domains, parts)) => {
                 let [a, b] = domains[parts[index].domain].edge;
-                format!("edge {}-{}", a + 1, b + 1)
+                format!("edge {}-{}", a, b)
             }
             (Part::Patch(index), _) => format!("patch {}", index + 1),
             (Part::Cell(..) | Part::Domain(_), _) => format!("cell {}", self.place(part)[1] + 1),

@@ -38,7 +38,7 @@ pub(super) struct FinerPoint {
     pub columns: Vec<Vec<f64>>,
     /// The residuals of all loads, one after the other.
     pub residuals: Vec<f64>,
-    /// The largest change of the last step.
+    /// The largest change of the last step, or of the next one, which is no more than rounding.
     pub step: f64,
 }
 
@@ -47,27 +47,23 @@ impl FinerSteps<'_> {
         self.fine.moved(self.loads, &self.object.region_factors(theta), progress)
     }
 
-    /// `√w_l (u_l − ū_l)/‖ū_l‖` where it is known, of one load after the other; without ū for differences of displacements.
-    fn scaled(&self, moved: &[Vec<f64>], has_measured: bool) -> Result<Vec<f64>> {
+    /// `√w_l (u_l − ū_l)/‖ū_l‖` where it is known, of one load after the other.
+    fn residuals(&self, moved: &[Vec<f64>]) -> Result<Vec<f64>> {
         let mut all = Vec::new();
         for (target, u) in self.measured.iter().zip(moved) {
             let nothing = || Error::expected("loads", "loads under which free points are known to move", &target.name);
             let scales = target.scale().ok_or_else(nothing)?;
-            let wanted = target.displacement.iter().map(|u| if has_measured { *u } else { 0.0 });
-            all.extend(u.iter().zip(wanted).zip(scales).map(|((u, wanted), s)| s * (u - wanted)));
+            all.extend(u.iter().zip(&target.displacement).zip(scales).map(|((u, wanted), s)| s * (u - wanted)));
         }
         Ok(all)
     }
 
-    fn columns(&self, theta: &[f64], moved: &[Vec<f64>], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
+    fn columns(&self, theta: &[f64], residuals: &[f64], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
         let column = |p: usize| {
             let mut beside = theta.to_vec();
             beside[p] += DIFFERENCE;
-            let beside = self.moved(&beside, progress)?;
-            let change = beside.iter().zip(moved).map(|(beside, at)| {
-                beside.iter().zip(at).map(|(beside, at)| (beside - at) / DIFFERENCE).collect::<Vec<f64>>()
-            });
-            self.scaled(&change.collect::<Vec<_>>(), false)
+            let beside = self.residuals(&self.moved(&beside, progress)?)?;
+            Ok(beside.iter().zip(residuals).map(|(beside, at)| (beside - at) / DIFFERENCE).collect())
         };
         (0..theta.len()).map(column).collect()
     }
@@ -82,33 +78,33 @@ impl FinerSteps<'_> {
             r.iter().map(|r| r * r).sum::<f64>() + share * theta.iter().map(|t| t * t).sum::<f64>()
         };
         let moved = self.moved(theta, progress)?;
-        let residuals = self.scaled(&moved, true)?;
-        let columns = self.columns(theta, &moved, progress)?;
+        let residuals = self.residuals(&moved)?;
+        let columns = self.columns(theta, &residuals, progress)?;
         let mut at = FinerPoint { theta: theta.to_vec(), moved, columns, residuals, step: f64::INFINITY };
         for _ in 0..STEPS {
             let step = regularized_step(&at, share)?;
+            let size = step.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+            if size < SETTLED {
+                return Ok(FinerPoint { step: size, ..at });
+            }
             let now = value(&at.residuals, &at.theta);
             let mut length = 1.0;
             let mut found = None;
             for _ in 0..HALVINGS {
                 let theta: Vec<f64> = at.theta.iter().zip(&step).map(|(t, s)| t + length * s).collect();
                 let moved = self.moved(&theta, progress)?;
-                let residuals = self.scaled(&moved, true)?;
-                // At the minimum what is left of the decrease is rounding.
-                if value(&residuals, &theta) <= now * (1.0 + 1e-9) {
+                let residuals = self.residuals(&moved)?;
+                if value(&residuals, &theta) < now {
                     found = Some((theta, moved, residuals));
                     break;
                 }
                 length /= 2.0;
             }
+            at.step = length * size;
             let Some((theta, moved, residuals)) = found else { break };
-            at.step = step.iter().fold(0.0, |a: f64, s| a.max(length * s.abs()));
             (at.theta, at.moved, at.residuals) = (theta, moved, residuals);
-            if at.step < SETTLED {
-                return Ok(at);
-            }
             if at.step > NEAR {
-                at.columns = self.columns(&at.theta, &at.moved, progress)?;
+                at.columns = self.columns(&at.theta, &at.residuals, progress)?;
             }
         }
         if at.step < NEAR {
