@@ -148,6 +148,29 @@ fn groups_are_listed_with_what_they_hold() {
     assert!(listed.lines().count() > 3, "{listed}");
 }
 
+/// The first group has a face of the body, the second a face whose nodes belong to no cell, the third two sides, of which a cell has one.
+#[test]
+fn a_group_holds_what_the_body_has_of_it() {
+    let folder = TempDir::new().unwrap();
+    let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n7\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 5 5 5\n6 6 5 5\n7 5 6 5\n\
+                $EndNodes\n$Elements\n5\n1 4 2 1 1 1 2 3 4\n2 2 2 8 1 1 2 3\n3 2 2 2 1 5 6 7\n4 2 2 3 1 4 2 3\n5 2 2 3 1 4 6 3\n\
+                $EndElements\n";
+    fs::write(folder.path().join("low.msh"), mesh).unwrap();
+    let record: Value = serde_json::from_str(&printed(folder.path(), &[], &["groups", "low.msh", "--json"])).unwrap();
+    let count = |group: usize, what: &str| record["groups"][group][what].as_u64().unwrap();
+    let names: Vec<&str> = (0..4).map(|group| record["groups"][group]["name"].as_str().unwrap()).collect();
+    let place = |name: &str| names.iter().position(|known| known.ends_with(name)).unwrap();
+    let (lost, half) = (place(":2"), place(":3"));
+    assert_eq!((count(lost, "sides"), count(lost, "points"), count(half, "sides")), (0, 0, 1), "{record}");
+    assert_eq!((record["groups"][lost]["from"].as_array().unwrap().len(), count(place(":8"), "sides")), (0, 1));
+    let listed = printed(folder.path(), &[], &["groups", "low.msh"]);
+    assert!(!listed.contains("inf"), "{listed}");
+    let scene = printed(folder.path(), &[], &["new", "low.msh"]);
+    assert!(scene.contains("nothing of the body") && !scene.contains("group    ="), "{scene}");
+    fs::write(folder.path().join("low.toml"), scene).unwrap();
+    printed(folder.path(), &[], &["run", "low.toml"]);
+}
+
 /// Every mesh of the repository that has a body.
 fn meshes() -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -237,10 +237,72 @@ fn cards_of_every_layout_are_read() {
     );
     let partial = "CTETRA,1,1,1,2,3,4,5,6\n";
     assert_eq!(error(partial, "bdf"), "line 1: CTETRA: expected no middle nodes, or all 6, found 2 in element 1");
+    let nodes: Vec<String> = (1..=27).map(|node| node.to_string()).collect();
+    let full = format!(
+        "CHEXA,1,1,{},\n,{},\n,{},\n,{}\n",
+        nodes[..6].join(","),
+        nodes[6..14].join(","),
+        nodes[14..22].join(","),
+        nodes[22..].join(",")
+    );
+    assert_eq!(error(&full, "bdf"), "line 1: CHEXA: expected 8 or 20 grid points, found 27 in element 1");
     let blank = "GRID,1,,0.,0.,0.\nCQUAD4,1,1,1,2,3\n";
     assert_eq!(error(blank, "bdf"), "line 2: CQUAD4: expected the number of a grid point, found a blank field");
     let long = "GRID,1,,0.,0.,0.,,,,,,\n";
     assert_eq!(error(long, "bdf"), "line 1: expected at most 8 fields after the name, found 11");
+}
+
+/// Grid points 1 to 8 and properties 1 to 3.
+#[test]
+fn sets_of_nastran_are_lists_and_ranges_of_numbers() {
+    let grid: String = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+        .iter()
+        .enumerate()
+        .map(|(i, [x, y, z])| format!("GRID,{},,{x}.,{y}.,{z}.\n", i + 1))
+        .collect();
+    let cells = "CTETRA,1,1,1,2,4,5\nCTETRA,2,2,2,3,4,7\nCTETRA,3,3,5,7,8,4\nCTETRA,4,3,2,6,7,5\nCTETRA,5,3,2,7,4,5\n";
+    let sets = "SET1,1,1,THRU,7,BY,3\nSET1,2,8,2,THRU,3\nSET3,3,PROP,1,THRU,3,BY,2\nSET3,4,ELEM,2,THRU,9\n";
+    let mesh = Mesh::resolve(&parse(format!("{grid}{cells}{sets}").as_bytes(), "bdf").unwrap(), &[], 1.0).unwrap();
+    let points = |name: &str| mesh.groups[name].points.iter().map(|p| p + 1).collect::<Vec<_>>();
+    assert_eq!((points("set=1"), points("set=2")), (vec![1, 4, 7], vec![2, 3, 8]));
+    assert_eq!((mesh.groups["set=3"].cells.len(), mesh.groups["set=4"].cells.len()), (4, 4));
+    let one = |set: &str| error(&format!("{grid}{cells}{set}\n"), "bdf");
+    for (set, found) in [
+        ("SET1,7,1,THRU,5,EXCEPT,3", "EXCEPT in set 7: list the members"),
+        ("SET1,7,ALL", "ALL in set 7: list the members"),
+        ("SET3,7,ELEM,1,THRU,5,EXCLUDE,2", "EXCLUDE in set 7: list the members"),
+        ("SET1,7,1,BY,2", "BY in set 7: list the members"),
+    ] {
+        let expected =
+            format!("expected the numbers of the members, or ranges of them with THRU and BY, found {found}");
+        assert_eq!(one(set), format!("line 14: {}: {expected}", &set[..4]));
+    }
+    assert_eq!(
+        one("SET1,7,5,THRU,2"),
+        "line 14: SET1: expected a number of at least 5 after THRU in set 7, found \"2\""
+    );
+    assert_eq!(
+        one("SET1,7,5,THRU"),
+        "line 14: SET1: expected a number of at least 5 after THRU in set 7, found a blank field"
+    );
+}
+
+/// A wedge of a set that also has a hexahedron has no sixth side.
+#[test]
+fn sides_of_abaqus_are_those_of_the_elements() {
+    let body = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,1,0,1\n6,0,1,1\n7,0,-1,0\n8,1,-1,0\n9,0,-1,1\n10,1,-1,1\n\
+        *ELEMENT,TYPE=C3D6,ELSET=W\n1,1,2,3,4,5,6\n*ELEMENT,TYPE=C3D8,ELSET=B\n2,7,8,2,1,9,10,5,4\n*ELSET,ELSET=ALL\nW,B\n";
+    let mesh = |patch: &str| parse(format!("{body}*SURFACE,NAME=top\n{patch}\n").as_bytes(), "inp");
+    let found = Mesh::resolve(&mesh("ALL,S6").unwrap(), &[], 1.0).unwrap();
+    assert_eq!(found.groups["top"].sides.len(), 1);
+    for (patch, problem) in [
+        ("B,S9", "names side 9 of elements with 6 sides"),
+        ("W,S6", "names side 6 of elements with 5 sides"),
+        ("1,S6", "names side 6 of elements with 5 sides"),
+    ] {
+        let found = mesh(patch).unwrap_err().to_string();
+        assert!(found.starts_with("line ") && found.ends_with(&format!("surface \"top\": {problem}")), "{found}");
+    }
 }
 
 #[test]

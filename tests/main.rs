@@ -43,6 +43,7 @@ mod laws;
 mod layering;
 mod limits;
 mod linear_theory;
+mod loads;
 mod locking;
 mod material;
 mod matrix_errors;

@@ -375,6 +375,7 @@ fn wrong_materials_are_named() {
     write("negative.csv", "x,y,z,E\n0,0,0,-1000\n1,1,3,-5\n");
     write("far.csv", "x,y,z,E\n100,100,100,1000\n");
     write("two.csv", "x,y,z,E,F\n0,0,0,1000,2\n");
+    write("again.csv", "x,y,z,E\n0,0,0,1000\n1,-0.0,0,2000\n0,0,0,1000\n1,0,0,3000\n");
     write("short.csv", "x,y,z,E\n0,0,0\n");
     let region = |first: &str, second: &str| {
         format!("[[material]]\n{first}young = 1e3\npoisson = 0\n[[material]]\n{second}young = 1e4\npoisson = 0\n")
@@ -389,6 +390,8 @@ fn wrong_materials_are_named() {
         ),
         (region("where = \"z < 1.1\"\n", "where = \"z > 1.9\"\n"), "material", "found 1 cells in none"),
         (region("where = \"z < -1\"\n", ""), "material[0]", "has no cells"),
+        (region("where = \"z < 9\"\n", ""), "material[1]", "has no cells"),
+        (young("{ file = \"again.csv\" }"), "again.csv:5: values", "the values of line 3, which"),
         (region("", ""), "material[1]", "material[0] has what is left"),
         (region("where = \"z < 1.1\"\ngroup = \"zmin\"\n", ""), "material[0]", "found both"),
         (

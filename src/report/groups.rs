@@ -3,7 +3,7 @@
 use super::columns::{Heading, aligned};
 use super::result_table::ResultTable;
 use super::table::size;
-use crate::mesh::Mesh;
+use crate::mesh::{ListedSides, Mesh};
 use crate::study::extent;
 use serde::Serialize;
 
@@ -38,15 +38,15 @@ pub struct GroupRecord {
     pub name: String,
     /// Cells of the dimension of the mesh.
     pub cells: usize,
-    /// Faces of solids, edges of plane cells.
+    /// Faces of solids, edges of plane cells; those that no cell has are not counted.
     pub sides: usize,
     /// Edges of a curve in a solid.
     pub edges: usize,
     /// The points of these parts.
     pub points: usize,
-    /// The corners of the box around its points, m.
+    /// The least coordinates of its points, m; empty without points.
     pub from: Vec<f64>,
-    /// The greatest coordinates of its points, m.
+    /// The greatest coordinates of its points, m; empty without points.
     pub to: Vec<f64>,
 }
 
@@ -56,12 +56,13 @@ impl MeshRecord {
         let group = |(name, group): (&String, &crate::mesh::Group)| {
             let bound = |start: f64, pick: fn(f64, f64) -> f64| -> Vec<f64> {
                 let along = |k| group.points.iter().map(|&p| mesh.point(p)[k]).fold(start, pick);
-                (0..mesh.dimension).map(along).collect()
+                let axes = if group.points.is_empty() { 0 } else { mesh.dimension };
+                (0..axes).map(along).collect()
             };
             GroupRecord {
                 name: name.clone(),
                 cells: group.cells.len(),
-                sides: group.sides.len(),
+                sides: ListedSides::of(mesh, group).sides.len(),
                 edges: group.edges.len(),
                 points: group.points.len(),
                 from: bound(f64::INFINITY, f64::min),
@@ -101,7 +102,10 @@ impl MeshRecord {
     fn rows(&self) -> (Vec<Heading>, Vec<Vec<String>>) {
         let mut header = vec![Heading::words("group")];
         header.extend(["cells", "sides", "edges", "points", "from m", "to m"].map(Heading::numbers));
-        let corner = |x: &[f64]| x.iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(", ");
+        let corner = |x: &[f64]| match x {
+            [] => "-".into(),
+            _ => x.iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(", "),
+        };
         let row = |group: &GroupRecord| {
             let counts = [group.cells, group.sides, group.edges, group.points].map(|n| n.to_string());
             let mut row = vec![group.name.clone()];

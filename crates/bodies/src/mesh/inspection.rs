@@ -1,9 +1,10 @@
 //! Checks of the quality of the cells of a mesh.
 
-use super::mesh::{CellIndex, Mesh};
+use super::mesh::{CellIndex, Mesh, SideIndex, sorted};
 use super::quality::{Below, Gate, Worst};
 use crate::error::{Error, Result};
 use crate::stiffness::{Geometry, Placement};
+use std::collections::HashSet;
 
 /// The largest number of cells that a message names.
 const NAMED: usize = 6;
@@ -72,6 +73,7 @@ impl Mesh {
     pub(super) fn remove(&mut self, cells: &[CellIndex]) -> Result<Vec<Vec<usize>>> {
         let mut new: Vec<Vec<usize>> = self.blocks.iter().map(|block| vec![0; block.cells().len()]).collect();
         cells.iter().for_each(|at| new[at.block][at.cell] = usize::MAX);
+        self.drop_sides_of(&new);
         for (block, new) in self.blocks.iter_mut().zip(&mut new) {
             let n = block.element.nodes();
             let mut kept = 0;
@@ -94,6 +96,20 @@ impl Mesh {
         // Removed cells are not reported again.
         self.unused_points = unused;
         Ok(new)
+    }
+
+    /// Removes from groups the sides that removed cells alone have; `new` is `usize::MAX` for these.
+    fn drop_sides_of(&mut self, new: &[Vec<usize>]) {
+        if self.groups.values().all(|group| group.sides.is_empty()) {
+            return;
+        }
+        let is_kept = |side: &SideIndex| new[side.cell.block][side.cell.cell] != usize::MAX;
+        let points = |side: SideIndex| sorted(&self.side_nodes(&side));
+        let mut lost: HashSet<Vec<usize>> = self.side_indices().filter(|side| !is_kept(side)).map(points).collect();
+        self.side_indices().filter(is_kept).for_each(|side| {
+            lost.remove(&points(side));
+        });
+        self.groups.values_mut().for_each(|group| group.sides.retain(|side| !lost.contains(side)));
     }
 }
 

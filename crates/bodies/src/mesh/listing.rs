@@ -148,12 +148,12 @@ impl Resolved {
         self.charge(1)
     }
 
-    /// Adds the side with this index of a cell; a cell without such a side adds nothing.
-    pub fn add_side(&mut self, group: u32, cell: usize, index: usize) -> Result<()> {
-        match self.list.cell_type(cell).side(index, self.cell_nodes(cell)) {
-            Some((cell_type, nodes)) => self.add_face(group, cell_type, nodes),
-            None => Ok(()),
-        }
+    /// Adds the side with this index of a cell; a cell without such a side adds nothing. Whether the cell has one.
+    pub fn add_side(&mut self, group: u32, cell: usize, index: usize) -> Result<bool> {
+        let side = self.list.cell_type(cell).side(index, self.cell_nodes(cell));
+        let is_there = side.is_some();
+        side.map_or(Ok(()), |(cell_type, nodes)| self.add_face(group, cell_type, nodes))?;
+        Ok(is_there)
     }
 
     /// The sides that belong to one cell alone among the cells of the highest dimension.

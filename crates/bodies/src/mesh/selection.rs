@@ -1,7 +1,7 @@
 //! Parts of a mesh, selected by group name or by a condition on the coordinates.
 
 use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::named::unknown;
 use crate::symbolic::Predicate;
 
@@ -35,32 +35,26 @@ impl Selection {
     /// The selected sides: those that the mesh lists in the group, or those on the boundary with all points selected.
     ///
     /// # Errors
-    /// There is no such group.
+    /// There is no such group, or it lists sides that no cell has: a load on the others alone would be too small.
     pub fn sides(&self, mesh: &Mesh) -> Result<Vec<SideIndex>> {
-        let mut is_selected = vec![false; mesh.point_count()];
-        self.points(mesh)?.into_iter().for_each(|p| is_selected[p] = true);
-        let is_inside = |side: &SideIndex| mesh.side_points(side).all(|p| is_selected[p]);
-        if let Selection::Group(name) = self {
-            let mut listed = group(mesh, name)?.sides.clone();
-            listed.sort_unstable();
-            listed.dedup();
-            let mut found = vec![None; listed.len()];
-            for side in mesh.side_indices().filter(is_inside) {
-                if let Ok(place) = listed.binary_search(&sorted(&mesh.side_nodes(&side))) {
-                    found[place].get_or_insert(side);
-                }
+        match self {
+            Selection::Group(name) => {
+                let ListedSides { sides, lost } = ListedSides::of(mesh, group(mesh, name)?);
+                let Some(first) = lost.first() else { return Ok(sides) };
+                let expected = format!("sides of cells in group \"{name}\"");
+                let nodes = first.iter().map(|&p| mesh.point_number(p).to_string()).collect::<Vec<_>>().join(", ");
+                let first = match first.is_empty() {
+                    true => "with nodes that belong to no cell".into(),
+                    false => format!("with the {}s {nodes}", mesh.point_word()),
+                };
+                let found =
+                    format!("{} of {} that no cell has, the first {first}", lost.len(), lost.len() + sides.len());
+                Err(Error::expected("group", expected, found))
             }
-            return Ok(found.into_iter().flatten().collect());
+            Selection::Where(_) | Selection::Everything => {
+                Ok(outer_sides(mesh, &is_selected(mesh, &self.points(mesh)?)))
+            }
         }
-        // A side of one cell is on the boundary.
-        let mut outer = Vec::new();
-        mesh.each_side_set(|sides| {
-            if let [side] = sides {
-                outer.extend(is_inside(side).then_some(*side));
-            }
-        });
-        outer.sort_unstable_by_key(|side| (side.cell.block, side.cell.cell, side.side));
-        Ok(outer)
     }
 
     /// The selected cells.
@@ -68,23 +62,72 @@ impl Selection {
     /// # Errors
     /// There is no such group.
     pub fn cells(&self, mesh: &Mesh) -> Result<Vec<CellIndex>> {
-        if let Selection::Group(name) = self {
-            return Ok(group(mesh, name)?.cells.clone());
-        }
-        let points = self.points(mesh)?;
-        let mut chosen = Vec::new();
-        for (block, cells) in mesh.blocks.iter().enumerate() {
-            for (cell, nodes) in cells.cells().enumerate() {
-                if nodes.iter().all(|p| points.binary_search(p).is_ok()) {
-                    chosen.push(CellIndex { block, cell });
-                }
+        match self {
+            Selection::Group(name) => Ok(group(mesh, name)?.cells.clone()),
+            Selection::Where(_) | Selection::Everything => {
+                Ok(whole_cells(mesh, &is_selected(mesh, &self.points(mesh)?)))
             }
         }
-        Ok(chosen)
     }
 }
 
-fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group> {
+/// The sides that a group lists, compared with those of the cells.
+pub struct ListedSides {
+    /// Those that a cell has, each once.
+    pub sides: Vec<SideIndex>,
+    /// The points of those that no cell has, without the points that belong to no cell.
+    pub lost: Vec<Vec<usize>>,
+}
+
+impl ListedSides {
+    /// Those of a group of the mesh.
+    pub fn of(mesh: &Mesh, group: &Group) -> ListedSides {
+        if group.sides.is_empty() {
+            return ListedSides { sides: Vec::new(), lost: Vec::new() };
+        }
+        // Sides whose points belong to no cell are empty: they are counted one by one.
+        let (mut listed, mut lost): (Vec<_>, Vec<_>) = group.sides.iter().cloned().partition(|side| !side.is_empty());
+        listed.sort_unstable();
+        listed.dedup();
+        let mut found = vec![None; listed.len()];
+        let is_selected = is_selected(mesh, &group.points);
+        for side in mesh.side_indices().filter(|side| mesh.side_points(side).all(|p| is_selected[p])) {
+            if let Ok(place) = listed.binary_search(&sorted(&mesh.side_nodes(&side))) {
+                found[place].get_or_insert(side);
+            }
+        }
+        let known = listed.into_iter().zip(&found).filter(|(_, side)| side.is_none());
+        lost.splice(0..0, known.map(|(points, _)| points));
+        ListedSides { sides: found.into_iter().flatten().collect(), lost }
+    }
+}
+
+/// Whether each point of the mesh is among these.
+pub(super) fn is_selected(mesh: &Mesh, points: &[usize]) -> Vec<bool> {
+    let mut is_selected = vec![false; mesh.point_count()];
+    points.iter().for_each(|&p| is_selected[p] = true);
+    is_selected
+}
+
+/// The sides on the boundary with all points selected.
+pub(super) fn outer_sides(mesh: &Mesh, is_selected: &[bool]) -> Vec<SideIndex> {
+    // A side of one cell is on the boundary.
+    let mut outer = Vec::new();
+    mesh.each_side_set(|sides| {
+        if let [side] = sides {
+            outer.extend(mesh.side_points(side).all(|p| is_selected[p]).then_some(*side));
+        }
+    });
+    outer.sort_unstable_by_key(|side| (side.cell.block, side.cell.cell, side.side));
+    outer
+}
+
+/// The cells with all points selected.
+pub(super) fn whole_cells(mesh: &Mesh, is_selected: &[bool]) -> Vec<CellIndex> {
+    mesh.cell_indices().filter(|cell| mesh.cell_nodes(*cell).iter().all(|&p| is_selected[p])).collect()
+}
+
+pub(super) fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group> {
     mesh.groups.get(name).ok_or_else(|| {
         let known: Vec<_> = mesh.groups.keys().map(|g| format!("\"{g}\"")).collect();
         let expected = match known.as_slice() {

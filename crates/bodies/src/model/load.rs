@@ -6,7 +6,7 @@ use super::integration::each_cell_points;
 use crate::element::{Integrand, SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::material::CellMap;
-use crate::mesh::{CellIndex, Mesh, Selection, SideIndex};
+use crate::mesh::{Carrier, CellIndex, Mesh, Selection, SideIndex};
 use crate::range;
 use crate::springs::{dot, norm, unit};
 use crate::stiffness::gather;
@@ -18,7 +18,8 @@ use std::cell::RefCell;
 pub enum Action {
     /// A force per area on sides, Pa.
     Traction(Vec<Component>),
-    /// A total force, N: spread evenly over the sides, or over the points if the part has no sides.
+    /// A total force, N: shared over the sides or the cells by their shape functions, or over points alone in equal shares; see
+    /// [`Selection::carrier`].
     Force(Vec<f64>),
     /// A force per volume on cells, N/m³.
     Body(Vec<Component>),
@@ -132,11 +133,10 @@ pub fn nodal_forces(
             forces
         }
         Action::Force(force) => {
-            let sides = part.sides(mesh)?;
-            let weights = if sides.is_empty() {
-                part.points(mesh)?.into_iter().map(|p| (p, 1.0)).collect()
-            } else {
-                side_weights(mesh, &sides, thickness)
+            let weights = match part.carrier(mesh)? {
+                Carrier::Sides(sides) => side_weights(mesh, &sides, thickness),
+                Carrier::Cells(cells) => cell_weights(mesh, &cells, thickness),
+                Carrier::Points(points) => points.into_iter().map(|p| (p, 1.0)).collect(),
             };
             let total: f64 = weights.iter().map(|(_, w)| w).sum();
             if weights.is_empty() {
@@ -145,16 +145,14 @@ pub fn nodal_forces(
             spread(mesh, &weights, &force.iter().map(|f| f / total).collect::<Vec<_>>())
         }
         Action::Body(body) => {
-            let mut chosen: Vec<Vec<bool>> = mesh.blocks.iter().map(|b| vec![false; b.cells().len()]).collect();
             let cells = part.cells(mesh)?;
             if cells.is_empty() {
                 return nothing("cells");
             }
-            cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
             let nodes = |c: &CellIndex| mesh.blocks[c.block].cells().nth(c.cell).unwrap_or_default();
             finite_at(mesh, body, cells.iter().flat_map(|c| nodes(c).iter().copied()))?;
             let body = Values::of(body);
-            let forces = body_forces(mesh, &chosen, &body, thickness);
+            let forces = body_forces(mesh, &cells, &body, thickness);
             body.check("N/m³")?;
             forces
         }
@@ -191,8 +189,10 @@ fn not_finite(mesh: &Mesh, point: usize, place: &str, found: &str) -> Error {
     Error::at("load", format!("is not finite everywhere on the selected part: found {found} {place} {at:?} m"))
 }
 
-fn body_forces(mesh: &Mesh, chosen: &[Vec<bool>], body: &Values, thickness: &CellMap<f64>) -> Vec<f64> {
+fn body_forces(mesh: &Mesh, cells: &[CellIndex], body: &Values, thickness: &CellMap<f64>) -> Vec<f64> {
     let d = mesh.dimension;
+    let mut chosen: Vec<Vec<bool>> = mesh.blocks.iter().map(|b| vec![false; b.cells().len()]).collect();
+    cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
     let mut forces = vec![0.0; mesh.points.len()];
     let is_chosen = |cell: CellIndex| chosen[cell.block][cell.cell];
     each_cell_points(mesh, load_of(body.components), is_chosen, |cell| {
@@ -233,6 +233,14 @@ fn side_weights(mesh: &Mesh, sides: &[SideIndex], thickness: &CellMap<f64>) -> V
         }
     }
     weights
+}
+
+/// `∫ N_a dV` of every node of the cells, m³.
+fn cell_weights(mesh: &Mesh, cells: &[CellIndex], thickness: &CellMap<f64>) -> Vec<(usize, f64)> {
+    let unit = vec![Component::Constant(1.0); mesh.dimension];
+    let forces = body_forces(mesh, cells, &Values::of(&unit), thickness);
+    let along_x = forces.iter().step_by(mesh.dimension).copied().enumerate();
+    along_x.filter(|(_, weight)| *weight != 0.0).collect()
 }
 
 /// A force per area, Pa, as a function of the position and of the normal, which points outwards and, on a surface in

@@ -1,7 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::extent;
-use crate::mesh::{CellBlock, FillBoundary, FillLayers, Filled, Group, Mesh};
+use crate::mesh::{CellBlock, FillBoundary, FillLayers, Filled, Group, ListedSides, Mesh};
 use crate::quantity::Quantity;
 use std::fmt::Write;
 
@@ -161,7 +161,7 @@ fn groups(mesh: &Mesh) -> Vec<String> {
     }
     let longest = mesh.groups.keys().take(LISTED).map(|name| quoted(name).chars().count()).max().unwrap_or(0).min(30);
     for (name, group) in mesh.groups.iter().take(LISTED) {
-        lines.push(format!("#   {:longest$}  {}", quoted(name), contents(group)));
+        lines.push(format!("#   {:longest$}  {}", quoted(name), contents(mesh, group)));
     }
     if mesh.groups.len() > LISTED {
         lines.push(format!("#   and {} more: `springfit groups MESH`", mesh.groups.len() - LISTED));
@@ -171,10 +171,13 @@ fn groups(mesh: &Mesh) -> Vec<String> {
 }
 
 /// `12 cells, 30 points`.
-pub fn contents(group: &Group) -> String {
+fn contents(mesh: &Mesh, group: &Group) -> String {
+    if group.points.is_empty() {
+        return "nothing of the body".into();
+    }
     let counted = [
         (group.cells.len(), "cells"),
-        (group.sides.len(), "sides"),
+        (ListedSides::of(mesh, group).sides.len(), "sides"),
         (group.edges.len(), "edges"),
         (group.points.len(), "points"),
     ];
@@ -219,8 +222,11 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
     lines.push(format!("[[fix]]\n{fix}\n# axes = [\"x\"]            # all if absent\n"));
     let zeros = vec!["0"; d - 1].join(", ");
     let is_free = |group: &&Group| group.points.iter().all(|point| held.binary_search(point).is_err());
-    let loaded =
-        mesh.groups.iter().find(|(_, group)| !group.sides.is_empty() && group.cells.is_empty() && is_free(group));
+    let has_sides = |group: &&Group| {
+        let ListedSides { sides, lost } = ListedSides::of(mesh, group);
+        !sides.is_empty() && lost.is_empty()
+    };
+    let loaded = mesh.groups.iter().find(|(_, group)| group.cells.is_empty() && is_free(group) && has_sides(group));
     lines.push("[[load]]\nname     = \"pull\"".into());
     lines.push(match loaded {
         Some((name, _)) => {

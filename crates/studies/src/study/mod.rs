@@ -49,7 +49,7 @@ pub use convergence::{
     limit_of, most_unknowns, rates, refinements,
 };
 pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
-pub use draft::{DraftMaterial, DraftSource, contents, draft};
+pub use draft::{DraftMaterial, DraftSource, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,

@@ -281,7 +281,7 @@ impl Deck {
         let place = match &label[..] {
             b"" => Place::Outer,
             b"SPOS" | b"SNEG" => Place::Whole,
-            [b'S' | b'E', digit @ b'1'..=b'6'] => Place::Side(usize::from(digit - b'1')),
+            [b'S' | b'E', digit @ b'1'..=b'9'] => Place::Side(usize::from(digit - b'1')),
             // Labels of sides that no cell here has, such as END1 of a beam.
             _ if !of_nodes => return Ok(()),
             _ => Place::Whole,

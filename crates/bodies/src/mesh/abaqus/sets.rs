@@ -122,7 +122,7 @@ pub(super) enum Place {
 /// Adds what the surfaces are on to the groups with their names.
 ///
 /// # Errors
-/// A surface names an element that is not there.
+/// A surface names an element that is not there, or a side that none of its elements has.
 pub(super) fn add_surfaces(
     resolved: &mut Resolved,
     surfaces: &[(String, usize, Vec<Patch>)],
@@ -157,9 +157,11 @@ pub(super) fn add_surfaces(
                     None => return Err(missing("element", *number)),
                 },
             };
+            // Of a set with cells of several types some may lack the side.
+            let mut has_side = cells.is_empty();
             for &cell in cells {
                 match patch.place {
-                    Place::Side(index) => resolved.add_side(group, cell, index)?,
+                    Place::Side(index) => has_side |= resolved.add_side(group, cell, index)?,
                     Place::Whole => resolved.add_cell(group, cell)?,
                     Place::Outer if resolved.list.cell_type(cell).dimension() == 3 => {
                         for index in 0..resolved.list.cell_type(cell).sides().len() {
@@ -170,6 +172,12 @@ pub(super) fn add_surfaces(
                     }
                     Place::Outer => resolved.add_cell(group, cell)?,
                 }
+            }
+            if let (Place::Side(index), false) = (patch.place, has_side) {
+                let most = cells.iter().map(|&cell| resolved.list.cell_type(cell).sides().len()).max().unwrap_or(0);
+                let problem = format!("names side {} of elements with {most} sides", index + 1);
+                let key = format!("surface \"{name}\"");
+                return Err(Error::at(key, problem).of_kind(ErrorKind::Syntax).on_line(*line));
             }
         }
     }

@@ -5,6 +5,7 @@ use super::rows::{Header, cell, each_row};
 use crate::error::{Error, Result};
 use crate::mesh::reader::quoted;
 use csv::StringRecord;
+use std::collections::HashMap;
 
 /// The columns that are used.
 struct Columns {
@@ -17,11 +18,29 @@ struct Columns {
 /// Reads a table; `array` is the name of the column, or begins the names of several.
 ///
 /// # Errors
-/// Columns are missing or repeated; or a row has too few or too many cells, or a value that is not a number.
+/// Columns are missing or repeated; or a row has too few or too many cells, or a value that is not a number; or two
+/// rows at the same place have different values.
 pub(super) fn read(text: &str, array: Option<&str>, components: usize) -> Result<Raw> {
     let mut raw = Raw { holder: Holder::Points, places: Vec::new(), components, values: Vec::new() };
     let head = |header: &Header| Columns::new(header, array, components);
-    each_row(text, head, |header, columns, row, _| columns.add(header, row, &mut raw))?;
+    // The coordinates of each row, its index, and where it begins in the text.
+    let mut known: HashMap<[u64; 3], (usize, usize)> = HashMap::new();
+    each_row(text, head, |header, columns, row, at| {
+        let index = raw.places.len();
+        columns.add(header, row, &mut raw)?;
+        // The sum makes no difference between the zeros of both signs.
+        let (first, earlier) =
+            *known.entry(raw.places[index].map(|x| (x + 0.0).to_bits())).or_insert((index, at.start));
+        let of = |place: usize| &raw.values[place * components..(place + 1) * components];
+        match of(first) == of(index) {
+            true => Ok(()),
+            false => {
+                let line = at.line_of(earlier);
+                let expected = format!("the values of line {line}, which is at the same place");
+                Err(Error::expected("values", expected, format!("{:?}", of(index))))
+            }
+        }
+    })?;
     Ok(raw)
 }
 

@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 /// `pid=NUMBER`; a SET1 of grid points and a SET3 of grid points, elements or properties form `set=NUMBER`.
 ///
 /// # Errors
-/// A grid point is in a coordinate system of its own, an element has none here, the file includes others, or it is
-/// damaged.
+/// A grid point is in a coordinate system of its own, an element has none here, a set is not stated by numbers, the file
+/// includes others, or it is damaged.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut lines = Lines::new(bytes);
     if bytes.split(|&b| b == b'\n').any(is_begin) {
@@ -48,8 +48,8 @@ struct Bulk {
 struct SetCard {
     number: u64,
     of: Of,
-    /// First and last.
-    ranges: Vec<[u64; 2]>,
+    /// First, last and step.
+    ranges: Vec<[u64; 3]>,
 }
 
 #[derive(Clone, Copy)]
@@ -97,19 +97,25 @@ impl Bulk {
 
     fn read_set(&mut self, card: &Card, of: Of, first: usize) -> Result<()> {
         let number = card.whole(0, "the number of a set")?;
-        let mut ranges: Vec<[u64; 2]> = Vec::new();
-        let mut through = false;
-        for field in card.fields.iter().skip(first).filter(|field| !field.is_empty()) {
-            match whole(field) {
-                Some(last) if through => {
-                    ranges.last_mut().ok_or_else(|| card.expected("a number before THRU", field))?[1] = last;
-                    through = false;
+        let mut ranges: Vec<[u64; 3]> = Vec::new();
+        let mut fields = card.fields.iter().skip(first).filter(|field| !field.is_empty()).peekable();
+        while let Some(field) = fields.next() {
+            let one = whole(field).ok_or_else(|| {
+                let expected = "the numbers of the members, or ranges of them with THRU and BY";
+                let found = String::from_utf8_lossy(field);
+                card.unsupported(expected, &format!("{found} in set {number}: list the members"))
+            })?;
+            let mut range = [one, one, 1];
+            for (place, word, least) in [(1, "THRU", one), (2, "BY", 1)] {
+                if fields.next_if(|field| field.eq_ignore_ascii_case(word.as_bytes())).is_none() {
+                    break;
                 }
-                Some(one) => ranges.push([one, one]),
-                None if field.eq_ignore_ascii_case(b"THRU") => through = true,
-                // The rest of the set is stated in another way, such as SKIN or ALL.
-                None => return Ok(()),
+                let field = fields.next().copied().unwrap_or_default();
+                let given = whole(field).filter(|&given| given >= least);
+                let expected = format!("a number of at least {least} after {word} in set {number}");
+                range[place] = given.ok_or_else(|| card.expected(&expected, field))?;
             }
+            ranges.push(range);
         }
         self.sets.push(SetCard { number, of, ranges });
         Ok(())
@@ -129,8 +135,7 @@ impl Bulk {
         }
         for set in &self.sets {
             let group = resolved.group(&format!("set={}", set.number));
-            for &[first, last] in set.ranges.iter().filter(|[first, last]| first <= last) {
-                let range = [first, last, 1];
+            for &range in &set.ranges {
                 match set.of {
                     Of::Points => {
                         let (found, walked) = resolved.nodes.in_range(&resolved.node_numbers, range);
@@ -143,8 +148,10 @@ impl Bulk {
                         found.into_iter().try_for_each(|cell| resolved.add_cell(group, cell))?;
                     }
                     Of::Properties => {
-                        let mut found = of_property.range(first..=last).flat_map(|(_, cells)| cells);
-                        found.try_for_each(|&cell| resolved.add_cell(group, cell))?;
+                        let [first, last, step] = range;
+                        let listed = of_property.range(first..=last);
+                        let stepped = listed.filter(|(property, _)| (*property - first).is_multiple_of(step));
+                        stepped.flat_map(|(_, cells)| cells).try_for_each(|&cell| resolved.add_cell(group, cell))?;
                     }
                 }
             }

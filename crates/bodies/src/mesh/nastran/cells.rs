@@ -84,6 +84,13 @@ pub(super) fn element(card: &Card) -> Result<Option<ElementCard>> {
     let middles = shape.full.map_or(0, CellType::nodes).saturating_sub(nodes.len());
     let start = shape.first + nodes.len();
     let given = (start..start + middles).filter(|&index| !matches!(card.field(index), b"" | b"0")).count();
+    // Cards of plates have angles and thicknesses after the grid points, those of solids nothing.
+    let more = card.fields.iter().skip(start + middles).filter(|field| !matches!(**field, b"" | b"0")).count();
+    if shape.corners.dimension() == 3 && more > 0 {
+        let (least, most) = (nodes.len(), nodes.len() + middles);
+        let found = format!("{} in element {number}", least + given + more);
+        return Err(card.unsupported(&format!("{least} or {most} grid points"), &found));
+    }
     let mut cell_type = shape.corners;
     if let Some(full) = shape.full.filter(|_| given > 0) {
         if given < middles {

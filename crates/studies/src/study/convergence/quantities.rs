@@ -31,7 +31,8 @@ impl Quantities {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
             let (unit, part) = match load.single() {
                 Some((_, Action::Displacement(_))) => return Ok(None),
-                Some((part, Action::Traction(_) | Action::Force(_))) => (Action::Force(along_x), part),
+                Some((part, Action::Traction(_))) => (Action::traction(&along_x), part),
+                Some((part, Action::Force(_))) => (Action::Force(along_x), part),
                 Some((part, Action::Body(_))) => (Action::body(&along_x), part),
                 // Of several parts the mean is that of the body.
                 None => (Action::body(&along_x), &Part::Everything),

@@ -82,6 +82,10 @@ fn region_of_cells(entries: &MaterialEntries, mesh: &Mesh) -> Result<Vec<Vec<usi
         return Err(Error::expected("material", "every cell in one region", found));
     }
     let left = region.iter().flatten().filter(|region| region.is_none()).count();
+    if let (Some(rest), 0) = (rest, left) {
+        let problem = "has no cells: the regions with \"group\" or \"where\" have them all";
+        return Err(Error::new(problem).under(entries.key(rest)));
+    }
     let Some(rest) = rest.or((left == 0).then_some(0)) else {
         let expected = "every cell in a region, or one [[material]] without \"group\" and \"where\" for the rest";
         return Err(Error::expected("material", expected, format!("{left} cells in none")));

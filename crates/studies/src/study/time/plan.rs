@@ -4,7 +4,7 @@ use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
-use crate::material::{EnergyMap, MaterialMap};
+use crate::material::{CellMap, EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
 use crate::range;
@@ -96,7 +96,7 @@ fn planned(
             .map_err(|e| e.under(format!("pull[{i}]")))?;
     }
     for (i, push) in recipe.forces.iter().enumerate() {
-        add_force(&mut planned, mesh, push).map_err(|e| e.under(format!("force[{i}]")))?;
+        add_force(&mut planned, mesh, &material.thicknesses(), push).map_err(|e| e.under(format!("force[{i}]")))?;
     }
     if let Some(part) = &recipe.watch {
         planned.watched = points(mesh, part).map_err(|e| e.under("watch"))?;
@@ -195,7 +195,7 @@ fn add_prescribed_motion(
 }
 
 /// Adds one `[[motion.force]]`.
-fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<()> {
+fn add_force(planned: &mut Planned, mesh: &Mesh, thicknesses: &CellMap<f64>, push: &AppliedForce) -> Result<()> {
     let d = mesh.dimension;
     if push.force.len() != d {
         return Err(entries("force", d, push.force.len()));
@@ -213,8 +213,8 @@ fn add_force(planned: &mut Planned, mesh: &Mesh, push: &AppliedForce) -> Result<
             true => points.iter().for_each(|p| forces[p * d + k] = 1.0),
             false => {
                 let unit = (0..d).map(|l| if l == k { 1.0 } else { 0.0 }).collect();
-                forces =
-                    nodal_forces(mesh, &selection, &Action::Force(unit), 1.0).map_err(|e| Error::new(e.problem()))?;
+                let shared = nodal_forces(mesh, &selection, &Action::Force(unit), thicknesses);
+                forces = shared.map_err(|e| Error::new(e.problem()))?;
             }
         }
         let shares = (0..mesh.point_count()).map(|p| (p, forces[p * d + k])).filter(|(_, share)| *share != 0.0);
