@@ -409,11 +409,11 @@ fn shapes_of_a_list_that_are_left_out_are_counted() {
         assert_eq!(says, is_left_out, "{keys}: {notes:?}");
     }
     for (keys, key) in [
-        ("stretch = [0.3, -0.1]", ":14: fit[0].shapes.stretch"),
-        ("perturbation = 5", ":14: fit[0].shapes.perturbation"),
-        ("count = 0", ":14: fit[0].shapes.count"),
-        ("families = [\"torsion\"]", ":14: fit[0].shapes.families"),
-        ("families = []", ":14: fit[0].shapes.families"),
+        ("stretch = [0.3, -0.1]", ":12: fit[0].shapes.stretch"),
+        ("perturbation = 5", ":12: fit[0].shapes.perturbation"),
+        ("count = 0", ":12: fit[0].shapes.count"),
+        ("families = [\"torsion\"]", ":12: fit[0].shapes.families"),
+        ("families = []", ":12: fit[0].shapes.families"),
     ] {
         let error = ran(keys).unwrap_err().to_string();
         assert!(error.contains(key), "{keys}: {error}");

@@ -92,7 +92,7 @@ fn shapes() {
                 "scene.toml: fit[0].shapes.stretch",
                 "\"families\"",
             ),
-            (SHAPES, count, "scene.toml: fit[0].shapes", "from 1 to 10000000, found 100000000000"),
+            (SHAPES, count, "scene.toml: fit[0].shapes.count", "from 1 to 10000000, found 100000000000"),
             (
                 SHAPES,
                 "shapes = { families = [\"uniaxal\"] }",
@@ -100,17 +100,17 @@ fn shapes() {
                 "found \"uniaxal\"",
             ),
             (SHAPES, two, "scene.toml: fit[0].shapes", "found more"),
-            (SHAPES, "shapes = { count = 0 }", "scene.toml: fit[0].shapes", "found 0"),
+            (SHAPES, "shapes = { count = 0 }", "scene.toml: fit[0].shapes.count", "found 0"),
             (SHAPES, "shapes = { stretch = \"much\" }", "scene.toml: fit[0].shapes.stretch", "found \"much\""),
-            (SHAPES, "shapes = { stretch = [0.5, 0] }", "scene.toml: fit[0].stretch", "found 0.5 to 0"),
-            (SHAPES, "shapes = { perturbation = 9 }", "scene.toml: fit[0].perturbation", "found 9"),
+            (SHAPES, "shapes = { stretch = [0.5, 0] }", "scene.toml: fit[0].shapes.stretch", "found 0.5 to 0"),
+            (SHAPES, "shapes = { perturbation = 9 }", "scene.toml: fit[0].shapes.perturbation", "found 9"),
             (SHAPES, "shapes = { loads = [\"push\"] }", "scene.toml: fit[0].shapes.loads", "(pull), found \"push\""),
         ],
     );
     let list = edited(SOFT, SHAPES, "shapes = { gradients = \"list.csv\" }");
     refusals.expect_of_scene(&list, "list.csv", "cannot be read");
     for (text, place, words) in [
-        ("1 0 0 0 1 0 0 0\n", "scene.toml: fit[0].gradients", "found 8 numbers in all"),
+        ("1 0 0 0 1 0 0 0\n", "scene.toml: fit[0].shapes.gradients", "found 8 numbers in all"),
         ("1 0 0\n0 one 0 0 0 1\n", "list.csv:2", "found one"),
     ] {
         let files: [(&str, &[u8]); 2] = [("scene.toml", list.as_bytes()), ("list.csv", text.as_bytes())];

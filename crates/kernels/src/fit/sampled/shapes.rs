@@ -135,10 +135,10 @@ impl Sampling {
         }
         match &self.source {
             Source::Families(families) if families.is_empty() => {
-                return Err(Error::expected("families", "at least one family", "none"));
+                Err(Error::expected("families", "at least one family", "none"))
             }
             Source::Families(_) if self.stretch == [0.0; 2] && self.perturbation == 0.0 => {
-                return Err(Error::expected("stretch", "shapes that differ from the one at rest", "none"));
+                Err(Error::expected("stretch", "shapes that differ from the one at rest", "none"))
             }
             Source::States(states) if states.is_empty() => Err(Error::expected("states", "at least one state", "none")),
             Source::Gradients(_) | Source::States(_) | Source::Families(_) => Ok(()),

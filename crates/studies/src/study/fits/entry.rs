@@ -171,10 +171,9 @@ impl FitEntry {
             Kind::Whole => {
                 let (entry, sampled) = self.whole()?;
                 let recipes = entry.recipes(|| sampled.clone().check(folder, functions))?;
-                if let Some(springs) = &self.springs {
-                    if recipes.iter().any(|(_, recipe)| matches!(recipe.start, Start::Exact(..))) {
-                        return Err(without_groups(springs));
-                    }
+                let is_exact = recipes.iter().any(|(_, recipe)| matches!(recipe.start, Start::Exact(..)));
+                if let Some(springs) = self.springs.as_ref().filter(|_| is_exact) {
+                    return Err(without_groups(springs));
                 }
                 let several = recipes.len() > 1;
                 let fit = |(start, recipe): (String, _)| {

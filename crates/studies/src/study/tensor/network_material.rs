@@ -6,7 +6,7 @@ use super::owners::SpringOwners;
 use super::piece::Piece;
 use super::relaxation::{body_tensor, tensor};
 use super::sample::{Sample, Stars};
-use crate::material::{CellMap, MaterialMap};
+use crate::material::{CellMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Moments, Network, edge_springs};
 use nalgebra::DMatrix;
@@ -121,10 +121,10 @@ pub fn network_material(
         Some(one) if has_one_thickness => {
             (of_material(&one.moduli().into(), dimension), found, Some((one.young(), Some(one.poisson()))))
         }
-        uniform => {
+        _ => {
             let wanted = constants(&solid(&asked), state);
             // Where the thickness alone differs, the finite elements have Young's modulus of the material.
-            let scale = uniform.zip(wanted).map_or(1.0, |(one, (young, _))| one.young() / young);
+            let scale = one_young(material).zip(wanted).map_or(1.0, |(one, (young, _))| one / young);
             let scaled = |(young, poisson): (f64, Option<f64>)| (scale * young, poisson);
             (mean(&asked), found.map(scaled), wanted.map(scaled))
         }
@@ -147,4 +147,11 @@ pub fn network_material(
 fn thickness(sample: &Sample, of_cells: CellMap<f64>) -> f64 {
     let content = |thickness| Moments::of_body(&sample.mesh, CellMap::Uniform(1.0), thickness).mass;
     content(of_cells) / content(CellMap::Uniform(1.0))
+}
+
+/// Young's modulus of all cells, if they have the same.
+fn one_young(material: &MaterialMap) -> Option<f64> {
+    let mut all = material.materials().ok()?.values().map(Material::young);
+    let first = all.next()?;
+    all.all(|young| young == first).then_some(first)
 }
