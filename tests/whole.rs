@@ -318,7 +318,7 @@ fn few_residuals_have_the_quantiles_of_student() {
     assert!((ninety_five(Some(usize::MAX)) - ninety_five(None)).abs() < 1e-12);
 }
 
-/// Uniform tractions along a bar cancel everywhere but at its held ends, up to rounding: such a load is none, in every unit of length.
+/// Uniform tractions along a bar cancel everywhere but at its held ends, up to rounding: such a load is left out, in every unit of length.
 #[test]
 fn loads_of_rounding_errors_are_none() {
     let names = |size: f64| -> [Vec<String>; 2] {
