@@ -272,7 +272,7 @@ fn states_are_written_at_steps() {
     assert_eq!(times, [0, 13, 25, 31]);
 }
 
-/// A note has the real end and says that states are not evenly apart; where steps divide both times there is none. Without `every` the
+/// A note has the real end and says that states are not evenly apart; there is no such note where steps divide both times. Without `every` the
 /// states are whole steps apart.
 #[test]
 fn times_that_steps_do_not_divide_are_told() {

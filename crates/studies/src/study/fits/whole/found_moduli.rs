@@ -33,7 +33,7 @@ pub(super) fn found_moduli(
         // From the value that was found to the one without ρ, and the deviations beyond either end.
         let ends =
             |reach: f64| [factor * (shifts[p].min(0.0) - reach).exp(), factor * (shifts[p].max(0.0) + reach).exp()];
-        // An interval without an end is none.
+        // An interval with an end that is zero or infinite is left out.
         let interval = reach(p).map(ends).filter(|[low, high]| *low > 0.0 && high.is_finite());
         FoundModulus { name: name.clone(), factor, interval, mesh: mesh.get(p).copied() }
     };
