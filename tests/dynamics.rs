@@ -187,6 +187,60 @@ fn oscillators_are_damped_by_their_ratio() {
     }
 }
 
+/// Two springs of rest length zero are linear and pull at rest: both motions of their middle have the same elastic energy, which is
+/// beyond that at rest.
+#[test]
+fn tension_at_rest_is_no_energy_of_a_motion() {
+    let network =
+        Network { dimension: 2, lengths: vec![spring(0, 1, 50.0, 0.0), spring(1, 2, 50.0, 0.0)], others: Vec::new() };
+    let (points, masses) = (vec![0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [0.2; 3]);
+    let mut support = Support { prescribed: vec![None; 6] };
+    support.fix(&[0, 2], &[0, 1], 2);
+    for integrator in all_integrators() {
+        for linear in [false, true] {
+            let motion = Motion { support: support.clone(), ..Motion::free(&network, &points, &masses) };
+            let mut simulation = Simulation::new(motion, Options { integrator, linear, ..Options::default() }).unwrap();
+            assert_eq!(simulation.account().elastic, 0.0);
+            simulation.start(&[0.0, 0.0, 0.003, 0.004, 0.0, 0.0], &[0.0; 6]).unwrap();
+            for _ in 0..50 {
+                simulation.step();
+                let [x, y] = [2, 3].map(|dof| simulation.state().displacement[dof]);
+                assert_near(simulation.account().elastic, 50.0 * (x * x + y * y), 1e-13);
+            }
+        }
+    }
+}
+
+/// A prescribed displacement that jumps gives its point a large velocity for one step. The drift after it is that of a motion which
+/// starts with the jump done, of the same energy: the kinetic energy of the held point does not hide it.
+#[test]
+fn jumps_do_not_hide_the_drift() {
+    let (network, points) = pair(50.0);
+    let masses = [0.2, 0.3];
+    let mut support = Support { prescribed: vec![None; 4] };
+    support.fix(&[0], &[0, 1], 2);
+    for integrator in all_integrators() {
+        let drifts = |curve: Curve, skipped: usize| {
+            let drive = Drive::default().displacement(0, curve);
+            let motion = Motion { support: support.clone(), drive, ..Motion::free(&network, &points, &masses) };
+            let mut simulation = Simulation::new(motion, Options { integrator, ..Options::default() }).unwrap();
+            run(&mut simulation, skipped);
+            let mut drifts = Vec::new();
+            for _ in 0..400 {
+                run(&mut simulation, 1);
+                drifts.push(simulation.account().balance.unwrap().drift);
+            }
+            drifts.iter().fold(0.0f64, |most, drift| most.max(drift.abs()))
+        };
+        let step = Options::default().step;
+        let jumped = drifts(Curve::new(move |t| if t < 2.5 * step { 0.0 } else { 0.01 }), 3);
+        let started = drifts(Curve::constant(0.01), 0);
+        assert!(started > 1e-4 || integrator == Integrator::newmark(), "{integrator:?}: {started:e}");
+        // Methods of two steps begin with one of another method, and not again where the curve jumps.
+        assert!(jumped > 0.5 * started && jumped < 2.0 * started + 1e-9, "{integrator:?}: {jumped:e} for {started:e}");
+    }
+}
+
 /// Without forces implicit Euler loses energy at every step, however long, at large rotations and stretches, also with fewer
 /// iterations than it would take to converge: the step begins where it stands and only descends.
 #[test]

@@ -200,8 +200,9 @@ impl Fit {
         let body = support.as_ref().map(|support| WholeBody::new(&mesh, material, support, &controls));
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
         let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
-        let fit = fit.map_err(|e| e.placed(of_option))?;
-        let masses = density.map(|density| point_masses(&mesh, density, material)).transpose().map_err(of_option)?;
+        let fit = fit.map_err(|e| e.placed(|e| self.of_option(e)))?;
+        let masses =
+            density.map(|density| point_masses(&mesh, density, material)).transpose().map_err(|e| self.of_option(e))?;
         let material = MaterialMap::from(material).with_density(density.map(CellMap::Uniform));
         let outcome = Outcome::of_fit(self.mesh.display().to_string(), mesh, material, masses, fit);
         let outcome = Outcome { assumed, command: Some(command()), ..outcome };
@@ -231,7 +232,7 @@ impl Fit {
         let range = shard.range(cells);
         let own = mesh.of_range(range.clone());
         let fitted = fit_some(named, &own, &material.into(), &mut |event: Event| terminal.show(event));
-        let fitted = fitted.map_err(|e| e.placed(of_option))?;
+        let fitted = fitted.map_err(|e| e.placed(|e| self.of_option(e)))?;
         let is_inside = mesh.is_inside(range.clone());
         // Springs on lengths are there as shares.
         let others: Vec<_> = fitted.network.others.iter().filter(|spring| spring.kind != SpringKind::Length).collect();
@@ -283,7 +284,7 @@ impl Fit {
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
             .with("law", self.law.clone());
-        Ok(entry.fits(Path::new("")).map_err(|e| e.placed(of_option))?.remove(0))
+        Ok(entry.fits(Path::new("")).map_err(|e| e.placed(|e| self.of_option(e)))?.remove(0))
     }
 
     /// The groups that are held.
@@ -296,17 +297,21 @@ impl Fit {
         }
         Ok(support)
     }
-}
 
-/// The same fault with the option that the key stands for, as it is typed.
-fn of_option(error: Error) -> Error {
-    let command = <Fit as Args>::augment_args(clap::Command::new("fit"));
-    // Options have the last part of a key's path.
-    let last = error.key().map(|key| key.rsplit('.').next().unwrap_or(key).to_string());
-    match last.map(|name| if name == "count" { "shapes".to_string() } else { name }) {
-        Some(name) if command.get_arguments().any(|argument| argument.get_long() == Some(&name)) => {
-            error.at_key(format!("--{name}"))
+    /// The same fault with the option that the key stands for, as it is typed.
+    fn of_option(&self, error: Error) -> Error {
+        let command = <Fit as Args>::augment_args(clap::Command::new("fit"));
+        // Options have the last part of a key's path.
+        let last = error.key().map(|key| match key.rsplit('.').next().unwrap_or(key) {
+            "count" => "shapes".to_string(),
+            "shapes" if self.shapes.is_none() => "stretch".to_string(),
+            name => name.to_string(),
+        });
+        match last {
+            Some(name) if command.get_arguments().any(|argument| argument.get_long() == Some(&name)) => {
+                error.at_key(format!("--{name}"))
+            }
+            _ => error,
         }
-        _ => error,
     }
 }

@@ -40,26 +40,27 @@ pub struct EnergyBalance {
     /// The energy that damping forces have dissipated, J.
     pub dissipated: f64,
     /// The energy that the method has gained or lost, `E − E(0) − work + dissipated`, relative to the largest of these
-    /// energies so far.
+    /// energies so far, each without the kinetic energy of the held degrees of freedom.
     pub drift: f64,
 }
 
-/// The running sums, over all steps and degrees of freedom.
+/// The running sums, over all steps and degrees of freedom. The motion of held ones is prescribed: their kinetic energy, which is large
+/// where a prescribed displacement jumps, is no part of the sums.
 #[derive(Debug)]
 pub(super) struct Ledger {
     pub work: Sum,
     pub dissipated: Sum,
-    /// The total energy at the start, J.
+    /// The energy at the start, J.
     pub start: f64,
     /// The largest energy so far, J.
     pub largest: f64,
+    /// The kinetic energy of the held degrees of freedom at the start, J.
+    pub held: f64,
     /// The forces whose work counts, at the last time: loads on free degrees of freedom, and the forces that move held
     /// ones.
     acting: Vec<f64>,
     /// `C v` at the last time.
     viscous: Vec<f64>,
-    /// The kinetic energy of the held degrees of freedom at the last time.
-    kinetic: f64,
 }
 
 /// The number of degrees of freedom whose work is added before it goes to the running sums, which are compensated.
@@ -73,24 +74,21 @@ pub(super) struct Forces<'a> {
 }
 
 impl Ledger {
-    pub fn new(start: f64, forces: &Forces, held: &[bool], kinetic: f64) -> Ledger {
-        let acting = (0..held.len()).map(|dof| acting(forces, held, dof)).collect();
+    /// Of a motion that starts with the energy `start` and, in the held degrees of freedom, the kinetic energy `still`, J.
+    pub fn new(start: f64, forces: &Forces, held: &[bool], still: f64) -> Ledger {
         Ledger {
             work: Sum::default(),
             dissipated: Sum::default(),
             start,
             largest: start.abs(),
-            acting,
+            held: still,
+            acting: (0..held.len()).map(|dof| acting(forces, held, dof)).collect(),
             viscous: forces.viscous.to_vec(),
-            kinetic,
         }
     }
 
-    /// Adds a step with the displacement `way`, at whose end the forces are these and the held degrees of freedom have
-    /// this kinetic energy.
-    pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], kinetic: f64, is_damped: bool) {
-        self.work.add(kinetic - self.kinetic);
-        self.kinetic = kinetic;
+    /// Adds a step with the displacement `way`, at whose end the forces are these.
+    pub fn add(&mut self, way: &[f64], forces: &Forces, held: &[bool], is_damped: bool) {
         let piece = |at: usize, acted: &mut [f64], resisted: &mut [f64]| {
             let (mut work, mut dissipated) = (Sum::default(), Sum::default());
             let blocks = acted.chunks_mut(BLOCK).zip(resisted.chunks_mut(BLOCK));
@@ -133,23 +131,23 @@ fn acting(forces: &Forces, held: &[bool], dof: usize) -> f64 {
     if held[dof] { forces.elastic[dof] + forces.viscous[dof] } else { forces.external[dof] }
 }
 
-/// `½ vᵀ M v` of all degrees of freedom and of the held ones, J.
+/// `½ vᵀ M v` of the free degrees of freedom and of the held ones, J.
 pub(super) fn kinetic(mass: &[f64], held: &[bool], v: &[f64]) -> (f64, f64) {
     let piece = |mass: &[f64], held: &[bool], v: &[f64]| {
-        let (mut all, mut still) = ([0.0; 4], [0.0; 4]);
+        let (mut free, mut still) = ([0.0; 4], [0.0; 4]);
         for (dof, ((m, v), held)) in mass.iter().zip(v).zip(held).enumerate() {
             let energy = m * v * v / 2.0;
-            all[dof % 4] += energy;
+            free[dof % 4] += if *held { 0.0 } else { energy };
             still[dof % 4] += if *held { energy } else { 0.0 };
         }
-        (all.iter().sum::<f64>(), still.iter().sum::<f64>())
+        (free.iter().sum::<f64>(), still.iter().sum::<f64>())
     };
     if v.len() <= PIECE {
         return piece(mass, held, v);
     }
     let pieces = (mass.par_chunks(PIECE), held.par_chunks(PIECE), v.par_chunks(PIECE)).into_par_iter();
     let sums: Vec<(f64, f64)> = pieces.map(|(mass, held, v)| piece(mass, held, v)).collect();
-    sums.iter().fold((0.0, 0.0), |(all, still), sum| (all + sum.0, still + sum.1))
+    sums.iter().fold((0.0, 0.0), |(free, still), sum| (free + sum.0, still + sum.1))
 }
 
 /// `Σ m v` of points with `d` coordinates; `mass` is given by degree of freedom.

@@ -25,8 +25,6 @@ pub(super) struct Resistance<'a> {
     pub held: Vec<bool>,
     /// The largest coordinate, m.
     pub extent: f64,
-    /// The energy of the model at rest, J: springs of rest length zero have some.
-    still: f64,
     x: Vec<f64>,
 }
 
@@ -45,7 +43,6 @@ impl<'a> Resistance<'a> {
             mass: motion.masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect(),
             held: motion.held(),
             extent: motion.points.iter().fold(0.0, |extent, x| extent.max(x.abs())),
-            still: motion.model.energy(motion.points).unwrap_or(0.0),
             x: motion.points.to_vec(),
         };
         resistance.direct(&vec![0.0; motion.points.len()], true);
@@ -105,7 +102,7 @@ impl<'a> Resistance<'a> {
             return Some(self.rest.refill(u, &mut force));
         }
         self.place(u);
-        Some(self.model.energy(&self.x)? - self.still)
+        Some(self.model.energy(&self.x)? - self.rest.energy)
     }
 
     /// `C v`, N.

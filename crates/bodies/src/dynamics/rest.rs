@@ -8,7 +8,7 @@ use faer::sparse::{SparseColMat, Triplet};
 /// `F ≈ F₀ + K₀ u`.
 #[derive(Debug)]
 pub(super) struct Rest {
-    /// The energy at rest, J.
+    /// The energy at rest, J: springs of rest length zero have some.
     pub energy: f64,
     /// F₀, N: the forces of springs that pull at rest.
     pub force: Vec<f64>,
@@ -35,14 +35,17 @@ impl Rest {
     pub fn new(model: &dyn Elastic, points: &[f64], has_equations: bool) -> Result<Rest> {
         let none = || Error::expected("model", "a response at rest", "none").of_kind(ErrorKind::Infeasible);
         let sound = |energy: f64, force: &[f64]| energy.is_finite() && force.iter().all(|f| f.is_finite());
+        let energy = model.energy(points).ok_or_else(none)?;
         if let Some(blocks) = (!has_equations).then(|| model.blocks(points)).flatten() {
             let mut force = vec![0.0; points.len()];
-            let energy = model.energy(points).filter(|_| model.forces(points, &mut force)).ok_or_else(none)?;
+            if !model.forces(points, &mut force) {
+                return Err(none());
+            }
             let rest = Rest { energy, force, tangent: Tangent::Blocks(blocks) };
             return if sound(energy, &rest.force) { Ok(rest) } else { Err(none()) };
         }
         let response = model.respond(points).ok_or_else(none)?;
-        if !sound(response.energy, &response.force) {
+        if !sound(energy, &response.force) {
             return Err(none());
         }
         let entries = response.tangent;
@@ -53,7 +56,7 @@ impl Rest {
             Error::new(format!("the stiffness matrix cannot be built: {e:?}")).of_kind(ErrorKind::Limit)
         })?;
         let tangent = Tangent::Entries { entries, values, matrix };
-        Ok(Rest { energy: response.energy, force: response.force, tangent })
+        Ok(Rest { energy, force: response.force, tangent })
     }
 
     /// The entries of K₀ that equations are made of; none for methods without equations.
@@ -98,10 +101,10 @@ impl Rest {
         }
     }
 
-    /// Writes `F₀ + K₀ u` into `force` and returns the energy `U₀ + F₀·u + ½ uᵀ K₀ u`.
+    /// Writes `F₀ + K₀ u` into `force` and returns the energy beyond that at rest, `F₀·u + ½ uᵀ K₀ u`.
     pub fn refill(&self, u: &[f64], force: &mut [f64]) -> f64 {
         force.copy_from_slice(&self.force);
         self.add_product(1.0, u, force);
-        self.energy + 0.5 * self.force.iter().zip(&*force).zip(u).map(|((a, b), u)| (a + b) * u).sum::<f64>()
+        0.5 * self.force.iter().zip(&*force).zip(u).map(|((a, b), u)| (a + b) * u).sum::<f64>()
     }
 }

@@ -153,9 +153,9 @@ impl<'a> Simulation<'a> {
         }
         if self.options.account {
             let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);
-            let (kinetic, held) = self.kinetic();
+            let (free, held) = self.kinetic();
             let forces = self.forces_now();
-            self.ledger = Some(Ledger::new(kinetic + elastic, &forces, &self.resistance.held, held));
+            self.ledger = Some(Ledger::new(free + elastic, &forces, &self.resistance.held, held));
         }
         Ok(())
     }
@@ -327,14 +327,14 @@ impl<'a> Simulation<'a> {
         if self.equations.is_some() {
             self.resistance.viscous(&self.state.velocity, &mut self.viscous);
         }
-        let (kinetic, held) = self.kinetic();
+        let (free, _) = self.kinetic();
         let is_damped = self.resistance.is_damped();
-        ledger.add(&self.way, &self.forces_now(), &self.resistance.held, held, is_damped);
-        ledger.largest = ledger.largest.max(kinetic).max(ledger.work.value().abs()).max(ledger.dissipated.value());
+        ledger.add(&self.way, &self.forces_now(), &self.resistance.held, is_damped);
+        ledger.largest = ledger.largest.max(free).max(ledger.work.value().abs()).max(ledger.dissipated.value());
         self.ledger = Some(ledger);
     }
 
-    /// The kinetic energy of all degrees of freedom and of the held ones, J.
+    /// The kinetic energy of the free degrees of freedom and of the held ones, J.
     fn kinetic(&self) -> (f64, f64) {
         let Resistance { mass, held, .. } = &self.resistance;
         ledger::kinetic(mass, held, &self.state.velocity)
@@ -344,21 +344,21 @@ impl<'a> Simulation<'a> {
     pub fn account(&mut self) -> Account {
         self.state();
         let d = self.motion.dimension();
-        let (kinetic, _) = self.kinetic();
+        let (free, held) = self.kinetic();
         let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);
         let x = self.positions();
         let (mass, v) = (&self.resistance.mass, &self.state.velocity);
         let sums = |ledger: &mut Ledger| {
-            let (energy, start) = (kinetic + elastic, ledger.start);
+            let energy = free + elastic;
             let (work, dissipated) = (ledger.work.value(), ledger.dissipated.value());
-            let gained = energy - start - work + dissipated;
+            let gained = energy - ledger.start - work + dissipated;
             ledger.largest = ledger.largest.max(energy.abs());
             let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
-            EnergyBalance { work, dissipated, drift }
+            EnergyBalance { work: work + held - ledger.held, dissipated, drift }
         };
         Account {
             time: self.state.time,
-            kinetic,
+            kinetic: free + held,
             elastic,
             momentum: ledger::momentum(mass, v, d),
             angular_momentum: ledger::angular_momentum(mass, &x, v, d),
