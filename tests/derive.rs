@@ -7,6 +7,7 @@ use springfit::element::Element;
 use springfit::fit::{ClosedForm, ExactFit, Fit, Higher, Objective, Weight, fit_element, fit_exact};
 use springfit::material::{Hooke, Material, Moduli, Stiffness};
 use springfit::springs::Springs;
+use springfit::symbolic::Scope;
 use std::process::Command;
 
 fn ratio(above: i64, below: i64) -> BigRational {
@@ -293,6 +294,39 @@ fn the_command_prints_formulas_and_refuses_what_has_none() {
     }
 }
 
+/// What is printed in E and ν is what is printed in λ and μ: both texts are read as expressions.
+#[test]
+fn constants_in_engineering_moduli_are_those_in_lame_s() {
+    let names = ["a", "b", "c", "E", "nu", "lambda", "mu"];
+    let value = |text: &str, moduli: [f64; 2]| {
+        let expression = Scope::new(&names).expression(text).unwrap();
+        expression.evaluate(&[1.3, 0.7, 2.1, 2.0, 0.3, moduli[0], moduli[1]])
+    };
+    let [young, nu] = [2.0, 0.3];
+    let mu = young / (2.0 * (1.0 + nu));
+    let mut compared = 0;
+    for (element, plane, moduli) in [
+        ("bar2", None, [0.0, young / 2.0]),
+        ("bar3", None, [0.0, young / 2.0]),
+        ("tri3", Some("stress"), [young * nu / (1.0 - nu * nu), mu]),
+        ("quad4", Some("stress"), [young * nu / (1.0 - nu * nu), mu]),
+        ("quad4", Some("strain"), [young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu]),
+        ("tet4", None, [young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu]),
+    ] {
+        let plane: Vec<&str> = plane.into_iter().flat_map(|plane| ["--plane", plane]).collect();
+        let (_, text, _) = derive(&[&[element, "--sides"], &plane[..]].concat());
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for pair in lines.windows(2) {
+            if let (Some(lame), Some(engineering)) = (pair[0].strip_prefix("k = "), pair[1].strip_prefix("= ")) {
+                let [a, b] = [value(lame, moduli), value(engineering, moduli)];
+                assert!((a - b).abs() < 1e-12 * a.abs(), "{element}: {lame} is {a}, {engineering} is {b}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 30, "{compared}");
+}
+
 /// The closed forms of exact networks are those that the numerical network has on the stretched cell, and their sum with the
 /// content is known: on a rectangle a × b, `μ (b/(3 a) − a/(6 b))` along a.
 #[test]
@@ -331,7 +365,7 @@ fn formulas_of_exact_networks_agree_with_their_numbers() {
     for line in [
         "    k = 1/6*mu",
         "    k = 1/3*mu",
-        "  area V_q = w_q |J_q| at each of 4 quadrature points, 4 in all",
+        "  area V_q = w_q |J_q| at each of 4 quadrature points; their sum is 4",
         "    k = (lambda + mu)/V_q, rest area (1 + mu/(lambda + mu))*V_q",
     ] {
         assert!(text.lines().any(|l| l == line), "{line}\n{text}");

@@ -4,7 +4,7 @@ use crate::messages::reads;
 
 use crate::shapes::Random;
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use springfit::material::{Energy, Material, SHIPPED, State};
+use springfit::material::{Energy, Material, Moduli, SHIPPED, State};
 
 fn solid(young: f64, poisson: f64) -> Material {
     Material::new(young, poisson, State::Solid).unwrap()
@@ -168,12 +168,39 @@ fn principal_stresses_are_the_closed_forms() {
     }
 }
 
+/// `C = C₀ + 4 s μ a⊗a⊗a⊗a` with the share s: `‖C − C₀‖ = 4 s μ`.
+#[test]
+fn fibres_add_to_the_stiffness_at_rest() {
+    let material = solid(1e4, 0.3);
+    let energy = Energy::load("fibre", material).unwrap();
+    let Moduli { lambda, mu } = energy.moduli();
+    let size = (3.0 * (lambda + 2.0 * mu).powi(2) + 6.0 * lambda * lambda + 3.0 * (2.0 * mu).powi(2)).sqrt();
+    for (share, direction) in [(0.5, [1.0, 0.0, 0.0]), (50.0, [1.0, 2.0, -3.0])] {
+        let found = energy.of(material, &[("stiffness", share)], Some(direction)).unwrap().distance_at_rest();
+        assert!((found / (4.0 * share * mu / size) - 1.0).abs() < 1e-12, "{found}");
+    }
+    assert!(Energy::load("ogden", material).unwrap().distance_at_rest() < 1e-12);
+}
+
 #[test]
 fn wrong_files_are_told() {
     let file = |energy: &str, rest: &str| format!("name = \"own\"\ntitle = \"Own\"\nenergy = \"{energy}\"\n{rest}");
     for (text, error) in [
         (file("mu*(I5 - 3)", ""), "energy: … found the name \"I5\" in \"mu*(I5 - 3)\""),
         (file("mu*(I1 - 3)", ""), "energy: expected no stress at rest, found … Pa"),
+        (
+            file("0.5*(mu/2*(I1 - 3) - mu*ln(J)) + lambda/2*ln(J)^2", ""),
+            "energy: … E = 1e0 Pa and nu = 0.3 at rest, found that of E = … Pa and nu = 0.375…",
+        ),
+        (file("mu/2*(I1 - 3) - mu*ln(J) + lambda*ln(J)^2", ""), "energy: … at rest, found that of E = … Pa and nu = …"),
+        (
+            file("-(mu/2*(I1 - 3) - mu*ln(J) + lambda/2*ln(J)^2)", ""),
+            "energy: expected a positive stiffness at rest in every strain, found …",
+        ),
+        (
+            file("mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2) + lambda/2*(l1 - 1)^2", ""),
+            "energy: expected an energy without directions, unless it has fibres, found …",
+        ),
         (file("mu*0", ""), "energy: has no finite, positive stiffness at rest"),
         (file("mu/2*(I4 - 1)^2", ""), "fibre: … found none"),
         (file("mu/2*(I4 - 1)^2", "fibre = [0, 0, 0]"), "fibre: expected a direction, found [0.0, 0.0, 0.0]"),
@@ -188,6 +215,17 @@ fn wrong_files_are_told() {
             found.split_once(": ").filter(|(place, _)| place.starts_with("line ")).map_or(&*found, |(_, rest)| rest);
         reads(found, error).unwrap();
     }
+    // Moduli of its own, which are those of the material with the numbers of the scene.
+    let own = file("c/2*(I1 - 3) - c*ln(J) + d/2*ln(J)^2", "parameters = { c = 1, d = 1 }");
+    let material = solid(1.0, 0.25);
+    assert!(Energy::parse(&own, material).is_err());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("own.toml");
+    std::fs::write(&path, own).unwrap();
+    let read = Energy::read(path.to_str().unwrap()).unwrap();
+    assert!(
+        read.of(material, &[("c", 0.4), ("d", 0.4)], None).is_ok() && read.of(material, &[("c", 0.5)], None).is_err()
+    );
     let unknown = Energy::load("rubber", solid(1.0, 0.3)).unwrap_err().to_string();
     reads(&unknown, "energy: … corotational, fibre, fung, … found \"rubber\"").unwrap();
 }

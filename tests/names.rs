@@ -49,12 +49,14 @@ fn options_are_named_as_they_are_typed() {
     let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n\
                 1 2 2 1 1 1 2 3\n$EndElements\n";
     fs::write(folder.path().join("m.msh"), mesh).unwrap();
+    fs::write(folder.path().join("s.toml"), SQUARE).unwrap();
     let common = ["fit", "m.msh", "--young", "1", "--poisson", "0.3", "-o", "k.csv", "--thickness", "1"];
     for (more, key) in [
         (&["--objective", "offdiag", "--springs", "edgy"][..], "--springs"),
         (&["--objective", "ofdiag"], "--objective"),
         (&["--objective", "sampled", "--law", "neo-hookaen"], "--law"),
         (&["--objective", "sampled", "--law", "neo-hookean", "--shapes", "0"], "--shapes"),
+        (&["--objective", "offdiag", "--stretch", "0.2"], "--stretch"),
         (&["--scale", "5 kPa"], "--scale"),
         (&["--density", "5 mm"], "--density"),
     ] {
@@ -67,6 +69,13 @@ fn options_are_named_as_they_are_typed() {
         (&["compare", "tri3", "--iterations", "0"], "--iterations"),
         (&["compare", "tri3", "--law", "neo-hookaen"], "--law"),
         (&["compare", "tri3", "--poisson", "2"], "--poisson"),
+        (&["compare", "tri3", "--stretch", "0.2"], "--stretch"),
+        (&["compare", "tri3", "--law", "neo-hookean", "--shapes", "3"], "--shapes"),
+        (&["compare", "tri3", "--explain"], "--explain"),
+        (&["compare", "s.toml", "--shapes", "3"], "--shapes"),
+        (&["compare", "s.toml", "--poisson", "0.1"], "--poisson"),
+        (&["compare", "s.toml", "--law", "neo-hookean"], "--law"),
+        (&["generate", "hex8", "--objective", "lloyd"], "--objective"),
     ] {
         let output = springfit(folder.path(), arguments);
         let text = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -24,21 +24,21 @@ pub struct Compare {
     what: String,
     #[command(flatten)]
     settings: Settings,
-    /// Random shapes of an element
-    #[arg(long, default_value_t = 100, help_heading = "Element")]
-    shapes: usize,
-    /// Iterations of the general optimisers
-    #[arg(long, default_value_t = Solver::DEFAULT_ITERATIONS, help_heading = "Element")]
-    iterations: u64,
-    /// Poisson's ratio, for an element
-    #[arg(long, default_value_t = 0.3, allow_hyphen_values = true, help_heading = "Element")]
-    poisson: f64,
+    /// Random shapes of an element [default: 100]
+    #[arg(long, help_heading = "Element")]
+    shapes: Option<usize>,
+    /// Iterations of the general optimisers [default: 2000]
+    #[arg(long, help_heading = "Element")]
+    iterations: Option<u64>,
+    /// Poisson's ratio, for an element [default: 0.3]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Element")]
+    poisson: Option<f64>,
     /// An element at large deformation: the energy, a shipped name such as neo-hookean, or a file
     #[arg(long, help_heading = "Element")]
     law: Option<String>,
-    /// With --law, the largest stretch that is sampled
-    #[arg(long, default_value_t = 0.35, allow_hyphen_values = true, help_heading = "Element")]
-    stretch: f64,
+    /// With --law, the largest stretch that is sampled [default: 0.35]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Element")]
+    stretch: Option<f64>,
     /// Plane element: stress or strain [default: stress]
     #[arg(long, help_heading = "Element")]
     plane: Option<State>,
@@ -69,10 +69,8 @@ impl Compare {
         let mut inputs = vec![PathBuf::from(&self.what)];
         inputs.extend(self.law.as_ref().map(PathBuf::from));
         report::check_outputs(&folder, names, &inputs)?;
+        self.check_options(is_scene(path))?;
         let mut progress = |event: Event| terminal.show(event);
-        if self.law.is_some() && is_scene(path) {
-            return Err(Error::at("--law", "belongs to an element; a scene names its law in [material]"));
-        }
         if is_scene(path) {
             let scene = self.settings.scene(path)?;
             if self.explain {
@@ -88,16 +86,15 @@ impl Compare {
             self.print(terminal, &Comparison::of_scene(&outcome), || report::Report::of(&outcome), &folder)
         } else {
             self.settings.expect_none()?;
-            if self.explain {
-                return Err(Error::at("--explain", "belongs to a scene, found an element"));
-            }
             let element = Element::load(&self.what)?;
             let plane = self.plane.map(Into::into);
+            let poisson = self.poisson.unwrap_or(0.3);
             let material =
-                Material::for_body(element.dimension(), 10e3, self.poisson, plane, None).map_err(Error::of_option)?;
+                Material::for_body(element.dimension(), 10e3, poisson, plane, None).map_err(Error::of_option)?;
             if let Some(law) = &self.law {
                 let element = Arc::new(element);
-                let study = study::compare_stretches(&element, material, law, self.stretch, &mut progress);
+                let stretch = self.stretch.unwrap_or(0.35);
+                let study = study::compare_stretches(&element, material, law, stretch, &mut progress);
                 let law = |e: Error| if e.key() == Some("energy") { e.at_key("--law") } else { e.of_option() };
                 let study = study.map_err(|e| e.placed(law))?;
                 let paths = report::write_stretches(&study, &folder);
@@ -106,15 +103,41 @@ impl Compare {
                 terminal.written(&paths?)?;
                 return Ok(ExitCode::SUCCESS);
             }
-            if self.iterations == 0 {
+            let iterations = self.iterations.unwrap_or(Solver::DEFAULT_ITERATIONS);
+            if iterations == 0 {
                 return Err(Error::expected("--iterations", "a number above 0", 0));
             }
-            let (shapes, iterations) = (self.shapes, self.iterations);
+            let shapes = self.shapes.unwrap_or(100);
             let outcomes = study::compare_element(&element, material, shapes, iterations, &mut progress)
                 .map_err(|e| e.placed(Error::of_option))?;
-            let title = format!("{}: {shapes} random shapes, nu = {}, one thread", element.name, self.poisson);
+            let title = format!("{}: {shapes} random shapes, nu = {poisson}, one thread", element.name);
             let comparison = Comparison::of_element(title, &outcomes, material.young());
             self.print(terminal, &comparison, || &outcomes, &folder)
+        }
+    }
+
+    /// That each option belongs to what is compared.
+    fn check_options(&self, is_scene: bool) -> Result<()> {
+        let of_element = [
+            ("--law", self.law.is_some()),
+            ("--poisson", self.poisson.is_some()),
+            ("--plane", self.plane.is_some()),
+            ("--shapes", self.shapes.is_some()),
+            ("--iterations", self.iterations.is_some()),
+            ("--stretch", self.stretch.is_some()),
+        ];
+        let given = |options: &[(&'static str, bool)]| options.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+        let wrong = match (is_scene, self.law.is_some()) {
+            (true, _) => {
+                given(&of_element).map(|option| (option, "an element, found a scene, which names its material"))
+            }
+            _ if self.explain => Some(("--explain", "a scene, found an element")),
+            (false, true) => given(&of_element[3..5]).map(|option| (option, "a comparison without --law")),
+            (false, false) => given(&of_element[5..]).map(|option| (option, "a comparison with --law")),
+        };
+        match wrong {
+            Some((option, owner)) => Err(Error::at(option, format!("belongs to {owner}"))),
+            None => Ok(()),
         }
     }
 

@@ -73,12 +73,23 @@ impl Generate {
             springfit::check_file(output)?;
         }
         let element = Element::load(&self.element)?;
-        let program = Program::new(&element, self.springs.as_deref(), recipe).map_err(Error::of_option)?;
+        let program =
+            Program::new(&element, self.springs.as_deref(), recipe).map_err(|e| e.placed(|e| self.of_option(e)))?;
         let text = program.print(language).map_err(Error::of_option)?;
         match &self.output {
             Some(path) => springfit::write_whole(path, text.as_bytes())?,
             None => terminal.print(&text)?,
         }
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// The same fault with the option that it is about: objectives name themselves, and what is wrong with an element no option.
+    fn of_option(&self, error: Error) -> Error {
+        match error.key() {
+            Some("higher") if self.higher.is_none() => error.at_key("--objective"),
+            Some(key) if key == self.objective => error.at_key("--objective"),
+            Some("springs" | "higher" | "volume" | "objective") => error.of_option(),
+            _ => error,
+        }
     }
 }

@@ -4,14 +4,18 @@ use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::Result;
-use springfit::material::Energy;
+use springfit::material::{Energy, SHIPPED};
 use springfit::report::{self, MaterialRecord};
+use springfit::unknown;
 use std::process::ExitCode;
 
-/// List the shipped hyperelastic materials, which "law" names
+/// List the shipped hyperelastic materials, which "law" names, or print the file of one
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Materials {
+    /// The material whose file is printed, as a start for one of your own
+    #[arg(conflicts_with_all = ["json", "table"])]
+    name: Option<String>,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -19,6 +23,7 @@ pub struct Materials {
 const EXAMPLES: &str = "\
 Examples:
   springfit materials
+  springfit materials yeoh > own.toml   # the file of one of them
   springfit run scene.toml --set material.law=neo-hookean
   springfit fit organ.msh --young 10kPa --poisson 0.45 --objective sampled --law fung -o springs.vtu
 
@@ -26,6 +31,15 @@ With --json: a list of materials with the keys name, title, parameters, fibres, 
 
 impl Materials {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+        if let Some(name) = &self.name {
+            let names = || SHIPPED.iter().map(|(name, _)| *name);
+            let (_, text) = SHIPPED.iter().find(|(shipped, _)| shipped == name).ok_or_else(|| {
+                let expected = format!("one of {}", names().collect::<Vec<_>>().join(", "));
+                unknown(expected, names(), name).at_key("NAME")
+            })?;
+            terminal.print(text)?;
+            return Ok(ExitCode::SUCCESS);
+        }
         let materials: Vec<MaterialRecord> = Energy::shipped()?.iter().map(MaterialRecord::from).collect();
         let tables = || vec![report::materials_table(&materials)];
         self.output.print(terminal, || &materials, tables, || report::materials_text(&materials))?;

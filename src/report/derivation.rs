@@ -101,7 +101,9 @@ impl Derivation<'_> {
         let (what, size) = (self.content_name(), exact.content.text(&names));
         match self.element.tabulation.points() {
             1 => writeln!(text, "  {what} V = {size}"),
-            points => writeln!(text, "  {what} V_q = w_q |J_q| at each of {points} quadrature points, {size} in all"),
+            points => {
+                writeln!(text, "  {what} V_q = w_q |J_q| at each of {points} quadrature points; their sum is {size}")
+            }
         }
         .expect("a String grows");
         let index = if self.element.tabulation.points() == 1 { "" } else { "_q" };
@@ -180,7 +182,7 @@ impl Derivation<'_> {
             None if !self.is_isotropic() => {
                 "orthotropic, C in the order xx, yy, zz, yz, xz, xy: the inverse of the compliance in E, nu and G"
             }
-            None if self.element.dimension() == 1 => "lambda + 2*mu = E, cross-section 1",
+            None if self.element.dimension() == 1 => "lambda = 0, mu = E/2, cross-section 1",
             Some(Plane::Stress) => "plane stress, lambda = E*nu/(1 - nu^2), mu = E/(2*(1 + nu)), thickness 1",
             Some(Plane::Strain) => {
                 "plane strain, lambda = E*nu/((1 + nu)*(1 - 2*nu)), mu = E/(2*(1 + nu)), thickness 1"
@@ -286,12 +288,13 @@ impl Derivation<'_> {
         let under = whole(size.denominator(), size.content().denom());
         let sign = if negative { "-" } else { "" };
         if notation == Notation::Latex {
-            let under = if under == one { String::new() } else { under.latex(&names) + " " };
-            return Some(format!(
-                "{sign}\\frac{{{} E}}{{{under}{}}}",
-                bracketed(&above, above.latex(&names)),
-                below.join(" ")
-            ));
+            let spaced = |part: &Fraction, text: String| if *part == one { String::new() } else { text + " " };
+            let above = spaced(&above, bracketed(&above, above.latex(&names)));
+            let below = spaced(&under, under.latex(&names)) + &below.join(" ");
+            return Some(match below.trim() {
+                "" => format!("{sign}{above}E"),
+                below => format!("{sign}\\frac{{{above}E}}{{{below}}}"),
+            });
         }
         let under = bracketed(&under, under.text(&names));
         let factors: Vec<&str> = [under.as_str()].into_iter().chain(below).filter(|f| *f != "1").collect();
@@ -302,7 +305,8 @@ impl Derivation<'_> {
         let above = if above == "1" { "E".to_string() } else { format!("E*{above}") };
         Some(match factors.len() {
             0 => format!("{sign}{above}"),
-            1 => format!("{sign}{above}/{}", factors[0]),
+            // The factors with nu are in brackets.
+            1 if under == "1" || !under.contains('*') => format!("{sign}{above}/{}", factors[0]),
             _ => format!("{sign}{above}/({})", factors.join("*")),
         })
     }

@@ -246,6 +246,7 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         .assumed
         .iter()
         .cloned()
+        .chain(fibres(outcome))
         .chain(lumping(outcome))
         .chain(finite)
         .chain(linear_notes(outcome))
@@ -254,6 +255,14 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         .chain(own)
         .chain(starts.iter().map(agreed));
     notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
+}
+
+/// That what is linear does not know the fibres of the law.
+fn fibres(outcome: &Outcome) -> Option<String> {
+    let (law, share) = (outcome.law.as_ref()?, 100.0 * outcome.fibres?);
+    Some(format!(
+        "{law}: with its fibres the elasticity tensor at rest differs by {share:.1} % from that of E and nu. Errors of matrices, the networks as          materials and fits of linear springs are for E and nu, without fibres"
+    ))
 }
 
 /// That masses are not the row sums that most expect. A motion says itself how it lumps them.

@@ -25,6 +25,8 @@ fn shape_functions() {
         (COORDINATES, "[\"xi\", \"eta\"]", "own.toml: coordinates", "found 2"),
         (COORDINATES, "[\"xi\", \"eta\", \"xi\"]", "own.toml: coordinates[2]", "found \"xi\""),
         (COORDINATES, "[\"xi\", \"eta\", \"1\"]", "own.toml: coordinates[2]", "found \"1\""),
+        ("name        = \"tet4\"", "name = \"\"", "own.toml:2: name", "found \"\""),
+        ("group = \"edge\"", "group = \"a,b\"", "own.toml:19: springs[0].group", "found \"a,b\""),
         ("\"tetrahedron\" ", "\"prism\" ", "own.toml:4: cell", "\"prism\""),
     ]);
     // The sum is still one, but ξ is not reproduced.
@@ -41,11 +43,15 @@ fn quadrature() {
     let light = format!("rule = \"explicit\"\npoints = [{quarter}]\nweights = [0.2]");
     let two = format!("rule = \"explicit\"\npoints = [{quarter}]\nweights = [\"1/12\", \"1/12\"]");
     let flat = "rule = \"explicit\"\npoints = [[\"1/4\", \"1/4\"]]\nweights = [\"1/6\"]";
+    let outside = "rule = \"explicit\"\npoints = [[0.5, 0.5, 0.25]]\nweights = [\"1/6\"]";
+    let lopsided = "rule = \"explicit\"\npoints = [[0.2, 0.25, 0.25]]\nweights = [\"1/6\"]";
     let gauss = "rule = \"gauss-legendre\"\npoints = 2";
     refuses_elements(&[
         (RULE, &light, "own.toml: quadrature.weights", "content 0.16666666666666666, found 0.2"),
         (RULE, &two, "own.toml: quadrature.weights", "1 points, found 2"),
         (RULE, flat, "own.toml: quadrature.points[0]", "3 coordinates, found 2"),
+        (RULE, outside, "own.toml: quadrature.points[0]", "a point in the cell, found [0.5, 0.5, 0.25]"),
+        (RULE, lopsided, "own.toml: quadrature.points", "integrals of the coordinates are"),
         (RULE, "rule = \"explicit\"\npoints = []\nweights = []", "own.toml: quadrature.points", "found none"),
         ("degree = 1", "degree = 0", "own.toml: quadrature.degree", "1 to 32, found 0"),
         ("degree = 1", "degree = 33", "own.toml: quadrature.degree", "1 to 32, found 33"),

@@ -190,18 +190,20 @@ pub fn rust(cases: &[Case]) -> Vec<Outcome> {
 /// Python; none without it.
 pub fn python(cases: &[Case]) -> Option<Vec<Outcome>> {
     let folder = TempDir::new().unwrap();
-    let mut main = String::new();
+    let mut main = String::from("from math import nan as NAN, inf as INFINITY\n");
     for (i, case) in cases.iter().enumerate() {
         let prefix = case.prefix();
+        let numbers = 2 * case.springs.len() + 1 + case.element.nodes() * case.element.dimension();
         fs::write(folder.path().join(format!("case_{i}.py")), case.text("python").unwrap()).unwrap();
         writeln!(main, "import case_{i}").unwrap();
         for Sample { x, deformed, moduli: [lambda, mu], .. } in &case.samples {
             writeln!(
                 main,
-                "y = [{}]\nconstants, rests = case_{i}.{prefix}_constants([{}], {}, {})\n\
-                 energy = case_{i}.{prefix}_energy(y, constants, rests)\n\
-                 forces = case_{i}.{prefix}_forces(y, constants, rests)\n\
-                 print(0, *constants, *rests, energy, *forces)",
+                "y = [{}]\ntry:\n constants, rests = case_{i}.{prefix}_constants([{}], {}, {})\n \
+                 energy = case_{i}.{prefix}_energy(y, constants, rests)\n \
+                 forces = case_{i}.{prefix}_forces(y, constants, rests)\n \
+                 print(0, *constants, *rests, energy, *forces)\n\
+                 except case_{i}.SpringError as error:\n print(error.status, *[7.0] * {numbers})",
                 list(deformed),
                 list(x),
                 word(*lambda),

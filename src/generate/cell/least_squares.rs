@@ -203,9 +203,9 @@ impl Linear {
         let mean: Vec<Value> = (0..d).map(mean).collect();
         let r: Vec<Value> = cell.x.iter().enumerate().map(|(i, x)| x - &mean[i % d]).collect();
         let inverse = match d {
-            1 => inverse_spread::<1>(&r),
-            2 => inverse_spread::<2>(&r),
-            _ => inverse_spread::<3>(&r),
+            1 => inverse_spread::<1>(cell, &r),
+            2 => inverse_spread::<2>(cell, &r),
+            _ => inverse_spread::<3>(cell, &r),
         };
         Some(Linear { r, inverse, shares: [h * h, 1.0 - h * h] })
     }
@@ -240,8 +240,8 @@ impl Linear {
     }
 }
 
-/// `S⁻¹ = (Σ_a r_a r_aᵀ)⁻¹`.
-fn inverse_spread<const D: usize>(r: &[Value]) -> Vec<Vec<Value>> {
+/// `S⁻¹ = (Σ_a r_a r_aᵀ)⁻¹`. The function ends with [`Status::Shape`] if all nodes lie in one plane.
+fn inverse_spread<const D: usize>(cell: &Cell, r: &[Value]) -> Vec<Vec<Value>> {
     let zero = r[0].zero();
     let mut spread: [[Value; D]; D] = zero.repeated_rows();
     for r in r.chunks_exact(D) {
@@ -252,6 +252,9 @@ fn inverse_spread<const D: usize>(r: &[Value]) -> Vec<Vec<Value>> {
         }
     }
     let (adjugate, determinant) = adjugate(&spread);
+    // Some languages end with an error of their own at a division by zero.
+    cell.body.fail_with(Status::Shape);
+    cell.body.guard(&determinant, &zero);
     adjugate.iter().map(|row| row.iter().map(|entry| entry / &determinant).collect()).collect()
 }
 

@@ -123,6 +123,7 @@ impl Element {
     fn proved(text: &str) -> Result<Element> {
         let definition: Definition = file::parse_toml(text)?;
         let dimension = definition.cell.dimension();
+        proof::names(&definition)?;
         proof::coordinates(&definition)?;
         let mut scope = Scope::new(&definition.coordinates);
         for (name, value) in &definition.definitions {

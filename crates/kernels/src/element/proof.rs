@@ -23,8 +23,23 @@ const MOST_GRADIENT_PARTS: usize = 5_000_000;
 const MOST_STEPS: usize = 1_000_000_000;
 /// The tolerance of sampled identities: some thousand rounding errors of numbers of size one.
 const ROUNDING: f64 = 1e-12;
+/// The tolerance of integrals of the coordinates: tables of quadrature points have ten digits.
+const DIGITS: f64 = 1e-8;
 /// If a function has no value at a node, it is evaluated inside the cell, at this share of the way to the centre.
 const CONTINUED: f64 = 1e-5;
+
+/// Names are words of options and lists, whose parts are separated by commas.
+pub fn names(definition: &Definition) -> Result<()> {
+    let groups = definition.springs.iter().enumerate().map(|(i, entry)| (format!("springs[{i}].group"), &entry.group));
+    match [("name".into(), &definition.name)].into_iter().chain(groups).find(|(_, name)| !is_word(name)) {
+        Some((key, name)) => Err(Error::expected(key, "a name without commas", format!("\"{name}\""))),
+        None => Ok(()),
+    }
+}
+
+fn is_word(name: &str) -> bool {
+    !name.trim().is_empty() && !name.contains(',')
+}
 
 pub fn coordinates(definition: &Definition) -> Result<()> {
     let d = definition.cell.dimension();
@@ -196,6 +211,20 @@ pub fn quadrature(definition: &Definition, rule: &Rule, name: &str) -> Result<Qu
             if (sum - cell.content()).abs() > ROUNDING * cell.content() {
                 let expected = format!("weights that sum to the cell's content {}", cell.content());
                 return Err(Error::expected(key("weights"), expected, sum));
+            }
+            let at = |q: usize| &rule.points[q * d..(q + 1) * d];
+            if let Some(q) = (0..points.len()).find(|q| !cell.contains(at(*q))) {
+                return Err(Error::expected(
+                    key(&format!("points[{q}]")),
+                    "a point in the cell",
+                    format!("{:?}", at(q)),
+                ));
+            }
+            // Without them a linear displacement has not the energy that it must have.
+            let (moments, found) = (Quadrature::of_degree(cell, 1).moments(), rule.moments());
+            if moments.iter().zip(&found).any(|(a, b)| (a - b).abs() > DIGITS * cell.content()) {
+                let expected = format!("a rule whose integrals of the coordinates are {moments:?}");
+                return Err(Error::expected(key("points"), expected, format!("{found:?}")));
             }
             Ok(rule)
         }

@@ -86,6 +86,15 @@ impl Quadrature {
         rule
     }
 
+    /// The integrals of the coordinates, `Σ_q w_q ξ_q`, `[dimension]`.
+    pub fn moments(&self) -> Vec<f64> {
+        let of = |k: usize| {
+            let along = self.points.iter().skip(k).step_by(self.dimension);
+            along.zip(&self.weights).map(|(x, w)| w * x).sum()
+        };
+        (0..self.dimension).map(of).collect()
+    }
+
     /// The product rule with `points` Gauss–Legendre points per direction on [−1, 1]^dimension.
     pub fn gauss_legendre(dimension: usize, points: usize) -> Quadrature {
         let line: Vec<(f64, f64)> = GaussLegendre::new(one_to_most(points)).iter().map(|(x, w)| (*x, *w)).collect();

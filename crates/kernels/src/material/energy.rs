@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::named::unknown;
 use crate::symbolic::{Expr, Program, Scope};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 use springfit_shipped::MATERIALS;
@@ -80,16 +80,28 @@ impl Energy {
     /// The shipped energy with this name, or the energy in the file at this path, with the moduli of `material`.
     ///
     /// # Errors
-    /// There is no such energy, its file is wrong, or with these moduli it is not free of stress at rest.
+    /// There is no such energy, its file is wrong, or at rest it has stress or another stiffness than `material`.
     pub fn load(name_or_path: &str, material: Material) -> Result<Energy> {
+        Energy::in_file(name_or_path, |text| Energy::parse(text, material))
+    }
+
+    /// The same with the parameters of its file and moduli of 1 Pa and 0.3, to be given those of a material by [`Energy::of`], which proves
+    /// it at rest.
+    ///
+    /// # Errors
+    /// There is no such energy, or its file is wrong.
+    pub fn read(name_or_path: &str) -> Result<Energy> {
+        let material = Material::for_body(3, 1.0, 0.3, None, None)?;
+        Energy::in_file(name_or_path, |text| Energy::of_text(text, material).map_err(|e| file::on_line_of_key(e, text)))
+    }
+
+    fn in_file(name_or_path: &str, parse: impl FnOnce(&str) -> Result<Energy>) -> Result<Energy> {
         if name_or_path.ends_with(".toml") {
             let path = Path::new(name_or_path);
-            return Energy::parse(&file::read_text(path)?, material).map_err(|e| e.in_file(path));
+            return parse(&file::read_text(path)?).map_err(|e| e.in_file(path));
         }
         match MATERIALS.iter().find(|(name, _)| *name == name_or_path) {
-            Some((name, text)) => {
-                Energy::parse(text, material).map_err(|e| e.in_file(Path::new(&format!("materials/{name}.toml"))))
-            }
+            Some((name, text)) => parse(text).map_err(|e| e.in_file(Path::new(&format!("materials/{name}.toml")))),
             None => {
                 let names: Vec<_> = MATERIALS.iter().map(|(name, _)| *name).collect();
                 let expected = format!("one of {}, or a path that ends in .toml", names.join(", "));
@@ -112,15 +124,17 @@ impl Energy {
         self.fibre.is_some()
     }
 
-    /// Parses the text of a material file and proves that the body is free of stress at rest.
+    /// Parses the text of a material file and proves that at rest the body is free of stress and has the stiffness of `material`, to
+    /// which fibres may add.
     ///
     /// # Errors
     /// The text is wrong. The error names the line and the key, what was expected and what was found.
     pub fn parse(text: &str, material: Material) -> Result<Energy> {
-        Energy::proved(text, material).map_err(|e| file::on_line_of_key(e, text))
+        let proved = |energy: Energy| energy.check_rest().map(|()| energy);
+        Energy::of_text(text, material).and_then(proved).map_err(|e| file::on_line_of_key(e, text))
     }
 
-    fn proved(text: &str, material: Material) -> Result<Energy> {
+    fn of_text(text: &str, material: Material) -> Result<Energy> {
         let definition: Definition = file::parse_toml(text)?;
         let names: Vec<&str> =
             INVARIANTS.iter().chain(&MODULI).copied().chain(definition.parameters.keys().map(String::as_str)).collect();
@@ -161,28 +175,14 @@ impl Energy {
             parameters: definition.parameters.keys().cloned().collect(),
         };
         let constants = moduli_of(material).into_iter().chain(definition.parameters.into_values()).collect();
-        let energy = Energy { formula: Arc::new(formula), fibre: fibre.map(|a| a.normalize()), constants };
-        energy.check_rest()?;
-        Ok(energy)
-    }
-
-    fn check_rest(&self) -> Result<()> {
-        let (_, stress, tangent) = self.respond(&Matrix3::identity());
-        let size = tangent.norm();
-        if !(size > 0.0 && size.is_finite()) {
-            return Err(Error::at("energy", "has no finite, positive stiffness at rest"));
-        }
-        if stress.norm() > 1e-10 * size {
-            return Err(Error::expected("energy", "no stress at rest", format!("{:.3e} Pa", stress.norm())));
-        }
-        Ok(())
+        Ok(Energy { formula: Arc::new(formula), fibre: fibre.map(|a| a.normalize()), constants })
     }
 
     /// The same energy of another material, with other values of some parameters, and with fibres in another direction.
     ///
     /// # Errors
-    /// The energy has no such parameter, a value is not finite, it has no fibres or their direction is zero, or the body is
-    /// not free of stress at rest with these values.
+    /// The energy has no such parameter, a value is not finite, it has no fibres or their direction is zero, or with these values it has
+    /// stress at rest or another stiffness than `material`.
     pub fn of(&self, material: Material, parameters: &[(&str, f64)], fibre: Option<[f64; 3]>) -> Result<Energy> {
         let mut constants = self.constants.clone();
         constants[..MODULI.len()].copy_from_slice(&moduli_of(material));

@@ -58,6 +58,11 @@ impl EnergyMap {
         titles.join(", ")
     }
 
+    /// How far fibres move the elasticity tensor at rest from that of E and ν, at most; `None` without fibres.
+    pub fn distance_at_rest(&self) -> Option<f64> {
+        self.laws().filter(|law| law.has_fibres()).map(Energy::distance_at_rest).reduce(f64::max)
+    }
+
     /// The laws of some of the cells, which are given by block.
     pub fn of_some(&self, cells: &[Vec<usize>]) -> EnergyMap {
         EnergyMap { laws: self.laws.clone(), of: self.of.of_cells(cells) }

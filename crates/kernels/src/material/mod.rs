@@ -12,6 +12,7 @@ mod energy_map;
 mod hooke;
 mod map;
 mod response;
+mod rest;
 
 pub use anisotropy::Anisotropy;
 pub use cell_map::{BlockValues, CellMap};

@@ -98,6 +98,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         }
     }
     let law = large.as_ref().map(|large| large.laws.title());
+    let fibres = large.as_ref().and_then(|large| large.laws.distance_at_rest());
     let (fem, followed, energy) = match large {
         Some(large) => {
             for (done, fit) in fits.iter_mut().enumerate() {
@@ -147,6 +148,7 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
         lumping: masses.as_ref().map(|masses| masses.lumping),
         masses: masses.map(|masses| masses.values),
         law,
+        fibres,
         loads,
         fits,
         motion: None,

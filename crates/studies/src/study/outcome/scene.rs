@@ -34,6 +34,8 @@ pub struct Outcome {
     pub lumping: Option<Lumping>,
     /// The title of the material's law; `None` at small deformation.
     pub law: Option<String>,
+    /// How far the elasticity tensor of the law at rest is from that of E and ν, `‖C − C₀‖/‖C₀‖`: what fibres add.
+    pub fibres: Option<f64>,
     /// The loads of the scene, with the response of the finite elements.
     pub loads: Vec<BodyLoad>,
     /// The fits, in the order of the scene.
@@ -56,7 +58,7 @@ impl Outcome {
         fit: FitOutcome,
     ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
-        let (assumed, support) = Default::default();
+        let (assumed, support, fibres) = Default::default();
         let material = material.into();
         Outcome {
             source: name.clone(),
@@ -70,6 +72,7 @@ impl Outcome {
             lumping: masses.as_ref().map(|masses| masses.lumping),
             masses: masses.map(|masses| masses.values),
             law,
+            fibres,
             loads,
             fits: vec![fit],
             motion,

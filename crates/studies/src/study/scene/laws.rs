@@ -60,7 +60,12 @@ impl Region<'_> {
             let expected = || Error::expected("law", "an isotropic material", "an anisotropic one");
             self.material.isotropic(cell.block, cell.cell).ok_or_else(expected)
         };
-        let first = Energy::load(&self.path, of(self.cells[0])?).map_err(|e| e.placed(|e| e.at_key("law")))?;
+        // What the law is at rest depends on its parameters, which may be those of the scene.
+        let first = match self.entry.parameters().next() {
+            Some(_) => Energy::read(&self.path),
+            None => Energy::load(&self.path, of(self.cells[0])?),
+        };
+        let first = first.map_err(|e| e.placed(|e| e.at_key("law")))?;
         self.entry.parameters().try_for_each(|(name, _)| first.check_parameter(name))?;
         let parameters = self.parameters()?;
         let fibres = self.fibres(&first)?;
@@ -73,7 +78,10 @@ impl Region<'_> {
             if let Some(law) = known.get(&key) {
                 return Ok(*law);
             }
-            let own = first.of(material, &values, fibre).map_err(|e| self.places.named(e, *cell))?;
+            let own = first.of(material, &values, fibre).map_err(|e| match e.key() {
+                Some("energy") => self.places.named(e.at_key("law"), *cell),
+                _ => self.places.named(e, *cell),
+            })?;
             laws.push((own, material.state()));
             known.insert(key, laws.len() - 1);
             Ok(laws.len() - 1)
