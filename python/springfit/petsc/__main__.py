@@ -48,7 +48,7 @@ def make(folder: Path) -> None:
     Raises:
         SpringfitError: A file is in its place, or the folder above is read-only.
     """
-    from ..mesh import failure
+    from .._arguments import failure
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
