@@ -42,12 +42,13 @@ _DIMENSION = {
 _AROUND = {8: (9, [0, 1, 3, 2]), 11: (12, [0, 1, 3, 2, 4, 5, 7, 6])}
 
 
-def _elements(own: "list[Element]") -> "dict[int, Element]":
-    """By the number of VTK's cell; own elements before the shipped ones."""
-    known: dict[int, Element] = {}
+def _elements(own: "list[Element]") -> "dict[int, tuple[Element, list[int]]]":
+    """By the number of VTK's cell, with the place in VTK's list of each node; own elements before the shipped ones."""
+    known: "dict[int, tuple[Element, list[int]]]" = {}
     for element in own + [Element(name) for name in shipped_elements()]:
         if element.vtk is not None:
-            known.setdefault(element.vtk[0], element)
+            number, order = element.vtk
+            known.setdefault(number, (element, order))
     return known
 
 
@@ -64,14 +65,14 @@ def _blocks(cells: "list[tuple[int, Any]]", own: "list[Element]") -> "list[tuple
     for number, nodes in cells:
         if _dimension(number) == most:
             if number not in known:
-                names = ", ".join(sorted({element.name for element in known.values()}))
+                names = ", ".join(sorted({element.name for element, _ in known.values()}))
                 raise failure("cells", f"cells of {names}", f"VTK's cell type {number}", "unsupported")
-            element = known[number]
+            element, order = known[number]
             key = f"cells of {element.name}"
             nodes = matrix(key, nodes, np.int64)
             if nodes.shape[1] != element.nodes:
                 raise failure(key, f"cells of {element.nodes} nodes as {element.name} has", nodes.shape[1])
-            blocks.append((element, nodes[:, element.vtk[1]]))
+            blocks.append((element, nodes[:, order]))
     return blocks
 
 

@@ -36,7 +36,8 @@ def separated(keys: "dict[str, Any]") -> "tuple[dict[str, Any], dict[str, Any] |
         return keys, None
     own = None
     if energy is not None or stress is not None:
-        own = (_name(energy or stress), _unmasked("law", energy), _unmasked("stress", stress))
+        checked = [None if given is None else _unmasked(key, given) for key, given in (("law", energy), ("stress", stress))]
+        own = (_name(energy or stress), *checked)
     return keys, {"energy": own, "forces": forces}
 
 
@@ -61,9 +62,9 @@ def _force(key: str, group: "str | None", function: Callable) -> "tuple[str | No
     return group, _unmasked(key, function), _name(function), names
 
 
-def _unmasked(key: str, function: "Callable | None") -> "Callable | None":
+def _unmasked(key: str, function: Callable) -> Callable:
     """The function, whose results may have no masked entries."""
-    return None if function is None else lambda *given: array(key, function(*given))
+    return lambda *given: array(key, function(*given))
 
 
 def warn_of_rest(material: Material, energy: "Callable | None", stress: "Callable | None") -> None:
@@ -75,11 +76,13 @@ def warn_of_rest(material: Material, energy: "Callable | None", stress: "Callabl
     n = len(strains)
     try:
         if stress is not None:
-            p = np.asarray(stress(f), float)
+            p = np.asarray(stress(f), np.float64)
             found = np.einsum("nij,nij->n", p[:n] - p[n : 2 * n], strains) / (2 * _STEP)
-        else:
-            w = np.asarray(energy(f), float)
+        elif energy is not None:
+            w = np.asarray(energy(f), np.float64)
             found = (w[:n] + w[n : 2 * n] - 2 * w[2 * n]) / _STEP**2
+        else:
+            return
     except Exception:  # of the user, who hears of it from the fit
         return
     young, poisson = material.young, material.poisson

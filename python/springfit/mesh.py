@@ -12,9 +12,8 @@ from . import _convert, _core
 from ._arguments import Element, ElementLike, along_axes, element_of, elements_of, failure, matrix, number, places, shown, warn, word
 
 Below = Literal["warn", "refuse", "skip"]
-Cells = Union[
-    Mapping[str, Any], Mapping[Element, Any], Mapping["os.PathLike[str]", Any], Mapping[ElementLike, Any], Sequence["tuple[ElementLike, Any]"]
-]
+# The keys are those of ElementLike; types of dictionaries hold for one type of keys alone.
+Cells = Union[Mapping[Any, Any], Sequence["tuple[ElementLike, Any]"]]
 
 #: The least quality without a warning, as the library has it.
 LEAST = 1e-4

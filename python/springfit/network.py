@@ -339,7 +339,7 @@ class Network:
         from html import escape
 
         statistics = self.statistics
-        rows = [("points", len(self.points)), ("springs between two points", len(self.springs))]
+        rows: "list[tuple[str, object]]" = [("points", len(self.points)), ("springs between two points", len(self.springs))]
         rows += [(f"{kind['kind']} springs", len(kind["constants"])) for kind in self.contents]
         rows += [("constants below zero", statistics["negative"])]
         for norm in ("frobenius", "spectral"):
