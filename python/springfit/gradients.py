@@ -42,8 +42,9 @@ class SpringConstants:
     Args:
         element: A shipped element's name, the path of an element file, or an ``Element``.
         cells: The nodes of its cells, places of points from 0, shape (cells, nodes of the element).
-        objective: "exact", "frobenius", "offdiag" or "modal", which have gradients where the constants have no bounds and the weight is
-            none that iterates. Others that are fitted cell by cell, such as "spectral", and bounds give constants alone.
+        objective: "exact", "frobenius", "offdiag" or "modal". They have gradients if the optimum has a closed form: without bounds such as
+            ``nonnegative=True``, and without ``weight="relative"``. Fits of this kind without a closed form, also "spectral" and
+            "divergence", have constants but no gradient.
         springs: Names of spring groups; all that are not optional, if None.
         plane: The state of a plane body: "stress" (the default) or "strain".
         **keys: The other keys of a ``[[fit]]`` in a scene, such as ``higher=0.3``.
@@ -51,8 +52,8 @@ class SpringConstants:
     The cells are copied, and :attr:`cells` and :attr:`springs` are read-only.
 
     Raises:
-        SpringfitError: An array or a key is wrong, or the objective is not fitted cell by cell. :meth:`gradient`, and the gradients of
-            :meth:`torch` and :meth:`jax`, raise it where the objective has no closed form.
+        SpringfitError: An array or a key is wrong, or the objective is another. :meth:`gradient`, and the gradients of :meth:`torch` and
+            :meth:`jax`, raise it where the optimum has no closed form.
     """
 
     def __init__(
@@ -116,7 +117,7 @@ class SpringConstants:
             others: Of the springs on contents, shape (cells, others of a cell); zero if None.
 
         Raises:
-            SpringfitError: An array or a number is wrong, or the objective has no closed form or has bounds.
+            SpringfitError: An array or a number is wrong, or the optimum has no closed form.
         """
         weights = typed("weights", array("weights", weights), np.float64)
         if weights.shape != (len(self._pairs),):
