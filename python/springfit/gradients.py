@@ -67,7 +67,7 @@ class SpringConstants:
         **keys: Any,
     ) -> None:
         self.element = element_of(element)
-        # The caller may change his array later.
+        # The caller may change the array later.
         self.cells = matrix("cells", cells, np.int64).copy()
         self.cells.flags.writeable = False
         if self.cells.shape[1] != self.element.nodes:

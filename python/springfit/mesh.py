@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, Union
 
 import numpy as np
@@ -13,7 +13,7 @@ from ._arguments import Element, ElementLike, along_axes, element_of, elements_o
 
 Below = Literal["warn", "refuse", "skip"]
 # The keys are those of ElementLike; types of dictionaries hold for one type of keys alone.
-Cells = Union[Mapping[Any, Any], Sequence["tuple[ElementLike, Any]"]]
+Cells = Union[Mapping[Any, Any], Iterable["tuple[ElementLike, Any]"]]
 
 #: The least quality without a warning, as the library has it.
 LEAST = 1e-4
@@ -217,11 +217,10 @@ def _scale(scale: Any) -> float:
 def _blocks(cells: Any, own: "list[Element]") -> "list[tuple[Element, np.ndarray]]":
     """Elements and the nodes of their cells. Those of one element are put together, so that a name tells them."""
     expected = "a dictionary of nodes by element, or a list of pairs of both"
-    if isinstance(cells, Mapping):
-        pairs = list(cells.items())
-    elif isinstance(cells, Sequence) and all(isinstance(pair, (tuple, list)) and len(pair) == 2 for pair in cells):
-        pairs = list(cells)
-    else:
+    if not isinstance(cells, Iterable):
+        raise failure("cells", expected, shown(cells))
+    pairs = list(cells.items() if isinstance(cells, Mapping) else cells)
+    if not all(isinstance(pair, (tuple, list)) and len(pair) == 2 for pair in pairs):
         raise failure("cells", expected, shown(cells))
     named = {element.name: element for element in reversed(own)}
     found: "dict[str, tuple[Any, Element, list[np.ndarray]]]" = {}
@@ -235,4 +234,5 @@ def _blocks(cells: Any, own: "list[Element]") -> "list[tuple[Element, np.ndarray
         lists.append(matrix(key, nodes, np.int64))
         if lists[-1].shape[1] != element.nodes:
             raise failure(key, f"an array of shape (cells, {element.nodes})", f"one of shape {lists[-1].shape}")
-    return [(element, np.concatenate(lists)) for _, element, lists in found.values()]
+    # Most have one list, which needs no copy.
+    return [(element, np.concatenate(lists) if len(lists) > 1 else lists[0]) for _, element, lists in found.values()]

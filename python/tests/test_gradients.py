@@ -135,7 +135,10 @@ def test_constants_keep_their_cells():
     assert all(np.array_equal(a, b) for a, b in zip(known, again))
 
 
-@pytest.mark.parametrize("objective, keys", [("spectral", {}), ("divergence", {}), ("frobenius", {"weight": "relative"}), ("frobenius", {"nonnegative": True})])
+@pytest.mark.parametrize(
+    "objective, keys",
+    [("spectral", {}), ("divergence", {}), ("frobenius", {"weight": "relative"}), ("frobenius", {"nonnegative": True})],
+)
 def test_constants_without_gradients_are_those_of_the_network(objective, keys):
     constants, points, mesh, _ = case("tet4", objective, keys)
     net = sf.fit(sf.Mesh(points, mesh.cells), sf.Material(1e4, 0.3), objective, **keys)

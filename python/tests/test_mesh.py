@@ -217,9 +217,10 @@ def test_types_and_orders_of_arrays_do_not_matter(dtype, order):
 
 def test_cells_of_one_element_are_put_together():
     triangles = [[0, 1, 2], [1, 3, 2]]
-    mesh = sf.Mesh([[0.0, 0], [1, 0], [0, 1], [1, 1], [2, 0]], [("tri3", triangles[:1]), ("tri3", triangles[1:]), ("tri3", [[1, 4, 3]])])
+    blocks = [("tri3", triangles[:1]), ("tri3", triangles[1:]), ("tri3", [[1, 4, 3]])]
+    mesh = sf.Mesh([[0.0, 0], [1, 0], [0, 1], [1, 1], [2, 0]], blocks)
     assert [(name, nodes.tolist()) for name, nodes in mesh.cells] == [("tri3", [*triangles, [1, 4, 3]])]
-    for cells in (mesh.cells, dict(mesh.cells)):
+    for cells in (mesh.cells, dict(mesh.cells), dict(mesh.cells).items()):
         assert np.array_equal(sf.Mesh(mesh.points, cells).cells[0][1], mesh.cells[0][1])
 
 
@@ -309,7 +310,13 @@ def test_wrong_boxes_are_named(size, cells, keys, key):
 
 @pytest.mark.parametrize(
     "keys, key",
-    [({"scale": "2 cm"}, "scale"), ({"scale": -1}, "scale"), ({"elements": "tri3"}, "elements"), ({"elements": [3]}, "element"), ({"below": "drop"}, "below")],
+    [
+        ({"scale": "2 cm"}, "scale"),
+        ({"scale": -1}, "scale"),
+        ({"elements": "tri3"}, "elements"),
+        ({"elements": [3]}, "element"),
+        ({"below": "drop"}, "below"),
+    ],
 )
 def test_wrong_readings_are_named(scenes, keys, key):
     with pytest.raises(sf.SpringfitError) as error:
