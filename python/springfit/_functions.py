@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from ._arguments import array, failure, warn
 from .material import Material
-from .mesh import failure
 
 #: The step of differences at rest, and the relative difference of stiffnesses above which a warning is given.
 _STEP, _TOLD = 1e-4, 0.01
@@ -35,7 +34,10 @@ def separated(keys: "dict[str, Any]") -> "tuple[dict[str, Any], dict[str, Any] |
         keys["force"] = rest or None
     if energy is None and stress is None and not forces:
         return keys, None
-    own = None if energy is None and stress is None else (_name(energy or stress), energy, stress)
+    own = None
+    if energy is not None or stress is not None:
+        checked = [None if given is None else _unmasked(key, given) for key, given in (("law", energy), ("stress", stress))]
+        own = (_name(energy or stress), *checked)
     return keys, {"energy": own, "forces": forces}
 
 
@@ -57,7 +59,12 @@ def _force(key: str, group: "str | None", function: Callable) -> "tuple[str | No
         raise failure(key, expected, str(wrong[0]))
     if not {"s", "c"} & set(names):
         raise failure(key, "a function of the strain s or of the measure c", f"{_name(function)}({', '.join(names)})")
-    return group, function, _name(function), names
+    return group, _unmasked(key, function), _name(function), names
+
+
+def _unmasked(key: str, function: Callable) -> Callable:
+    """The function, whose results may have no masked entries."""
+    return lambda *given: array(key, function(*given))
 
 
 def warn_of_rest(material: Material, energy: "Callable | None", stress: "Callable | None") -> None:
@@ -69,11 +76,13 @@ def warn_of_rest(material: Material, energy: "Callable | None", stress: "Callabl
     n = len(strains)
     try:
         if stress is not None:
-            p = np.asarray(stress(f), float)
+            p = np.asarray(stress(f), np.float64)
             found = np.einsum("nij,nij->n", p[:n] - p[n : 2 * n], strains) / (2 * _STEP)
-        else:
-            w = np.asarray(energy(f), float)
+        elif energy is not None:
+            w = np.asarray(energy(f), np.float64)
             found = (w[:n] + w[n : 2 * n] - 2 * w[2 * n]) / _STEP**2
+        else:
+            return
     except Exception:  # of the user, who hears of it from the fit
         return
     young, poisson = material.young, material.poisson
@@ -82,5 +91,4 @@ def warn_of_rest(material: Material, energy: "Callable | None", stress: "Callabl
         known = lam * np.trace(strains, axis1=1, axis2=2) ** 2 + 2 * mu * np.einsum("nij,nij->n", strains, strains)
         apart = float(np.max(np.abs(found / known - 1)))
     if apart > _TOLD:
-        words = f"the stiffness of the energy at rest differs by up to {100 * apart:.0f} % from that of the material"
-        warnings.warn(words, stacklevel=4)
+        warn(f"the stiffness of the energy at rest differs by up to {100 * apart:.0f} % from that of the material")

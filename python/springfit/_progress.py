@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+
+from ._arguments import failure, shown
+
+#: What is told of each step: its stage, how much is done, and of how much.
+Told = Callable[[str, int, int], Any]
+
 
 @contextmanager
-def listener(progress: "bool | Callable[[str, int, int], Any]"):
+def listener(progress: "bool | Told | None") -> "Iterator[Told | None]":
     """What reports each step: nothing, the caller's function, or a bar of ``tqdm``; without that, nothing."""
     if callable(progress):
         yield progress
         return
+    if not isinstance(progress, (bool, np.bool_, type(None))):
+        raise failure("progress", "True, False or a function of (stage, done, total)", shown(progress))
     if not progress:
         yield None
         return

@@ -5,15 +5,23 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
+from ._arguments import array, failure, matrix, number, shown, typed, warn
 from ._functions import separated, warn_of_rest
 from ._progress import listener
 from .material import Material
-from .mesh import Mesh, failure, matrix
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    import pyvista
+    from scipy.sparse import csr_matrix
+
+#: How many points an error names.
+NAMED = 8
 
 
 def fit(
@@ -44,7 +52,8 @@ def fit(
     Raises:
         SpringfitError: A key or a value is wrong, or a cell cannot be fitted.
     """
-    entry = {"objective": objective, "springs": springs, **keys}
+    check_body(mesh, material)
+    entry: "dict[str, Any]" = {"objective": objective, "springs": springs, **keys}
     if fix is not None and objective != "whole":
         raise failure("fix", 'what is held with the objective "whole" alone', f'it with "{objective}"')
     held = None if fix is None else held_flags(mesh, fix)
@@ -58,7 +67,7 @@ def fit(
 def sampled(
     mesh: Mesh,
     material: Material,
-    law: "str | os.PathLike | Callable[[np.ndarray], Any] | None" = None,
+    law: "str | os.PathLike[str] | Callable[[np.ndarray], Any] | None" = None,
     *,
     stress: "Callable[[np.ndarray], Any] | None" = None,
     force: "str | Callable[..., Any] | Mapping[str, str | Callable[..., Any]] | None" = None,
@@ -93,13 +102,22 @@ def whole(mesh: Mesh, material: Material, fix: Any, **keys: Any) -> "Network":
     """Fits the springs of all cells together to the displacements of the whole object.
 
     Args:
-        fix: What is held: the name of a group, places of points, a flag for each point, or for each component (points, dimension).
+        fix: What is held: the name of a group, places of points, a flag for each point, or for each component (points, dimension). Points
+            are numbered as in :attr:`Mesh.points`, without those that belong to no cell.
         **keys: The other keys of a ``[[fit]]`` with the objective "whole", such as ``unknowns="groups"``; and the options of :func:`fit`.
 
     Raises:
         SpringfitError: A key or a value is wrong, or nothing holds a piece of the mesh.
     """
     return fit(mesh, material, "whole", fix=fix, **keys)
+
+
+def check_body(mesh: Any, material: Any) -> None:
+    """Raises where one is not what its name says."""
+    if not isinstance(mesh, Mesh):
+        raise failure("mesh", "a springfit.Mesh, such as Mesh(points, {element: cells})", shown(mesh))
+    if not isinstance(material, Material):
+        raise failure("material", "a springfit.Material, such as Material(young=1e4, poisson=0.3)", shown(material))
 
 
 def held_flags(mesh: Mesh, fix: Any) -> np.ndarray:
@@ -109,28 +127,35 @@ def held_flags(mesh: Mesh, fix: Any) -> np.ndarray:
     if isinstance(fix, str):
         groups = mesh.groups
         if fix not in groups:
-            raise failure("fix", "a group of the mesh: " + ", ".join(groups), f'"{fix}"')
+            known = "a group of the mesh: " + ", ".join(groups) if groups else "places of points or flags, as the mesh has no groups"
+            raise failure("fix", known, shown(fix))
         fix = groups[fix]
-    fix = np.asarray(fix)
+    if fix is None:
+        raise failure("fix", "what is held", "nothing")
+    fix = array("fix", fix)
     if fix.dtype == bool and fix.shape in (shape, shape[:1]):
         held[fix] = True
-    elif fix.ndim == 1 and np.issubdtype(fix.dtype, np.integer) and (fix.size == 0 or 0 <= fix.min() <= fix.max() < shape[0]):
-        held[fix] = True
+    elif fix.ndim == 1 and (fix.size == 0 or fix.dtype.kind in "iu"):
+        outside = fix[(fix < 0) | (fix >= shape[0])] if fix.size else fix
+        if outside.size:
+            raise failure("fix", f"places of points from 0 and below {shape[0]}", outside[0])
+        held[fix.astype(np.int64)] = True
     else:
         expected = f"a group's name, places of points below {shape[0]}, or flags of shape {shape[:1]} or {shape}"
         raise failure("fix", expected, f"values of type {fix.dtype}, shape {fix.shape}")
     return held
 
 
-def stiffness(mesh: Mesh, material: Material):
+def stiffness(mesh: Mesh, material: Material) -> "csr_matrix":
     """The stiffness matrix of the finite elements, N/m: a ``scipy.sparse.csr_matrix`` of shape (points·dimension, points·dimension).
 
     The degree of freedom of point p along axis k has the number ``p * dimension + k``.
     """
+    check_body(mesh, material)
     return _sparse(_core.finite_elements(mesh._core, material), mesh.points.size)
 
 
-def mass(mesh: Mesh, material: Material, share: float = 0.0, total: "float | None" = None):
+def mass(mesh: Mesh, material: Material, share: float = 0.0, total: "float | None" = None) -> "csr_matrix":
     """The mass matrix ``(1 - share) * M + share * diag(m)``, kg: a ``scipy.sparse.csr_matrix``, numbered as in :func:`stiffness`.
 
     ``M_ab = ∫ ρ N_a N_b dV`` is the consistent matrix of the finite elements, and ``m`` its diagonal with the mass of each cell (HRZ).
@@ -142,16 +167,18 @@ def mass(mesh: Mesh, material: Material, share: float = 0.0, total: "float | Non
     Raises:
         SpringfitError: The material has no density, or a value is outside its range.
     """
-    matrix = _sparse(_core.masses(mesh._core, material, share), mesh.points.size)
+    check_body(mesh, material)
+    own = _sparse(_core.masses(mesh._core, material, number("share", share, "a number from 0 to 1")), mesh.points.size)
     if total is None:
-        return matrix
-    if not 0.0 < total < float("inf"):
-        raise failure("total", "a mass above zero, kg", str(total))
+        return own
+    wanted = number("total", total, "a mass above zero, kg")
+    if not 0.0 < wanted < float("inf"):
+        raise failure("total", "a mass above zero, kg", wanted)
     # Each axis has the mass once.
-    return matrix * (total * mesh.points.shape[1] / matrix.sum())
+    return own * (wanted * mesh.points.shape[1] / own.sum())
 
 
-def _sparse(triplets, size: int):
+def _sparse(triplets: tuple, size: int) -> "csr_matrix":
     from scipy.sparse import csr_matrix
 
     rows, columns, values = triplets
@@ -188,14 +215,20 @@ class Network:
     def contents(self) -> "list[dict]":
         """The springs on areas, volumes, angles and other measures c of a few points, gathered by kind: a dictionary of ``kind``, ``points``
         (springs, points of each), ``constants``, ``rest`` (energy ``k (c - rest)²/2``) and the ``unit`` of the constant. With a ``law``
-        of force its parameters are arrays, and the constant is the slope at rest. Measures at a quadrature point have ``weights`` and
-        ``gradients`` G (springs, points·columns): c is ``weight`` times the content of ``Σ x_a ⊗ G_a``. Patches have ``cells``: lists
-        of (nodes, share), nodes being places in the row of ``points``."""
+        of force its parameters are arrays, and the constant is the slope at rest; springs between two points that have a law are here as well.
+
+        The area or volume of a whole cell is ``c = Σ_q w_q det(Σ_a x_a ⊗ ∇N_a(ξ_q))``, with the points and weights of the quadrature of its
+        element (``hex8``: 2×2×2 points of Gauss); of a simplex it is the determinant of the edges, divided by 2 or 6. Measures at a quadrature
+        point have ``weights`` and ``gradients`` G (springs, points·columns): c is ``weight`` times the content of ``Σ x_a ⊗ G_a``. Patches
+        have ``cells``: lists of (nodes, share), nodes being places in the row of ``points``."""
         return self._core.others
 
     @property
     def masses(self) -> "np.ndarray | None":
-        """kg, shape (points,); None where the material has no density."""
+        """kg, shape (points,); None where the material has no density.
+
+        They are the row sums ``m_a = ∫ ρ N_a dV`` of the mass matrix. If one of them is not positive, as at the corners of ``tet10``, all are
+        those of the HRZ method: the diagonal of the matrix with the mass of each cell, as in ``mass(..., share=1)``."""
         return self._core.masses
 
     @property
@@ -224,7 +257,7 @@ class Network:
         """The forces of the springs on the points at positions ``x``, N: minus the gradient of :meth:`energy`."""
         return self._core.forces(None if x is None else matrix("x", x, np.float64))
 
-    def stiffness(self, x: Any = None):
+    def stiffness(self, x: Any = None) -> "csr_matrix":
         """The tangent stiffness at positions ``x`` (at rest if None), N/m, a ``scipy.sparse.csr_matrix``; numbered as in :func:`stiffness`."""
         triplets = self._core.stiffness(None if x is None else matrix("x", x, np.float64))
         return _sparse(triplets, self.points.size)
@@ -234,37 +267,39 @@ class Network:
 
         Args:
             fix: What is held: the name of a group, places of points, a flag for each point, or for each component (points, dimension).
+                Points are numbered as in :attr:`points`, without those that belong to no cell (:attr:`Mesh.numbers`).
             forces: On the points, N, (points, dimension); none if None.
-            displacement: Of what is held, m, (points, dimension); zero if None.
+            displacement: Of what is held, m, (points, dimension), zero elsewhere; zero if None.
 
         Raises:
-            SpringfitError: A motion has no stiffness, or an array has a wrong shape.
+            SpringfitError: A motion has no stiffness, an array has a wrong shape, or a displacement is given of what is not held.
         """
         shape = self.points.shape
         held = held_flags(self.mesh, fix)
         zero = np.zeros(shape)
         given = [zero if array is None else matrix(key, array, np.float64)
                  for key, array in (("forces", forces), ("displacement", displacement))]
+        if given[1].shape == shape:
+            loose = np.flatnonzero(((given[1] != 0) & ~held).any(axis=1))
+            if loose.size:
+                named = ", ".join(map(str, loose[:NAMED])) + (", …" if loose.size > NAMED else "")
+                raise failure("displacement", "zero wherever fix does not hold", f"others at {loose.size} points: {named}")
         u, left, is_stable = self._core.solve(given[0], held, given[1])
         if not is_stable:
-            import warnings
-
-            warnings.warn("the network is indefinite with these supports: some motion releases energy", stacklevel=2)
+            warn("the network is indefinite with these supports: some motion releases energy")
         if not left < 1e-6:
-            import warnings
-
-            warnings.warn(f"the solution leaves {left:.1e} of the forces: the network is nearly a mechanism", stacklevel=2)
+            warn(f"the solution leaves {left:.1e} of the forces: the network is nearly a mechanism")
         return u
 
-    def write(self, path: "str | os.PathLike") -> None:
+    def write(self, path: "str | os.PathLike[str]") -> None:
         """Writes the springs to a ``.json``, ``.npz``, ``.vtu`` or ``.csv`` file; nothing is half written."""
         self._core.write(os.fspath(path))
 
-    def export(self, to: str, folder: "str | os.PathLike", *, gravity: Any = None) -> "list[Path]":
+    def export(self, to: str, folder: "str | os.PathLike[str]", *, gravity: Any = None) -> "list[Path]":
         """Writes the files and scripts of another program, as ``springfit export``.
 
         Args:
-            to: The program: "mujoco", "newton", "lammps", "jolt", "sofa", "npz" or "vtu".
+            to: The program: "mujoco", "newton", "lammps", "jolt", "sofa", "blender", "phystwin", "npz" or "vtu".
             folder: Where they go; it is made.
             gravity: m/s², shape (dimension,); 9.81 against the last axis if None.
 
@@ -274,23 +309,25 @@ class Network:
         Raises:
             SpringfitError: The program does not hold this network, and a fit that it holds is named.
         """
-        gravity = None if gravity is None else [float(g) for g in np.asarray(gravity).ravel()]
-        files, left_out, _ = self._core.export(to, os.fspath(folder), gravity)
+        along = None if gravity is None else typed("gravity", array("gravity", gravity), np.float64).ravel().tolist()
+        files, left_out, _ = self._core.export(to, os.fspath(folder), along)
         for words in left_out:
-            import warnings
-
-            warnings.warn(words, stacklevel=2)
+            warn(words)
         return [Path(file) for file in files]
 
-    def to_pyvista(self):
-        """Lines with their constants and rest lengths, as ``pyvista.PolyData``."""
+    def to_pyvista(self) -> "pyvista.PolyData":
+        """Lines with their constants and rest lengths, as ``pyvista.PolyData``: all springs on lengths, those of :attr:`springs` first. Springs with a
+        law of force, which :attr:`contents` has, follow; their constant is the slope at rest."""
         import pyvista
 
         points = np.zeros((len(self.points), 3))
         points[:, : self.mesh.dimension] = self.points
-        lines = np.column_stack([np.full(len(self.springs), 2), self.springs])
+        others = [kind for kind in self.contents if kind["kind"] == "length"]
+        ends = np.concatenate([self.springs, *(kind["points"] for kind in others)])
+        lines = np.column_stack([np.full(len(ends), 2), ends])
         data = pyvista.PolyData(points, lines=lines.ravel())
-        data.cell_data["constant"], data.cell_data["rest"] = self.constants, self.rest
+        data.cell_data["constant"] = np.concatenate([self.constants, *(kind["constants"] for kind in others)])
+        data.cell_data["rest"] = np.concatenate([self.rest, *(kind["rest"] for kind in others)])
         return data
 
     def __repr__(self) -> str:
@@ -302,7 +339,7 @@ class Network:
         from html import escape
 
         statistics = self.statistics
-        rows = [("points", len(self.points)), ("springs between two points", len(self.springs))]
+        rows: "list[tuple[str, object]]" = [("points", len(self.points)), ("springs between two points", len(self.springs))]
         rows += [(f"{kind['kind']} springs", len(kind["constants"])) for kind in self.contents]
         rows += [("constants below zero", statistics["negative"])]
         for norm in ("frobenius", "spectral"):

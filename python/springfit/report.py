@@ -7,12 +7,18 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
 from . import _core
+from ._arguments import failure, shown
 from ._progress import listener
+
+if TYPE_CHECKING:
+    import pandas
+
+SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 #: The name of the finite elements among the models of a load.
 FINITE_ELEMENTS = ""
@@ -38,7 +44,7 @@ class Report:
         return self.record["notes"]
 
     @property
-    def fits(self):
+    def fits(self) -> "pandas.DataFrame":
         """One row for each fit, a ``pandas.DataFrame``; what is a table itself is left out."""
         import pandas
 
@@ -46,7 +52,7 @@ class Report:
         return pandas.DataFrame([{k: v for k, v in fit.items() if plain(v)} for fit in self.record["fits"]])
 
     @property
-    def loads(self):
+    def loads(self) -> "pandas.DataFrame":
         """One row for each fit and load, a ``pandas.DataFrame``."""
         import pandas
 
@@ -58,14 +64,14 @@ class Report:
         return pandas.DataFrame(rows)
 
     @property
-    def frequencies(self):
+    def frequencies(self) -> "pandas.DataFrame":
         """One row for each model, a ``pandas.DataFrame``; empty where none were asked for."""
         import pandas
 
         return pandas.DataFrame(self.record["frequencies"])
 
     @property
-    def motion(self):
+    def motion(self) -> "pandas.DataFrame":
         """One row for each model that moved, a ``pandas.DataFrame``; empty without a motion."""
         import pandas
 
@@ -73,11 +79,11 @@ class Report:
 
 
 def run(
-    scene: "str | os.PathLike | Mapping[str, Any]",
+    scene: SceneLike,
     *,
     set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike | None" = None,
-    out: "str | os.PathLike | None" = None,
+    folder: "str | os.PathLike[str] | None" = None,
+    out: "str | os.PathLike[str] | None" = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
 ) -> Report:
     """Fits, solves and compares a scene.
@@ -85,7 +91,7 @@ def run(
     Args:
         scene: The path of a scene file, or its keys as a dictionary.
         set: Keys that take the place of those of the scene, by their paths: ``{"material.poisson": 0.45, "fit[0].name": "a"}``.
-        folder: Where the files that a dictionary names are; the current folder if None.
+        folder: Where the files that a dictionary names are; the current folder if None. The files of a scene file are relative to it.
         out: Where the outputs of the scene are written; nothing is written if None.
         progress: True shows a bar; or a function of (stage, done, total).
 
@@ -94,12 +100,23 @@ def run(
     """
     scene, base = given(scene, folder)
     with listener(progress) as told:
-        text, displacements, files = _core.run(scene, base, dict(set or {}), None if out is None else Path(out), told)
+        text, displacements, files = _core.run(scene, base, settings_of(set), None if out is None else Path(out), told)
     return Report(json.loads(text), displacements, [Path(path) for path in files])
 
 
-def given(scene: "str | os.PathLike | Mapping[str, Any]", folder: "str | os.PathLike | None") -> "tuple[dict | Path, Path]":
+def given(scene: "SceneLike", folder: "str | os.PathLike[str] | None") -> "tuple[dict | Path, Path]":
     """A scene as the library takes it, and the folder of the files that a dictionary names."""
     if isinstance(scene, Mapping):
         return dict(scene), Path(folder or ".")
+    if not isinstance(scene, (str, os.PathLike)):
+        raise failure("scene", "the path of a scene file or a dictionary", shown(scene))
+    if folder is not None:
+        raise failure("folder", "a folder with a scene that is a dictionary alone", f"one with the file {os.fspath(scene)}")
     return Path(scene), Path(".")
+
+
+def settings_of(given: "Mapping[str, Any] | None") -> "dict[str, Any]":
+    """Values of keys by their paths."""
+    if not isinstance(given, (Mapping, type(None))):
+        raise failure("set", 'a dictionary such as {"material.poisson": 0.45}', shown(given))
+    return dict(given or {})

@@ -6,57 +6,85 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from . import _core
+from ._arguments import PLANES, count, failure, number, word
 from ._core import Element
 from ._progress import listener
-from .report import Report, given
+from .report import Report, SceneLike, given, settings_of
+
+if TYPE_CHECKING:
+    import pandas
 
 
+@overload
 def compare(
-    what: "str | os.PathLike | Mapping[str, Any] | Element",
+    what: Element,
+    *,
+    poisson: float | None = None,
+    plane: Literal["stress", "strain"] | None = None,
+    shapes: int | None = None,
+    iterations: int | None = None,
+    progress: "bool | Callable[[str, int, int], Any]" = False,
+) -> "pandas.DataFrame": ...
+@overload
+def compare(
+    what: SceneLike,
     *,
     set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike | None" = None,
-    poisson: float = 0.3,
-    plane: Literal["stress", "strain"] | None = None,
-    shapes: int = 64,
-    iterations: int = 1000,
+    folder: "str | os.PathLike[str] | None" = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
-):
+) -> Report: ...
+def compare(
+    what: "SceneLike | Element",
+    *,
+    set: "Mapping[str, Any] | None" = None,
+    folder: "str | os.PathLike[str] | None" = None,
+    poisson: float | None = None,
+    plane: Literal["stress", "strain"] | None = None,
+    shapes: int | None = None,
+    iterations: int | None = None,
+    progress: "bool | Callable[[str, int, int], Any]" = False,
+) -> "Report | pandas.DataFrame":
     """Objectives and solvers side by side, as ``springfit compare``.
 
     Args:
         what: A scene, whose body is fitted by many methods; or an ``Element``, of which random shapes are.
         set: Keys of the scene that have another value.
         folder: Where the files that a dictionary names are.
-        poisson, plane, shapes, iterations: Of an element: Poisson's ratio, the state in the plane, how many shapes, and the most
-            iterations of a solver.
+        poisson, plane, shapes, iterations: With an element alone: Poisson's ratio (0.3 if None), the state in the plane, how many shapes
+            (64), and the most iterations of a solver (1000).
         progress: True shows a bar; or a function of (stage, done, total).
 
     Returns:
         Of a scene a :class:`Report`; of an element a ``pandas.DataFrame`` with one row for each method.
 
     Raises:
-        SpringfitError: The scene, a key or a number is wrong.
+        SpringfitError: The scene, a key or a number is wrong, or an argument is not of what is compared.
     """
+    if isinstance(what, Element):
+        _refuse("a scene", "an element", set=set, folder=folder)
+    else:
+        _refuse("an element", "a scene", poisson=poisson, plane=plane, shapes=shapes, iterations=iterations)
     with listener(progress) as told:
         if isinstance(what, Element):
             import pandas
 
-            rows = json.loads(_core.compare_element(what, float(poisson), plane, int(shapes), int(iterations), told))
-            return pandas.json_normalize(rows)
-        return Report(json.loads(_core.compare_scene((*given(what, folder), dict(set or {})), told)), {})
+            nu = number("poisson", 0.3 if poisson is None else poisson, "a number above -1 and below 0.5")
+            state = word("plane", plane, PLANES)
+            counts = (count("shapes", 64 if shapes is None else shapes), count("iterations", 1000 if iterations is None else iterations))
+            return pandas.json_normalize(json.loads(_core.compare_element(what, nu, state, *counts, told)))
+        return Report(json.loads(_core.compare_scene((*given(what, folder), settings_of(set)), told)), {})
 
 
 def converge(
-    scene: "str | os.PathLike | Mapping[str, Any]",
+    scene: SceneLike,
     *,
     levels: int | None = None,
-    truth: "str | os.PathLike | Mapping[str, Any] | None" = None,
+    truth: "SceneLike | None" = None,
     set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike | None" = None,
+    folder: "str | os.PathLike[str] | None" = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
 ) -> dict:
     """The errors of finite elements and networks on finer and finer meshes, as ``springfit converge``.
@@ -74,19 +102,24 @@ def converge(
     Raises:
         SpringfitError: A scene or a number is wrong, or the finest mesh is too large.
     """
-    settings = dict(set or {})
-    reference = None if truth is None else (*given(truth, folder), settings)
+    settings = settings_of(set)
+    # The folder is that of the dictionaries among both scenes.
+    folders = [folder if isinstance(own, Mapping) else None for own in (scene, truth)]
+    if folders == [None, None]:
+        folders[0] = folder
+    reference = None if truth is None else (*given(truth, folders[1]), settings)
+    levels = None if levels is None else count("levels", levels)
     with listener(progress) as told:
-        return json.loads(_core.converge((*given(scene, folder), settings), levels, reference, told))
+        return json.loads(_core.converge((*given(scene, folders[0]), settings), levels, reference, told))
 
 
 def stability(
-    what: "str | os.PathLike | Mapping[str, Any] | Element | None" = None,
+    what: "SceneLike | Element | None" = None,
     *,
     set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike | None" = None,
+    folder: "str | os.PathLike[str] | None" = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
-):
+) -> "pandas.DataFrame":
     """Extreme cases: units, moduli and shapes far from usual ones, as ``springfit stability``.
 
     Args:
@@ -98,13 +131,22 @@ def stability(
         A ``pandas.DataFrame`` with one row for each case.
 
     Raises:
-        SpringfitError: The scene or a key is wrong.
+        SpringfitError: The scene or a key is wrong, or keys are given without a scene.
     """
     import pandas
 
+    if what is None or isinstance(what, Element):
+        _refuse("a scene", "an element", set=set, folder=folder)
     with listener(progress) as told:
         if what is None or isinstance(what, Element):
             found = json.loads(_core.stability(what, told))
         else:
-            found = json.loads(_core.stability_of_scene((*given(what, folder), dict(set or {})), told))
+            found = json.loads(_core.stability_of_scene((*given(what, folder), settings_of(set)), told))
     return pandas.json_normalize(found["rows"])
+
+
+def _refuse(owner: str, what: str, **arguments: Any) -> None:
+    """Raises if one of these arguments is given, which another kind of study has."""
+    for key, value in arguments.items():
+        if value is not None:
+            raise failure(key, f"an argument for {owner} alone", f"it for {what}")

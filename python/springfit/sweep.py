@@ -8,17 +8,20 @@ import queue
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from . import _core
+from ._arguments import failure
 from ._core import SpringfitError
 from ._progress import listener
-from .mesh import failure
-from .report import given
+from .report import SceneLike, given, settings_of
+
+if TYPE_CHECKING:
+    import pandas
 
 
 def sweep(
-    scene: "str | os.PathLike | Mapping[str, Any]",
+    scene: SceneLike,
     over: "Mapping[str, Any] | Iterable[Mapping[str, Any]] | None" = None,
     *,
     design: Literal["grid", "random", "sobol"] | None = None,
@@ -26,10 +29,10 @@ def sweep(
     seed: int | None = None,
     set: "Mapping[str, Any] | None" = None,
     executor: Any = None,
-    folder: "str | os.PathLike | None" = None,
-    records: "str | os.PathLike | None" = None,
+    folder: "str | os.PathLike[str] | None" = None,
+    records: "str | os.PathLike[str] | None" = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
-):
+) -> "pandas.DataFrame":
     """Runs a scene for many values of its keys. The command ``springfit sweep`` gives the same rows.
 
     Args:
@@ -58,7 +61,7 @@ def sweep(
     import pandas
 
     scene, base = given(scene, folder)
-    settings = dict(set or {})
+    settings = settings_of(set)
     plan = None
     if over is not None:
         over = _plain(dict(over) if isinstance(over, Mapping) else list(over))

@@ -87,6 +87,7 @@ def test_constants_are_those_of_the_network(name, objective):
         (lambda: sf.SpringConstants("tet4", [[0, 1, 2, 3]], "exact", volume="patches"), "objective"),
         (lambda: sf.SpringConstants("tet4", [[0, 1, 2, 3]], "offdiag", nonnegative=True), "objective"),
         (lambda: sf.SpringConstants("tri3", [[0, 1, 2]], plane="both"), "plane"),
+        (lambda: sf.SpringConstants("tri3", [[0, 1, 2]], plane=1), "plane"),
     ],
 )
 def test_wrong_functions_are_refused(call, key):
@@ -108,11 +109,46 @@ def test_wrong_arrays_are_refused():
         ((points, -1.0, 0.3), {}, "young"),
         ((points, 1e4, 0.6), {}, "poisson"),
         ((points, 1e4, 0.3), {"weights": weights[1:]}, "weights"),
+        ((points, 1e4, 0.3), {"weights": np.ma.array(weights, mask=weights > 0)}, "weights"),
+        ((points, 1e4, 0.3), {"weights": weights.astype("m8[s]")}, "weights"),
+        ((points, 1e4, 0.3), {"weights": [[1.0], [1.0, 2.0]]}, "weights"),
+        ((np.ma.array(points, mask=points > 0), 1e4, 0.3), {}, "points"),
+        ((points, "10 kPa", 0.3), {}, "young"),
+        ((points, 1e4, [0.3]), {}, "poisson"),
         ((points, 1e4, 0.3), {"others": [[1.0]]}, "others"),
     ]:
         with pytest.raises(sf.SpringfitError) as error:
             constants.gradient(*given, **{"weights": weights, **options})
         assert key is None or key in str(error.value.key), str(error.value)
+
+
+def test_constants_keep_their_cells():
+    mesh = sf.Mesh.box("tet4", size=[1.0, 1.0, 1.0], cells=[2, 1, 1])
+    cells = mesh.cells[0][1].copy()
+    constants = sf.SpringConstants("tet4", cells)
+    known = constants(mesh.points, 1e4, 0.3)
+    cells[:] = cells[0]
+    for array in (constants.springs, constants.cells):
+        with pytest.raises(ValueError, match="read-only"):
+            array[:] = 0
+    again = constants(mesh.points, 1e4, 0.3)
+    assert all(np.array_equal(a, b) for a, b in zip(known, again))
+
+
+@pytest.mark.parametrize(
+    "objective, keys",
+    [("spectral", {}), ("divergence", {}), ("frobenius", {"weight": "relative"}), ("frobenius", {"nonnegative": True})],
+)
+def test_constants_without_gradients_are_those_of_the_network(objective, keys):
+    constants, points, mesh, _ = case("tet4", objective, keys)
+    net = sf.fit(sf.Mesh(points, mesh.cells), sf.Material(1e4, 0.3), objective, **keys)
+    known = {tuple(pair): constant for pair, constant in zip(net.springs.tolist(), net.constants)}
+    k, _ = constants(points, 1e4, 0.3)
+    found = np.array([known.get(tuple(pair), 0.0) for pair in constants.springs.tolist()])
+    assert np.abs(k - found).max() <= 1e-9 * np.abs(k).max()
+    with pytest.raises(sf.SpringfitError) as error:
+        constants.gradient(points, 1e4, 0.3, weights=np.ones_like(k))
+    assert error.value.key == "objective"
 
 
 def test_torch_passes_gradients_on():
@@ -143,6 +179,28 @@ def test_jax_passes_gradients_on():
     known = constants.gradient(points, 1e4, 0.3, weights=2 * k, others=2 * other)
     assert np.allclose(slopes[0], known.points, rtol=1e-12)
     assert float(slopes[1]) == pytest.approx(known.young) and float(slopes[2]) == pytest.approx(known.poisson)
+
+
+def test_jax_maps_over_bodies():
+    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
+    jax.config.update("jax_enable_x64", True)
+    constants, points, _, rng = case("tet4", "exact", {})
+    many = points + 0.01 * rng.uniform(-1, 1, (3, *points.shape))
+    moduli = np.array([1e3, 1e4, 1e5])
+
+    def loss(x, young):
+        k, other = constants.jax(x, young, 0.3)
+        return (k**2).sum() + (other**2).sum()
+
+    values = jax.vmap(loss)(many, moduli)
+    slopes = jax.jit(jax.vmap(jax.grad(loss, (0, 1))))(many, moduli)
+    for i, (x, young) in enumerate(zip(many, moduli)):
+        assert float(values[i]) == pytest.approx(float(loss(x, young)))
+        own = jax.grad(loss, (0, 1))(x, young)
+        assert np.allclose(slopes[0][i], own[0], rtol=1e-12) and float(slopes[1][i]) == pytest.approx(float(own[1]))
+    # The same points with many materials.
+    shared = jax.vmap(loss, (None, 0))(points, moduli)
+    assert np.allclose(shared, [float(loss(points, young)) for young in moduli])
 
 
 def test_springs_that_vanish_at_right_angles_have_gradients():

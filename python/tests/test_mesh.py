@@ -148,7 +148,8 @@ def test_pyvista_both_ways():
 
 def test_points_without_a_cell_keep_numbers():
     points = [[9, 9, 9], [0, 0, 0], [1, 0, 0], [0, 1, 0], [8, 8, 8], [0, 0, 1]]
-    mesh = sf.Mesh(points, {"tet4": [[1, 2, 3, 5]]}, {"a": [0, 5]})
+    with pytest.warns(UserWarning, match="2 of 6 points belong to no cell"):
+        mesh = sf.Mesh(points, {"tet4": [[1, 2, 3, 5]]}, {"a": [0, 5]})
     assert mesh.numbers.tolist() == [1, 2, 3, 5] and mesh.groups["a"].tolist() == [3]
     assert mesh.quality["unused_points"] == 2
 
@@ -181,6 +182,20 @@ TET = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
         (np.zeros((4, 3)), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
         (TET, {"tet4": [[0, 1, 2, 2]]}, {}, "tet4 cell 1 at [0.0, 0.0, 0.0] m"),
         (TET, {"tet4": [[0, 1, 2, 3], [1, 0, 2, 3]]}, {}, "cells"),
+        (TET, np.array([[0, 1, 2, 3]]), {}, "cells"),
+        (TET, [[0, 1, 2, 3]], {}, "cells"),
+        (TET, "tet4", {}, "cells"),
+        (TET, {3: [[0, 1, 2, 3]]}, {}, "element"),
+        (TET, [("tet4", [[0, 1, 2, 3]]), (sf.Element("tet4"), [[0, 1, 2, 3]])], {}, "cells of tet4"),
+        (TET, {"tet4": [[0, 1, 2, 3], [0, 1]]}, {}, "cells of tet4"),
+        (TET, {"tet4": np.ma.array([[0, 1, 2, 3]], mask=[[0, 0, 0, 1]])}, {}, "cells of tet4"),
+        (TET, {"tet4": np.array([[0, 1, 2, 3]], "m8[s]")}, {}, "cells of tet4"),
+        (np.ma.array(TET, mask=np.eye(4, 3)), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        ([[0.0, 0, 0], [1, 0], [0, 1, 0], [0, 0, 1]], {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (np.array(TET).astype("m8[s]"), {"tet4": [[0, 1, 2, 3]]}, {}, "points"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, [0, 1], "groups"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": np.ma.array([0, 1], mask=[0, 1])}, "groups.a"),
+        (TET, {"tet4": [[0, 1, 2, 3]]}, {"a": np.array([0, 1], "m8[s]")}, "groups.a"),
     ],
 )
 def test_wrong_arrays_are_named(points, cells, groups, key):
@@ -198,3 +213,112 @@ def test_types_and_orders_of_arrays_do_not_matter(dtype, order):
     assert np.array_equal(fitted(sf.Mesh(points, {"hex8": cells})).constants, fitted(mesh).constants)
     single = sf.Mesh(points.astype(np.float32), {"hex8": cells})
     assert np.array_equal(single.points, points.astype(np.float32).astype(float))
+
+
+def test_cells_of_one_element_are_put_together():
+    triangles = [[0, 1, 2], [1, 3, 2]]
+    blocks = [("tri3", triangles[:1]), ("tri3", triangles[1:]), ("tri3", [[1, 4, 3]])]
+    mesh = sf.Mesh([[0.0, 0], [1, 0], [0, 1], [1, 1], [2, 0]], blocks)
+    assert [(name, nodes.tolist()) for name, nodes in mesh.cells] == [("tri3", [*triangles, [1, 4, 3]])]
+    for cells in (mesh.cells, dict(mesh.cells), dict(mesh.cells).items()):
+        assert np.array_equal(sf.Mesh(mesh.points, cells).cells[0][1], mesh.cells[0][1])
+
+
+OWN = """
+name = "mine3"
+title = "A triangle of a user"
+cell = "triangle"
+coordinates = ["xi", "eta"]
+source = "none"
+nodes = [{ at = [0, 0], shape = "1 - xi - eta" }, { at = [1, 0], shape = "xi" }, { at = [0, 1], shape = "eta" }]
+[quadrature]
+rule = "simplex"
+degree = 2
+[[springs]]
+group = "edge"
+kind = "length"
+nodes = [[0, 1], [1, 2], [2, 0]]
+"""
+
+
+def test_elements_of_users_are_known_by_name_where_they_are_given():
+    own = sf.Element.parse(OWN)
+    mesh = sf.Mesh([[0.0, 0], [1, 0], [0, 1]], {own: [[0, 1, 2]]})
+    again = sf.Mesh(mesh.points, dict(mesh.cells), elements=[own])
+    assert again.cells[0][0] == "mine3" and np.array_equal(again.cells[0][1], mesh.cells[0][1])
+
+
+def sliver(**keys):
+    return sf.Mesh([[0.0, 0], [1, 0], [0, 1], [0.5, 0.5 + 1e-6]], {"tri3": [[0, 1, 2], [1, 3, 2]]}, **keys)
+
+
+def test_poor_cells_are_a_warning_an_error_or_left_out():
+    for keys in ({}, {"below": "warn"}):
+        with pytest.warns(UserWarning, match="1 cells have a quality below 0.0001, the worst .*tri3 cell 2") as found:
+            sliver(**keys)
+        assert found[0].filename == __file__
+    with pytest.raises(sf.SpringfitError) as error:
+        sliver(below="refuse")
+    assert error.value.key == "quality"
+    with pytest.warns(UserWarning, match="belong to no cell"):
+        assert sliver(below="skip").quality["skipped"] == 1
+
+
+@pytest.mark.filterwarnings("error")
+def test_good_cells_are_no_warning():
+    assert sliver(least=0.0).quality["poor"] == 0
+    box("tet4")
+
+
+def test_boxes_have_the_gate_of_other_meshes():
+    flat = {"element": "tet4", "size": [1.0, 1.0, 1e-5], "cells": [1, 1, 1]}
+    known = sf.Mesh.box(**flat)
+    with pytest.warns(UserWarning, match="quality below 0.0001"):
+        sf.Mesh.box(**flat, below="warn")
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.Mesh.box(**flat, below="refuse")
+    assert error.value.key == "quality"
+    mesh = sf.Mesh.box(**flat, below="refuse", least=1e-6)
+    assert np.array_equal(mesh.points, known.points)
+    assert {k: v.tolist() for k, v in mesh.groups.items()} == {k: v.tolist() for k, v in known.groups.items()}
+
+
+def test_boxes_take_arrays():
+    mesh = sf.Mesh.box("quad4", np.array([1.0, 1.0]), np.array([2, 2]), np.array([0.5, 0.5]))
+    assert mesh.points.min() == 0.5 and len(mesh.cells[0][1]) == 4
+
+
+@pytest.mark.parametrize(
+    "size, cells, keys, key",
+    [
+        (1.0, [1, 1], {}, "size"),
+        ([1.0, 1.0], 3, {}, "cells"),
+        ([1.0, "1"], [1, 1], {}, "size"),
+        ([1.0, 1.0], [1.0, 1.0], {}, "cells"),
+        ([1.0, 1.0], [1, -1], {}, "cells"),
+        ([1.0, 1.0], [1, 1], {"origin": 0.0}, "origin"),
+        ([1.0, 1.0], [1, 1], {"below": 1}, "below"),
+        ([1.0, 1.0], [1, 1], {"least": "0.1"}, "least"),
+        ([1.0, 1.0], [1, 1], {"least": 2.0}, "least"),
+    ],
+)
+def test_wrong_boxes_are_named(size, cells, keys, key):
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.Mesh.box("quad4", size, cells, **keys)
+    assert error.value.key == key, str(error.value)
+
+
+@pytest.mark.parametrize(
+    "keys, key",
+    [
+        ({"scale": "2 cm"}, "scale"),
+        ({"scale": -1}, "scale"),
+        ({"elements": "tri3"}, "elements"),
+        ({"elements": [3]}, "element"),
+        ({"below": "drop"}, "below"),
+    ],
+)
+def test_wrong_readings_are_named(scenes, keys, key):
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.Mesh.read(scenes / "meshes" / "cube_tet.msh", **keys)
+    assert error.value.key == key and len(str(error.value)) < 200, str(error.value)

@@ -48,7 +48,7 @@ def make(folder: Path) -> None:
     Raises:
         SpringfitError: A file is in its place, or the folder above is read-only.
     """
-    from ..mesh import failure
+    from .._arguments import failure
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -118,10 +118,10 @@ def main(given: "list[str]") -> int:
         raise
     except BaseException:
         # Others wait for this rank and would wait for ever.
-        sys.stderr = sys.__stderr__
-        print(f"springfit.petsc: rank {comm.rank} of {comm.size} failed:", file=sys.stderr)
-        traceback.print_exc()
-        sys.stderr.flush()
+        if sys.__stderr__ is not None:
+            print(f"springfit.petsc: rank {comm.rank} of {comm.size} failed:", file=sys.__stderr__)
+            traceback.print_exc(file=sys.__stderr__)
+            sys.__stderr__.flush()
         comm.Abort(1)
         return 1
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -22,7 +22,8 @@ def together(comm: Any, work: "Callable[[], T]") -> T:
     Raises:
         Ended: An input is wrong on some rank, with the words of the lowest one.
     """
-    found, fault = None, None
+    found: "T | None" = None
+    fault = None
     try:
         found = work()
     except SpringfitError as error:
@@ -32,7 +33,7 @@ def together(comm: Any, work: "Callable[[], T]") -> T:
     faults = [words for words in comm.allgather(fault) if words is not None]
     if faults:
         raise Ended(faults[0])
-    return found
+    return cast(T, found)
 
 
 def send(comm: Any, to: int, arrays: "list[np.ndarray]", words: Any) -> None:

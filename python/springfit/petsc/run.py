@@ -89,17 +89,20 @@ def run(comm: Any, scene: Path, settings: dict, out: "Path | None" = None, parti
     body = share_out(comm, scene, settings, partitioner)
     shared = _peaks(comm)
     fem, levels = solve_model(body, together(comm, body.core.stiffness), "finite elements", {}, True)
+    moved = []
     for load, (u, _, left, _) in zip(body.loads, fem):
         problem = f"mesh: expected equations that can be solved to 1e-6 of the forces, found {left:.1e} left under load \"{load.name}\""
         together(comm, lambda: refuse(problem if u is None else None))
+        if u is not None:
+            moved.append(u)
     fits = []
     for index, name in enumerate(body.fits):
         with body.timed("fits"):
             seconds, springs, *blocks = together(comm, lambda: fitted(body, index))
         answers, _ = solve_model(body, blocks.pop(), "networks", levels, False)
         loads = []
-        for load, (u, iterations, left, indefinite), known in zip(body.loads, answers, fem):
-            found = None if u is None else errors(comm, known[0], u)
+        for load, (u, iterations, left, indefinite), known in zip(body.loads, answers, moved):
+            found = None if u is None else errors(comm, known, u)
             none = {"e_rms": None, "e_max": None, "e_tip": None}
             loads.append({"name": load.name, **(found or none), "iterations": iterations, "residual": left, "indefinite": indefinite})
         fits.append({"name": name, "seconds": comm.allreduce(seconds, MPI.MAX), "loads": loads})

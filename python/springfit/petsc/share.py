@@ -101,7 +101,7 @@ def share_out(comm: Any, scene: Path, settings: dict, kind: "str | None") -> Bod
     owned, *loaded = [exchange(comm, part, array) for array in rows]
     each = [loaded[i : i + 3] for i in range(0, len(loaded), 3)]
     kinds = supports(comm, each)
-    loads = [Load(name, *arrays, support) for name, arrays, support in zip(names, each, kinds)]
+    loads = [Load(name, forces, held, given, support) for name, (forces, held, given), support in zip(names, each, kinds)]
     text, path = source
     core = together(comm, lambda: _core.BodyShare(text, path, settings, share.points, share.blocks))
     own = Body(comm, title, fits, cells, owned, loads, share, core, checksum, partitioner)
@@ -113,7 +113,7 @@ def _slice(comm: Any, body: Any, total: int, is_numbered: bool) -> "list[np.ndar
     """The slice of this rank: points, their numbers, the cells of each block, and three arrays for each load."""
     if comm.rank > 0:
         return receive(comm)[0]
-    own = None
+    own: "list[np.ndarray]" = []
     for rank in range(comm.size):
         first = start(total, comm.size, rank)
         count = start(total, comm.size, rank + 1) - first
