@@ -17,6 +17,9 @@ use springfit::study::Recipe;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Fewer cells than these take some milliseconds.
+const FEW: usize = 1000;
+
 /// The constants of the cells of one element by one fit.
 #[pyclass(frozen, module = "springfit._core")]
 pub struct CellConstants {
@@ -114,7 +117,7 @@ impl CellConstants {
         let rule = self.rule.clone();
         let (points, cells) = rule.arrays(py, &points, &cells)?;
         let constants = constants(young, poisson, thickness)?;
-        let found = alone(py, move || {
+        let found = cellwise(py, cells.len() / self.rule.element.nodes(), move || {
             let method = rule.recipe.kind().cell_method().ok_or_else(not_of_cells)?;
             method.fit_cells(&rule.element, &rule.springs, &points, &cells, rule.material(constants)?)
         })?;
@@ -142,7 +145,7 @@ impl CellConstants {
         let (points, cells) = rule.arrays(py, &points, &cells)?;
         let weights = rows(&weights);
         let [young, poisson, thickness] = constants(young, poisson, thickness)?;
-        let (gradient, material) = alone(py, move || {
+        let (gradient, material) = cellwise(py, expected[0], move || {
             let material = rule.material([young, poisson, thickness])?;
             let (moduli, fit) = (material.moduli(), rule.gradient_fit()?);
             let gradient = constants_gradient(&rule.element, &rule.springs, &points, &cells, moduli, &fit, &weights)?;
@@ -155,6 +158,15 @@ impl CellConstants {
         let by_thickness = if d == 2 { along(material.moduli()) / thickness } else { 0.0 };
         Ok((matrix(py, gradient.points, d), along(young_slope), along(poisson_slope), by_thickness))
     }
+}
+
+/// Works on so many cells. A few are done on the thread of the call, because another takes longer to start than they do.
+fn cellwise<T: Send + 'static>(
+    py: Python,
+    cells: usize,
+    work: impl FnOnce() -> Result<T> + Send + 'static,
+) -> PyResult<T> {
+    if cells < FEW { apart(py, work).map_err(|error| raised(py, error)) } else { alone(py, work) }
 }
 
 /// Young's modulus, Poisson's ratio and the thickness.
