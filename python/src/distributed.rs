@@ -2,7 +2,7 @@
 
 use crate::arrays::{list, matrix, place_list, places, rows};
 use crate::error::{invalid, raised};
-use crate::progress::{self, apart};
+use crate::progress::{self, alone, apart};
 use crate::study::{keyless, settings_of, text_of};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -14,6 +14,7 @@ use springfit::report::{NetworkShard, Shard, ShardRun};
 use springfit::study::{self, Scene, distributed_body};
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Where the blocks of each point begin, the other point of each, and the blocks, `[blocks, dimension²]`.
 type Blocks<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f64>>);
@@ -38,9 +39,10 @@ impl DistributedBody {
         let source = text_of(py, scene, &folder)?;
         let scene = Scene::parse_with(&source.0, &source.1, &settings_of(py, settings)?);
         let scene = scene.map_err(|error| raised(py, keyless(error)))?;
-        let (mesh, loads) = progress::run(py, None, |_| distributed_body(&scene))?;
         let fits = scene.fits().iter().map(|fit| fit.name.clone()).collect();
-        Ok(DistributedBody { source, title: scene.title().into(), fits, mesh, loads })
+        let title = scene.title().into();
+        let (mesh, loads) = alone(py, move || distributed_body(&scene))?;
+        Ok(DistributedBody { source, title, fits, mesh, loads })
     }
 
     /// The text of the scene and its path.
@@ -152,14 +154,14 @@ impl DistributedBody {
 
 /// The cells of one rank.
 #[pyclass(frozen, module = "springfit._core")]
-pub struct BodyShare(study::BodyShare);
+pub struct BodyShare(Arc<study::BodyShare>);
 
 #[pymethods]
 impl BodyShare {
     #[new]
     fn new(
         py: Python,
-        text: &str,
+        text: String,
         path: PathBuf,
         settings: &Bound<PyDict>,
         points: PyReadonlyArray2<f64>,
@@ -171,11 +173,11 @@ impl BodyShare {
         };
         let blocks = blocks.iter().map(block).collect::<PyResult<Vec<_>>>()?;
         let (d, points) = (points.as_array().ncols(), rows(&points));
-        let share = apart(py, || {
-            let scene = Scene::parse_with(text, &path, &settings)?;
+        let share = alone(py, move || {
+            let scene = Scene::parse_with(&text, &path, &settings)?;
             study::BodyShare::new(scene, d, points, blocks)
         });
-        share.map(BodyShare).map_err(|error| raised(py, error))
+        share.map(|share| BodyShare(Arc::new(share)))
     }
 
     /// The stiffness of the finite elements of these cells.
@@ -185,7 +187,8 @@ impl BodyShare {
 
     /// The springs of these cells by one fit: the stiffness of their network, the seconds, and the springs themselves.
     fn fit<'py>(&self, py: Python<'py>, fit: usize) -> PyResult<(Blocks<'py>, f64, Py<NetworkShare>)> {
-        let fitted = progress::run(py, None, |told| self.0.fit(fit, told))?;
+        let share = self.0.clone();
+        let fitted = progress::run(py, None, move |told| share.fit(fit, told))?;
         let stiffness = blocks(py, &fitted.stiffness)?;
         Ok((stiffness, fitted.seconds, Py::new(py, NetworkShare(fitted))?))
     }

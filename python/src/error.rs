@@ -3,6 +3,7 @@
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use springfit::error::{Error, ErrorKind};
 
 create_exception!(
@@ -12,6 +13,16 @@ create_exception!(
     "A fault of an input: `kind` (\"io\", \"syntax\", \"invalid\", \"unsupported\", \"limit\" or \"infeasible\"), and `file`, `line` and \
      `key`, each None where it is not known."
 );
+
+/// The class, whose exceptions have all attributes even where Python makes them.
+pub fn class(py: Python) -> PyResult<Bound<PyType>> {
+    let class = py.get_type::<SpringfitError>();
+    class.setattr("kind", "invalid")?;
+    for attribute in ["file", "line", "key"] {
+        class.setattr(attribute, py.None())?;
+    }
+    Ok(class)
+}
 
 /// The exception of an error.
 pub fn raised(py: Python, error: Error) -> PyErr {

@@ -1,22 +1,24 @@
 //! `fit` and the finite elements of the same body.
 
+use crate::arguments::{found, number, text};
 use crate::arrays::list;
-use crate::error::{invalid, raised};
+use crate::entry::fit_entry;
+use crate::error::invalid;
 use crate::functions::{Functions, Given};
 use crate::mesh::Mesh;
-use crate::network::{Network, Triplets};
-use crate::progress::{self, apart};
-use crate::value::table;
+use crate::network::{Network, Triplets, triplets};
+use crate::progress::{self, alone};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
-use springfit::material::{Material, MaterialMap, Plane};
+use springfit::material::{CellMap, Material, MaterialMap, Plane};
 use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
-use springfit::study::{BodyConstants, Controls, Event, FitEntry, Reference, WholeBody, fit_mesh, point_masses};
+use springfit::study::{
+    BodyConstants, Controls, Event, Outcome, Reference, WholeBody, assumed, fit_mesh, point_masses,
+};
 
-/// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²).
-#[derive(FromPyObject)]
+/// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²), and the density.
 pub struct Constants {
     young: f64,
     poisson: f64,
@@ -27,14 +29,36 @@ pub struct Constants {
 }
 
 impl Constants {
-    fn of(&self, mesh: &Mesh) -> Result<Material> {
+    /// Those of a `Material`.
+    fn given(material: &Bound<PyAny>) -> PyResult<Constants> {
+        let attribute = |key: &str| {
+            let missing = |_| invalid(material.py(), "material", "a Material", found(material));
+            material.getattr(key).map_err(missing)
+        };
+        let required = |key: &str| number(key, &attribute(key)?);
+        let optional = |key: &str| {
+            let given = attribute(key)?;
+            if given.is_none() { Ok(None) } else { number(key, &given).map(Some) }
+        };
+        let plane = attribute("plane")?;
+        Ok(Constants {
+            young: required("young")?,
+            poisson: required("poisson")?,
+            plane: if plane.is_none() { None } else { Some(text("plane", &plane)?) },
+            thickness: optional("thickness")?,
+            area: optional("area")?,
+            density: optional("density")?,
+        })
+    }
+
+    fn of(&self, mesh: &springfit::mesh::Mesh) -> Result<Material> {
         let &Constants { young, poisson, thickness, area, .. } = self;
         let plane = self.plane.as_deref().map(|name| match name {
             "stress" => Ok(Plane::Stress),
             "strain" => Ok(Plane::Strain),
             other => Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
         });
-        BodyConstants { young, poisson, plane: plane.transpose()?, thickness, area }.material(&mesh.0)
+        BodyConstants { young, poisson, plane: plane.transpose()?, thickness, area }.material(mesh)
     }
 }
 
@@ -44,46 +68,48 @@ impl Constants {
 pub fn fit(
     py: Python,
     mesh: &Mesh,
-    material: Constants,
+    material: &Bound<PyAny>,
     keys: &Bound<PyDict>,
     held: Option<PyReadonlyArray2<bool>>,
     progress: Option<Py<PyAny>>,
     functions: Option<Given>,
 ) -> PyResult<Network> {
     let support = held.map(|held| support(py, mesh, &held)).transpose()?;
-    let entry: FitEntry = table(keys)?
-        .try_into()
-        .map_err(|error: toml::de::Error| raised(py, Error::new(error.message().to_string())))?;
-    let (density, constants) = (material.density, material);
+    let entry = fit_entry(py, keys)?;
+    let constants = Constants::given(material)?;
     let functions = functions.map(|given| Functions::new(py, given, constants.young)).transpose()?;
-    let work = |told: &mut dyn FnMut(Event)| {
+    let ends = functions.as_ref().map(|functions| functions.ends.clone());
+    let mesh = mesh.mesh.clone();
+    let work = move |told: &mut dyn FnMut(Event)| {
         entry.check()?;
-        let material = constants.of(mesh)?;
+        let material = constants.of(&mesh)?;
         let own = functions.as_ref().map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
         let named = entry.fits_with(std::path::Path::new(""), &own)?.remove(0);
         let controls = Controls::default();
         let map = MaterialMap::from(material);
         let whole = match (named.recipe.whole(), &support) {
-            (Some(_), Some(support)) => Some(WholeBody::new(&mesh.0, &map, support, &controls)),
+            (Some(_), Some(support)) => Some(WholeBody::new(&mesh, &map, support, &controls)),
             (Some(_), None) => return Err(Error::expected("fix", "what is held, for whole-object fits", "nothing")),
             (None, _) => None,
         };
         let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
-        let fit = fit_mesh(&mesh.0, material, &reference, &named, told)?;
-        let masses = density.map(|density| point_masses(&mesh.0, density, material)).transpose()?;
-        Ok((material, masses, fit))
+        let fit = fit_mesh(&mesh, material, &reference, &named, told)?;
+        let masses = constants.density.map(|density| point_masses(&mesh, density, material)).transpose()?;
+        let assumed = assumed(&mesh, constants.thickness, constants.area);
+        let material = MaterialMap::from(material).with_density(constants.density.map(CellMap::Uniform));
+        let outcome = Outcome::of_fit(String::new(), springfit::mesh::Mesh::clone(&mesh), material, masses, fit);
+        Ok(Outcome { assumed, ..outcome })
     };
-    let ends = functions.as_ref().map(|functions| functions.ends.clone());
-    let (material, masses, fit) = match &ends {
+    let outcome = match &ends {
         Some(ends) => progress::run_functions(py, progress, ends, work)?,
         None => progress::run(py, progress, work)?,
     };
-    Ok(Network::new(mesh.0.clone(), material, masses, fit, ends))
+    Ok(Network::new(outcome, ends.is_some()))
 }
 
 /// What is held at rest, `[points, dimension]`.
 pub fn support(py: Python, mesh: &Mesh, held: &PyReadonlyArray2<bool>) -> PyResult<Support> {
-    let shape = [mesh.0.point_count(), mesh.0.dimension];
+    let shape = [mesh.mesh.point_count(), mesh.mesh.dimension];
     if held.shape() != shape {
         return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
     }
@@ -92,24 +118,29 @@ pub fn support(py: Python, mesh: &Mesh, held: &PyReadonlyArray2<bool>) -> PyResu
 
 /// The stiffness of the finite elements, in triplets of both triangles.
 #[pyfunction]
-pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: Constants) -> PyResult<Triplets<'py>> {
-    let entries = apart(py, || Ok(model::finite_elements(&mesh.0, material.of(mesh)?.moduli())));
-    let entries = entries.map_err(|error| raised(py, error))?;
-    Ok(crate::network::triplets(py, &entries, list))
+pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: &Bound<PyAny>) -> PyResult<Triplets<'py>> {
+    let (constants, mesh) = (Constants::given(material)?, mesh.mesh.clone());
+    let entries = alone(py, move || Ok(model::finite_elements(&mesh, constants.of(&mesh)?.moduli())))?;
+    Ok(triplets(py, &entries))
 }
 
 /// The mass matrix `(1 − s) M_c + s diag(m)` of the shape functions and of the share s of lumped masses, in triplets that are to be added.
 #[pyfunction]
-pub fn masses<'py>(py: Python<'py>, mesh: &Mesh, material: Constants, share: f64) -> PyResult<Triplets<'py>> {
-    let matrix = apart(py, || {
-        let density = material.density.ok_or_else(|| Error::expected("density", "kg/m³", "none"))?;
+pub fn masses<'py>(
+    py: Python<'py>,
+    mesh: &Mesh,
+    material: &Bound<PyAny>,
+    share: &Bound<PyAny>,
+) -> PyResult<Triplets<'py>> {
+    let (constants, share) = (Constants::given(material)?, number("share", share)?);
+    let (mesh, d) = (mesh.mesh.clone(), mesh.mesh.dimension);
+    let matrix = alone(py, move || {
+        let density = constants.density.ok_or_else(|| Error::expected("density", "kg/m³", "none"))?;
         let density = springfit::range::positive("density", density, "kg/m³")?;
-        let thickness = MaterialMap::from(material.of(mesh)?).thicknesses();
-        let lumped = lumped_masses(&mesh.0, density, thickness.clone(), Lumping::Hrz);
-        ConsistentMasses::of_mesh(&mesh.0, density, thickness)?.blended(&lumped, share)
-    });
-    let matrix = matrix.map_err(|error| raised(py, error))?;
-    let d = mesh.0.dimension;
+        let thickness = MaterialMap::from(constants.of(&mesh)?).thicknesses();
+        let lumped = lumped_masses(&mesh, density, thickness.clone(), Lumping::Hrz);
+        ConsistentMasses::of_mesh(&mesh, density, thickness)?.blended(&lumped, share)
+    })?;
     let dofs = |p: usize| (0..d).map(move |k| (p * d + k) as i64);
     let rows = matrix.entries().flat_map(|(a, ..)| dofs(a)).collect();
     let columns = matrix.entries().flat_map(|(_, b, _)| dofs(b)).collect();

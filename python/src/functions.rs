@@ -1,10 +1,11 @@
 //! Functions of Python in place of an energy and of laws of force. They are called on the threads of the fit, for many deformations or
 //! measures at once.
 
+use crate::arguments::check_mask;
+use crate::ends::Ends;
 use crate::error::{invalid, raised};
 use numpy::ndarray::ArrayD;
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use springfit::error::{Error, Result};
@@ -12,7 +13,7 @@ use springfit::material::Material;
 use springfit::springs::{ForceFunction, Law};
 use springfit::stiffness::{EnergyFunction, StressFunction};
 use springfit::study::FitFunctions;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// The step of a difference of the fourth order in an entry of F: its error and that of rounding are some 1e-12 of the moduli.
 const STEP: f64 = 1e-3;
@@ -20,44 +21,16 @@ const STEP: f64 = 1e-3;
 const AROUND: [(f64, f64); 4] = [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)];
 /// The largest difference of a stress from that of its energy, as a share of Young's modulus.
 const SAME: f64 = 1e-6;
-
-/// The key of the first function that did not return, and what ended it.
-#[derive(Debug, Default)]
-pub struct Ends(Mutex<Option<(String, PyErr)>>);
-
-impl Ends {
-    /// Ends the work: no function is called any more.
-    pub fn set(&self, key: &str, exception: PyErr) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert((key.into(), exception));
-    }
-
-    fn is_set(&self) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
-    }
-
-    /// The result, or the exception of a function; that of a user's own is the cause of a `SpringfitError`.
-    ///
-    /// # Errors
-    /// A function did not return; or those of the result.
-    pub fn heard<T>(&self, py: Python, result: PyResult<T>) -> PyResult<T> {
-        let found = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let Some((key, exception)) = found else { return result };
-        if exception.is_instance_of::<crate::error::SpringfitError>(py) || !exception.is_instance_of::<PyException>(py)
-        {
-            return Err(exception);
-        }
-        let found = format!("{}: {}", exception.get_type(py).name()?, exception.value(py));
-        let error = invalid(py, &key, "a function that returns", found);
-        error.set_cause(py, Some(exception));
-        Err(error)
-    }
-}
+/// The error of a difference of the fourth order, at most, as a share of what it is apart from one of the second order: where an energy
+/// grows without bound, as at F of no volume, differences are rough.
+const ROUGH: f64 = 0.1;
 
 /// A function with what is said of it in errors.
 #[derive(Debug)]
 struct Function {
     key: String,
     call: Py<PyAny>,
+    /// Of the fit; networks are evaluated by other calls.
     ends: Arc<Ends>,
 }
 
@@ -69,14 +42,16 @@ impl Function {
         py: Python<'py>,
         shape: &[usize],
     ) -> Option<Vec<f64>> {
-        if self.ends.is_set() {
+        let ends = Ends::current(&self.ends);
+        if ends.is_set() {
             return None;
         }
         let called = || {
             let found = self.call.bind(py).call1(arguments(py)?)?;
+            check_mask(&self.key, &found)?;
             let found = py.import("numpy")?.call_method1("asarray", (found,))?;
             let kind: String = found.getattr("dtype")?.getattr("kind")?.extract()?;
-            if !["f", "i", "u", "b"].contains(&&*kind) {
+            if !["f", "i", "u"].contains(&&*kind) {
                 let found = found.getattr("dtype")?;
                 return Err(invalid(py, &self.key, "an array of real numbers from the function", found));
             }
@@ -89,7 +64,7 @@ impl Function {
             }
             Ok(array.readonly().as_array().iter().copied().collect())
         };
-        called().map_err(|exception| self.ends.set(&self.key, exception)).ok()
+        called().map_err(|exception| ends.set(&self.key, exception)).ok()
     }
 }
 
@@ -112,8 +87,8 @@ impl Energy {
         found.ok_or_else(|| Error::at("law", "the function has not returned"))
     }
 
-    /// P by differences of W.
-    fn slopes(&self, energy: &Function, f: &[[f64; 9]]) -> Result<Vec<f64>> {
+    /// P by differences of W, and how far those of the second order are from it.
+    fn slopes(energy: &Function, f: &[[f64; 9]]) -> Result<Vec<[f64; 2]>> {
         let moved = |f: &[f64; 9], i: usize, share: f64| {
             let mut f = *f;
             f[i] += share * STEP;
@@ -122,20 +97,27 @@ impl Energy {
         let around = |f| (0..9).flat_map(move |i| AROUND.map(|(share, _)| moved(f, i, share)));
         let all: Vec<[f64; 9]> = f.iter().flat_map(around).collect();
         let energies = Energy::of(energy, &all, &[all.len()])?;
-        let slope = |w: &[f64; 4]| w.iter().zip(AROUND).map(|(w, (_, weight))| w * weight).sum::<f64>() / (12.0 * STEP);
+        let slope = |w: &[f64; 4]| {
+            let fourth = w.iter().zip(AROUND).map(|(w, (_, weight))| w * weight).sum::<f64>() / (12.0 * STEP);
+            let second = (w[2] - w[1]) / (2.0 * STEP);
+            [fourth, (fourth - second).abs()]
+        };
         Ok(energies.as_chunks::<4>().0.iter().map(slope).collect())
     }
 
-    /// Checks that a stress is that of the energy.
-    fn check(&self, energy: &Function, f: &[f64; 9], stress: &[f64]) -> Result<()> {
-        let own = self.slopes(energy, &[*f])?;
-        let apart = own.iter().zip(stress).map(|(own, p)| (own - p).abs()).fold(0.0, f64::max);
-        let size = own.iter().fold(self.young, |most, p| most.max(p.abs()));
-        if apart > SAME * size {
-            let found = format!("another, {apart:.3e} Pa apart, at F = {f:.4?}");
-            return Err(Error::expected("stress", "the derivative of the energy", found));
+    /// Checks that the stresses are those of the energy.
+    fn check(&self, energy: &Function, f: &[[f64; 9]], stresses: &[f64]) -> Result<()> {
+        let own = Energy::slopes(energy, f)?;
+        for (f, (own, stress)) in f.iter().zip(own.chunks_exact(9).zip(stresses.chunks_exact(9))) {
+            let apart = own.iter().zip(stress).map(|([own, _], p)| (own - p).abs()).fold(0.0, f64::max);
+            let size = own.iter().fold(self.young, |most, [p, _]| most.max(p.abs()));
+            let rough = own.iter().fold(0.0, |most: f64, [_, rough]| most.max(*rough));
+            // NaN is found later.
+            if apart > SAME * size + ROUGH * rough {
+                let found = format!("another, {apart:.3e} Pa apart, at F = {f:.4?}");
+                return Err(Error::expected("stress", "the derivative of the energy", found));
+            }
         }
-        // NaN is found later.
         Ok(())
     }
 }
@@ -149,11 +131,11 @@ impl StressFunction for Energy {
             (Some(stress), energy) => {
                 let found = Energy::of(stress, f, &[f.len(), 3, 3])?;
                 if let Some(energy) = energy {
-                    self.check(energy, &f[0], &found[..9])?;
+                    self.check(energy, f, &found)?;
                 }
                 found
             }
-            (None, Some(energy)) => self.slopes(energy, f)?,
+            (None, Some(energy)) => Energy::slopes(energy, f)?.into_iter().map(|[slope, _]| slope).collect(),
             (None, None) => return Err(Error::expected("law", "an energy or a stress", "none")),
         };
         stresses.as_flattened_mut().copy_from_slice(&found);
@@ -249,7 +231,8 @@ impl Functions {
             let arguments = names.into_iter().map(argument).collect();
             let force = Force { function: function(&key, call), arguments };
             let law = Law::of_function(&name, parameters, Arc::new(force));
-            let law = ends.heard(py, law.map_err(|error| raised(py, error.at_key(key))))?;
+            ends.check(py)?;
+            let law = law.map_err(|error| raised(py, error.at_key(key)))?;
             match group {
                 Some(group) => own.groups.push((group, law)),
                 None => own.force = Some(law),

@@ -1,14 +1,18 @@
 //! The module `springfit._core`: what Python calls. Everything that needs no other program's types is in the Python files beside it.
 
+mod arguments;
 mod arrays;
 mod distributed;
 mod element;
+mod ends;
+mod entry;
 mod error;
 mod fit;
 mod functions;
 mod gradient;
 mod mesh;
 mod network;
+mod pickled;
 mod progress;
 mod studies;
 mod study;
@@ -20,7 +24,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("SpringfitError", module.py().get_type::<error::SpringfitError>())?;
+    module.add("SpringfitError", error::class(module.py())?)?;
     module.add_class::<element::Element>()?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<network::Network>()?;
@@ -31,6 +35,8 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_class::<distributed::NetworkShare>()?;
     module.add_class::<gradient::CellConstants>()?;
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
+    module.add_function(wrap_pyfunction!(element::parsed_element, module)?)?;
+    module.add_function(wrap_pyfunction!(mesh::restored_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
     module.add_function(wrap_pyfunction!(fit::masses, module)?)?;

@@ -1,58 +1,71 @@
 //! `Network`.
 
+use crate::arguments::{numbers, optional, text};
 use crate::arrays::{list, matrix, vectors};
+use crate::ends::Ends;
 use crate::error::{invalid, raised};
-use crate::functions::Ends;
-use crate::progress::apart;
+use crate::progress::{alone, apart};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::SpringKind;
-use springfit::error::Error;
+use springfit::error::{Error, Result};
 use springfit::export::target_named;
 use springfit::fit::Spread;
-use springfit::material::Material;
 use springfit::mesh::Mesh;
 use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
 use springfit::report::{self, NetworkFile, NetworkFormat};
 use springfit::solve::System;
 use springfit::springs::Measure;
-use springfit::study::{FitOutcome, Outcome, PointMasses};
+use springfit::study::{FitOutcome, Outcome};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// The share of the forces that a solution may leave; a network that leaves more has a motion without stiffness.
+const LEFT: f64 = 1e-3;
+
 /// The springs of a fit on the points of its mesh.
 #[pyclass(frozen, module = "springfit._core")]
 pub struct Network {
-    mesh: Arc<Mesh>,
-    outcome: Outcome,
-    /// Of the functions that its laws of force call.
-    ends: Option<Arc<Ends>>,
+    outcome: Arc<Outcome>,
+    /// Whether its laws of force call functions of Python.
+    has_functions: bool,
 }
 
 /// Rows, columns and values of a matrix.
 pub type Triplets<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
 
 impl Network {
-    pub fn new(
-        mesh: Arc<Mesh>,
-        material: Material,
-        masses: Option<PointMasses>,
-        fit: FitOutcome,
-        ends: Option<Arc<Ends>>,
-    ) -> Network {
-        let outcome = Outcome::of_fit(String::new(), Mesh::clone(&mesh), material, masses, fit);
-        Network { mesh, outcome, ends }
+    /// That of an outcome of one fit.
+    pub fn new(outcome: Outcome, has_functions: bool) -> Network {
+        Network { outcome: Arc::new(outcome), has_functions }
     }
 
-    /// The result of work that may have called functions of Python.
-    fn heard<T>(&self, py: Python, result: PyResult<T>) -> PyResult<T> {
-        match &self.ends {
-            Some(ends) => ends.heard(py, result),
-            None => result,
-        }
+    /// Evaluates the springs, whose functions may raise exceptions; a function of Python hears signals itself.
+    fn evaluated<T: Send>(&self, py: Python, evaluate: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+        let ends = Arc::new(Ends::default());
+        let result = apart(py, || ends.during(evaluate));
+        ends.check(py)?;
+        result.map_err(|error| raised(py, error))
+    }
+
+    /// The tangent stiffness at positions `x`; at rest if there are none.
+    fn tangent(&self, py: Python, x: Option<Vec<f64>>) -> PyResult<Entries> {
+        let outcome = self.outcome.clone();
+        let evaluate = move || {
+            let network = &outcome.fits[0].network;
+            match x {
+                None => Ok(network.stiffness(&outcome.mesh.points)),
+                Some(x) => network.respond(&x).map(|found| found.tangent).ok_or_else(|| undefined("a tangent")),
+            }
+        };
+        if self.has_functions { self.evaluated(py, evaluate) } else { alone(py, evaluate) }
+    }
+
+    fn mesh(&self) -> &Mesh {
+        &self.outcome.mesh
     }
 
     fn fit(&self) -> &FitOutcome {
@@ -65,8 +78,8 @@ impl Network {
 
     /// The positions that are given, or those at rest.
     fn positions(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Vec<f64>> {
-        let shape = [self.mesh.point_count(), self.mesh.dimension];
-        x.map_or_else(|| Ok(self.mesh.points.clone()), |x| vectors(py, "x", &x, shape))
+        let shape = [self.mesh().point_count(), self.mesh().dimension];
+        x.map_or_else(|| Ok(self.mesh().points.clone()), |x| vectors(py, "x", &x, shape))
     }
 }
 
@@ -74,7 +87,7 @@ impl Network {
 impl Network {
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        matrix(py, self.mesh.points.clone(), self.mesh.dimension)
+        matrix(py, self.mesh().points.clone(), self.mesh().dimension)
     }
 
     #[getter]
@@ -105,43 +118,35 @@ impl Network {
             let law = spring.law.as_deref().map(|own| &own.law.text[..]);
             lists.entry((spring.kind.name(), spring.points.len(), law)).or_default().push(spring);
         }
-        lists.into_values().map(|springs| record(py, &springs, self.mesh.dimension)).collect()
+        lists.into_values().map(|springs| record(py, &springs, self.mesh().dimension)).collect()
     }
 
     /// The energy at positions `x`, J.
     #[pyo3(signature = (x=None))]
     fn energy(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<f64> {
         let x = self.positions(py, x)?;
-        let energy = apart(py, || self.network().energy(&x));
-        let expected = "positions where the springs have an energy";
-        self.heard(py, energy.ok_or_else(|| invalid(py, "x", expected, "others")))
+        self.evaluated(py, || self.network().energy(&x).ok_or_else(|| undefined("an energy")))
     }
 
     /// The forces of the springs on the points at positions `x`, N.
     #[pyo3(signature = (x=None))]
     fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let x = self.positions(py, x)?;
-        let mut slopes = vec![0.0; x.len()];
-        let has_forces = apart(py, || self.network().forces(&x, &mut slopes));
-        let expected = "positions where the springs have a force";
-        self.heard(py, has_forces.then_some(()).ok_or_else(|| invalid(py, "x", expected, "others")))?;
+        let mut slopes = self.evaluated(py, || {
+            let mut slopes = vec![0.0; x.len()];
+            let has_forces = self.network().forces(&x, &mut slopes);
+            has_forces.then_some(slopes).ok_or_else(|| undefined("a force"))
+        })?;
         // The springs pull against the energy's slope.
         slopes.iter_mut().for_each(|slope| *slope = 0.0 - *slope);
-        Ok(matrix(py, slopes, self.mesh.dimension))
+        Ok(matrix(py, slopes, self.mesh().dimension))
     }
 
     /// The tangent stiffness at positions `x`, in triplets of both triangles.
     #[pyo3(signature = (x=None))]
     fn stiffness<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Triplets<'py>> {
-        let at_rest = x.is_none();
-        let x = self.positions(py, x)?;
-        let entries = apart(py, || match at_rest {
-            true => Some(self.network().stiffness(&x)),
-            false => self.network().respond(&x).map(|response| response.tangent),
-        });
-        let expected = "positions where the springs have a tangent";
-        let entries = self.heard(py, entries.ok_or_else(|| invalid(py, "x", expected, "others")))?;
-        Ok(triplets(py, &entries, list))
+        let x = x.map(|x| self.positions(py, Some(x))).transpose()?;
+        Ok(triplets(py, &self.tangent(py, x)?))
     }
 
     /// Small displacements under `forces`, where `held` says which components are `prescribed`; and what is left of the forces.
@@ -152,7 +157,7 @@ impl Network {
         held: PyReadonlyArray2<bool>,
         prescribed: PyReadonlyArray2<f64>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64, bool)> {
-        let shape = [self.mesh.point_count(), self.mesh.dimension];
+        let shape = [self.mesh().point_count(), self.mesh().dimension];
         let forces = vectors(py, "forces", &forces, shape)?;
         let prescribed = vectors(py, "displacement", &prescribed, shape)?;
         if held.shape() != shape {
@@ -160,20 +165,20 @@ impl Network {
         }
         let held = held.as_array();
         let support = Support { prescribed: held.iter().zip(prescribed).map(|(held, u)| held.then_some(u)).collect() };
-        if !model::unheld_bodies(&self.mesh, &support).is_empty() {
+        if !model::unheld_bodies(self.mesh(), &support).is_empty() {
             return Err(invalid(py, "fix", "supports that hold every piece of the mesh", "one that can move as it is"));
         }
-        let solved = apart(py, || {
-            let system = System::new(&self.network().stiffness(&self.mesh.points), &support)?
-                .placed(&self.mesh.points, self.mesh.dimension);
-            let factor = system.factorize()?;
-            Ok(factor.map(|factor| (system.solve(&factor, &forces), factor.is_positive_definite())))
-        });
-        let solved = self.heard(py, solved.map_err(|error| raised(py, error)))?;
-        let expected = "supports that hold the network, and springs that resist every motion";
-        let ((u, left), is_stable) =
-            solved.ok_or_else(|| invalid(py, "fix", expected, "a motion without stiffness"))?;
-        Ok((matrix(py, u, self.mesh.dimension), left, is_stable))
+        let (stiffness, outcome) = (self.tangent(py, None)?, self.outcome.clone());
+        let (u, left, is_stable) = alone(py, move || {
+            let system = System::new(&stiffness, &support)?.placed(&outcome.mesh.points, outcome.mesh.dimension);
+            let factor = system.factorize()?.ok_or_else(|| loose("a motion without stiffness"))?;
+            let (u, left) = system.solve(&factor, &forces);
+            if left > LEFT {
+                return Err(loose("a motion without stiffness, on which forces act"));
+            }
+            Ok((u, left, factor.is_positive_definite()))
+        })?;
+        Ok((matrix(py, u, self.mesh().dimension), left, is_stable))
     }
 
     /// Writes the springs: .json, .npz, .csv or .vtu.
@@ -191,18 +196,27 @@ impl Network {
     fn export(
         &self,
         py: Python,
-        to: &str,
+        to: &Bound<PyAny>,
         folder: PathBuf,
-        gravity: Option<Vec<f64>>,
+        gravity: Option<&Bound<PyAny>>,
     ) -> PyResult<(Vec<PathBuf>, Vec<String>, &'static str)> {
-        let written = apart(py, || {
-            let target = target_named(to).map_err(|e| e.at_key("to"))?;
-            self.network().check_formulas()?;
-            let network = NetworkFile::of(&self.outcome, self.fit()).record();
+        let (to, gravity) = (text("to", to)?, optional("gravity", gravity, numbers)?);
+        if let Some(place) = gravity.iter().flatten().position(|g| !g.is_finite()) {
+            let found = gravity.iter().flatten().nth(place).copied().unwrap_or_default();
+            return Err(invalid(py, &format!("gravity[{place}]"), "a finite number, m/s²", found));
+        }
+        let target = target_named(&to).map_err(|error| raised(py, error.at_key("to")))?;
+        let outcome = self.outcome.clone();
+        let (files, left_out) = alone(py, move || {
+            outcome.fits[0].network.check_formulas()?;
+            let network = NetworkFile::of(&outcome, &outcome.fits[0]).record();
             let files = target.files(&network, gravity.as_deref()).map_err(|e| match e.key() {
                 Some("--gravity") => e.at_key("gravity"),
                 _ => e,
             })?;
+            Ok((files, target.left_out(&network)))
+        })?;
+        let written = apart(py, || {
             let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
             report::check_outputs(&folder, &names, &[])?;
             fs::create_dir_all(&folder).map_err(|e| Error::io("the folder cannot be created", e).in_file(&folder))?;
@@ -212,15 +226,15 @@ impl Network {
                 content.write(&path)?;
                 paths.push(path);
             }
-            Ok((paths, target.left_out(&network), target.command))
+            Ok(paths)
         });
-        written.map_err(|error| raised(py, error))
+        Ok((written.map_err(|error| raised(py, error))?, left_out, target.command))
     }
 
-    /// What is said of the fit: one sentence each.
+    /// What is said of the mesh and of the fit: one sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        report::notes(&self.outcome)
+        report::mesh_notes(self.mesh()).into_iter().chain(report::notes(&self.outcome)).collect()
     }
 
     /// What the fit cost and how far its matrices are from those of the finite elements.
@@ -245,19 +259,34 @@ impl Network {
     fn __len__(&self) -> usize {
         self.network().len()
     }
+
+    /// It never changes.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<PyAny>) -> Py<Self> {
+        slf
+    }
+}
+
+/// The error of positions where the springs have no energy or a derivative of it.
+fn undefined(what: &str) -> Error {
+    Error::expected("x", format!("positions where the springs have {what}"), "others")
+}
+
+/// The error of supports that do not hold the network.
+fn loose(found: &str) -> Error {
+    Error::expected("fix", "supports that hold the network, and springs that resist every motion", found)
 }
 
 /// Both triangles of entries of the lower one.
-pub fn triplets<'py>(
-    py: Python<'py>,
-    entries: &Entries,
-    list: impl Fn(Python<'py>, Vec<i64>) -> Bound<'py, PyArray1<i64>>,
-) -> Triplets<'py> {
+pub fn triplets<'py>(py: Python<'py>, entries: &Entries) -> Triplets<'py> {
     let across = || entries.iter().filter(|entry| entry.row != entry.col);
     let rows = entries.iter().map(|e| e.row as i64).chain(across().map(|e| e.col as i64)).collect();
     let columns = entries.iter().map(|e| e.col as i64).chain(across().map(|e| e.row as i64)).collect();
     let values = entries.iter().map(|e| e.val).chain(across().map(|e| e.val)).collect();
-    (list(py, rows), list(py, columns), crate::arrays::list(py, values))
+    (list(py, rows), list(py, columns), list(py, values))
 }
 
 /// Springs of one kind with as many points each.
@@ -271,10 +300,12 @@ fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyResul
     record.set_item("rest", list(py, springs.iter().map(|s| s.rest).collect()))?;
     if let Some(law) = &springs[0].law {
         record.set_item("law", &law.law.text)?;
+        let parameters = PyDict::new(py);
         for (i, name) in law.law.parameters.iter().enumerate() {
             let values = springs.iter().flat_map(|s| &s.law).map(|own| own.parameters[i]);
-            record.set_item(name, list(py, values.collect()))?;
+            parameters.set_item(name, list(py, values.collect()))?;
         }
+        record.set_item("parameters", parameters)?;
     }
     let of_point = |spring: &MeasureSpring| match &spring.measure {
         Measure::PointContent(element, q) => Some((element.tabulation.clone(), *q as usize)),

@@ -1,27 +1,30 @@
-//! Long work: without the interpreter's lock, with progress, and ended by Ctrl-C.
+//! Long work: on a thread of its own, without the interpreter's lock, with progress, and ended by Ctrl-C.
 
+use crate::ends::Ends;
 use crate::error::raised;
-use crate::functions::Ends;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use springfit::error::Result;
+use springfit::error::{Error, ErrorKind, Result};
 use springfit::study::Event;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process;
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Python is asked no more often.
 const BETWEEN: Duration = Duration::from_millis(50);
+/// The stack of a working thread, that of a program's first thread on most systems; memory is taken where it is used.
+const STACK: usize = 8 << 20;
 
 /// The process that first worked, whose threads are those of the library.
 static OWNER: OnceLock<u32> = OnceLock::new();
 /// The threads of a process that was forked from it, which has none of the owner's.
 static FORKED: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// Runs `work` without the interpreter's lock, also in a process that was forked after the library has worked.
+/// Runs `work` to its end without the interpreter's lock, also in a process that was forked after the library has worked. For work that is
+/// short, and for files, which are not to be left half written.
 pub fn apart<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> T {
     py.detach(|| on_own_threads(work))
 }
@@ -45,83 +48,108 @@ fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     pool.install(work)
 }
 
-/// Ends the work; what Python raised.
-struct Ended(PyErr);
+/// What the thread of a work tells.
+enum Told<T> {
+    Step(String, usize, usize),
+    Done(thread::Result<Result<T>>),
+}
+
+/// How a work stops that nobody waits for.
+struct Ended;
 
 /// Runs `work` without the interpreter's lock. What it reports goes to `listener(stage, done, total)`, if there is one; where that or a
-/// signal raises an exception, the work ends with it.
+/// signal raises an exception, the call ends with it at once. The work itself ends at its next report, or goes on to its end where it has
+/// none; it has no object of Python, and what it finds is dropped.
 ///
 /// # Errors
 /// Those of the work, as exceptions; and what Python raised.
-pub fn run<T: Send>(
+pub fn run<T: Send + 'static>(
     py: Python,
     listener: Option<Py<PyAny>>,
-    work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send,
+    work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    ended(py, apart(py, || listened(listener, work)))
+    watched(py, listener, &Arc::new(Ends::default()), false, work)
 }
 
-/// As [`run`], for work that calls functions of Python: while it runs on another thread, this one hears signals and ends the functions by
-/// them.
+/// As [`run`], for work that reports nothing.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn alone<T: Send + 'static>(py: Python, work: impl FnOnce() -> Result<T> + Send + 'static) -> PyResult<T> {
+    run(py, None, |_| work())
+}
+
+/// As [`run`], for work that calls functions of Python, which raise their exceptions in `ends`. The call ends after the function that is
+/// called, because a function cannot go on when the interpreter ends.
 ///
 /// # Errors
 /// Those of [`run`], or of a function.
-pub fn run_functions<T: Send>(
+pub fn run_functions<T: Send + 'static>(
     py: Python,
     listener: Option<Py<PyAny>>,
-    ends: &Ends,
-    work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send,
+    ends: &Arc<Ends>,
+    work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    let outcome = py.detach(|| {
-        thread::scope(|scope| {
-            let (done, is_done) = mpsc::channel();
-            let worker = scope.spawn(move || {
-                let outcome = on_own_threads(|| listened(listener, work));
-                // The other end waits for this.
-                let _ = done.send(());
-                outcome
-            });
-            while let Err(RecvTimeoutError::Timeout) = is_done.recv_timeout(BETWEEN) {
-                if let Err(exception) = Python::attach(|py| py.check_signals()) {
-                    ends.set("", exception);
-                }
-            }
-            worker.join().and_then(|outcome| outcome)
-        })
-    });
-    ends.heard(py, ended(py, outcome))
+    watched(py, listener, ends, true, work)
 }
 
-/// Runs `work`; what ended it if that was no error.
-fn listened<T>(
+fn watched<T: Send + 'static>(
+    py: Python,
     listener: Option<Py<PyAny>>,
-    work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T>,
-) -> thread::Result<Result<T>> {
+    ends: &Arc<Ends>,
+    waits: bool,
+    work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send + 'static,
+) -> PyResult<T> {
+    let (tell, told) = mpsc::channel();
+    let (own, steps) = (ends.clone(), listener.is_some().then(|| tell.clone()));
+    let worker = move || {
+        let outcome = catch_unwind(AssertUnwindSafe(|| on_own_threads(|| work(&mut reporter(&own, steps)))));
+        // Nobody waits for it after an interrupt.
+        let _ = tell.send(Told::Done(outcome));
+    };
+    let started = thread::Builder::new().stack_size(STACK).spawn(worker);
+    started.map_err(|e| raised(py, Error::io("no thread can be started", e).of_kind(ErrorKind::Limit)))?;
+    let listener = listener.as_ref();
+    let outcome = py.detach(move || {
+        loop {
+            let step = match told.recv_timeout(BETWEEN) {
+                Ok(Told::Done(outcome)) => return outcome,
+                Ok(Told::Step(name, done, total)) => Some((name, done, total)),
+                Err(RecvTimeoutError::Timeout) => None,
+                // The thread always tells how it is done.
+                Err(RecvTimeoutError::Disconnected) => return Err(Box::new(Ended)),
+            };
+            let heard = Python::attach(|py| {
+                py.check_signals()?;
+                let call = step.zip(listener);
+                call.map_or(Ok(()), |(step, listener)| listener.call1(py, step).map(drop))
+            });
+            if let Err(exception) = heard {
+                ends.set("", exception);
+                if !waits {
+                    return Err(Box::new(Ended));
+                }
+            }
+        }
+    });
+    ends.check(py)?;
+    outcome.unwrap_or_else(|cause| resume_unwind(cause)).map_err(|error| raised(py, error))
+}
+
+/// What passes the steps of a work on, and stops the work that has been ended.
+fn reporter<T>(ends: &Ends, steps: Option<Sender<Told<T>>>) -> impl FnMut(Event) {
     let mut last: Option<Instant> = None;
-    let mut told = |event: Event| {
-        let Event::Stage { name, done, total } = event else { return };
+    move |event| {
+        if ends.is_set() {
+            // The library has no other way out of its loops; it holds nothing that this leaves half done.
+            resume_unwind(Box::new(Ended));
+        }
+        let (Event::Stage { name, done, total }, Some(steps)) = (event, &steps) else { return };
         if last.is_some_and(|last| last.elapsed() < BETWEEN) && done < total {
             return;
         }
         last = Some(Instant::now());
-        let heard = Python::attach(|py| {
-            py.check_signals()?;
-            listener.as_ref().map_or(Ok(()), |listener| listener.call1(py, (name, done, total)).map(drop))
-        });
-        if let Err(exception) = heard {
-            // The library has no other way out of its loops; it holds nothing that this leaves half done.
-            resume_unwind(Box::new(Ended(exception)));
-        }
-    };
-    catch_unwind(AssertUnwindSafe(|| work(&mut told)))
-}
-
-fn ended<T>(py: Python, outcome: thread::Result<Result<T>>) -> PyResult<T> {
-    match outcome {
-        Ok(result) => result.map_err(|error| raised(py, error)),
-        Err(cause) => match cause.downcast::<Ended>() {
-            Ok(ended) => Err(ended.0),
-            Err(cause) => resume_unwind(cause),
-        },
+        // The call waits for it, unless it has been ended.
+        let _ = steps.send(Told::Step(name.into(), done, total));
     }
 }

@@ -1,5 +1,6 @@
 //! Studies that compare objectives, refine meshes and try extreme cases; each returns the document that the command prints as JSON.
 
+use crate::arguments::{count, number, optional, text};
 use crate::element::Element;
 use crate::error::raised;
 use crate::progress;
@@ -41,7 +42,7 @@ fn material(element: &Element, poisson: f64, plane: Option<&str>) -> Result<Mate
 #[pyo3(signature = (given, progress=None))]
 pub fn compare_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> PyResult<String> {
     let scene = scene(py, &given)?;
-    progress::run(py, progress, |told| {
+    progress::run(py, progress, move |told| {
         written(serde_json::to_string(&Report::of(&study::compare_scene(&scene, told)?)))
     })
 }
@@ -52,18 +53,20 @@ pub fn compare_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> P
 pub fn compare_element(
     py: Python,
     element: PyRef<Element>,
-    poisson: f64,
-    plane: Option<&str>,
-    shapes: usize,
-    iterations: u64,
+    poisson: &Bound<PyAny>,
+    plane: Option<&Bound<PyAny>>,
+    shapes: &Bound<PyAny>,
+    iterations: &Bound<PyAny>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
+    let (poisson, plane) = (number("poisson", poisson)?, optional("plane", plane, text)?);
+    let (shapes, iterations) = (count("shapes", shapes)?, count("iterations", iterations)? as u64);
     if iterations == 0 {
         return Err(crate::error::invalid(py, "iterations", "a number above 0", 0));
     }
-    let material = material(&element, poisson, plane).map_err(|error| raised(py, error))?;
+    let material = material(&element, poisson, plane.as_deref()).map_err(|error| raised(py, error))?;
     let element = element.0.clone();
-    progress::run(py, progress, |told| {
+    progress::run(py, progress, move |told| {
         written(serde_json::to_string(&study::compare_element(&element, material, shapes, iterations, told)?))
     })
 }
@@ -74,13 +77,14 @@ pub fn compare_element(
 pub fn converge(
     py: Python,
     given: Given,
-    levels: Option<usize>,
+    levels: Option<&Bound<PyAny>>,
     truth: Option<Given>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
+    let levels = optional("levels", levels, count)?;
     let own = scene(py, &given)?;
     let truth = truth.map(|truth| scene(py, &truth)).transpose()?;
-    progress::run(py, progress, |told: &mut dyn FnMut(Event)| {
+    progress::run(py, progress, move |told: &mut dyn FnMut(Event)| {
         let found = match &truth {
             None => study::converge(&own, levels, told),
             Some(truth) => study::converge_to(&own, truth, levels, told),
@@ -94,7 +98,7 @@ pub fn converge(
 #[pyo3(signature = (element=None, progress=None))]
 pub fn stability(py: Python, element: Option<PyRef<Element>>, progress: Option<Py<PyAny>>) -> PyResult<String> {
     let element = element.map(|element| springfit::element::Element::clone(&element.0));
-    progress::run(py, progress, |told| written(serde_json::to_string(&study::stability(element, told)?)))
+    progress::run(py, progress, move |told| written(serde_json::to_string(&study::stability(element, told)?)))
 }
 
 /// A scene in other units and of other materials.
@@ -102,5 +106,5 @@ pub fn stability(py: Python, element: Option<PyRef<Element>>, progress: Option<P
 #[pyo3(signature = (given, progress=None))]
 pub fn stability_of_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> PyResult<String> {
     let scene = scene(py, &given)?;
-    progress::run(py, progress, |told| written(serde_json::to_string(&study::stability_of_scene(&scene, told)?)))
+    progress::run(py, progress, move |told| written(serde_json::to_string(&study::stability_of_scene(&scene, told)?)))
 }

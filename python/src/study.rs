@@ -1,8 +1,8 @@
 //! `run`: whole scenes.
 
 use crate::arrays::matrix;
-use crate::error::raised;
-use crate::progress;
+use crate::error::{invalid, raised};
+use crate::progress::{self, apart};
 use crate::value::{table, text};
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -31,22 +31,23 @@ pub fn run<'py>(
     let (text, path) = text_of(py, scene, &folder)?;
     let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
     let scene = scene.map_err(|error| raised(py, keyless(error)))?;
-    let (outcome, written) = progress::run(py, progress, |told| {
-        if let Some(out) = &out {
-            report::check_scene_outputs(&scene, out, &[])?;
-        }
+    if let Some(out) = &out {
+        apart(py, || report::check_scene_outputs(&scene, out, &[])).map_err(|error| raised(py, error))?;
+    }
+    let (scene, outcome) = progress::run(py, progress, move |told| {
         let outcome = run_with(&scene, &Controls::default(), told)?;
-        let written = out.map(|out| report::write_outputs(&outcome, scene.output(), &out)).transpose()?;
-        Ok((outcome, written.unwrap_or_default()))
+        Ok((scene, outcome))
     })?;
-    Ok((report::report(&outcome), displacements(py, &outcome), written))
+    let write = |out: PathBuf| apart(py, || report::write_outputs(&outcome, scene.output(), &out));
+    let written = out.map(write).transpose().map_err(|error| raised(py, error))?;
+    Ok((report::report(&outcome), displacements(py, &outcome), written.unwrap_or_default()))
 }
 
 /// The text of a scene, and its path: of a file, or of a dictionary as if it were in `folder`.
 pub fn text_of(py: Python, scene: &Bound<PyAny>, folder: &Path) -> PyResult<(String, PathBuf)> {
     match scene.cast::<PyDict>() {
         // The name is the title of a scene without one.
-        Ok(keys) => Ok((text(&table(keys)?), folder.join("scene.toml"))),
+        Ok(keys) => Ok((text(&table(keys, "scene")?), folder.join("scene.toml"))),
         Err(_) => {
             let path: PathBuf = scene.extract()?;
             let read = std::fs::read_to_string(&path);
@@ -57,7 +58,12 @@ pub fn text_of(py: Python, scene: &Bound<PyAny>, folder: &Path) -> PyResult<(Str
 
 /// The values of keys, by their paths.
 pub fn settings_of(py: Python, values: &Bound<PyDict>) -> PyResult<Vec<Setting>> {
-    let settings = table(values)?.iter().map(|(key, value)| Setting::of(key, value)).collect::<Result<_>>();
+    // A scene leaves out what is None; a value that takes the place of another has to be one.
+    if let Some((key, _)) = values.iter().find(|(_, value)| value.is_none()) {
+        let key = key.extract::<String>().unwrap_or_else(|_| "set".into());
+        return Err(invalid(py, &key, "a value in place of that of the scene", "None"));
+    }
+    let settings = table(values, "set")?.iter().map(|(key, value)| Setting::of(key, value)).collect::<Result<_>>();
     settings.map_err(|error| raised(py, error))
 }
 

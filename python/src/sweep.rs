@@ -39,7 +39,7 @@ impl Sweep {
         let (text, path) = text_of(py, scene, &folder)?;
         let mut settings = settings_of(py, settings)?;
         if let Some(sweep) = sweep {
-            let table = toml::Value::Table(table(sweep)?);
+            let table = toml::Value::Table(table(sweep, "over")?);
             settings.push(Setting::of("sweep", &table).map_err(|error| raised(py, error))?);
         }
         let sweep =
@@ -105,5 +105,5 @@ pub fn study_line(
     let own = values.iter().map(|(key, value)| Setting::of(key, value)).collect::<Result<_>>();
     let study = Study { settings: own.map_err(|error| raised(py, error))? };
     let sweep = study::Sweep::of_studies(&text, &path, &settings, vec![study.clone()]);
-    progress::run(py, progress, |told| Ok(StudyRecord::of(&sweep, &study, &sweep.run_study(&study, told)).line()))
+    progress::run(py, progress, move |told| Ok(StudyRecord::of(&sweep, &study, &sweep.run_study(&study, told)).line()))
 }

@@ -41,8 +41,9 @@ def same(net, other, tolerance):
     assert np.abs(net.constants - other.constants).max(initial=0) <= tolerance * scale
     for kind, known in zip(net.contents, other.contents, strict=True):
         assert kind["kind"] == known["kind"] and np.array_equal(kind["points"], known["points"])
+        kind, known = ({**each, **each.get("parameters", {})} for each in (kind, known))
         for key in kind:
-            if key not in ("kind", "unit", "points", "law"):
+            if key not in ("kind", "unit", "points", "law", "parameters"):
                 a, b = np.asarray(kind[key], float), np.asarray(known[key], float)
                 assert np.abs(a - b).max() <= tolerance * np.abs(b).max(), (key, np.abs(a - b).max())
 
@@ -92,7 +93,8 @@ def test_laws_of_groups_may_be_functions_beside_expressions(tmp_path):
     net = sf.sampled(box(), MATERIAL, energy, force=laws, springs=["edge", "bulk"], shapes=SHAPES)
     bulk = next(kind for kind in net.contents if kind["kind"] == "volume")
     # The neo-Hookean energy of a tetrahedron is that of such springs.
-    assert np.allclose(bulk["a"], -MU, rtol=1e-8) and np.allclose(bulk["b"], LAMBDA, rtol=1e-8)
+    found = bulk["parameters"]
+    assert np.allclose(found["a"], -MU, rtol=1e-8) and np.allclose(found["b"], LAMBDA, rtol=1e-8)
     for write in (lambda: net.write(tmp_path / "net.json"), lambda: net.write(tmp_path / "net.csv"), lambda: net.export("npz", tmp_path / "out")):
         with pytest.raises(sf.SpringfitError) as error:
             write()
@@ -117,6 +119,20 @@ def test_arguments_with_a_default_are_not_fitted():
     same(net, known, 1e-9)
 
 
+def test_parameters_may_have_the_names_of_fields():
+    keys = {"springs": ["edge"], "shapes": SHAPES}
+    net = sf.sampled(box(), MATERIAL, energy, force=lambda s, points, rest: points * s + rest * s**3, **keys)
+    known = sf.sampled(box(), MATERIAL, energy, force=lambda s, k, a: k * s + a * s**3, **keys)
+    [own], [other] = net.contents, known.contents
+    assert np.array_equal(own["points"], other["points"]) and np.array_equal(own["rest"], other["rest"])
+    assert np.array_equal(own["parameters"]["points"], other["parameters"]["k"])
+    assert np.array_equal(own["parameters"]["rest"], other["parameters"]["a"])
+
+
+def wrong_after_the_first(f):
+    return stress(f) * np.where(np.arange(len(f)) > 0, 1.001, 1.0)[:, None, None]
+
+
 def broken(f):
     raise KeyError("no such table")
 
@@ -132,6 +148,9 @@ def broken(f):
         ({"law": lambda f: energy(f) + 10.0 * f[:, 0, 0]}, "law", "no stress at rest"),
         ({"law": None, "stress": lambda f: f[0]}, "stress", "shape (1, 3, 3)"),
         ({"law": energy, "stress": lambda f: 2 * stress(f)}, "stress", "derivative"),
+        ({"law": energy, "stress": wrong_after_the_first}, "stress", "derivative"),
+        ({"law": lambda f: energy(f) > 0}, "law", "bool"),
+        ({"law": lambda f: np.ma.masked_greater(energy(f), -1e99)}, "law", "masked"),
         ({"law": "neo-hookean", "stress": stress}, "stress", "a function, or none"),
         ({"law": energy, "stress": 3}, "stress", "function"),
         ({"law": None}, "law", "none"),
@@ -187,6 +206,34 @@ def test_functions_that_fail_later_are_heard():
         assert isinstance(error.value.__cause__, RuntimeError)
     state["fail"] = False
     assert np.isfinite(net.forces(x)).all()
+
+
+def test_each_thread_hears_its_own_function():
+    failing, mixed = threading.Event(), []
+
+    def force(s, k):
+        if failing.is_set():
+            raise RuntimeError(threading.current_thread().name)
+        return k * s
+
+    net = sf.sampled(box(), MATERIAL, energy, force=force, springs=["edge"], shapes=SHAPES)
+    failing.set()
+
+    def call():
+        for _ in range(200):
+            try:
+                net.forces(net.points * 1.1)
+                mixed.append("no error")
+            except sf.SpringfitError as error:
+                if str(error.__cause__) != threading.current_thread().name:
+                    mixed.append(str(error))
+
+    threads = [threading.Thread(target=call) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not mixed, mixed[:3]
 
 
 def test_functions_are_called_while_other_threads_hold_the_lock():

@@ -144,6 +144,34 @@ def test_wrong_positions_and_supports_are_refused():
         assert error.value.key == key, str(error.value)
 
 
+def test_mechanisms_are_refused():
+    mesh = sf.Mesh.box("quad4", size=[1, 1], cells=[3, 3])
+    net = sf.fit(mesh, MATERIAL, "frobenius", springs=["edge"])
+    sheared = np.zeros_like(mesh.points)
+    sheared[mesh.groups["xmax"], 1] = 1.0
+    with pytest.raises(sf.SpringfitError) as error:
+        net.solve(fix="xmin", forces=sheared)
+    assert error.value.key == "fix"
+
+
+def test_notes_are_those_of_the_command():
+    points = [[0, 0], [1, 0], [0, 1], [5, 5], [6, 5], [5, 6], [9, 9]]
+    mesh = sf.Mesh(points, {"tri3": [[0, 2, 1], [3, 4, 5]]})
+    for material, thick in [(MATERIAL, 0), (sf.Material(1e4, 0.3, thickness=0.1), 1)]:
+        notes = " ".join(sf.fit(mesh, material).notes)
+        assert ("assumed to be 1 m" in notes) == (thick == 0)
+        assert "2 pieces" in notes and "reversed" in notes and "1 points of the file" in notes
+    solid = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1])
+    assert not any("assumed" in note or "pieces" in note for note in sf.fit(solid, MATERIAL).notes)
+
+
+@pytest.mark.parametrize("name, points, cells", [("tet4", np.eye(4, 3), [[3, 0, 1, 2]]), ("bar2", [[0], [1], [3]], [[0, 1], [1, 2]])])
+def test_only_plane_bodies_have_a_slope_by_thickness(name, points, cells):
+    constants = sf.SpringConstants(name, cells)
+    for thickness in (0.0, 1.0):
+        assert constants.gradient(points, 1e4, 0.3, thickness, weights=np.ones(len(constants.springs))).thickness == 0.0
+
+
 def test_progress_is_told_and_may_end_the_work():
     mesh = sf.Mesh.box("hex8", size=[1, 1, 1], cells=[30, 30, 30])
     x = mesh.points + 0.005 * np.random.default_rng(5).uniform(-1, 1, mesh.points.shape)

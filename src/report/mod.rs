@@ -83,7 +83,7 @@ pub use stretches::{STRETCHES_FILES, stretches_tables, stretches_text, write_str
 pub use study_lines::StudyLines;
 pub use study_record::StudyRecord;
 pub use study_table::{StudyTable, planned_table, planned_text, studies_table, studies_text};
-pub use table::{notes, summary, table};
+pub use table::{mesh_notes, notes, summary, table};
 pub use typeset::Markup;
 
 use crate::error::Result;

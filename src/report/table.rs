@@ -9,7 +9,7 @@ use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
 use super::region_record::RegionRecord;
 use crate::fit::Spread;
-use crate::mesh::{Filled, Quality};
+use crate::mesh::{Filled, Mesh, Quality};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
 use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading, extent};
@@ -44,17 +44,8 @@ pub fn summary(outcome: &Outcome) -> String {
     let given =
         if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
     let mut text = format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
-    let turned = "elements had their nodes in inverted order and were reversed";
-    match &mesh.quality.turned {
-        _ if mesh.reversed == 0 => {}
-        None => writeln!(text, "{} {turned}", mesh.reversed).expect("a String grows"),
-        Some(which) => {
-            writeln!(text, "{} of {} {turned}: {which}", mesh.reversed, mesh.cell_count()).expect("a String grows")
-        }
-    }
-    if mesh.unused_points > 0 {
-        writeln!(text, "{} points of the file belong to no element and were left out", mesh.unused_points)
-            .expect("a String grows");
+    for line in changes(mesh) {
+        writeln!(text, "{line}").expect("a String grows");
     }
     if let Some(numbering) = mesh.numbering.as_ref().filter(|numbering| !numbering.is_contiguous()) {
         let title = numbering.title();
@@ -85,6 +76,23 @@ pub(super) fn size(extent: &[f64]) -> String {
         _ => format!("{x:.2e}"),
     };
     format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
+}
+
+/// What a reader must know of the mesh: what was changed in it, and what is wrong with its cells and points; one line each.
+pub fn mesh_notes(mesh: &Mesh) -> Vec<String> {
+    changes(mesh).into_iter().chain(quality(&mesh.quality)).collect()
+}
+
+/// Which cells were turned, and how many points were left out.
+fn changes(mesh: &Mesh) -> Vec<String> {
+    let turned = "elements had their nodes in inverted order and were reversed";
+    let turned = (mesh.reversed > 0).then(|| match &mesh.quality.turned {
+        None => format!("{} {turned}", mesh.reversed),
+        Some(which) => format!("{} of {} {turned}: {which}", mesh.reversed, mesh.cell_count()),
+    });
+    let unused = (mesh.unused_points > 0)
+        .then(|| format!("{} points of the file belong to no element and were left out", mesh.unused_points));
+    turned.into_iter().chain(unused).collect()
 }
 
 /// What is wrong with the cells and points of a mesh, one line each.
