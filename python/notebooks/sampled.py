@@ -83,7 +83,7 @@ found = sf.fit(
     force={"edge": "k*c", "bulk": "a/(1 + s) + b*ln(1 + s)/(1 + s)"},
 )
 volumes = next(kind for kind in found.contents if kind["kind"] == "volume")
-a, b = volumes["a"], volumes["b"]
+a, b = volumes["parameters"]["a"], volumes["parameters"]["b"]
 print(f"a/mu from {(a / mu).min():.9f} to {(a / mu).max():.9f}")
 print(f"b/lambda from {(b / lam).min():.9f} to {(b / lam).max():.9f}")
 exact = energy(found, tets)

@@ -1,6 +1,7 @@
 """The compiled part. The classes of the package wrap it; what they say of shapes and units holds here."""
 
 from collections.abc import Callable, Sequence
+from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias, final
 
@@ -51,7 +52,7 @@ class SpringfitError(ValueError):
 class Element:
     """An element type: a shipped one by its name, or the one of a TOML file by its path."""
 
-    def __new__(cls, name_or_path: str) -> Element: ...
+    def __new__(cls, name_or_path: str | PathLike[str]) -> Element: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, ...]: ...

@@ -215,7 +215,8 @@ class Network:
     def contents(self) -> "list[dict]":
         """The springs on areas, volumes, angles and other measures c of a few points, gathered by kind: a dictionary of ``kind``, ``points``
         (springs, points of each), ``constants``, ``rest`` (energy ``k (c - rest)²/2``) and the ``unit`` of the constant. With a ``law``
-        of force its parameters are arrays, and the constant is the slope at rest; springs between two points that have a law are here as well.
+        of force its ``parameters`` are a dictionary of arrays by name, and the constant is the slope at rest; springs between two points
+        that have a law are here as well.
 
         The area or volume of a whole cell is ``c = Σ_q w_q det(Σ_a x_a ⊗ ∇N_a(ξ_q))``, with the points and weights of the quadrature of its
         element (``hex8``: 2×2×2 points of Gauss); of a simplex it is the determinant of the edges, divided by 2 or 6. Measures at a quadrature
@@ -309,7 +310,7 @@ class Network:
         Raises:
             SpringfitError: The program does not hold this network, and a fit that it holds is named.
         """
-        along = None if gravity is None else typed("gravity", array("gravity", gravity), np.float64).ravel().tolist()
+        along = None if gravity is None else typed("gravity", array("gravity", gravity), np.float64).tolist()
         files, left_out, _ = self._core.export(to, os.fspath(folder), along)
         for words in left_out:
             warn(words)

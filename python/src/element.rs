@@ -56,7 +56,8 @@ impl Element {
     /// The shipped element of this name, or the element in the file of this path.
     #[new]
     fn new(py: Python, name_or_path: &Bound<PyAny>) -> PyResult<Element> {
-        let name = text("element", name_or_path)?;
+        let path = name_or_path.call_method0("__fspath__");
+        let name = text("element", path.as_ref().unwrap_or(name_or_path))?;
         Element::named(&name).map_err(|error| raised(py, error))
     }
 

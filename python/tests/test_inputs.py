@@ -225,3 +225,8 @@ def test_progress_is_told_on_the_thread_of_the_call():
 def test_files_have_the_density(tmp_path):
     sf.fit(MESH, MATERIAL).write(tmp_path / "net.json")
     assert json.loads((tmp_path / "net.json").read_text())["provenance"]["material"]["density"] == 1000.0
+
+
+def test_elements_are_named_by_paths():
+    path = ROOT / "elements/tri3.toml"
+    assert sf.Element(path) == sf.Element("tri3") == sf.Element(str(path))
