@@ -212,7 +212,7 @@ fn the_axes_do_not_matter() {
 /// A sheet of the plane in space, with heights, turned.
 fn in_space(mesh: &Mesh, height: impl Fn(&[f64]) -> f64, turn: &Rotation3<f64>) -> Mesh {
     let element = Arc::new(mesh.blocks[0].element.as_ref().clone().in_space(3));
-    let place = |x: &[f64]| *(turn * Vector3::new(x[0], x[1], height(x))).as_ref();
+    let place = |x: &[f64]| -> [f64; 3] { (turn * Vector3::new(x[0], x[1], height(x))).into() };
     let points = mesh.points.chunks_exact(2).flat_map(place).collect();
     let blocks = vec![CellBlock { element, ..mesh.blocks[0].clone() }];
     Mesh { dimension: 3, points, blocks, ..mesh.clone() }
